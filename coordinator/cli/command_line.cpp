@@ -7,13 +7,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "coordinator/cli/completion.h"
-#include "coordinator/cli/machines/invite_options.h"
-#include "coordinator/cli/options/admin_options.h"
+#include "coordinator/cli/options/add_options.h"
 #include "coordinator/cli/options/checked_options.h"
 #include "coordinator/cli/options/choices.h"
 #include "coordinator/cli/options/did_you_mean.h"
-#include "coordinator/cli/options/image_options.h"
-#include "coordinator/cli/study/study_options.h"
 
 namespace bandsaw::coordinator {
 namespace {

@@ -47,7 +47,7 @@ class Collector {
   };
   /// The blobs of the packages of one job, each once.
   struct Needs {
-    std::size_t packages = 0;  ///< that were read
+    std::size_t packages = 0;  ///< number of packages that were read
     std::set<wire::Digest> blobs;
   };
   Final final_job(const KeptJob& job) const;

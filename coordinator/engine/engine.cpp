@@ -47,7 +47,7 @@ SchedulerOptions scheduler_options(const EngineOptions& options, const std::stri
 
 /// Returns OK if a little data can be written in addition to the reserve. Otherwise releases the
 /// reserve, so that the journal can be opened and the rest of the start has room for small files.
-absl::Status find_room(const DataFolder& folder) {
+absl::Status ensure_disk_space(const DataFolder& folder) {
   constexpr std::uint64_t kLittle = 1 << 20;
   Reserve reserve(folder.reserve());
   absl::Status room = reserve.hold();
@@ -101,7 +101,7 @@ Engine::Engine(const EngineOptions& options, EngineDependencies dependencies, Da
 absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options,
                                                       EngineDependencies dependencies) {
   ASSIGN_OR_RETURN(DataFolder folder, DataFolder::open(options.data_folder));
-  const absl::Status room = find_room(folder);
+  const absl::Status room = ensure_disk_space(folder);
   if (!room.ok() && !absl::IsResourceExhausted(room)) {
     return room;
   }

@@ -28,7 +28,7 @@ class SchedulerInbox {
   virtual void disk_is_back() = 0;
   /// These jobs are final and exceed a limit of engine/collector.h.
   virtual void forget(std::vector<JobId> jobs) = 0;
-  // From the film.
+  // Messages from the film.
   virtual void pass_merged(input::PassMerged merged) = 0;
   /// The film could not take a band, or make the image. It tries again after FilmInbox::retry.
   virtual void storage_failed(JobId job, const absl::Status& status) = 0;

@@ -11,6 +11,7 @@
 
 namespace bandsaw::coordinator {
 
+/// `field` is the field's name in errors; `raw` are the 32 bytes of a digest.
 absl::StatusOr<wire::Digest> digest_field(const char* field, const std::string& raw);
 absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request);
 absl::StatusOr<SequenceSpec> sequence_spec(const farm::SubmitSequenceRequest& request);

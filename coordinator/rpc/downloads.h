@@ -45,12 +45,12 @@ class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobCh
 class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultChunk>, ImageCall>,
                         public LongStream {
  public:
-  /// May wait, for the engine too.
+  /// May block: it may wait for the engine.
   using Make = std::function<absl::StatusOr<HeldImage>()>;
   ImageCall(const ServiceDependencies& deps, Make make) : deps_(deps), make_(std::move(make)) {}
   void begin();
   void OnWriteDone(bool ok) override;
-  /// Also frees the memory of the image at once.
+  /// Ends the call, and frees the memory of the image at once.
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
   link::Role role() const override { return link::Role::kFarm; }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Callbacks for the engine that finish a unary RPC with what it says of a job.
+// Callbacks that finish a unary RPC with the job that the engine passes to them.
 
 #include <grpcpp/grpcpp.h>
 

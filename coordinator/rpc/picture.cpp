@@ -58,12 +58,12 @@ absl::StatusOr<JobView> frame_to_show(Engine& engine, JobId sequence) {
   }
   return best == nullptr
              ? absl::NotFoundError(absl::StrCat("no frame of job ", sequence, " is rendered yet"))
-             : look_at(engine, best->job);
+             : job_view(engine, best->job);
 }
 
 }  // namespace
 
-absl::StatusOr<JobView> look_at(Engine& engine, JobId job) {
+absl::StatusOr<JobView> job_view(Engine& engine, JobId job) {
   using View = absl::StatusOr<JobView>;
   return blocking_call<View>([&](auto answer) {
     engine.watch(job, [answer](View view) {
@@ -74,7 +74,7 @@ absl::StatusOr<JobView> look_at(Engine& engine, JobId job) {
 }
 
 absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job, FinishedPart part) {
-  ASSIGN_OR_RETURN(const JobView view, look_at(engine, job));
+  ASSIGN_OR_RETURN(const JobView view, job_view(engine, job));
   return finished_image(engine, view, part);
 }
 
@@ -105,7 +105,7 @@ absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::ui
 }
 
 absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side) {
-  ASSIGN_OR_RETURN(const JobView view, look_at(engine, job));
+  ASSIGN_OR_RETURN(const JobView view, job_view(engine, job));
   ASSIGN_OR_RETURN(HeldImage held, picture_of(engine, view, most_side));
   held.result.digest = wire::sha256(std::as_bytes(std::span(held.result.image.pixels)));
   return held;

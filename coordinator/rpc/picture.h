@@ -11,7 +11,7 @@ namespace bandsaw::coordinator {
 
 /// Returns the job's current state. NOT_FOUND: no such job. Waits for the engine, as do all
 /// functions here.
-absl::StatusOr<JobView> look_at(Engine& engine, JobId job);
+absl::StatusOr<JobView> job_view(Engine& engine, JobId job);
 
 /// An image, and its share of the memory budget Engine::images.
 struct HeldImage {
@@ -26,9 +26,9 @@ absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job,
                                     FinishedPart part = FinishedPart::kImage);
 
 /// Returns the finished image of the job, or the present image of a job that is not done, with at
-/// most about `most_side` (>= 1) pixels per side. `digest` of the result is not set. For a sequence,
-/// this is the image of the last frame that was done; if none is done, of the first frame that is
-/// being rendered. NOT_FOUND: no band of the job is stored.
+/// most about `most_side` (>= 1) pixels per side. `digest` of the result is not set. For a
+/// sequence, this is the image of the last frame that was done; if none is done, of the first frame
+/// that is being rendered. NOT_FOUND: no band of the job is stored.
 absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side);
 /// The same for the job with this id; sets `digest`.
 absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side);

@@ -34,7 +34,7 @@ class PutBandsCall final
   void advance() REQUIRES(mutex_);
 
   const ServiceDependencies deps_;
-  farm::BandChunk chunk_;  ///< this and intake_: used by read callbacks only
+  farm::BandChunk chunk_;  ///< chunk_ and intake_: used by read callbacks only
   BandIntake intake_;
   farm::PutBandReply reply_;  ///< accessed by the thread that answers
   Mutex mutex_;

@@ -131,7 +131,7 @@ class Server::Impl {
  private:
   const link::Identity identity_;  ///< as at the start; the certificate does not change
   Gate gate_;
-  FileExecutor files_;  // this and the next outlive the server: ending calls post tasks to them
+  FileExecutor files_;  // files_ and images_ outlive the server: ending calls post tasks to them
   FileExecutor images_;
   LongStreams streams_;
   FarmService farm_;

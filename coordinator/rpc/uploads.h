@@ -32,7 +32,8 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
 
   const ServiceDependencies deps_;
   grpc::CallbackServerContext* const context_;
-  farm::BlobChunk chunk_;  ///< this and the next two: used by reads and tasks, which alternate
+  farm::BlobChunk
+      chunk_;  ///< chunk_, intake_ and writer_: used by reads and tasks, which alternate
   BlobIntake intake_;
   std::unique_ptr<Engine::BlobWriter> writer_;
   Mutex mutex_;

@@ -129,7 +129,7 @@ BlobStore::Writer::~Writer() {
   }
 }
 
-/// Only hashes the earlier bytes; whether they are right is known when the digest is complete.
+/// Hashes the earlier bytes. commit() compares the complete digest.
 absl::Status BlobStore::Writer::take_earlier(std::uint64_t bytes) {
   std::vector<std::byte> buffer(std::min<std::uint64_t>(bytes, 1 << 20));
   while (written_ < bytes) {

@@ -7,9 +7,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "coordinator/store/fields.h"
-#include "coordinator/store/record_text_audit.h"
-#include "coordinator/store/record_text_job.h"
-#include "coordinator/store/record_text_report.h"
+#include "coordinator/store/record_text_parts.h"
 #include "renderlib/base/overloaded.h"
 #include "renderlib/base/status_macros.h"
 

@@ -1,8 +1,6 @@
-#include "coordinator/store/record_text_audit.h"
+#include "coordinator/store/record_text_parts.h"
 
 #include <cstdint>
-
-#include "coordinator/store/record_text_report.h"
 
 namespace bandsaw::coordinator {
 

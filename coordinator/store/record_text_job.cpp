@@ -1,4 +1,4 @@
-#include "coordinator/store/record_text_job.h"
+#include "coordinator/store/record_text_parts.h"
 
 #include <string>
 #include <utility>

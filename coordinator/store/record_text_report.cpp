@@ -1,4 +1,4 @@
-#include "coordinator/store/record_text_report.h"
+#include "coordinator/store/record_text_parts.h"
 
 namespace bandsaw::coordinator {
 

@@ -85,7 +85,7 @@ absl::StatusOr<std::unique_ptr<SqliteJournal>> SqliteJournal::open(const std::st
 
 absl::Status SqliteJournal::prepare_file() {
   RETURN_IF_ERROR(execute("PRAGMA locking_mode = EXCLUSIVE;"));
-  ASSIGN_OR_RETURN(const std::string mode, ask("PRAGMA journal_mode = WAL;"));
+  ASSIGN_OR_RETURN(const std::string mode, query("PRAGMA journal_mode = WAL;"));
   if (mode != "wal") {
     return absl::FailedPreconditionError(
         absl::StrCat("the journal ", path_, " cannot keep a write-ahead log there (SQLite says '",
@@ -93,12 +93,12 @@ absl::Status SqliteJournal::prepare_file() {
   }
   RETURN_IF_ERROR(execute("PRAGMA synchronous = FULL;"));
   RETURN_IF_ERROR(check_version());
-  ASSIGN_OR_RETURN(const std::string sound, ask("PRAGMA quick_check(1);"));
+  ASSIGN_OR_RETURN(const std::string sound, query("PRAGMA quick_check(1);"));
   if (sound != "ok") {
     return absl::DataLossError(
         absl::StrCat("the journal ", path_, " is damaged: ", sound, "; restore it from a backup"));
   }
-  ASSIGN_OR_RETURN(const std::string last, ask("SELECT coalesce(max(sequence), 0) FROM record;"));
+  ASSIGN_OR_RETURN(const std::string last, query("SELECT coalesce(max(sequence), 0) FROM record;"));
   if (!absl::SimpleAtoi(last, &last_)) {
     return absl::DataLossError(
         absl::StrCat("the journal ", path_, " has a record with the sequence number ", last));
@@ -109,7 +109,7 @@ absl::Status SqliteJournal::prepare_file() {
 }
 
 absl::Status SqliteJournal::check_version() {
-  ASSIGN_OR_RETURN(const std::string version, ask("PRAGMA user_version;"));
+  ASSIGN_OR_RETURN(const std::string version, query("PRAGMA user_version;"));
   int found = 0;
   if (absl::SimpleAtoi(version, &found) && found > 0 && found < kSchema) {
     raise_version_ = true;
@@ -218,7 +218,7 @@ absl::StatusOr<SqliteJournal::Statement> SqliteJournal::prepare(const char* sql)
   return Statement(statement);
 }
 
-absl::StatusOr<std::string> SqliteJournal::ask(const char* sql) {
+absl::StatusOr<std::string> SqliteJournal::query(const char* sql) {
   ASSIGN_OR_RETURN(const Statement statement, prepare(sql));
   if (sqlite3_step(statement.get()) != SQLITE_ROW) {
     return error("cannot read it");

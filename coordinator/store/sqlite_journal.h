@@ -43,7 +43,7 @@ class SqliteJournal : public Journal {
   absl::Status execute(const char* sql);
   absl::StatusOr<Statement> prepare(const char* sql);
   /// Returns the first column of the first row, as text.
-  absl::StatusOr<std::string> ask(const char* sql);
+  absl::StatusOr<std::string> query(const char* sql);
   absl::Status insert(const Record& record, std::uint64_t sequence);
   absl::Status transact(const char* first, absl::Span<const Record> records, std::uint64_t after);
   absl::Status error(const std::string& what) const;

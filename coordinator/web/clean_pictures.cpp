@@ -58,7 +58,7 @@ absl::StatusOr<JobId> CleanPictures::submit_job(JobSpec spec, std::int32_t prior
     return blocking_call<Answer>([&](auto answer) { engine_.submit(spec, answer, priority); });
   };
   ASSIGN_OR_RETURN(const JobId job, submit());
-  ASSIGN_OR_RETURN(const JobView view, look_at(engine_, job));
+  ASSIGN_OR_RETURN(const JobView view, job_view(engine_, job));
   if (!is_final(view.state) || view.state == JobState::kDone) {
     return job;
   }
@@ -79,7 +79,7 @@ absl::StatusOr<std::vector<JobId>> CleanPictures::submit_jobs(const JobView& of)
 }
 
 absl::StatusOr<CleanPictures::State> CleanPictures::start(JobId id) {
-  ASSIGN_OR_RETURN(const JobView job, look_at(engine_, id));
+  ASSIGN_OR_RETURN(const JobView job, job_view(engine_, id));
   RETURN_IF_ERROR(check(job));
   {
     MutexLock lock(mutex_);
@@ -102,7 +102,7 @@ absl::StatusOr<CleanPictures::State> CleanPictures::start(JobId id) {
 }
 
 absl::StatusOr<CleanPictures::State> CleanPictures::state(JobId id) {
-  ASSIGN_OR_RETURN(const JobView job, look_at(engine_, id));
+  ASSIGN_OR_RETURN(const JobView job, job_view(engine_, id));
   std::vector<JobId> jobs;
   {
     MutexLock lock(mutex_);
@@ -122,7 +122,7 @@ absl::StatusOr<CleanPictures::State> CleanPictures::state(JobId id) {
   double done = 0;
   absl::Status why;
   for (const JobId guide : jobs) {
-    const absl::StatusOr<JobView> view = look_at(engine_, guide);
+    const absl::StatusOr<JobView> view = job_view(engine_, guide);
     if (!view.ok()) {
       why.Update(view.status());
     } else if (is_final(view->state) && view->state != JobState::kDone) {

@@ -37,7 +37,7 @@ class CleanPictures {
   };
   struct State {
     Stage stage = Stage::kNone;
-    double fraction = 0;    ///< of the guides' work that is done, [0, 1]
+    double fraction = 0;    ///< part of the guides' work that is done, [0, 1]
     absl::Status why = {};  ///< in stage kFailed
     CleanError error = {};  ///< in stage kReady
   };

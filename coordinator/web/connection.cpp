@@ -39,12 +39,12 @@ Endpoint endpoint_of(int socket, int (*name_of)(int, sockaddr*, socklen_t*)) {
 
 }  // namespace
 
-Connection::Connection(int socket, SSL_CTX* tls, std::chrono::milliseconds patience)
+Connection::Connection(int socket, SSL_CTX* tls, std::chrono::milliseconds timeout)
     : socket_(socket),
       encrypted_(tls != nullptr),
       ssl_(tls == nullptr ? nullptr : SSL_new(tls)),
-      patience_(patience),
-      deadline_(Clock::now() + patience),
+      timeout_(timeout),
+      deadline_(Clock::now() + timeout),
       remote_(endpoint_of(socket, &getpeername).address),
       local_port_(endpoint_of(socket, &getsockname).port) {
   fcntl(socket_, F_SETFL, fcntl(socket_, F_GETFL) | O_NONBLOCK);
@@ -100,7 +100,7 @@ bool Connection::shake_hands() {
 
 void Connection::begin_body() {
   in_head_ = false;
-  deadline_ = Clock::now() + patience_;
+  deadline_ = Clock::now() + timeout_;
 }
 
 void Connection::begin_answer() { begin_body(); }
@@ -156,7 +156,7 @@ void Connection::finish() {
     SSL_shutdown(ssl_.get());
   }
   shutdown(socket_, SHUT_WR);
-  deadline_ = Clock::now() + kLastWords;
+  deadline_ = Clock::now() + kFinishTimeout;
   std::array<char, 16 << 10> ignored;
   ssize_t got = 0;
   do {

@@ -19,15 +19,15 @@ namespace bandsaw::coordinator {
 class Connection {
  public:
   /// The request's head, with the TLS handshake, must come within this time.
-  static constexpr std::chrono::milliseconds kPatience{10'000};
+  static constexpr std::chrono::milliseconds kTimeout{10'000};
   /// A body, in either direction, has the same time, plus a second for each so many transferred
   /// bytes.
   static constexpr double kMinBytesPerSecond = 32 << 10;
   /// Time that finish() waits for the peer.
-  static constexpr std::chrono::seconds kLastWords{2};
+  static constexpr std::chrono::seconds kFinishTimeout{2};
 
   /// `tls` may be nullptr: plaintext.
-  Connection(int socket, SSL_CTX* tls, std::chrono::milliseconds patience = kPatience);
+  Connection(int socket, SSL_CTX* tls, std::chrono::milliseconds timeout = kTimeout);
 
   /// Returns false if the TLS handshake failed or was not finished in time.
   bool shake_hands();
@@ -66,7 +66,7 @@ class Connection {
   const int socket_;
   const bool encrypted_;
   const std::unique_ptr<SSL, FreeSsl> ssl_;
-  const std::chrono::milliseconds patience_;
+  const std::chrono::milliseconds timeout_;
   bool in_head_ = true;
   Clock::time_point deadline_;
   std::string remote_;

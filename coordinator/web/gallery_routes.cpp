@@ -31,19 +31,20 @@ web::Gallery gallery_message(Engine& engine, const Gallery& gallery) {
 
 absl::StatusOr<web::Submitted> render(Scenes& scenes, const Gallery& gallery,
                                       const HttpBody& body) {
-  web::RenderScene wish;
-  RETURN_IF_ERROR(read_json(body, wish));
-  const GalleryScene* const scene = gallery.find(wish.scene());
+  web::RenderScene request;
+  RETURN_IF_ERROR(read_json(body, request));
+  const GalleryScene* const scene = gallery.find(request.scene());
   if (scene == nullptr) {
     return absl::NotFoundError("there is no such scene in the gallery");
   }
-  if (wish.samples() < 1 || wish.samples() > kMaxGallerySamples || wish.width() > kMaxWidth) {
+  if (request.samples() < 1 || request.samples() > kMaxGallerySamples ||
+      request.width() > kMaxWidth) {
     return absl::InvalidArgumentError(absl::StrCat("samples: must lie in [1, ", kMaxGallerySamples,
                                                    "]; width: at most ", kMaxWidth));
   }
   return scenes.submit(scene->path, {.request_id = request_prefix(*scene) + link::random_hex(8),
-                                     .width = wish.width(),
-                                     .stop = StopAtSamples{wish.samples()}});
+                                     .width = request.width(),
+                                     .stop = StopAtSamples{request.samples()}});
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ Changed set_priority(Engine& engine, const HttpRequest& request, const HttpBody&
 
 absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request) {
   ASSIGN_OR_RETURN(const JobId id, job_of(request));
-  ASSIGN_OR_RETURN(const JobView view, look_at(engine, id));
+  ASSIGN_OR_RETURN(const JobView view, job_view(engine, id));
   web::JobPage page;
   *page.mutable_job()->mutable_status() = to_message(view);
   for (const std::string& reason :
@@ -93,7 +93,7 @@ absl::StatusOr<farm::JobStatus> retry(Engine& engine, const HttpRequest& request
 absl::StatusOr<web::Submitted> submit_layer(Engine& engine, const HttpRequest& request) {
   constexpr std::uint64_t kMaxLayerSamples = 64;  // more do not visibly improve a layer
   ASSIGN_OR_RETURN(const JobId id, job_of(request));
-  ASSIGN_OR_RETURN(const JobView view, look_at(engine, id));
+  ASSIGN_OR_RETURN(const JobView view, job_view(engine, id));
   const std::string kind = request.parameter("kind");
   JobSpec spec = view.spec;
   if (kind == "albedo") {

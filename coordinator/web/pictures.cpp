@@ -37,7 +37,7 @@ absl::StatusOr<Pictures::Bytes> encoded(HeldImage image, ImageFormat format) {
 
 absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_side,
                                                   ImageFormat format) {
-  ASSIGN_OR_RETURN(const JobView job, look_at(engine_, id));
+  ASSIGN_OR_RETURN(const JobView job, job_view(engine_, id));
   MutexLock lock(making_);
   const Key key{id, most_side, format};
   const auto found = made_.find(key);
@@ -84,7 +84,7 @@ absl::StatusOr<Pictures::Bytes> Pictures::image(JobId job, ImageFormat format) {
 }
 
 absl::StatusOr<Pictures::Bytes> Pictures::report(JobId job, const MakeReport& make) {
-  ASSIGN_OR_RETURN(const JobView view, look_at(engine_, job));
+  ASSIGN_OR_RETURN(const JobView view, job_view(engine_, job));
   MutexLock lock(making_);
   ASSIGN_OR_RETURN(const HeldImage image, result_of(engine_, job));
   return std::make_shared<const std::string>(make(view, image.result.image));

@@ -16,7 +16,7 @@
 #include "absl/strings/str_split.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
-#include "coordinator/web/scene_wish.h"
+#include "coordinator/web/scene_request.h"
 #include "proto/web.pb.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
@@ -202,7 +202,7 @@ absl::Status lay_out(Engine& engine, const web::SceneFiles& files, const fs::pat
 
 absl::StatusOr<web::Submitted> submit_files(Engine& engine, Scenes& scenes,
                                             const HttpRequest& request, const HttpBody& body) {
-  ASSIGN_OR_RETURN(const SceneWish wanted, scene_wish(request));
+  ASSIGN_OR_RETURN(const SceneRequest wanted, scene_request(request));
   web::SceneFiles files;
   RETURN_IF_ERROR(read_json(body, files, kMaxListBytes));
   const auto is_scene = [&](const auto& file) { return file.name() == files.scene(); };

@@ -11,7 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
-#include "coordinator/web/scene_wish.h"
+#include "coordinator/web/scene_request.h"
 #include "proto/web.pb.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
@@ -108,7 +108,7 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
 absl::StatusOr<web::Submitted> take_scene(Scenes& scenes, const HttpRequest& request,
                                           const HttpBody& body) {
   ASSIGN_OR_RETURN(const std::string name, file_name(request.parameter("name")));
-  ASSIGN_OR_RETURN(const SceneWish wanted, scene_wish(request));
+  ASSIGN_OR_RETURN(const SceneRequest wanted, scene_request(request));
   Upload upload;
   RETURN_IF_ERROR(upload.open(name));
   RETURN_IF_ERROR(upload.receive(body));

@@ -9,7 +9,7 @@
 #include "renderlib/package/settings_of.h"
 
 namespace bandsaw::coordinator {
-absl::StatusOr<web::Submitted> Scenes::submit(const std::string& path, const SceneWish& wanted) {
+absl::StatusOr<web::Submitted> Scenes::submit(const std::string& path, const SceneRequest& wanted) {
   const absl::Cleanup done = [this] { --reading_; };
   if (++reading_ > kAtOnce) {
     return absl::ResourceExhaustedError("other scenes are being read; try again in a moment");

@@ -1,6 +1,6 @@
 #pragma once
 
-// From a scene file to a job. The confined importer reads the file, as everywhere; the function
+// Makes a job of a scene file. The confined importer reads the file, as everywhere; the function
 // that runs it is passed in (ImportScene), because only the command knows where the importer is.
 
 #include <atomic>
@@ -29,7 +29,7 @@ using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(
     const std::string& path, const std::string& inside, const std::atomic<bool>& stop)>;
 
 /// Parameters of a job that renders a scene.
-struct SceneWish {
+struct SceneRequest {
   std::string request_id;   ///< as in farm.SubmitRequest; empty: a random one
   std::string title = {};   ///< the job's name; empty: the scene's
   std::uint32_t width = 0;  ///< pixels; 0: the scene's own; the height keeps the aspect ratio
@@ -48,7 +48,7 @@ class Scenes {
 
   /// Errors of ImportScene and Engine::submit; RESOURCE_EXHAUSTED: kAtOnce others are being
   /// imported.
-  absl::StatusOr<web::Submitted> submit(const std::string& path, const SceneWish& wanted);
+  absl::StatusOr<web::Submitted> submit(const std::string& path, const SceneRequest& wanted);
   /// Stops current imports and refuses later ones.
   void stop() { stop_ = true; }
 

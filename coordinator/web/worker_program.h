@@ -54,7 +54,7 @@ struct WorkerProgram {
   wire::Digest digest;  ///< digest of `bytes`
 };
 
-/// At most one per architecture.
+/// Programs to hand out, at most one per architecture.
 using WorkerPrograms = std::vector<WorkerProgram>;
 
 /// File name of the program, and its path at the dashboard.

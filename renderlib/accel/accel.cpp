@@ -60,7 +60,7 @@ template <class Query>
 /// thread.
 constexpr std::size_t kLargeMesh = std::size_t{1} << 15;
 
-/// BVHs of meshes, found by the mesh.
+/// BVHs of meshes, keyed by the mesh.
 using KnownTrees = std::map<const Mesh*, std::shared_ptr<const MeshTree>>;
 
 MeshTree build_tree_of(const Mesh& mesh, bool culls, Pool* pool) {
@@ -124,7 +124,8 @@ struct Accel::Trees {
     }
   }
 
-  /// For the BVHs of groups and of the top level; those of meshes are built without culling.
+  /// Disables culling in the BVHs of groups and of the top level; those of meshes are built
+  /// without.
   void disable_culling() {
     for (ShapesTree& group : prototypes.groups) {
       bandsaw::disable_culling(group.tree);

@@ -11,7 +11,7 @@ namespace bandsaw {
 /// Makes a ray traced through the tree test all primitives in it. The hits stay the same, to the
 /// bit.
 void disable_culling(WideTree& tree);
-/// `changes` are those of its nodes; empty if they do not move.
+/// The same for nodes that move by `changes`; empty if they do not move.
 void disable_culling(WideTree& tree, NodeChanges& changes);
 
 }  // namespace bandsaw

@@ -57,8 +57,8 @@ void FlatPacker::add_moving(const Corners& at_open, const Corners& at_close,
                             std::uint32_t primitive, FlatPack::Corners& to) {
   store(at_close, count_, to);
   add(at_open, primitive);
-  // An edge is at no time longer than at both ends, but for the rounding of its corners, at most 2u
-  // of their largest component each.
+  // An edge is never longer than at one of both ends, except for the rounding of its corners, at
+  // most 2u of their largest component each.
   pack_.size = std::max(pack_.size, (std::max(longest(at_open), longest(at_close)) +
                                      std::max(reach_of(at_open), reach_of(at_close)) * 0x1p-21f) *
                                         (1 + 0x1p-20f));

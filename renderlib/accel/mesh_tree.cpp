@@ -61,7 +61,7 @@ FloatBox middle_bounds(const FlatPacker::Corners& open, const FlatPacker::Corner
   FlatPacker::Corners half{};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
-      change[i][k] = close[i][k] - open[i][k];  // might overflow, and is used by ShutterTime
+      change[i][k] = close[i][k] - open[i][k];  // as ShutterTime computes it; may overflow
       half[i][k] = 0.5f * open[i][k] + 0.5f * close[i][k];
     }
   }

@@ -154,7 +154,8 @@ template <class Query>
   });
 }
 
-/// Traces a mesh that deforms, as it is at the time of `world`. Not inlined, for the others' speed.
+/// Traces a mesh that deforms, at the time of `world`. Not inlined, so that other meshes are
+/// faster.
 template <class Query>
 [[gnu::noinline]] bool trace_deforming(const MeshTree& mesh, const Interval& shutter,
                                        const TracedRay& ray, std::uint32_t instance,
@@ -176,7 +177,7 @@ template <class Query>
   });
 }
 
-/// `ray` is `world` in the prototype's own space.
+/// Traces a mesh or group. `ray` is `world` in its own space.
 template <class Query>
 inline bool trace_prototype(const Prototype& prototype, const Interval& shutter,
                             const TracedRay& ray, std::uint32_t instance, const Ray& world,

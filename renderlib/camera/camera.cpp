@@ -106,7 +106,7 @@ struct Axes {
     right = is_mirrored(camera) ? -right : right;
   }
   Vec3 forward;
-  Vec3 right;  ///< of the image: opposite for a mirrored camera
+  Vec3 right;  ///< direction to the right in the image; opposite for a mirrored camera
   Vec3 up;
 };
 
@@ -259,7 +259,8 @@ Ray RayGenerator::ray_now(const Projection& now, double x, double y, double lens
   }
   const Vec2 on_lens = sample_disk(lens_u, lens_v);
   const Vec3 from = now.lens_x * on_lens.x + now.lens_y * on_lens.y;
-  // Towards `at` times the focus distance, in units of that distance, so that any distance works.
+  // The ray passes through the point in focus. Vectors are in units of the focus distance, which
+  // may be huge.
   return {.origin = now.origin + from, .direction = normalize(at - from / now.focus_distance)};
 }
 

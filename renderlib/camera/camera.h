@@ -27,8 +27,8 @@ struct Shutter {
   friend bool operator==(const Shutter&, const Shutter&) = default;
 };
 
-/// The visible part of the image plane. 1 is half the height that the camera's angle or height
-/// shows; the view direction passes through (0, 0).
+/// The visible part of the image plane. The unit is half the height that the camera shows without a
+/// window; the view direction passes through (0, 0).
 struct ImageWindow {
   double left = -1;
   double right = 1;  ///< > left
@@ -61,7 +61,7 @@ constexpr double middle_of(const Shutter& shutter) {
 inline constexpr double kMaxTime = 1e9;
 inline constexpr double kMinFocus = 1e-9;
 inline constexpr double kMaxLens = 1e30;
-inline constexpr double kMaxWindow = 1e6;  ///< of each side of a window
+inline constexpr double kMaxWindow = 1e6;  ///< largest magnitude of a side
 
 /// Parallel rays from the plane through `position`, which is the centre of the image.
 struct OrthographicCamera {
@@ -107,7 +107,7 @@ class RayGenerator {
   /// [0, 1] is the position of the ray's time in the shutter interval.
   Ray ray(double x, double y, double lens_u, double lens_v, double share = 0) const;
   /// Returns the view through the lens at this image position and share of the shutter interval;
-  /// std::nullopt without a lens or if it is too wide.
+  /// std::nullopt if there is no lens, or it is too wide.
   std::optional<LensView> lens_view(double x, double y, double share = 0) const;
 
  private:

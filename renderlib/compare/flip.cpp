@@ -18,7 +18,8 @@ constexpr double k3 = 0.6 * 0.6 * 2.43;
 constexpr double k4 = 0.6 * 0.59;
 constexpr double k5 = 0.14;
 
-// Clamped to a value that is already white, before the quotient becomes infinity over infinity.
+// Returns the film curve. `light` is clamped where the curve is white, because large values would
+// give infinity over infinity.
 float filmed(double light) {
   const double x = std::min(light, 1e6);
   return static_cast<float>(
@@ -51,8 +52,8 @@ struct Exposures {
 
 double log2_of(double x) { return log(x) / log(2.0); }
 
-// Equations 2 and 3 of the second paper. If the reference's median is black, only the exposure of
-// its maximum is used.
+// Returns the exposures by equations 2 and 3 of the second paper. If the reference's median is
+// black, only the exposure of its maximum is used.
 Exposures exposures_of(const Image& reference) {
   std::vector<double> light;
   for (const Rgb& pixel : reference.pixels) {

@@ -21,20 +21,20 @@ constexpr Sensitivity kRedGreen = {1, 0.0053, 0, 1e-5};
 constexpr Sensitivity kBlueYellow = {34.1, 0.04, 13.5, 0.025};
 constexpr double kWidest = 0.04;
 
-constexpr double kColorExponent = 0.7;     // q_c
-constexpr double kKneeError = 0.4;    // p_c
-constexpr double kKneeResult = 0.95;  // p_t
+constexpr double kColorExponent = 0.7;  // q_c
+constexpr double kKneeError = 0.4;      // p_c
+constexpr double kKneeResult = 0.95;    // p_t
 
 int kernel_radius(double pixels_per_degree) {
   return static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
 }
 
-// exp(-pi^2 d^2 / b), with d in degrees.
+// Returns the weights exp(-pi^2 d^2 / b), with d in degrees.
 FilterWeights part(double b, double pixels_per_degree, int radius) {
   return gaussian(std::sqrt(b / 2) / kPi * pixels_per_degree, radius);
 }
 
-// Equation 3, normalised.
+// Filters by equation 3, with weights that sum to 1.
 Plane blurred(const Plane& plane, const Sensitivity& s, double pixels_per_degree) {
   const int radius = kernel_radius(pixels_per_degree);
   const FilterWeights first = part(s.b1, pixels_per_degree, radius);
@@ -85,14 +85,14 @@ Vec3 adjusted(const Opponents& planes, std::size_t i) {
                               static_cast<float>(linear.z)}));
 }
 
-// Equation 7 (Abasi et al. 2020), raised to the power of equation 8.
+// Returns the distance of equation 7 (Abasi et al. 2020), raised to the power of equation 8.
 double distance(const Vec3& a, const Vec3& b) {
   const double hyab =
       std::abs(a.x - b.x) + std::sqrt((a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
   return pow(hyab, kColorExponent);
 }
 
-// Equation 9: maps errors to [0, 1], with most of the range for small ones.
+// Maps errors to [0, 1] by equation 9, with most of the range for small errors.
 double redistributed(double error, double largest) {
   const double knee = kKneeError * largest;
   return error < knee ? kKneeResult / knee * error

@@ -11,8 +11,8 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kFeatureWidth = 0.082;  // w, in degrees
-constexpr double kFeatureExponent = 0.5;        // q_f
+constexpr double kFeatureWidth = 0.082;   // w, in degrees
+constexpr double kFeatureExponent = 0.5;  // q_f
 
 struct Features {
   Plane edges;
@@ -48,7 +48,7 @@ Plane length(const Plane& x, const Plane& y) {
   return out;
 }
 
-// Equations 10 and 11: first and second derivatives of a Gaussian.
+// Filters by the first and second derivatives of a Gaussian (equations 10 and 11).
 Features features_of(const Image& image, double pixels_per_degree) {
   const double deviation = 0.5 * kFeatureWidth * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * deviation));

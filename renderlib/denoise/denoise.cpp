@@ -11,7 +11,7 @@
 namespace bandsaw {
 namespace {
 
-/// The filters among which is chosen, pixel by pixel: a narrow and a wide one.
+/// A narrow and a wide filter, between which Selection chooses pixel by pixel.
 constexpr FilterSettings kSettings = {
     FitSettings{
         .color_reach = 0.7f, .albedo_reach = 2, .normal_reach = 0.3f, .depth_reach = 0.025f},
@@ -43,7 +43,7 @@ struct RowSums {
 struct Strip {
   const DenoiseInput& input;
   const ImageMeans& means;
-  RowSpan rows;   ///< whose result is wanted
+  RowSpan rows;   ///< rows whose result is wanted
   int first = 0;  ///< row of the image that is row 0 of the planes
   FitInput planes;
   FitOutputs fits;
@@ -88,7 +88,7 @@ class Selection {
   Map error_of(std::size_t candidate, const Map& scale) const;
   void choose();
   bool is_rendered(int x, int y) const;
-  /// Half `h` of the result.
+  /// Returns half `h` of the result at a pixel, for channel `c`.
   float mixed(int x, int y, std::size_t h, std::size_t c) const;
   Rgb value_of(int x, int y) const;
   /// Adds a pixel to the sums.
@@ -152,7 +152,7 @@ void Selection::choose() {
       }
     });
   }
-  // Sharp limits between filters would be seen.
+  // Sharp limits between regions of different filters would be visible.
   for (Map& share : shares_) {
     smoothing_.apply(share, pool_);
   }
@@ -264,7 +264,8 @@ int rows_of_strip(int width) {
 }  // namespace
 
 Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int strip_rows) {
-  // Distances of the rows on which a result depends: shares and errors are smoothed three times.
+  // A result depends on rows up to these distances away: shares and errors are smoothed three
+  // times.
   constexpr int kFitted = 3 * SurfaceSmoothing::kRadius;
   static_assert(kFitted + kFitReach + 5 <= kDenoiseReach && kDenoiseReach % 2 == 0);
   const int height = static_cast<int>(input.mean.height);

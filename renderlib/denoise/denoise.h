@@ -13,7 +13,7 @@ namespace bandsaw {
 
 /// All images have the same size and are not empty.
 struct DenoiseInput {
-  Image mean;   ///< of all samples of each pixel, linear radiance
+  Image mean;   ///< mean of all samples of each pixel, linear radiance
   Image first;  ///< mean of the first of two independent parts of the samples
   /// Share of that part in each pixel's samples, (0, 1).
   std::vector<float> first_share;
@@ -24,8 +24,8 @@ struct DenoiseInput {
 /// Estimated errors over all channels of all pixels.
 struct CleanError {
   double mean = 0;        ///< mean value of the image
-  double rmse_raw = 0;    ///< of the image as rendered
-  double rmse_clean = 0;  ///< of the clean image, bias included
+  double rmse_raw = 0;    ///< RMSE of the image as rendered
+  double rmse_clean = 0;  ///< RMSE of the clean image, bias included
   double bias_share = 0;  ///< share of the squared bias in rmse_clean^2, [0, 1]
 
   double relative_raw() const { return mean > 0 ? rmse_raw / mean : 0; }

@@ -11,8 +11,8 @@ namespace {
 constexpr int kNear = 2;  ///< a pixel takes its value from centres up to this far away
 constexpr int kNearSide = 2 * kNear + 1;
 constexpr std::size_t kNearOffsets = kNearSide * kNearSide;
-constexpr std::size_t kCoefficients = 3 * kTerms;  ///< of one half
-constexpr float kOwnWeight = 0.05f;  ///< of a pixel's own value beside those of the centres
+constexpr std::size_t kCoefficients = 3 * kTerms;  ///< number of coefficients of one half
+constexpr float kOwnWeight = 0.05f;  ///< weight of a pixel's own value beside those of the centres
 
 /// Values per centre: planes with one float for each centre.
 class CentrePlanes {
@@ -46,7 +46,7 @@ struct Models {
     return half * kNearOffsets + static_cast<std::size_t>((dy + kNear) * kNearSide + dx + kNear);
   }
   CentrePlanes coefficients;
-  CentrePlanes weights;  ///< of the pixels up to kNear away
+  CentrePlanes weights;  ///< weights of the pixels up to kNear away
 };
 
 using AllModels = std::array<Models, kFilters>;

@@ -31,15 +31,15 @@ struct RowSpan {
   int count() const { return last - first; }
 };
 
-/// The input of fit(): rows of an image, of which the values of some are wanted. In the margin
-/// around them, all planes but `valid` hold mirrored pixels. Rows up to kFitReach from the wanted
-/// ones MUST be those of the image, or mirrored at its edges.
+/// The input of fit(): rows of an image. A part of them is wanted as result. In the margin around
+/// them, all planes except `valid` hold mirrored pixels. Rows up to kFitReach from the wanted ones
+/// MUST be those of the image, or mirrored at its edges.
 struct FitInput {
   int width = 0;
   int height = 0;
   RowSpan wanted;
   std::array<std::array<SplitPlane, 3>, 2> halves;  ///< radiance of the two halves, in [0, 1e15]
-  std::array<SplitPlane, 2> variance;               ///< of each half, summed over the channels, > 0
+  std::array<SplitPlane, 2> variance;               ///< variance of a half: sum over channels, > 0
   std::array<SplitPlane, kGuides> guides;           ///< each in [0, 1]
   SplitPlane valid;  ///< 1 for pixels whose values may be used, otherwise 0; 0 in the margin
 };
@@ -56,7 +56,7 @@ struct FitSettings {
 inline constexpr std::size_t kFilters = 2;
 using FilterSettings = std::array<FitSettings, kFilters>;
 
-/// Distance of the farthest row on which a filtered value depends: centres, windows, patches.
+/// A filtered value depends on rows up to this distance away: centres, windows, patches.
 inline constexpr int kFitReach = 2 + 7 + 3;
 
 /// The two halves of a filtered image: values of the wanted rows for each channel.

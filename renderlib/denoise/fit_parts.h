@@ -11,7 +11,7 @@
 namespace bandsaw {
 
 inline constexpr int kFitLanes = 8;   ///< centres that are processed together
-inline constexpr int kFitRadius = 7;  ///< of a window, pixels
+inline constexpr int kFitRadius = 7;  ///< radius of a window, pixels
 inline constexpr int kFitSide = 2 * kFitRadius + 1;
 inline constexpr int kFitPatch = 3;      ///< radius of a patch, pixels
 inline constexpr int kTileColumns = 32;  ///< centres in a row of a tile
@@ -45,7 +45,7 @@ class PatchDistances {
  private:
   static constexpr int kRows = 2 * kTileRows + 2 * kFitPatch;  ///< rows of pixels
   static constexpr int kBefore = 2;  ///< columns of each parity before the tile's first
-  static constexpr int kColumns = kTileColumns + kFitLanes;  ///< of each parity
+  static constexpr int kColumns = kTileColumns + kFitLanes;  ///< columns of each parity
 
   void compare(int x, int y, int dx, int dy);
   void sum_patches(float* to) const;
@@ -53,7 +53,7 @@ class PatchDistances {
   const FitInput& input_;
   std::size_t half_;
   std::vector<float> all_;
-  float differences_[2][kRows][kColumns];  ///< of single pixels, by parity of their column
+  float differences_[2][kRows][kColumns];  ///< differences of pixels, by parity of column
 };
 
 inline constexpr std::size_t kTerms = 3 + kGuides;  ///< 1, x, y, guides

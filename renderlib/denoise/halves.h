@@ -1,6 +1,6 @@
 #pragma once
 
-// The error of an image that another filter cleaned, estimated from the two parts of its samples.
+// Estimates the error of an image that another filter has cleaned, from two parts of its samples.
 
 #include "renderlib/denoise/denoise.h"
 
@@ -10,10 +10,11 @@ namespace bandsaw {
 /// those of `input.mean`.
 Image second_part(const DenoiseInput& input);
 
-/// Returns `clean` with its error, which is estimated from the two parts, each cleaned alone with
-/// the same guides: the squared error of their mean is estimated without bias, as for the filters
-/// of denoise(), because each depends on its part only. A filter that sees all samples at once does
-/// better than that, so the error is an upper bound. All images have the size of `input.mean`.
+/// Returns `clean` with an estimate of its error. `clean_first` and `clean_second` are the two
+/// parts of the samples, each cleaned alone with the same guides. Each depends on its own part
+/// only, so the squared error of their mean can be estimated without bias, as for the filters of
+/// denoise(). A filter that gets all samples at once does better, so the estimate is an upper
+/// bound. All images have the size of `input.mean`.
 Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Image& clean_first,
                               const Image& clean_second, Pool& pool);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// From images to the planes that are fitted.
+// Prepares images for the fit: their halves, variances and guides as planes.
 
 #include "renderlib/denoise/denoise.h"
 #include "renderlib/denoise/maps.h"
@@ -10,17 +10,17 @@ namespace bandsaw {
 /// Means over the whole image.
 struct ImageMeans {
   float brightness = 0;  ///< mean value of the channels of all pixels whose values may be used
-  float depth = 1;       ///< of the pixels that show a surface
+  float depth = 1;       ///< mean depth of the pixels that show a surface
 };
 ImageMeans means_of(const DenoiseInput& input);
 
-/// Distance of the farthest row on which a clean pixel depends.
+/// A clean pixel depends on rows up to this distance away.
 inline constexpr int kDenoiseReach = 24;
 
-/// Returns the planes of some rows of the image, whose first is even. In each half, a pixel that is
+/// Returns the planes of `rows` of the image; `rows.first` is even. In each half, a pixel that is
 /// brighter than all pixels up to two away in the other half is scaled down to the brightest of
-/// them: a single bright path, which a filter would spread over the pixels around. The rows at the
-/// ends are not as in the whole image, up to 5 of them: they lack neighbours.
+/// them. It shows a single bright path, which a filter would spread over the pixels around it. Up
+/// to 5 rows at each end differ from those of the whole image, because they lack neighbours.
 FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const RowSpan& rows,
                      Pool& pool);
 

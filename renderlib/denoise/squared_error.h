@@ -5,8 +5,9 @@ namespace bandsaw {
 /// Estimates the squared error of the mean of two values, each of which was computed from one part
 /// of the samples (`a` from the first). `first` and `second` are the parts' own values. With the
 /// variance v of a part's value, E (a - second)^2 = error^2(a) + v(second), because the parts are
-/// independent, and v(second) = share (first - second)^2 on average; and the same exchanged. The
-/// mean's error is less than that of its terms by share (1 - share) (a - b)^2.
+/// independent, and v(second) = share (first - second)^2 on average. The same holds with the parts
+/// exchanged. The mean's squared error is that of `a` and `b` on average, minus share (1 - share)
+/// (a - b)^2.
 template <class T>
 T squared_error(T a, T b, T first, T second, T share) {
   const T apart = (first - second) * (first - second);
@@ -15,9 +16,9 @@ T squared_error(T a, T b, T first, T second, T share) {
   return share * of_a + (1 - share) * of_b - share * (1 - share) * ((a - b) * (a - b));
 }
 
-/// Returns the larger of an estimated squared error and the variance in it, which is
-/// share (1 - share) (a - b)^2: two parts of one Sobol' sequence differ more than independent ones,
-/// so the first may be far too small, even negative.
+/// Returns the larger of an estimated squared error and the variance in it, which is share (1 -
+/// share) (a - b)^2: two parts of one Sobol' sequence differ more than independent ones, so the
+/// estimate may be far too small, even negative.
 template <class T>
 T at_least_variance(T squared_error, T variance) {
   return squared_error > variance ? squared_error : variance;

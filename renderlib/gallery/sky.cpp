@@ -10,8 +10,8 @@
 namespace bandsaw::gallery {
 namespace {
 
-/// Returns an environment of one image of that size, or of six, which yields the directions of
-/// texels.
+/// An environment without texels, of one image of this size or of six. It converts texels to
+/// directions.
 struct Frame {
   Frame(Environment::Kind kind, std::uint32_t width, std::uint32_t height) {
     ImageTexture image;

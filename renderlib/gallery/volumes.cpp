@@ -52,7 +52,7 @@ std::string vol_file(const std::array<std::int32_t, 3>& cells, const Box& box,
 
 double distance_from_axis(const Vec3& p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 
-/// Smoothly from 0 at `a` to 1 at `b`.
+/// Returns a smooth transition from 0 at `a` to 1 at `b`.
 double ramp(double a, double b, double x) {
   const double t = std::clamp((x - a) / (b - a), 0.0, 1.0);
   return t * t * (3 - 2 * t);

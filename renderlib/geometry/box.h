@@ -19,10 +19,10 @@ struct Box {
   bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
 };
 
-/// This is part of the contract of every primitive test: a hit lies where the ray is inside the
-/// primitive's own box. Where t is mostly rounding noise (a triangle seen edge-on), a test would
-/// otherwise report hits outside the boxes of a BVH, and whether they are found would depend on the
-/// tree.
+/// Every primitive test calls this, so that a hit lies where the ray is inside the
+/// primitive's own box. Otherwise, where t is mostly rounding noise (a triangle seen
+/// edge-on), hits could lie outside the boxes of a BVH, and whether they are found would
+/// depend on the tree.
 ///
 /// Moves t into the box. Returns false if the ray misses the box by more than rounding. The
 /// tolerance, 2^-40 of t, is far above the rounding error of the tests and far below the tolerance

@@ -11,7 +11,7 @@
 namespace bandsaw {
 namespace {
 
-/// Returns, for each vertex, the lowest index of those at its position, at all times.
+/// Returns for each vertex the lowest index of the vertices that are at its position at all times.
 std::vector<std::uint32_t> welded(const Mesh& mesh) {
   const auto place = [&](std::uint32_t vertex) {
     return std::pair(mesh.positions[vertex],

@@ -1,8 +1,8 @@
 #pragma once
 
-// The vertices of a mesh at a time of the shutter interval. A mesh that deforms is at each time an
-// ordinary mesh with float positions, and whatever traces, shades or samples it computes the same
-// bits.
+// The vertices of a mesh at a time of the shutter interval. At each time, a mesh that deforms is an
+// ordinary mesh with float positions. Tracing, shading and sampling get the same positions, bit for
+// bit.
 
 #include <array>
 #include <cmath>
@@ -26,9 +26,9 @@ struct ShutterTime {
     factor = from_close ? share - 1 : share;
   }
 
-  /// Returns a number that changes linearly. It is exactly the given one at both ends, never
-  /// outside of them, and constant if they are equal: the change is added to the nearer end, and
-  /// the result is rounded once.
+  /// Interpolates linearly between two numbers. The result is exact at both ends, never outside of
+  /// them, and constant if they are equal, because a part of the change is added to the nearer end
+  /// and the sum is rounded once.
   float between(float at_open, float at_close) const {
     return std::fma(at_close - at_open, factor, from_close ? at_close : at_open);
   }
@@ -40,12 +40,12 @@ struct ShutterTime {
 
   float share = 0;          ///< [0, 1]: 0 at the beginning, 1 at the end
   bool from_close = false;  ///< true in the second half
-  float factor = 0;         ///< of the change, in [-1/2, 1/2]; exact
+  float factor = 0;         ///< factor on the change, in [-1/2, 1/2]; exact
 };
 
 inline bool deforms(const Mesh& mesh) { return !mesh.positions_at_close.empty(); }
 
-/// Returns the values of a triangle's corners at a time; `at_close` may be empty, then they do not
+/// Returns the values of a triangle's corners at a time. If `at_close` is empty, they do not
 /// change.
 inline std::array<std::array<float, 3>, 3> corners_at(
     const std::vector<std::array<float, 3>>& at_open,

@@ -7,7 +7,7 @@ namespace bandsaw {
 namespace {
 
 /// Margin of the box around the disk, relative to the largest number involved.
-constexpr double kRoom = 0x1p-44;
+constexpr double kMargin = 0x1p-44;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ DiskAxes axes_of(const Disk& disk) {
 }
 
 Box bounds(const Disk& disk) {
-  const double room = kRoom * (disk.radius + max_abs(disk.center));
+  const double room = kMargin * (disk.radius + max_abs(disk.center));
   // For a normal almost along an axis, 1 - n^2 would lose the precision of the other components.
   const auto reach = [&](double a, double b) {
     return disk.radius * std::sqrt(a * a + b * b) + room;

@@ -42,8 +42,8 @@ Course through(const Transform& placement, const Course& c) {
   return {n * c.distance + moved(placement), n * c.speed, n * c.bend};
 }
 
-/// Bounds after T + R S between two keys. With p = S q: |(R p)''| <= w^2 |p| + 2 w |p'| + |p''|,
-/// where the rotation has angular speed w; S and T change linearly.
+/// Returns the bounds after the motion T + R S between two keys. With p = S q: |(R p)''| <= w^2 |p|
+/// + 2 w |p'| + |p''|, where the rotation has angular speed w; S and T change linearly.
 Course through(const Key& a, const Key& b, const Course& c) {
   const double duration = b.time - a.time;
   const double scale = std::max(max_abs(a.pose.scale), max_abs(b.pose.scale));
@@ -57,7 +57,7 @@ Course through(const Key& a, const Key& b, const Course& c) {
           turning * turning * p.distance + 2 * turning * p.speed + p.bend};
 }
 
-/// Bounds after a frame, in an interval that contains no key.
+/// Returns the bounds after the motion of a frame, in an interval that contains no key.
 Course through(const Frame& frame, double time, const Course& c) {
   const auto after = std::upper_bound(frame.keys.begin(), frame.keys.end(), time,
                                       [](double t, const Key& key) { return t < key.time; });
@@ -95,21 +95,21 @@ std::vector<double> turning_points(const Geometry& geometry, const Instance& ins
   return times;
 }
 
-/// Collects the boxes of an instance at sampled times, each enlarged by `room`.
+/// Collects the boxes of an instance at sampled times, each enlarged by `margin`.
 class Stops {
  public:
   Stops(const Geometry& geometry, const Instance& instance, const Box& box)
       : geometry_(geometry), instance_(instance), box_(box) {}
 
   /// Returns false if the placement is singular.
-  bool add(double time, double room) {
+  bool add(double time, double margin) {
     const Transform to_world = to_world_at(geometry_, instance_, time);
     const std::optional<Transform> to_object = inverse(to_world);
     if (!to_object) {
       return false;
     }
     Box there = placed_bounds(box_, to_world, *to_object, kTrips);
-    const Vec3 around = {room, room, room};
+    const Vec3 around = {margin, margin, margin};
     there = {there.lo - around, there.hi + around};
     times_.push_back(time);
     boxes_.push_back(there);
@@ -117,7 +117,7 @@ class Stops {
   }
 
   /// Returns the boxes at both ends, enlarged until their linear interpolation contains every
-  /// sampled box. Between samples the motion deviates from the chord by at most `room`, so the
+  /// sampled box. Between samples the motion deviates from the chord by at most `margin`, so the
   /// result bounds all of it.
   MovingBox around(const Interval& interval) const {
     MovingBox result = {boxes_.front(), boxes_.back()};
@@ -161,14 +161,14 @@ Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to
   }
   const double largest = std::max(max_abs(box.lo), max_abs(box.hi));
   const double slack = trips * 0x1p-46 * (grown * shrunk) * (3 * grown * largest + moved);
-  const Vec3 room = {slack, slack, slack};
+  const Vec3 margin = {slack, slack, slack};
   Box result;
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 p = to_world.point({(corner & 1) != 0 ? box.hi.x : box.lo.x,
                                    (corner & 2) != 0 ? box.hi.y : box.lo.y,
                                    (corner & 4) != 0 ? box.hi.z : box.lo.z});
-    result.add(p - room);
-    result.add(p + room);
+    result.add(p - margin);
+    result.add(p + margin);
   }
   return result;
 }
@@ -189,10 +189,10 @@ std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance&
     const double bend = course.bend * duration * duration / 8;
     const double wanted = std::ceil(std::sqrt(bend / (kBend * size)));
     const double pieces = wanted >= 1 && wanted <= kMaxPieces ? wanted : bend > 0 ? kMaxPieces : 1;
-    const double room = bend / (pieces * pieces) * (1 + 0x1p-20);
+    const double margin = bend / (pieces * pieces) * (1 + 0x1p-20);
     for (double k = 0; k <= pieces; ++k) {
       const double time = k == pieces ? times[i + 1] : times[i] + duration * (k / pieces);
-      if (!stops.add(time, room)) {
+      if (!stops.add(time, margin)) {
         return std::nullopt;
       }
     }

@@ -114,8 +114,8 @@ struct Geometry : Shapes {
   std::vector<Instance> instances;
   std::vector<Shapes> groups;  ///< loose shapes in spaces of their own; hit only through instances
   std::vector<Frame> frames;   ///< animated frames
-  /// The times at which it is looked at: moving instances are bounded within it, and meshes deform
-  /// from its beginning to its end. Set by Scene::build from the camera's shutter.
+  /// The times of rays: moving instances are bounded within this interval, and meshes deform from
+  /// its beginning to its end. Scene::build sets it from the camera's shutter.
   Interval shutter;
 };
 

@@ -34,7 +34,7 @@ constexpr double kKept = 0.25;
 /// Light as seen from the middle of the cell.
 struct Seen {
   Vec3 direction;      ///< unit
-  double inverse = 0;  ///< of the distance
+  double inverse = 0;  ///< 1 / distance
   double weight = 0;
 };
 
@@ -45,7 +45,7 @@ struct Cluster {
   double weight = 0;
   Vec3 axis;                 ///< unit
   double inverse = 0;        ///< mean of the inverse distances
-  double one_minus_cos = 2;  ///< of the cone's half-angle
+  double one_minus_cos = 2;  ///< 1 - cos of the cone's half-angle
 };
 
 struct Split {
@@ -160,7 +160,7 @@ Cluster cluster_of(const Place& place, absl::Span<const Seen> seen, std::size_t 
   cluster.axis = size > 0 ? sum / size : place.normal;
   double farthest = 0;
   double mean = 0;
-  double spread = 0;  // of the inverse distances
+  double spread = 0;  // variance of the inverse distances
   for (std::size_t i = first; i < last; ++i) {
     const double h = 1 - dot(seen[i].direction, cluster.axis);
     farthest = std::max(farthest, h);
@@ -256,7 +256,7 @@ std::vector<Cluster> clusters_of(const Place& place, absl::Span<Seen> seen) {
   return whole;
 }
 
-/// How a direction that carries light would be sampled.
+/// The pdfs with which a direction that carries light would be sampled.
 struct Densities {
   double weight = 0;
   double cosine = 0;    ///< pdf by the cosine
@@ -264,7 +264,7 @@ struct Densities {
 };
 
 /// Fits clusters to each half of the directions and returns the densities of the other half, which
-/// the clusters have not seen (cross-validation).
+/// were not used to fit these clusters (cross-validation).
 std::vector<Densities> crossed_densities(const Place& place, absl::Span<const Seen> seen) {
   std::vector<Densities> out;
   for (std::size_t half = 0; half < 2; ++half) {

@@ -26,7 +26,7 @@ struct TrainedGuiding {
   GuidingField field;
   std::uint64_t paths = 0;    ///< training paths from the camera
   std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
-  std::uint64_t rays = 0;     ///< of both
+  std::uint64_t rays = 0;     ///< rays of both
 };
 
 class GuidingCache {

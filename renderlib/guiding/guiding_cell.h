@@ -27,7 +27,7 @@ struct GuidingBall {
 };
 
 struct GuidingCell {
-  std::uint32_t count = 0;  ///< of balls
+  std::uint32_t count = 0;  ///< number of balls
   float irradiance = 0;     ///< by the light of the cell's records
   /// Share of the directions that are best sampled towards the balls if there is no other light, in
   /// [0, 1/2].
@@ -59,7 +59,7 @@ struct GuidingShares {
 };
 
 /// Returns the shares. Photons get the share of their light, at least an eighth and at most a half,
-/// unless they are hardly noticed.
+/// unless their light is hardly noticeable.
 GuidingShares shares_of(const GuidingCells& cells);
 
 /// A cell as seen from a point: cones of directions.

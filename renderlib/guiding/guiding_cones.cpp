@@ -8,15 +8,15 @@
 namespace bandsaw {
 namespace {
 
-/// No cone is narrower: 1 - cos of the half-angle of a sixth of a degree. The rounding of a cosine
+/// Minimum of 1 - cos of a cone's half-angle: a sixth of a degree. The rounding error of a cosine
 /// is far below it.
 constexpr double kNarrowest = 4e-6;
 
 }  // namespace
 
 GuidingShares shares_of(const GuidingCells& cells) {
-  // Little light of a small source is found rarely, and then it is bright. Light that adds less
-  // than this to the second moment, in units of the squared mean of all light, is not noticed.
+  // Weak light of a small source is rarely sampled, and then the sample is bright. Light that adds
+  // less than this to the second moment, in units of the squared mean of all light, is not noticed.
   constexpr double kMinMoment = 0.001;
   constexpr double kMinShare = 0.125;
   constexpr double kMaxShare = 0.5;

@@ -24,7 +24,7 @@ struct GuidingRecord {
     /// A photon: `weight` is its power, so that the sum over an area is the power that arrives.
     kPhoton,
   };
-  Float3 position;   ///< of the surface that receives the light
+  Float3 position;   ///< point on the surface that receives the light
   Float3 normal;     ///< unit, on the side that receives it
   Float3 source;     ///< where the light comes from; very far away for light of the background
   float weight = 0;  ///< >= 0, finite; 0: the path found no light

@@ -35,7 +35,7 @@ struct ImportChoices {
   std::optional<GivenFile> environment =
       {};                   ///< equirectangular image that replaces its background
   std::string camera = {};  ///< name of one of its models' cameras; empty for the scene's own
-  std::map<std::string, std::string> parameters = {};  ///< of a Mitsuba scene
+  std::map<std::string, std::string> parameters = {};  ///< parameters of a Mitsuba scene
   bool strict = false;                                 ///< a warning is an error
   std::optional<FrameChoice> frame = {};  ///< absent: the scene at time 0, models without animation
   std::string animation = {};             ///< name of its models' animation

@@ -10,7 +10,7 @@
 namespace bandsaw {
 namespace {
 
-/// Most primitives that are listed.
+/// Maximum number of primitives that are listed.
 constexpr std::size_t kMaxPrimitives = std::size_t{1} << 18;
 
 /// Rougher metals cast no sharp light.

@@ -302,8 +302,8 @@ void trace_path(const PathContext& context, std::uint32_t depth, PathState& path
       add_background(context, path);
       return;
     }
-    // Light goes on through a hidden lamp, as it is not there for light sampling either. The path
-    // may then scatter once less, and collects what it meets beyond the maximum depth.
+    // A hidden lamp does not stop light, and light sampling ignores it as well. Passing it counts
+    // as a scattering; emission beyond it is added even at the maximum depth.
     if (context.scene.features().alpha && is_hidden_lamp(context.scene.material(hit->material))) {
       path.ray = spawn_ray(*hit, path.ray.direction);
       continue;

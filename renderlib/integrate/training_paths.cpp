@@ -12,20 +12,21 @@
 namespace bandsaw {
 namespace {
 
-/// Light of the background comes from this many lengths of the longest ray of its path.
+/// The source of background light is placed at this many times the length of the longest ray of the
+/// path.
 constexpr double kFar = 1e6;
 
-/// Most vertices of a path that are remembered, which bounds the memory of the training.
+/// Maximum number of vertices of a path that are recorded. It bounds the memory of the training.
 constexpr std::size_t kMaxVertices = 8;
 
 /// A vertex of a training path.
 struct Vertex {
   Vec3 position;
   Vec3 normal;               ///< on the side of the path
-  Vec3 direction;            ///< of the path from here
-  double length = -1;        ///< of the ray from here; negative: it left the scene
-  Rgb radiance;              ///< of the path before the ray
-  Rgb throughput;            ///< of the ray
+  Vec3 direction;            ///< direction of the path from here
+  double length = -1;        ///< length of the ray from here; negative: it left the scene
+  Rgb radiance;              ///< radiance of the path before the ray
+  Rgb throughput;            ///< throughput of the ray
   double cosine_by_pdf = 0;  ///< 0: the path ended here
 };
 
@@ -74,7 +75,7 @@ bool scatter_and_remember(const PathContext& context, const SurfacePoint& point,
   return goes_on;
 }
 
-/// Traces the path until it ends: trace_path() with a memory, and without splitting.
+/// Traces the path until it ends, as trace_path() does without splitting, and records its vertices.
 void trace_and_remember(const PathContext& context, TrainingPath& path) {
   const Scene& scene = context.scene;
   PathState& state = path.state;

@@ -16,7 +16,7 @@ namespace bandsaw {
 struct TrainingChunk {
   std::uint32_t round = 0;
   std::uint32_t number = 0;
-  std::uint64_t count = 0;  ///< of paths or photons
+  std::uint64_t count = 0;  ///< number of paths or photons
 };
 
 /// Records of a chunk, in order.

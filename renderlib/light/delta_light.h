@@ -21,7 +21,7 @@ namespace bandsaw {
 /// Parallel light from infinitely far away.
 struct DirectionalLight {
   Vec3 direction{0, 0, -1};  ///< unit, the direction in which the light travels
-  Rgb irradiance{1, 1, 1};   ///< of a surface that faces the light; >= 0, finite
+  Rgb irradiance{1, 1, 1};   ///< at a surface that faces the light; >= 0, finite
 };
 
 /// Emits equally in all directions; irradiance falls off with the square of the distance.
@@ -84,7 +84,7 @@ inline constexpr std::size_t kMaxDirectionalLights = 8;
 /// Unoccluded illumination at a point.
 struct Arrival {
   Vec3 to_light;   ///< vector to the light; a unit vector if the light is infinitely far away
-  Rgb irradiance;  ///< of a surface that faces the light
+  Rgb irradiance;  ///< at a surface that faces the light
 };
 /// Returns the illumination at the point `at`. `textures` are those of the scene.
 Arrival arrival(const DirectionalLight& light, const std::vector<Texture>& textures,

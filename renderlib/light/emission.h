@@ -47,7 +47,7 @@ MeanEmission mean_emission(absl::Span<const Material> materials, MaterialId id,
   if (const auto* mix = std::get_if<Mix>(&materials[index_of(id)].kind)) {
     const MeanEmission a = mean_emission(materials, mix->a, mean_of);
     const MeanEmission b = mean_emission(materials, mix->b, mean_of);
-    // The mean of the amount may be an estimate, so no part counts for nothing.
+    // The mean of the amount may be an estimate, so both parts get a weight above 0.
     const float amount = std::clamp(luminance(mean_of(mix->amount)), 0.01f, 0.99f);
     return {lerp(a.radiance, b.radiance, amount),
             (a.one_sided || is_black(a.radiance)) && (b.one_sided || is_black(b.radiance))};

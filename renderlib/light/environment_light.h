@@ -46,7 +46,7 @@ class EnvironmentLight {
 
   Environment environment_;
   absl::Span<const Texture> textures_;
-  double mean_ = 0;  ///< of the luminance over all directions
+  double mean_ = 0;  ///< mean luminance over all directions
   double excess_ = 0;
   GridDistribution texels_;  ///< the images, stacked vertically
 };

@@ -54,7 +54,7 @@ struct ShapeSample {
   Vec3 position;
   Vec3 normal;     ///< unit, outward
   Vec2 on_shape;   ///< `Hit::u`, `Hit::v` of the position
-  double pdf = 0;  ///< of the direction to the position, by solid angle; > 0, finite
+  double pdf = 0;  ///< pdf of the direction to it by solid angle; > 0, finite
 };
 
 /// Samples a point of the shape as seen from `from`; u, v in [0, 1). Returns std::nullopt if the

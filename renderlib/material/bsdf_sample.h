@@ -28,7 +28,7 @@ struct BsdfSample {
 
 struct BsdfValue {
   Rgb value;
-  double pdf = 0;  ///< with which sample() samples wi
+  double pdf = 0;  ///< pdf with which sample() samples wi
 };
 
 }  // namespace bandsaw

@@ -89,7 +89,7 @@ struct MetallicRoughness {
   Tint base_color;                   ///< [0, 1]; vertex colours multiply it
   Channel metallic;                  ///< channel b; [0, 1]
   Channel roughness;                 ///< channel g; [0, 1]
-  double index_of_refraction = 1.5;  ///< of the dielectric part, [1, 5]
+  double index_of_refraction = 1.5;  ///< index of the dielectric part, [1, 5]
   Channel coat;                      ///< channel r; [0, 1]: weight of a clear coat of index 1.5
   Channel coat_roughness;            ///< channel g; [0, 1]
   Channel transmission;  ///< channel r; [0, 1]: share transmitted instead of diffusely reflected
@@ -105,9 +105,9 @@ class PlasticCoat;
 /// A diffuse surface below a dielectric coat, with the light that is reflected to and fro between
 /// both: `plastic` and `roughplastic` of Mitsuba 3.
 struct Plastic {
-  TextureId reflectance{};           ///< of the diffuse surface; vertex colours multiply it
-  double index_of_refraction = 1.5;  ///< of the coat, (1, 5]
-  Microfacets surface = {};          ///< of the coat; isotropic
+  TextureId reflectance{};           ///< diffuse reflectance; vertex colours multiply it
+  double index_of_refraction = 1.5;  ///< index of the coat, (1, 5]
+  Microfacets surface = {};          ///< surface of the coat; isotropic
   Rgb specular{1, 1, 1};             ///< factor of the coat's reflection, [0, 1]
   /// Colours become more saturated with each reflection inside; false: only their brightness does.
   bool nonlinear = false;
@@ -180,8 +180,8 @@ struct ThinPrincipled {
   Number diff_trans = {};  ///< share of the diffuse light that is transmitted: half of Mitsuba's
 };
 
-/// At each point one of two materials (material/mixture.h). They precede it in the scene's list and
-/// are no glass with a priority.
+/// A mixture: at each point one of two materials is present (material/mixture.h). They precede it
+/// in the scene's list and are no glass with a priority.
 struct Mix {
   MaterialId a{};
   MaterialId b{};
@@ -209,7 +209,7 @@ enum class AlphaMode : std::uint8_t {
 struct Alpha {
   AlphaMode mode = AlphaMode::kOpaque;
   Channel value{{}, 1};    ///< channel r, or the luminance; [0, 1]; unused if kOpaque
-  bool luminance = false;  ///< of the texture's luminance instead of its channel r
+  bool luminance = false;  ///< true: the texture's luminance instead of channel r
   double cutoff = 0.5;     ///< >= 0; for kMask
 };
 

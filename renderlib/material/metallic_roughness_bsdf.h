@@ -52,7 +52,7 @@ MetallicRoughnessBsdf metallic_roughness_at(const MetallicRoughness& material, c
                                             absl::Span<const Texture> textures,
                                             const SurfacePoint& point, const SidedNormals& normal,
                                             const Vec3& wo);
-
+/// sample() and evaluate() are those of material/bsdf.h for this kind.
 std::optional<BsdfSample> sample(const MetallicRoughnessBsdf& bsdf, double u, double v,
                                  double lobe);
 BsdfValue evaluate(const MetallicRoughnessBsdf& bsdf, const Vec3& wi);

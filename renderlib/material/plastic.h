@@ -33,9 +33,9 @@ struct PlasticBsdf {
 /// Returns the BSDF; `normal` is on the side of wo. The material MUST be prepared.
 PlasticBsdf plastic_at(const Plastic& material, absl::Span<const Texture> textures,
                        const SurfacePoint& point, const SidedNormals& normal, const Vec3& wo);
-
+/// sample() and evaluate() are those of material/bsdf.h for this kind.
 std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, double u, double v, double lobe);
-/// Without the delta reflection of a smooth coat.
+/// Returns value and pdf, without the delta reflection of a smooth coat.
 BsdfValue evaluate(const PlasticBsdf& bsdf, const Vec3& wi);
 
 }  // namespace bandsaw

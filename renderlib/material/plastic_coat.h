@@ -1,6 +1,6 @@
 #pragma once
 
-// How much light passes the dielectric coat of Plastic: computed once for each material, when its
+// Transmittance of the dielectric coat of Plastic. It is computed once for each material, when its
 // scene is built.
 
 #include <vector>
@@ -19,10 +19,10 @@ class PlasticCoat {
  public:
   PlasticCoat(const Microfacets& surface, double index_of_refraction);
 
-  /// The coat where its alpha is `alpha`.
+  /// The coat at a point where its alpha is `alpha`.
   struct At {
     const PlasticCoat* coat;
-    std::size_t row;  ///< of the next smaller alpha
+    std::size_t row;  ///< row of the next smaller alpha
     double next = 0;  ///< weight of the row after it
     bool smooth = false;
 

@@ -43,7 +43,7 @@ struct PrincipledBsdf {
 PrincipledBsdf principled_at(const Principled& material, absl::Span<const Texture> textures,
                              const SurfacePoint& point, const SidedNormals& normal, bool outside,
                              const Vec3& wo);
-
+/// sample() and evaluate() are those of material/bsdf.h for this kind.
 std::optional<BsdfSample> sample(const PrincipledBsdf& bsdf, double u, double v, double lobe);
 BsdfValue evaluate(const PrincipledBsdf& bsdf, const Vec3& wi);
 

@@ -44,7 +44,7 @@ UvSet set_of(absl::Span<const Texture> textures, TextureId map) {
   return image == nullptr ? UvSet::kFirst : image->uv_set;
 }
 
-/// The frame of the uvs made orthonormal around the normal; mirrored where the uvs are.
+/// Returns the frame of the uvs, made orthonormal around the normal; mirrored where the uvs are.
 Basis uv_basis(const Vec3& n, const Directions& uv) {
   const double size = max_abs(uv.u);
   if (!(size > 0) || !std::isfinite(size)) {

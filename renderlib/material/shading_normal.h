@@ -11,10 +11,10 @@
 
 namespace bandsaw {
 
-/// Returns the shading normal bent by a texel of a normal map (0.5 + 0.5 n in the frame of the uvs
-/// and the shading normal; glTF 2.0, 3.9.3), on the outside. Any frame around the normal where the
-/// uvs give none. Unit. `placed`: how the map lies on its uvs; the axes of the map count. `set`:
-/// the uvs of the map.
+/// Returns the unit shading normal on the outside, bent by a texel of a normal map (0.5 + 0.5 n in
+/// the frame of the uvs and the shading normal; glTF 2.0, 3.9.3). If the uvs define no frame, any
+/// frame around the normal is used. `placed`: the map's transform of uvs; the frame is that of the
+/// map. `set`: the uvs of the map.
 Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
                    const UvTransform& placed = {}, UvSet set = UvSet::kFirst);
 
@@ -22,17 +22,17 @@ Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
 Vec3 mapped_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
                    double scale);
 
-/// Returns the shading normal of the surface displaced along its normals by the luminance of a
-/// height map times `scale`, in scene units (Blinn 1978, "Simulation of Wrinkled Surfaces", without
-/// the derivative of the normal), on the outside. The point MUST have the derivatives of the map's
-/// uvs (add_uv_derivatives). The shading normal itself where the uvs give no directions. Unit.
+/// Returns the unit shading normal, on the outside, of the surface displaced along its normals by
+/// the luminance of a height map times `scale`, in scene units (Blinn 1978, "Simulation of Wrinkled
+/// Surfaces", without the derivative of the normal). The point MUST have the derivatives of the
+/// map's uvs (add_uv_derivatives). If they are zero, returns the undisplaced shading normal.
 Vec3 displaced_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
                       double scale);
 
 /// Returns true if the relief changes the shading normal.
 inline bool bends(const Relief& relief) { return relief.normal || relief.height; }
 
-/// Returns the shading normal of the outside, bent by the relief if there is one. Unit.
+/// Returns the unit shading normal on the outside, bent by the relief if there is one.
 Vec3 bent_normal(const Relief& relief, absl::Span<const Texture> textures,
                  const SurfacePoint& point);
 
@@ -50,9 +50,9 @@ Basis facet_frame(const SurfacePoint& point, const Vec3& n, bool isotropic);
 /// Returns n, or visible_normal() where wo is behind n and would see no surface at all.
 Vec3 facing_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo);
 
-/// `n`, bent just so far towards `geometric` that both wo and its mirror image lie above the
-/// surface: no black rims and no light from behind. All are unit vectors, dot(wo, geometric) >= 0.
-/// Continuous in all of them.
+/// Returns `n`, bent towards `geometric` just so far that wo and its mirror image lie above the
+/// surface. This avoids black rims and light from behind. All are unit vectors, dot(wo, geometric)
+/// >= 0. Continuous in all of them.
 Vec3 visible_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo);
 
 }  // namespace bandsaw

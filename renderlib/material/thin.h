@@ -15,12 +15,12 @@ namespace bandsaw {
 struct ThinDielectricBsdf {
   SidedNormals normal;
   Vec3 wo;
-  Rgb reflected;  ///< share of the pane times its colour
+  Rgb reflected;  ///< reflected share of the light times the colour
   Rgb transmitted;
   double reflection = 0;  ///< probability with which the reflection is sampled
   bool free_passage = false;
 };
-
+/// Returns the BSDF; `normal` is on the side of wo. sample() is that of material/bsdf.h.
 ThinDielectricBsdf thin_dielectric(const ThinDielectric& pane, const SidedNormals& normal,
                                    const Vec3& wo);
 std::optional<BsdfSample> sample(const ThinDielectricBsdf& bsdf, double lobe);

@@ -11,7 +11,7 @@ namespace {
 
 enum Lobe : std::size_t { kReflection, kTransmission, kDiffuse, kDiffuseTransmission };
 
-/// Albedo that the selection of lobes assumes at least.
+/// Minimum albedo that the selection of lobes assumes.
 constexpr double kMinThinAlbedo = 0.1;
 
 void add_reflection(const ThinPrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValue& sum) {

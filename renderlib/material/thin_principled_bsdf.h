@@ -22,8 +22,8 @@ struct ThinPrincipledBsdf {
   Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along u
   Vec3 o;          ///< wo in the frame
   double eta = 1.5;
-  Facets facets;    ///< of the reflection
-  Facets straight;  ///< of the transmission
+  Facets facets;    ///< facets of the reflection
+  Facets straight;  ///< facets of the transmission
   DisneyDiffuse diffuse;
   double spec_trans = 0;
   double spec_tint = 0;
@@ -37,7 +37,7 @@ struct ThinPrincipledBsdf {
 ThinPrincipledBsdf thin_principled_at(const ThinPrincipled& material,
                                       absl::Span<const Texture> textures, const SurfacePoint& point,
                                       const SidedNormals& normal, const Vec3& wo);
-
+/// sample() and evaluate() are those of material/bsdf.h for this kind.
 std::optional<BsdfSample> sample(const ThinPrincipledBsdf& bsdf, double u, double v, double lobe);
 BsdfValue evaluate(const ThinPrincipledBsdf& bsdf, const Vec3& wi);
 

@@ -19,18 +19,18 @@ constexpr double kLog2E = 0x1.71547652b82fep+0;
 constexpr TwoDoubles kLog2 = {0x1.62e42fee00000p-1, 0x1.a39ef35793c76p-33};
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// 2^k for k in [-1022, 1023].
+/// Returns 2^k for k in [-1022, 1023].
 double power_of_two(int k) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(k + 1023) << 52);
 }
 
-/// a 2^k; k in [-2044, 2046]. Two steps, each in range.
+/// Returns a 2^k for k in [-2044, 2046], in two steps that are each in range.
 double scale_by_power(double a, int k) {
   const int half = k / 2;
   return a * power_of_two(half) * power_of_two(k - half);
 }
 
-/// exp(r) - 1 for |r| <= 0.36, r = hi + lo.
+/// Returns exp(r) - 1 for |r| <= 0.36, r = hi + lo.
 TwoDoubles expm1_reduced(double hi, double lo) {
   static constexpr double kExp[] = {
       1.0 / 2,         1.0 / 6,          1.0 / 24,         1.0 / 120,     1.0 / 720,
@@ -47,14 +47,14 @@ struct ReducedExp {
   double lo;
 };
 
-/// |x| < 1100.
+/// Reduces the argument of exp; |x| < 1100.
 ReducedExp reduce_exp(double x) {
   const double k = std::nearbyint(x * kLog2E);
   const TwoDoubles r = two_sum(x - k * kLog2.hi, -k * kLog2.lo);
   return {k, r.hi, r.lo};
 }
 
-/// log(1 + f) - f for 1 + f in [sqrt(1/2), sqrt(2)].
+/// Returns log(1 + f) - f for 1 + f in [sqrt(1/2), sqrt(2)].
 double log_rest(double f) {
   static constexpr double kLog[] = {2.0 / 3,  2.0 / 5,  2.0 / 7,  2.0 / 9,  2.0 / 11, 2.0 / 13,
                                     2.0 / 15, 2.0 / 17, 2.0 / 19, 2.0 / 21, 2.0 / 23, 2.0 / 25};
@@ -70,7 +70,7 @@ struct Normalised {
   double m;  // in [sqrt(1/2), sqrt(2))
 };
 
-/// x > 0, finite.
+/// Splits x (> 0, finite) into 2^k m.
 Normalised normalise(double x) {
   int k = 0;
   if (x < std::numeric_limits<double>::min()) {
@@ -87,7 +87,7 @@ Normalised normalise(double x) {
   return {k, m};
 }
 
-/// log(2^k (1 + f)) + extra.
+/// Returns log(2^k (1 + f)) + extra.
 TwoDoubles log_parts(int k, double f, double extra) {
   const TwoDoubles head = two_sum(k * kLog2.hi, f);
   const TwoDoubles sum = two_sum(head.hi, log_rest(f));

@@ -26,7 +26,7 @@ constexpr TwoDoubles kAtanEighths[] = {
     {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55},
 };
 
-/// atan(z) - z for |z| <= 1/16.
+/// Returns atan(z) - z for |z| <= 1/16.
 double atan_rest(double z) {
   static constexpr double kAtan[] = {-1.0 / 3,  1.0 / 5,  -1.0 / 7, 1.0 / 9,
                                      -1.0 / 11, 1.0 / 13, -1.0 / 15};
@@ -34,7 +34,7 @@ double atan_rest(double z) {
   return z * square * polynomial(square, kAtan);
 }
 
-/// atan(y / x) for 0 <= y <= x, x > 0.
+/// Returns atan(y / x) for 0 <= y <= x, x > 0.
 TwoDoubles atan_octant(double y, double x) {
   const double k = std::nearbyint(8 * (y / x));
   const double t = k / 8;
@@ -48,7 +48,7 @@ TwoDoubles atan_octant(double y, double x) {
   return {sum.hi, sum.lo + (base.lo + (atan_rest(z) + z_rest))};
 }
 
-/// quarters * pi / 2 + sign * a, rounded to double.
+/// Returns quarters * pi / 2 + sign * a, rounded to double.
 double from_quarter(double quarters, double sign, const TwoDoubles& a) {
   const TwoDoubles sum = two_sum(quarters * kHalfPi.hi, sign * a.hi);
   return sum.hi + (sum.lo + std::fma(quarters, kHalfPi.lo, sign * a.lo));

@@ -27,7 +27,7 @@ struct Parts {
   TwoDoubles cos;
 };
 
-/// For |x| <= pi/4 and slightly above.
+/// Returns sine and cosine of x for |x| <= pi/4 and slightly above.
 Parts parts_reduced(const TwoDoubles& x) {
   static constexpr double kSin[] = {
       -1.0 / 6,        1.0 / 120,        -1.0 / 5040,          1.0 / 362880,

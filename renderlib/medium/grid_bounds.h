@@ -29,7 +29,7 @@ class GridBounds {
  private:
   std::array<std::uint32_t, 3> cells_;
   std::array<std::uint32_t, 3> bricks_;
-  std::vector<ValueBounds> of_brick_;  ///< between cell centres also of neighbouring bricks
+  std::vector<ValueBounds> of_brick_;  ///< includes values interpolated with neighbouring bricks
 };
 
 }  // namespace bandsaw

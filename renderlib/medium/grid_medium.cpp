@@ -100,7 +100,7 @@ GridMedium::GridMedium(const Medium& medium, const std::vector<VolumeGrid>& grid
 }
 
 void GridMedium::find_regions(const MediumGrids& uses, const std::vector<VolumeGrid>& grids) {
-  // The first of these grids has regions of its own bricks. The albedo bounds nothing.
+  // The first of these grids has regions of its own bricks. The albedo does not affect the bounds.
   const VolumeGrid* primary = nullptr;
   Box block;
   const auto bounded = [&](const std::optional<GridUse>& use) -> std::optional<Bounded> {

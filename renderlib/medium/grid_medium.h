@@ -30,7 +30,7 @@ struct Regions {
   /// The block, in the space of the regions; its last cubes may reach out of it.
   Vec3 low;
   Vec3 high;
-  double side = kBrickSide;  ///< of a cube
+  double side = kBrickSide;  ///< side of a cube
   std::array<std::uint32_t, 3> count = {};
   std::vector<Region> regions;  ///< x fastest
   Region around;                ///< outside of the block

@@ -14,10 +14,12 @@ using Channels = std::array<double, 3>;
 
 /// Average number of tentative collisions along a region's side where the medium emits.
 constexpr double kCollisionsWhereItEmits = 2;
-/// Weights below this share of the first ones take part in Russian roulette.
+/// A flight whose weight is below this share of its first weight takes part in Russian roulette at
+/// each collision, and survives with probability kSurvivalOfLow.
 constexpr double kLowWeight = 0x1p-4;
 constexpr double kSurvivalOfLow = 0x1p-2;
-/// Later collisions take part in another one, so that every flight ends.
+/// After this many collisions, a flight survives each further one with probability kSurvivalOfMany
+/// at most, so that every flight ends.
 constexpr std::uint32_t kManyCollisions = 1u << 14;
 constexpr double kSurvivalOfMany = 1 - 0x1p-10;
 
@@ -33,7 +35,7 @@ void scale(Channels& c, double by) {
   }
 }
 
-/// Returns a distance in mean free paths.
+/// Samples a distance in mean free paths; u in [0, 1).
 double exponential(double u) { return -log1p(-u); }
 
 /// Russian roulette over the weight of one flight.

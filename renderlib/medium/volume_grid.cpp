@@ -195,7 +195,8 @@ float GridReader::cell(std::uint32_t x, std::uint32_t y, std::uint32_t z,
 namespace {
 
 float number_of(float stored) { return stored; }
-/// The number of a half that is >= 0 and finite. Exact: the exponent's bias is a factor of 2^112.
+/// Returns the number of a half that is >= 0 and finite. Exact: the exponent's bias is a factor of
+/// 2^112.
 float number_of(std::uint16_t half) {
   return std::bit_cast<float>(std::uint32_t{half} << 13) * 0x1p112f;
 }

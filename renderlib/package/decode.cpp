@@ -354,7 +354,7 @@ class Decoder {
   BlobSource& blobs_;
   DecodedParts* const parts_;     ///< nullptr: none
   std::set<const Mesh*> own_;     ///< meshes that were read for this package
-  std::set<const Mesh*> shared_;  ///< those of other packages
+  std::set<const Mesh*> shared_;  ///< meshes of other packages
 };
 
 absl::StatusOr<Geometry> decode_geometry(const package::Manifest& manifest, Decoder& decoder) {

@@ -75,7 +75,7 @@ struct Counters {
   std::uint32_t bad_x = 0;
   std::uint32_t bad_y = 0;
   std::uint64_t bad_sample = 0;
-  std::uint64_t negative_samples = 0;  ///< those of `bad_samples` that are finite but negative
+  std::uint64_t negative_samples = 0;  ///< bad samples that are finite but negative
   /// Number of samples whose path was cut off at max_depth, so that its remaining light is missing.
   std::uint64_t truncated_paths = 0;
   /// Scene::dropped_primitives; the same in all bands of a scene.

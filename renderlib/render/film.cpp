@@ -65,7 +65,7 @@ std::uint64_t CoveredSamples::from_start() const {
 /// Pixels of one row that always have the same samples: the whole row, or a part of a half tile.
 struct Strip {
   std::uint32_t count = 0;                     ///< may be 0
-  std::optional<HalfRow> part = std::nullopt;  ///< of a half tile
+  std::optional<HalfRow> part = std::nullopt;  ///< row of a half tile; absent: a whole row
 
   /// Returns the x of pixel k of the strip.
   std::uint32_t x(std::uint32_t k) const { return part ? (*part)[k] : k; }

@@ -66,7 +66,7 @@ class Film {
   /// tree, about half of the samples.
   struct FirstPart {
     Image mean;
-    std::vector<float> share;  ///< of the pixel's samples, (0, 1)
+    std::vector<float> share;  ///< share in each pixel's samples, (0, 1)
   };
   /// Returns std::nullopt until every row has two nodes, that is, more than one block. Of a
   /// complete film, the part has first_part_samples() of each pixel (render/first_part.h).

@@ -26,7 +26,7 @@ struct PixelPlace {
 /// The groups of one half tile.
 class PixelGroups {
  public:
-  /// Half tile number `half_tile` of the grid.
+  /// Makes the groups of half tile number `half_tile` of the grid.
   PixelGroups(const TileGrid& grid, std::size_t half_tile);
 
   /// Returns the number of groups: 16 in a whole half tile; 0 if it has no pixels.

@@ -15,7 +15,7 @@ struct Node {
   RowStore::Slot slot = 0;
 };
 
-/// In order of their samples; disjoint.
+/// Nodes in the order of their samples; disjoint.
 using StripNodes = std::vector<Node>;
 
 /// Inserts a node that overlaps none, and merges siblings except the two halves that the error

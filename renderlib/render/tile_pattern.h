@@ -8,7 +8,7 @@
 namespace bandsaw {
 
 inline constexpr std::uint32_t kTileSide = 16;      ///< pixels
-inline constexpr std::uint32_t kGroupsOfTile = 32;  ///< of eight pixels each
+inline constexpr std::uint32_t kGroupsOfTile = 32;  ///< groups of eight pixels
 
 /// Returns the number of the group within its tile, below kGroupsOfTile, to which the pixel of the
 /// image belongs. One pattern is mirrored at random for every tile. It was made by simulated

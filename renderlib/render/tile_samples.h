@@ -59,7 +59,7 @@ HalfRow half_row(const TileGrid& grid, std::uint32_t column, std::uint32_t half,
 class TileSamples {
  public:
   TileSamples() = default;
-  /// Half tiles of the tiles that the rows overlap; none takes samples.
+  /// Makes the half tiles of the tiles that the rows overlap; none takes samples.
   TileSamples(std::uint32_t width, const RowRange& rows);
   /// Restores the result of numbers() for the same width and rows. Returns INVALID_ARGUMENT if
   /// their count is wrong, or a pair of them is no node of at most kMaxSamples.
@@ -95,7 +95,7 @@ class TileSamples {
   friend bool operator==(const TileSamples&, const TileSamples&) = default;
 
  private:
-  /// Half the size of a SampleRange, because every pass has one for each half tile.
+  /// Samples of one half tile: half the size of a SampleRange, because a pass has many of them.
   struct Taken {
     std::uint32_t first = 0;
     std::uint32_t last = 0;

@@ -12,7 +12,7 @@ namespace bandsaw {
 struct SphereSample {
   Vec3 position;   ///< on the sphere; on the side that faces the point if that is outside
   Vec3 normal;     ///< unit, outward
-  double pdf = 0;  ///< of the direction from the point to `position`, by solid angle
+  double pdf = 0;  ///< pdf of the direction from the point to `position`, by solid angle
 };
 
 /// Returns std::nullopt if the sampled direction has no finite pdf (a point on the sphere, a

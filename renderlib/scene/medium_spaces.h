@@ -1,6 +1,6 @@
 #pragma once
 
-// The spaces of media (scene/media.h): where in its medium's space a point of the world is.
+// The spaces of media (scene/media.h): maps from the world to the space of each medium.
 
 #include <cstdint>
 #include <vector>
@@ -12,7 +12,7 @@ namespace bandsaw {
 class MediumSpaces {
  public:
   MediumSpaces() = default;
-  /// Notes the frames of all boundaries, before static ones lose them (static_instances.h).
+  /// Stores the frames of all boundaries, before static ones lose them (static_instances.h).
   explicit MediumSpaces(const Geometry& boundaries);
 
   /// Computes the maps of boundaries that are static, as at `time`.
@@ -24,7 +24,7 @@ class MediumSpaces {
 
  private:
   std::vector<FrameId> frames_;  ///< by instance
-  /// By instance; unused for those that move.
+  /// Maps by instance; unused for instances that move.
   std::vector<Transform> still_;
 };
 

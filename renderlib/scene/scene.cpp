@@ -229,7 +229,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(
   own.geometry.shutter = {shutter.open, shutter.close};
   own.media.boundaries.shutter = own.geometry.shutter;
   make_static(own.geometry);
-  // The spaces of media are those of frames, which static boundaries lose.
+  // The space of a medium is that of its boundary's frame. Static boundaries lose their frames
+  // below.
   if (has_grids(own.media)) {
     scene->medium_spaces_ = MediumSpaces(own.media.boundaries);
   }

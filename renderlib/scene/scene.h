@@ -81,8 +81,8 @@ class Scene {
   bool reuses_paths() const { return reuses_paths_; }
   /// Returns the number of primitives that were removed because no ray can hit them.
   std::size_t dropped_primitives() const { return dropped_; }
-  /// Returns the place of the fields of path guiding, each of which is a pure function of the scene
-  /// and its key, and is made when it is first used. Synchronised.
+  /// Returns the cache of the fields of path guiding. A field is a pure function of the scene and
+  /// its key, and is made when it is first used. Synchronised.
   GuidingCache& guiding() const { return *guiding_; }
 
   ~Scene();

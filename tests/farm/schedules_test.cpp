@@ -35,7 +35,7 @@ class Schedule {
   /// Cables are pulled if `hosts` is given, which MUST outlive this object.
   Schedule(std::uint64_t seed, const Hosts* hosts) : random_(seed), hosts_(hosts), farm_(hosts) {}
 
-  /// Returns the image's bytes; empty: the job failed, see told().
+  /// Returns the image's bytes; empty: the job failed, see outcome().
   std::string run() {
     const std::uint32_t count = 2 + random_.below(2);
     while (names_.size() < count) {
@@ -54,10 +54,10 @@ class Schedule {
     return code == 0 ? file_bytes(image) : "";
   }
 
-  std::string told() { return absl::StrJoin(told_, "; ") + "\n" + farm_.coordinator_log(); }
+  std::string outcome() { return absl::StrJoin(outcome_, "; ") + "\n" + farm_.coordinator_log(); }
 
  private:
-  void tell(std::string what) { told_.push_back(std::move(what)); }
+  void tell(std::string what) { outcome_.push_back(std::move(what)); }
 
   /// Waits until a worker has stored another band. Returns false if the job is over.
   bool wait_for_a_band(Process& client) {
@@ -156,7 +156,7 @@ class Schedule {
   std::vector<std::string> names_;
   std::set<std::string> frozen_;
   std::set<std::string> cut_off_;
-  std::vector<std::string> told_;
+  std::vector<std::string> outcome_;
 };
 
 TEST(Schedules, RandomFailuresDoNotChangeTheBytes) {
@@ -173,7 +173,7 @@ TEST(Schedules, RandomFailuresDoNotChangeTheBytes) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     Schedule schedule(seed, hosts);
     const bool equal = schedule.run() == expected;
-    EXPECT_TRUE(equal) << "again with BANDSAW_SEED=" << seed << ": " << schedule.told();
+    EXPECT_TRUE(equal) << "again with BANDSAW_SEED=" << seed << ": " << schedule.outcome();
     same += equal ? 1 : 0;
   }
   std::printf("%llu of %llu random schedules gave the same bytes%s\n",

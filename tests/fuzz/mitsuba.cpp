@@ -1,10 +1,6 @@
 // A scene of Mitsuba through the importer, without any other files; or, if the input does not begin
 // with '<', one of its mesh files.
 
-#include <unistd.h>
-
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include "absl/strings/match.h"
@@ -13,29 +9,10 @@
 #include "renderlib/import/mitsuba/source_mesh.h"
 #include "renderlib/package/package.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/support/temp_dir.h"
 
 namespace bandsaw {
 namespace {
-
-/// A folder that contains only the scene, for this process.
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "fuzz-mitsuba-XXXXXX").string();
-    BANDSAW_CHECK(mkdtemp(pattern.data()) != nullptr, "a temporary folder can be made");
-    path_ = pattern;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string file(const char* name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
 
 void read_mesh(absl::string_view bytes) {
   const auto mesh = absl::StartsWith(bytes, "ply")    ? mitsuba::read_ply(bytes, false)
@@ -61,13 +38,13 @@ void read_mesh(absl::string_view bytes) {
 }  // namespace bandsaw
 
 void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
-  static const Folder folder;
+  static const test::TempDir folder;
   const std::string bytes = text(input);
   if (!absl::StartsWith(bytes, "<")) {
     read_mesh(bytes);
     return;
   }
-  const std::string path = folder.file("scene.xml");
+  const std::string path = folder / "scene.xml";
   std::ofstream(path, std::ios::binary) << bytes;
   const absl::StatusOr<ImportedScene> imported = import_scene(path);
   if (!imported.ok()) {

@@ -1,44 +1,17 @@
 // A scene file, as text or JSON, through the importer, without any other files.
 
-#include <unistd.h>
-
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include "renderlib/base/check.h"
 #include "renderlib/import/import.h"
 #include "renderlib/package/package.h"
 #include "tests/fuzz/fuzz.h"
-
-namespace {
-
-/// A folder that contains only the scene, for this process.
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "fuzz-scene-XXXXXX").string();
-    BANDSAW_CHECK(mkdtemp(pattern.data()) != nullptr, "a temporary folder can be made");
-    path_ = pattern;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string file(const char* name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
-
-}  // namespace
+#include "tests/support/temp_dir.h"
 
 void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
-  static const Folder folder;
+  static const test::TempDir folder;
   const bool json = !input.empty() && input.front() == '{';
-  const std::string path = folder.file(json ? "scene.json" : "scene.textproto");
+  const std::string path = folder / (json ? "scene.json" : "scene.textproto");
   std::ofstream(path, std::ios::binary) << text(input);
   const absl::StatusOr<ImportedScene> imported = import_scene(path);
   if (!imported.ok()) {

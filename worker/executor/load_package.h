@@ -1,6 +1,6 @@
 #pragma once
 
-// From a package to a scene: fetches each missing blob once into the cache, decodes the package and
+// Loads the scene of a package: fetches each missing blob once into the cache, decodes the package,
 // builds the scene.
 
 #include <atomic>

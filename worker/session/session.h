@@ -65,8 +65,10 @@ class Session {
   bool was_welcomed() const { return !name_.empty(); }  ///< Welcome was received at some time
   const std::string& name() const { return name_; }     ///< name assigned by the coordinator
 
-  // Rendering.
+  // Rendering. Calls for a band that is not held have no effect.
+  /// Notes progress of the preparation; `prepared` only increases (Heartbeat in farm.proto).
   void preparing(TaskId task, std::uint64_t prepared);
+  /// Notes that `rows_done` rows of the band are rendered.
   void rendering(TaskId task, std::uint32_t rows_done);
   /// Marks a band as finished. False: its lease was revoked, discard the pixels.
   bool finished(TaskId task);

@@ -24,7 +24,7 @@ SessionEffects SharedSession::receive(const farm::ToWorker& message) {
   if (effects.dismissal) {
     queue_->close();
   }
-  tell_when_over();
+  notify_when_over();
   return effects;
 }
 
@@ -73,13 +73,13 @@ void SharedSession::failed(TaskId task, const std::string& reason,
   if (std::optional<farm::FromWorker> message = session_.failed(task, reason, log)) {
     queue_->push(*std::move(message));
   }
-  tell_when_over();
+  notify_when_over();
 }
 
 void SharedSession::settled(TaskId task) {
   MutexLock lock(mutex_);
   session_.settled(task);
-  tell_when_over();
+  notify_when_over();
 }
 
 absl::StatusOr<LeaseName> SharedSession::lease_of(TaskId task) {
@@ -95,13 +95,13 @@ void SharedSession::drain(const std::string& reason) {
   if (std::optional<farm::FromWorker> message = session_.drain(reason)) {
     queue_->push(*std::move(message));
   }
-  tell_when_over();
+  notify_when_over();
 }
 
 void SharedSession::leave() {
   MutexLock lock(mutex_);
   left_ = true;
-  tell_when_over();
+  notify_when_over();
 }
 
 bool SharedSession::over() {
@@ -121,7 +121,7 @@ void SharedSession::pause(std::chrono::milliseconds time) {
   }
 }
 
-void SharedSession::tell_when_over() {
+void SharedSession::notify_when_over() {
   if (is_over()) {
     queue_->close();
     changed_.notify_all();

@@ -20,7 +20,7 @@ class SharedSession {
   /// Starts a new stream. Returns its send queue, whose first message is Hello.
   std::shared_ptr<SendQueue> open_stream() EXCLUDES(mutex_);
   void close_stream() EXCLUDES(mutex_);
-  /// Processes a message. The answers are already in the send queue.
+  /// Processes a message. Its answers have been put into the send queue when this returns.
   SessionEffects receive(const farm::ToWorker& message) EXCLUDES(mutex_);
   std::chrono::milliseconds heartbeat_interval() EXCLUDES(mutex_);
   /// std::nullopt before Welcome.
@@ -28,7 +28,7 @@ class SharedSession {
   bool was_welcomed() EXCLUDES(mutex_);
   std::string name() EXCLUDES(mutex_);
 
-  // For the rendering threads.
+  // For the rendering threads; see Session.
   void preparing(TaskId task, std::uint64_t prepared) EXCLUDES(mutex_);
   void rendering(TaskId task, std::uint32_t rows_done) EXCLUDES(mutex_);
   /// False: the band is no longer wanted, discard its pixels.
@@ -39,7 +39,7 @@ class SharedSession {
   /// UNAVAILABLE: not connected to a coordinator.
   absl::StatusOr<LeaseName> lease_of(TaskId task) EXCLUDES(mutex_);
 
-  // For shutdown.
+  // For shutdown. leave() ends without finishing bands; drain() as Session::drain.
   void drain(const std::string& reason) EXCLUDES(mutex_);
   void leave() EXCLUDES(mutex_);
   /// Returns true once the worker has drained, or after leave().
@@ -49,7 +49,7 @@ class SharedSession {
 
  private:
   bool is_over() const REQUIRES(mutex_) { return left_ || session_.drained(); }
-  void tell_when_over() REQUIRES(mutex_);
+  void notify_when_over() REQUIRES(mutex_);
 
   Mutex mutex_;
   CondVar changed_;

@@ -11,7 +11,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Gives the child the stream `from` as `to`; -1: the file, opened with `flags`.
+/// Makes `from` the child's stream `to`. If `from` is -1, opens `file` with `flags` instead.
 void add_stream(posix_spawn_file_actions_t& actions, int from, int to, const char* file,
                 int flags) {
   if (from >= 0) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/cli/farm/patiently.h"
+#include "coordinator/cli/farm/call_with_retries.h"
 #include "coordinator/cli/farm/watch_job.h"
 #include "coordinator/cli/image/clean.h"
 #include "coordinator/scheduler/api/clean_jobs.h"
@@ -54,7 +54,7 @@ class FarmRenderer {
   absl::StatusOr<JobId> submit(const JobSpec& spec) {
     ASSIGN_OR_RETURN(const wire::Digest manifest, wire::digest_from_hex(spec.manifest));
     const farm::SubmitRequest request = request_of(spec, manifest.raw(), priority_);
-    absl::StatusOr<JobId> job = patiently(client_, [&] { return client_.submit(request); });
+    absl::StatusOr<JobId> job = call_with_retries(client_, [&] { return client_.submit(request); });
     return absl::IsFailedPrecondition(job.status())
                ? absl::FailedPreconditionError(absl::StrCat(
                      "the farm cannot render the guides of the clean image (",
@@ -76,7 +76,8 @@ class FarmRenderer {
                                              state_name(last.job.state),
                                              last.job.reason.empty() ? "" : ": ", last.job.reason));
     }
-    ASSIGN_OR_RETURN(FarmImage result, patiently(client_, [&] { return client_.result(job); }));
+    ASSIGN_OR_RETURN(FarmImage result,
+                     call_with_retries(client_, [&] { return client_.result(job); }));
     return std::move(result.image);
   }
 
@@ -91,12 +92,14 @@ absl::StatusOr<std::optional<Film::FirstPart>> first_part_of(FarmClient& client,
   if (first_part_samples(job.samples_per_pixel) == 0) {
     return std::nullopt;
   }
-  ASSIGN_OR_RETURN(Image mean, patiently(client, [&] { return client.first_part(job.id); }));
+  ASSIGN_OR_RETURN(Image mean,
+                   call_with_retries(client, [&] { return client.first_part(job.id); }));
   if (!is_adaptive(job.spec.stop)) {
     std::vector<float> shares = first_part_shares(job.samples_per_pixel, mean.pixels.size());
     return Film::FirstPart{std::move(mean), std::move(shares)};
   }
-  ASSIGN_OR_RETURN(const Image counts, patiently(client, [&] { return client.samples(job.id); }));
+  ASSIGN_OR_RETURN(const Image counts,
+                   call_with_retries(client, [&] { return client.samples(job.id); }));
   return Film::FirstPart{std::move(mean), first_part_shares(counts)};
 }
 

@@ -9,9 +9,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Has the farm render what the denoiser needs, as jobs of their own (scheduler/api/clean_jobs.h),
+/// Renders the denoiser's guides on the farm, as jobs of their own (scheduler/api/clean_jobs.h),
 /// and filters `image` on this machine, with the same bits as `bandsaw render --denoise`. `last` is
-/// the status of the finished job. FAILED_PRECONDITION: such an image is not cleaned
+/// the status of the finished job. FAILED_PRECONDITION: the image cannot be cleaned
 /// (check_cleanable), or the farm no longer has the scene. Other errors: those of follow_job;
 /// ABORTED: one of these jobs failed.
 absl::StatusOr<Denoised> clean_job(FarmClient& client, const Progress& last, const Image& image,

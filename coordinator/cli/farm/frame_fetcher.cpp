@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
-#include "coordinator/cli/farm/patiently.h"
+#include "coordinator/cli/farm/call_with_retries.h"
 #include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report.h"
 #include "coordinator/cli/image/report_file.h"
@@ -124,7 +124,7 @@ absl::Status FrameFetcher::add_to_collections(FrameNumber number, const Image& i
 }
 
 absl::Status FrameFetcher::fetch_rest() {
-  const absl::Status status = patiently(*client_, [this] { return update(); });
+  const absl::Status status = call_with_retries(*client_, [this] { return update(); });
   return client_->stopped() ? absl::CancelledError("interrupted") : status;
 }
 

@@ -51,9 +51,9 @@ class FrameFetcher {
   ProgressDisplay& display_;
   std::string epoch_;
   std::uint64_t after_ = 0;
-  std::vector<FrameNumber> numbers_;          ///< of all frames
+  std::vector<FrameNumber> numbers_;          ///< numbers of all frames
   std::map<FrameNumber, JobId> done_;         ///< the jobs of the frames that are done
-  std::map<FrameNumber, JobId> not_fetched_;  ///< those of them whose files are not written yet
+  std::map<FrameNumber, JobId> not_fetched_;  ///< frames in `done_` whose files are not written yet
   std::set<std::pair<FrameNumber, std::string>> reported_;  ///< failures
   std::vector<std::string> files_;
   std::optional<ContactSheet> sheet_;

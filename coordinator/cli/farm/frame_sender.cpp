@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/cli/farm/patiently.h"
+#include "coordinator/cli/farm/call_with_retries.h"
 #include "coordinator/cli/farm/upload.h"
 #include "proto/wire/digest.h"
 #include "renderlib/base/status_macros.h"
@@ -29,7 +29,7 @@ absl::Status try_to_send(FarmClient& client, JobId sequence, FrameNumber frame,
 
 absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
                         ImportedPackage& package, ProgressDisplay& display) {
-  const absl::Status status = patiently(
+  const absl::Status status = call_with_retries(
       client, [&] { return try_to_send(client, sequence, frame, package, display); });
   return client.stopped() ? absl::CancelledError("interrupted") : status;
 }

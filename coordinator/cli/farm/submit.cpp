@@ -11,8 +11,6 @@
 #include "coordinator/cli/farm/watch_job.h"
 #include "coordinator/cli/image/clean.h"
 #include "coordinator/cli/image/layers.h"
-#include "coordinator/cli/image/output.h"
-#include "coordinator/cli/image/report_file.h"
 #include "coordinator/cli/options/commands.h"
 #include "coordinator/cli/options/output_names.h"
 #include "coordinator/cli/scene/image_settings.h"
@@ -71,15 +69,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
                        : console.fail(exit_code_of(client.status()),
                                       std::string(client.status().message()));
   }
-  if (const auto status = check_outputs(options.scene, options.outputs, outputs); !status.ok()) {
-    return console.fail(ExitCode::kWrong, std::string(status.message()));
-  }
-  if (options.denoise != Denoiser::kNone) {
-    if (const auto status = check_outputs_writable(raw_outputs(outputs)); !status.ok()) {
-      return console.fail(ExitCode::kWrong, std::string(status.message()));
-    }
-  }
-  const auto reports = report_files(options.report, outputs);
+  const auto reports =
+      check_image_files(options.scene, options.outputs, outputs, options.denoise, options.report);
   if (!reports.ok()) {
     return console.fail(ExitCode::kWrong, std::string(reports.status().message()));
   }
@@ -125,9 +116,9 @@ ExitCode run(const SubmitOptions& options, Process& process) {
     }
     return make_layers(options.layers, *settings, samples, render, counts);
   };
-  const ExitCode code = watch_job(
-      **client, *job, {outputs, *reports, options.display, options.tev, options.denoise},
-      options.verbosity, process, layers);
+  const ExitCode code =
+      watch_job(**client, *job, {outputs, *reports, options.display, options.tev, options.denoise},
+                options.verbosity, process, layers);
   std::vector<std::string> files = outputs;
   files.insert(files.end(), reports->begin(), reports->end());
   return run_after(options.after.command, **client, *job, outputs, files, code, console);

@@ -34,7 +34,7 @@ absl::StatusOr<Progress> follow(FarmClient& client, JobId job, FrameFetcher& fet
                                 ProgressDisplay& display) {
   FrameCounts known;
   absl::Status failed;
-  const auto heard = [&](const Progress& progress) {
+  const auto on_status = [&](const Progress& progress) {
     if (progress.job.frames == known) {
       return;
     }
@@ -46,7 +46,7 @@ absl::StatusOr<Progress> follow(FarmClient& client, JobId job, FrameFetcher& fet
       client.stop();
     }
   };
-  auto last = follow_job(client, job, display, heard);
+  auto last = follow_job(client, job, display, on_status);
   RETURN_IF_ERROR(failed);
   RETURN_IF_ERROR(last.status());
   RETURN_IF_ERROR(fetcher.fetch_rest());

@@ -73,7 +73,7 @@ void FollowedImage::look() {
   next_ = end + std::max(kInterval_s, (end - begin) / kMaxShare);
 }
 
-constexpr double kPatience = 60;  // seconds for which the farm may be unreachable
+constexpr double kMaxRetry_s = 60;  // seconds for which the farm may be unreachable
 constexpr std::chrono::milliseconds kPause{200};
 
 std::string come_back(JobId job, const std::vector<std::string>& outputs) {
@@ -91,7 +91,7 @@ class Watch {
   absl::StatusOr<Progress> to_the_end() {
     for (;;) {
       const absl::Status status =
-          client_.watch(job_, [this](const Progress& progress) { heard(progress); });
+          client_.watch(job_, [this](const Progress& progress) { on_status(progress); });
       if (status.ok()) {
         return last_;
       }
@@ -103,7 +103,7 @@ class Watch {
   }
 
  private:
-  void heard(const Progress& progress) {
+  void on_status(const Progress& progress) {
     if (gone_since_) {
       display_.note("the farm is back");
       gone_since_.reset();
@@ -120,9 +120,9 @@ class Watch {
     if (!gone_since_) {
       gone_since_ = now;
       display_.note(absl::StrCat("lost the farm at ", client_.address(), " (", why.message(),
-                                 "); trying again for ", kPatience, " s"));
+                                 "); trying again for ", kMaxRetry_s, " s"));
     }
-    const double left = *gone_since_ + kPatience - now;
+    const double left = *gone_since_ + kMaxRetry_s - now;
     const auto milliseconds = std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000));
     if (left <= 0 || !client_.wait_for_farm(milliseconds)) {
       return client_.stopped() ? absl::CancelledError("interrupted")
@@ -164,7 +164,7 @@ ExitCode not_fetched(const absl::Status& status, JobId job, const Console& conso
       absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
 }
 
-/// Everything that is written of a job.
+/// All pictures of a job that are written.
 struct Pictures {
   FarmImage result;
   Layers layers;
@@ -186,7 +186,7 @@ absl::Status write_wanted(const Pictures& pictures, const Progress& progress,
   return write_reports(report_text(report), wanted.reports);
 }
 
-/// Has the farm render the layers and, if wanted, what the clean image needs, and shows both
+/// Renders the layers and, if wanted, the guides of the clean image on the farm; shows both
 /// images.
 absl::StatusOr<Pictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
                                      const Wanted& wanted, ImageViews& views,
@@ -206,8 +206,8 @@ absl::StatusOr<Pictures> with_layers(FarmClient& client, FarmImage result, const
 }  // namespace
 
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display,
-                                    const std::function<void(const Progress&)>& heard) {
-  return Watch(client, job, display, heard).to_the_end();
+                                    const std::function<void(const Progress&)>& on_status) {
+  return Watch(client, job, display, on_status).to_the_end();
 }
 
 ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosity verbosity,

@@ -25,9 +25,9 @@ struct Wanted {
 
 /// Displays the job's progress until its state is final, and returns the last status. If the farm
 /// is unreachable, retries for one minute. UNAVAILABLE: it did not come back. CANCELLED: `client`
-/// was stopped. `heard` is called with each state, also the last one.
+/// was stopped. `on_status` is called with each state, also the last one.
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display,
-                                    const std::function<void(const Progress&)>& heard = {});
+                                    const std::function<void(const Progress&)>& on_status = {});
 
 /// Returns additional layers to be written with an image of that many samples per pixel.
 using BesideImage =

@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/image/oidn.h"
 #include "coordinator/cli/image/output.h"
+#include "coordinator/cli/image/report_file.h"
 #include "coordinator/scheduler/api/clean_jobs.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/denoise/halves.h"
@@ -118,6 +119,18 @@ std::vector<std::string> raw_outputs(const std::vector<std::string>& outputs) {
     }
   }
   return raw;
+}
+
+absl::StatusOr<std::vector<std::string>> check_image_files(const std::string& scene,
+                                                           const std::vector<std::string>& given,
+                                                           const std::vector<std::string>& outputs,
+                                                           Denoiser denoiser,
+                                                           const ReportOption& report) {
+  RETURN_IF_ERROR(check_outputs(scene, given, outputs));
+  if (denoiser != Denoiser::kNone) {
+    RETURN_IF_ERROR(check_outputs_writable(raw_outputs(outputs)));
+  }
+  return report_files(report, outputs);
 }
 
 absl::Status write_clean_outputs(const Denoised& clean, const Image& raw,

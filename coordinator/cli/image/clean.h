@@ -25,7 +25,7 @@ namespace bandsaw::coordinator {
 struct ToClean {
   const Image& mean;                     ///< as rendered
   std::optional<Film::FirstPart> first;  ///< std::nullopt: it is rendered, from half of the samples
-  const JobSpec& spec;                   ///< of the image
+  const JobSpec& spec;                   ///< specification of the image's job
   std::uint64_t samples = 0;             ///< per pixel
 };
 
@@ -53,6 +53,15 @@ absl::Status check_denoise(Denoiser denoiser, const RenderSettings& settings, co
 /// Returns the files that hold the image as rendered beside these outputs: picture.raw.png beside
 /// picture.png. EXR files hold both images and need none.
 std::vector<std::string> raw_outputs(const std::vector<std::string>& outputs);
+
+/// Checks the files of an image before it is rendered: `outputs`, of which the user named `given`
+/// (check_outputs), and raw_outputs() if the image is cleaned. Returns the files of its report.
+/// Errors: those of check_outputs and of report_files.
+absl::StatusOr<std::vector<std::string>> check_image_files(const std::string& scene,
+                                                           const std::vector<std::string>& given,
+                                                           const std::vector<std::string>& outputs,
+                                                           Denoiser denoiser,
+                                                           const ReportOption& report);
 
 /// Writes the clean image to the outputs and the image as rendered to raw_outputs(). EXR files get
 /// the layers `raw` and `error` besides `layers`. Tries all files and returns the first error.

@@ -18,7 +18,7 @@ inline constexpr std::size_t kMaxSheetFrames = 400;
 
 class ContactSheet {
  public:
-  /// `numbers`: of all frames, ascending, at least one. `width`, `height`: of the frames, pixels.
+  /// `numbers` of all frames, ascending, at least one. `width` and `height` of a frame in pixels.
   ContactSheet(const std::vector<std::int64_t>& numbers, std::uint32_t width, std::uint32_t height);
 
   /// Returns true if the sheet shows this frame.

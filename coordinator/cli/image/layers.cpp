@@ -13,7 +13,7 @@ struct Kind {
   bool is_number;
 };
 
-/// In the order of LayerKind.
+/// The layers in the order of LayerKind.
 constexpr Kind kKinds[] = {{Integrator::kAlbedo, false},
                            {Integrator::kNormals, false},
                            {Integrator::kDepth, true},

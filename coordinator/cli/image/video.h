@@ -20,7 +20,7 @@ class Video {
   /// `path`: a file whose name ends in .mp4, .mov, .mkv or .webm. REQUIRES: check was OK.
   Video(std::string path, double frames_per_second)
       : path_(std::move(path)), frames_per_second_(frames_per_second) {}
-  /// Without `finish` no file is left.
+  /// Removes the file unless `finish` was called.
   ~Video();
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;

@@ -22,9 +22,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kMinRoom = 1ull << 30;    // bytes: some passes of a large image
-constexpr std::uint64_t kMinMemory = 1ull << 30;  // bytes: a scene of moderate size and its BVHs
-constexpr double kMaxClockDifference_s = 60;      // beyond it, logs cannot be compared
+constexpr std::uint64_t kMinFreeBytes = 1ull << 30;  // bytes: some passes of a large image
+constexpr std::uint64_t kMinMemory = 1ull << 30;     // bytes: a scene of moderate size and its BVHs
+constexpr double kMaxClockDifference_s = 60;         // beyond it, logs cannot be compared
 constexpr double kDay_s = 24 * 60 * 60;
 
 Check problem(std::string name, std::string found) {
@@ -46,8 +46,9 @@ std::string existing_part(std::string folder) {
 
 }  // namespace
 
-Check room_check(const std::string& name, const std::string& where, std::uint64_t free_bytes) {
-  if (free_bytes < kMinRoom) {
+Check disk_space_check(const std::string& name, const std::string& where,
+                       std::uint64_t free_bytes) {
+  if (free_bytes < kMinFreeBytes) {
     return problem(name, absl::StrCat(where, ": only ", size(free_bytes),
                                       " free; make room, or jobs "
                                       "will pause when the disk is full"));
@@ -67,7 +68,7 @@ Check check_data_folder(const std::string& folder) {
   if (!room.ok()) {
     return problem(name, std::string(room.status().message()));
   }
-  return room_check(name, there == folder ? folder : folder + " (does not exist yet)", *room);
+  return disk_space_check(name, there == folder ? folder : folder + " (does not exist yet)", *room);
 }
 
 Check check_memory() {

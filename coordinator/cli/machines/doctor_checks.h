@@ -40,6 +40,6 @@ std::vector<Check> check_farm(const link::JoinString& join);
 Check certificate_check(double from, double until, double now);
 Check clock_check(double ours_before, double theirs, double ours_after);
 Check versions_check(const farm::AboutReply& about);
-Check room_check(const std::string& name, const std::string& where, std::uint64_t free_bytes);
+Check disk_space_check(const std::string& name, const std::string& where, std::uint64_t free_bytes);
 
 }  // namespace bandsaw::coordinator

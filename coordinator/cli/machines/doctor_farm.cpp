@@ -87,7 +87,7 @@ std::vector<Check> check_farm(const link::JoinString& join) {
                                                          : " workers are connected")});
   checks.push_back(versions_check(*about));
   checks.push_back(clock_check(before, about->unix_s(), after));
-  checks.push_back(room_check("farm's disk", "at the coordinator", about->free_bytes()));
+  checks.push_back(disk_space_check("farm's disk", "at the coordinator", about->free_bytes()));
   return checks;
 }
 

@@ -27,8 +27,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Starts workers on other machines: asks a host for its architecture, then sends the program for
-/// that architecture only.
+/// Starts workers on other machines: queries a host's architecture, then sends the program for that
+/// architecture only.
 class Invitation {
  public:
   /// Reads the installed workers' programs. `join`: the workers' join string. If no program can be
@@ -42,9 +42,9 @@ class Invitation {
 
  private:
   using Scripts = std::map<Machine, absl::StatusOr<RemoteScript>>;
-  Invitation(RemoteScript ask, Scripts scripts)
-      : ask_(std::move(ask)), scripts_(std::move(scripts)) {}
-  RemoteScript ask_;
+  Invitation(RemoteScript machine_query, Scripts scripts)
+      : machine_query_(std::move(machine_query)), scripts_(std::move(scripts)) {}
+  RemoteScript machine_query_;
   Scripts scripts_;  // one for every architecture; an error says why its program cannot be sent
 };
 
@@ -56,8 +56,8 @@ absl::StatusOr<RemoteScript> script_for(Machine machine, const std::string& join
 
 /// Parses the architecture from the output of machine_script. INVALID_ARGUMENT: workers are not
 /// built for it.
-absl::StatusOr<Machine> machine_of(absl::string_view said) {
-  absl::string_view name = said;
+absl::StatusOr<Machine> machine_of(absl::string_view output) {
+  absl::string_view name = output;
   const bool linux_system = absl::ConsumePrefix(&name, "Linux ");
   const std::optional<Machine> machine = machine_named(name);
   if (linux_system && machine) {
@@ -65,7 +65,7 @@ absl::StatusOr<Machine> machine_of(absl::string_view said) {
   }
   constexpr std::size_t kMaxColumns = 60;  // enough for every real name
   return absl::InvalidArgumentError(
-      absl::StrCat("there is no worker for this machine (uname says: ", fit(said, kMaxColumns),
+      absl::StrCat("there is no worker for this machine (uname says: ", fit(output, kMaxColumns),
                    "); workers run on Linux, on ",
                    absl::StrJoin(kMachines, " or ", [](std::string* out, Machine one) {
                      absl::StrAppend(out, machine_name(one));
@@ -73,7 +73,7 @@ absl::StatusOr<Machine> machine_of(absl::string_view said) {
 }
 
 absl::StatusOr<Invitation> Invitation::create(const std::string& join) {
-  ASSIGN_OR_RETURN(RemoteScript ask, RemoteScript::create(machine_script()));
+  ASSIGN_OR_RETURN(RemoteScript machine_query, RemoteScript::create(machine_script()));
   Scripts scripts;
   for (const Machine machine : kMachines) {
     scripts.emplace(machine, script_for(machine, join));
@@ -82,13 +82,13 @@ absl::StatusOr<Invitation> Invitation::create(const std::string& join) {
                    [](const auto& script) { return script.second.ok(); })) {
     return scripts.at(kThisMachine).status();
   }
-  return Invitation(std::move(ask), std::move(scripts));
+  return Invitation(std::move(machine_query), std::move(scripts));
 }
 
 RemoteOutcome Invitation::invite(const std::string& host, double seconds,
                                  const std::atomic<bool>& stop) const {
   const auto begin = std::chrono::steady_clock::now();
-  RemoteOutcome outcome = ask_.run(host, seconds, stop);
+  RemoteOutcome outcome = machine_query_.run(host, seconds, stop);
   if (!outcome.ok) {
     return outcome;
   }

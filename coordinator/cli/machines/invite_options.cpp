@@ -1,7 +1,5 @@
-#include "coordinator/cli/machines/invite_options.h"
-
 #include "absl/strings/str_cat.h"
-#include "coordinator/cli/options/admin_options.h"
+#include "coordinator/cli/options/add_options.h"
 #include "coordinator/cli/options/quantities.h"
 #include "renderlib/base/status_macros.h"
 

@@ -1,4 +1,4 @@
-#include "coordinator/cli/options/admin_options.h"
+#include "coordinator/cli/options/add_options.h"
 
 namespace bandsaw::coordinator {
 

@@ -285,7 +285,7 @@ absl::StatusOr<std::vector<LayerKind>> checked_layers(const RawOptions& raw) {
   return parse_layers(*raw.layers);
 }
 
-/// Returns how images are cleaned. INVALID_ARGUMENT: an unknown method.
+/// Returns the method by which images are cleaned. INVALID_ARGUMENT: an unknown method.
 absl::StatusOr<Denoiser> checked_denoise(const RawOptions& raw) {
   if (raw.denoise.empty()) {
     return Denoiser::kNone;
@@ -296,7 +296,7 @@ absl::StatusOr<Denoiser> checked_denoise(const RawOptions& raw) {
   return raw.denoise == "oidn" ? Denoiser::kOidn : Denoiser::kRegression;
 }
 
-/// Reads what concerns the frames of a submit, and what is made when the job is over.
+/// Reads the frames of a submit, and the files and commands for the end of the job.
 absl::Status read_sequence(const RawOptions& raw, SubmitOptions& options) {
   ASSIGN_OR_RETURN(options.frames, checked_frames(raw));
   ASSIGN_OR_RETURN(options.after, checked_after(raw));
@@ -310,8 +310,7 @@ absl::Status read_sequence(const RawOptions& raw, SubmitOptions& options) {
   if (options.frames.empty() && (raw.video || raw.contact_sheet)) {
     return wrong("--video and --contact-sheet are made of frames: add --frames, as in 1:48");
   }
-  if (!options.frames.empty() &&
-      (raw.layers || raw.tev || raw.preview || !raw.denoise.empty())) {
+  if (!options.frames.empty() && (raw.layers || raw.tev || raw.preview || !raw.denoise.empty())) {
     return wrong("--layers, --denoise, --tev and --preview are for a single image: omit --frames");
   }
   if (raw.detach && (raw.video || raw.contact_sheet || raw.then)) {

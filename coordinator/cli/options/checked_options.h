@@ -63,7 +63,7 @@ absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_imag
 absl::StatusOr<std::string> checked_tev(const RawOptions& raw);
 /// Returns the frames of --frames; none: not given.
 absl::StatusOr<std::vector<FrameNumber>> checked_frames(const RawOptions& raw);
-/// Checks what is made when a job is over.
+/// Checks the files and commands for the end of a job.
 absl::StatusOr<AfterOptions> checked_after(const RawOptions& raw);
 /// Checks that the names of outputs have a place for the number of a frame.
 absl::Status check_frame_places(const std::vector<std::string>& outputs);

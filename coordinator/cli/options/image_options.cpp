@@ -1,10 +1,8 @@
-#include "coordinator/cli/options/image_options.h"
-
 #include <CLI/CLI.hpp>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "coordinator/cli/options/admin_options.h"
+#include "coordinator/cli/options/add_options.h"
 #include "coordinator/cli/options/checked_options.h"
 #include "coordinator/cli/options/choices.h"
 

@@ -20,7 +20,7 @@ struct Kernel;  // renderlib/render/kernel.h
 
 namespace bandsaw::coordinator {
 
-/// How much a command prints.
+/// The amount and the form of output.
 struct Verbosity {
   bool quiet = false;    ///< only the last line and errors
   bool json = false;     ///< one JSON object per line instead of text
@@ -47,7 +47,7 @@ struct AfterOptions {
   std::string command;        ///< for sh
 };
 
-/// How pictures are written; unset: not given.
+/// Settings for writing pictures; unset: not given.
 struct DisplayOptions {
   std::optional<double> exposure;  ///< stops
   std::optional<Tone> tone;
@@ -87,7 +87,7 @@ enum class LayerKind { kAlbedo, kNormal, kDepth, kSamples };
 /// Their names, in the order of LayerKind.
 inline constexpr const char* kLayerNames[] = {"albedo", "normal", "depth", "samples"};
 
-/// How the clean image is made that is written beside the one as rendered; kNone: there is none.
+/// Method of the clean image, which is written beside the image as rendered; kNone: not made.
 enum class Denoiser {
   kNone,
   kRegression,  ///< renderlib/denoise

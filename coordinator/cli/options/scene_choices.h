@@ -18,7 +18,7 @@ struct SceneChoices {
   std::string folder = {};
   /// In a zip file, the name of the scene. Empty: the only one (scene/unpacked_scene.h).
   std::string inside = {};
-  std::optional<std::int64_t> frame = {};  ///< of a sequence; its time is frame / fps
+  std::optional<std::int64_t> frame = {};  ///< number of a frame; its time is frame / fps
   std::optional<double> fps = {};          ///< frames per second, [0.01, 10000]
   /// Share of a frame's time in which the shutter is open, [0, 1]; absent: the scene's shutter.
   std::optional<double> shutter = {};

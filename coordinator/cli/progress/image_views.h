@@ -31,7 +31,7 @@ class ImageViews {
 
   ProgressDisplay& display_;
   const DisplayOptions picture_;
-  const std::string address_;  ///< of the viewer
+  const std::string address_;  ///< HOST:PORT of the viewer
   std::optional<TevViewer> tev_;
 };
 

@@ -29,7 +29,7 @@ std::string plain_line(const Progress& progress);
 std::vector<std::string> worker_lines(const Progress& progress, std::size_t most);
 
 /// Returns the result: "cornell.png · error 0.99 % · 21.4 s · 4 workers · report cornell.json".
-/// `name`: of the image, or of the job; `reports`: file names, or empty.
+/// `name` is that of the image or of the job; `reports`: file names, or empty.
 std::string final_line(const Progress& progress, const std::string& name,
                        const std::string& reports = {});
 

@@ -30,13 +30,13 @@ struct LocalJob {
   std::function<absl::StatusOr<double>(const Film&, std::uint64_t samples)> error_of = nullptr;
 };
 
-/// Renders the whole image, pass by pass until the stop rule is satisfied. CANCELLED;
-/// RESOURCE_EXHAUSTED: out of memory.
+/// Renders the whole image, pass by pass until the stop rule is satisfied. CANCELLED:
+/// LocalJob::stop; RESOURCE_EXHAUSTED: out of memory.
 absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop);
 
 /// Renders samples [0, samples) of some rows. Returns bands of as many rows as a band may contain,
-/// one for each power of two that the number of samples is the sum of; the first of them is split
-/// into its two halves.
+/// for each of the nodes maximal_nodes(samples) (render/band.h); the first node is split into its
+/// two halves.
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
                                                     std::uint64_t samples);
 

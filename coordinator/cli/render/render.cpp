@@ -168,7 +168,7 @@ class LocalRun {
     };
   }
 
-  /// Makes the clean image of `samples` samples per pixel, unless it is there.
+  /// Makes the clean image of `samples` samples per pixel, unless it was made before.
   absl::Status clean(const Scene& scene, const Film& film, std::uint64_t samples) {
     if (clean_ && clean_->samples == samples) {
       return absl::OkStatus();
@@ -182,8 +182,8 @@ class LocalRun {
     return absl::OkStatus();
   }
 
-  /// Renders jobs once: the guides of an image are those of its earlier passes, from
-  /// kMaxGuideSamples samples on.
+  /// Returns a renderer that renders each job once: from kMaxGuideSamples samples on, the guides of
+  /// earlier passes are used again.
   JobRenderer guides_of(const Scene& scene) {
     return [this, render = one_by_one(layer_renderer(scene))](
                const std::vector<JobSpec>& jobs) -> absl::StatusOr<std::vector<Image>> {
@@ -199,7 +199,7 @@ class LocalRun {
   /// `clean`: for a clean image, or nullptr.
   void show(const Film& film, CleanPreview* clean) {
     constexpr double kInterval_s = 0.3;
-    constexpr double kMaxShare = 0.05;  // of the time, for cleaning
+    constexpr double kMaxShare = 0.05;  // share of the time that is spent on cleaning
     const double begin = steady_seconds();
     if (begin < show_at_) {
       return;
@@ -209,7 +209,7 @@ class LocalRun {
       picture = clean->of(film, views_.most_side());
     }
     const double cleaned_in = steady_seconds() - begin;
-    // An error is one of rendering, which the render reports itself.
+    // An error here is one of rendering. The render itself reports it.
     views_.show(picture.ok() && *picture ? **picture : film.snapshot().image, picture_);
     show_at_ = steady_seconds() + std::max(kInterval_s, cleaned_in / kMaxShare);
   }
@@ -260,15 +260,8 @@ ExitCode run(const RenderOptions& options, Process& process) {
   outlive_reader();
   const Console& console = process.console;
   const std::vector<std::string> outputs = outputs_of(options);
-  if (const auto status = check_outputs(options.scene, options.outputs, outputs); !status.ok()) {
-    return console.fail(ExitCode::kWrong, std::string(status.message()));
-  }
-  if (options.denoise != Denoiser::kNone) {
-    if (const auto status = check_outputs_writable(raw_outputs(outputs)); !status.ok()) {
-      return console.fail(ExitCode::kWrong, std::string(status.message()));
-    }
-  }
-  const auto reports = report_files(options.report, outputs);
+  const auto reports =
+      check_image_files(options.scene, options.outputs, outputs, options.denoise, options.report);
   if (!reports.ok()) {
     return console.fail(ExitCode::kWrong, std::string(reports.status().message()));
   }

@@ -11,8 +11,8 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "coordinator/cli/base/asked_child.h"
 #include "coordinator/cli/base/child_process.h"
+#include "coordinator/cli/base/coprocess.h"
 #include "coordinator/web/page_files.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr double kPatience_s = 600;
 constexpr std::uint64_t kMaxText = 1 << 20;
 constexpr char kAddon[] = "bandsaw_blender.zip";
-/// Begins the line with which the add-on answers that a frame is written.
+/// Begins the line by which the add-on reports that a frame is written.
 constexpr char kAnswer[] = "bandsaw: ";
 /// Python reads the add-on from its zip. The arguments follow "--".
 constexpr char kScript[] =
@@ -48,7 +48,7 @@ absl::Status write_addon(const std::string& path) {
 }
 
 /// Returns the last line of Blender's output that reports an error, else its last line.
-std::string last_words(const std::string& output) {
+std::string last_error_line(const std::string& output) {
   const std::vector<std::string> lines = absl::StrSplit(output, '\n', absl::SkipWhitespace());
   const auto error = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {
     return absl::StrContains(line, "Error");
@@ -120,7 +120,7 @@ absl::Status killed(const std::string& path, const ChildOutcome& outcome) {
 
 absl::Status no_scene(const std::string& path, const std::string& output) {
   return absl::InvalidArgumentError(
-      absl::StrCat(name_of(path), ": Blender made no scene of it: ", last_words(output)));
+      absl::StrCat(name_of(path), ": Blender made no scene of it: ", last_error_line(output)));
 }
 
 /// Reads what Blender has left beside the scene: an error, or warnings. `output`: what it printed.
@@ -161,7 +161,7 @@ absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(const std::strin
 
 absl::StatusOr<std::unique_ptr<BlendSession>> BlendSession::start(const std::string& path) {
   ASSIGN_OR_RETURN(std::unique_ptr<BlendScene> scene, empty_scene(path));
-  auto blender = AskedChild::start(blender_command(path, *scene, "-"), kAnswer, true);
+  auto blender = Coprocess::start(blender_command(path, *scene, "-"), kAnswer, true);
   if (!blender.ok()) {
     return not_started(path, blender.status());
   }
@@ -170,14 +170,14 @@ absl::StatusOr<std::unique_ptr<BlendSession>> BlendSession::start(const std::str
 }
 
 BlendSession::BlendSession(std::string path, std::unique_ptr<BlendScene> scene,
-                           std::unique_ptr<AskedChild> blender)
+                           std::unique_ptr<Coprocess> blender)
     : path_(std::move(path)), scene_(std::move(scene)), blender_(std::move(blender)) {}
 
 BlendSession::~BlendSession() = default;
 
 absl::StatusOr<const BlendScene*> BlendSession::at(std::int64_t frame,
                                                    const std::atomic<bool>& stop) {
-  const auto answer = blender_->ask(absl::StrCat(frame), kPatience_s, &stop);
+  const auto answer = blender_->exchange(absl::StrCat(frame), kPatience_s, &stop);
   if (const auto* outcome = std::get_if<ChildOutcome>(&answer)) {
     RETURN_IF_ERROR(killed(path_, *outcome));
     return no_scene(path_, outcome->output);

@@ -15,7 +15,7 @@
 
 namespace bandsaw::coordinator {
 
-class AskedChild;
+class Coprocess;
 
 /// Returns true for names that end in .blend.
 bool is_blend_file(const std::string& path);
@@ -30,7 +30,7 @@ class BlendScene {
   BlendScene& operator=(const BlendScene&) = delete;
 
   std::string scene;                  ///< the path of the scene file
-  std::vector<std::string> warnings;  ///< what is not shown as it is in Blender, in sentences
+  std::vector<std::string> warnings;  ///< sentences about what looks different in Blender
 
   const std::string& folder() const { return folder_; }
 
@@ -61,11 +61,11 @@ class BlendSession {
 
  private:
   BlendSession(std::string path, std::unique_ptr<BlendScene> scene,
-               std::unique_ptr<AskedChild> blender);
+               std::unique_ptr<Coprocess> blender);
 
   const std::string path_;
   const std::unique_ptr<BlendScene> scene_;
-  const std::unique_ptr<AskedChild> blender_;
+  const std::unique_ptr<Coprocess> blender_;
 };
 
 }  // namespace bandsaw::coordinator

@@ -19,8 +19,8 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
-#include "coordinator/cli/base/asked_child.h"
 #include "coordinator/cli/base/child_process.h"
+#include "coordinator/cli/base/coprocess.h"
 #include "coordinator/cli/base/program_folder.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/atomic_file.h"
@@ -166,7 +166,7 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
   return folder;
 }
 
-// Returns the names that lie in the fewest folders, all in the same number.
+// Returns the names that lie in the smallest number of folders.
 std::vector<std::string> outermost(std::vector<std::string> names) {
   const auto depth = [](const std::string& name) {
     return std::count(name.begin(), name.end(), '/');
@@ -324,8 +324,8 @@ absl::StatusOr<std::unique_ptr<ImportSession>> ImportSession::start(const std::s
   // This process limits the time of each frame; the importer cannot know how many there will be.
   constexpr std::uint64_t kCpuSeconds = 100'000'000;
   ASSIGN_OR_RETURN(auto importer,
-                   AskedChild::start(importer_arguments(program, "frames", scene, folder->path(),
-                                                        kCpuSeconds, limits, choices)));
+                   Coprocess::start(importer_arguments(program, "frames", scene, folder->path(),
+                                                       kCpuSeconds, limits, choices)));
   return std::unique_ptr<ImportSession>(new ImportSession(std::move(scene), limits.seconds,
                                                           std::move(unpacked), std::move(folder),
                                                           std::move(importer)));
@@ -334,7 +334,7 @@ absl::StatusOr<std::unique_ptr<ImportSession>> ImportSession::start(const std::s
 ImportSession::ImportSession(std::string scene, double seconds,
                              std::shared_ptr<const ScratchFolder> unpacked,
                              std::shared_ptr<const ScratchFolder> folder,
-                             std::unique_ptr<AskedChild> importer)
+                             std::unique_ptr<Coprocess> importer)
     : scene_(std::move(scene)),
       seconds_(seconds),
       unpacked_(std::move(unpacked)),
@@ -345,7 +345,7 @@ ImportSession::~ImportSession() = default;
 
 absl::StatusOr<ImportedPackage> ImportSession::import(std::int64_t frame,
                                                       const std::atomic<bool>* stop) {
-  const auto answer = importer_->ask(absl::StrCat(frame), seconds_, stop);
+  const auto answer = importer_->exchange(absl::StrCat(frame), seconds_, stop);
   if (const auto* outcome = std::get_if<ChildOutcome>(&answer)) {
     const absl::Status status = judge(*outcome, scene_, seconds_);
     return !status.ok() ? status : absl::InternalError("the importer ended before its last frame");

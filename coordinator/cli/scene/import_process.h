@@ -28,7 +28,7 @@ struct ImportLimits {
   const std::atomic<bool>* stop = nullptr;
 };
 
-class AskedChild;
+class Coprocess;
 
 /// A temporary folder that is removed with its contents by the destructor.
 class ScratchFolder;
@@ -101,13 +101,13 @@ class ImportSession {
 
  private:
   ImportSession(std::string scene, double seconds, std::shared_ptr<const ScratchFolder> unpacked,
-                std::shared_ptr<const ScratchFolder> folder, std::unique_ptr<AskedChild> importer);
+                std::shared_ptr<const ScratchFolder> folder, std::unique_ptr<Coprocess> importer);
 
   const std::string scene_;
   const double seconds_;
-  const std::shared_ptr<const ScratchFolder> unpacked_;  ///< of a zip file, else nullptr
+  const std::shared_ptr<const ScratchFolder> unpacked_;  ///< files of a zip file; nullptr: none
   const std::shared_ptr<const ScratchFolder> folder_;    ///< the package
-  const std::unique_ptr<AskedChild> importer_;
+  const std::unique_ptr<Coprocess> importer_;
 };
 
 /// Converts a scene of pbrt or Mitsuba, or a model, to a scene file of ours. Same errors.

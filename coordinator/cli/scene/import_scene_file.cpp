@@ -15,8 +15,8 @@ using Import = std::function<absl::StatusOr<ImportedPackage>(const std::atomic<b
                                                              std::vector<std::string>& warnings)>;
 
 /// Imports a scene; a signal stops it, and its warnings are printed.
-absl::StatusOr<ImportedPackage> import_and_tell(const Import& import, Verbosity verbosity,
-                                                Process& process) {
+absl::StatusOr<ImportedPackage> import_with_warnings(const Import& import, Verbosity verbosity,
+                                                     Process& process) {
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
   std::vector<std::string> warnings;
@@ -69,7 +69,7 @@ absl::StatusOr<ImportedPackage> import_any_scene(const std::string& scene,
 
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process, const SceneChoices& choices) {
-  return import_and_tell(
+  return import_with_warnings(
       [&](const std::atomic<bool>& stop, std::vector<std::string>& warnings) {
         return import_any_scene(scene, choices, stop, warnings);
       },
@@ -97,7 +97,7 @@ absl::StatusOr<ImportedPackage> FrameImporter::import(std::int64_t frame,
 
 absl::StatusOr<ImportedPackage> FrameImporter::import(std::int64_t frame, Verbosity verbosity,
                                                       Process& process) {
-  return import_and_tell(
+  return import_with_warnings(
       [&](const std::atomic<bool>& stop, std::vector<std::string>& warnings) {
         return import(frame, stop, warnings);
       },

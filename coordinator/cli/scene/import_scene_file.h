@@ -23,7 +23,7 @@ absl::StatusOr<ImportedPackage> import_any_scene(const std::string& scene,
                                                  const std::atomic<bool>& stop,
                                                  std::vector<std::string>& warnings);
 
-/// Imports in the confined process; a signal cancels it. Of a .blend file Blender makes the scene
+/// Imports in the confined process; a signal cancels it. For a .blend file, Blender makes the scene
 /// first. Prints the warnings unless quiet. Errors as import_in_process and scene_of_blend_file.
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process,
@@ -48,7 +48,7 @@ class FrameImporter {
   const std::string scene_;
   const SceneChoices choices_;
   std::unique_ptr<ImportSession> session_;
-  std::unique_ptr<BlendSession> blender_;  ///< of a .blend file
+  std::unique_ptr<BlendSession> blender_;  ///< set for a .blend file
 };
 
 /// Prints the importer's warnings unless quiet.

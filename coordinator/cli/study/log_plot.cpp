@@ -12,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// In pixels.
+// Sizes of a panel and its margins in pixels.
 constexpr double kWidth = 460;
 constexpr double kHeight = 380;
 constexpr double kLeft = 62;

@@ -21,8 +21,8 @@ struct AdaptiveImage {
   double rays = 0;
 };
 
-/// The pilot pass takes a sixteenth of the samples, but at least 32. CANCELLED; RESOURCE_EXHAUSTED:
-/// out of memory.
+/// The pilot pass takes a sixteenth of the samples, but at least 32. CANCELLED: `stop`;
+/// RESOURCE_EXHAUSTED: out of memory.
 absl::StatusOr<AdaptiveImage> render_adaptively(const Scene& scene, const RenderSettings& settings,
                                                 std::uint64_t samples, Pool& pool,
                                                 const std::atomic<bool>& stop);

@@ -12,9 +12,9 @@ namespace bandsaw::coordinator {
 struct CleanPoint {
   double samples = 0;    ///< per pixel
   double raw_mse = 0;    ///< relMSE (compare/error_metrics.h) of the image as rendered
-  double clean_mse = 0;  ///< of the clean image
+  double clean_mse = 0;  ///< relMSE of the clean image
   double raw_cpu_s = 0;
-  double clean_cpu_s = 0;  ///< of the same image with its guides and the filter
+  double clean_cpu_s = 0;  ///< CPU time of the image, its guides and the filter
   double raw_flip = 0;     ///< mean FLIP, or HDR-FLIP if the reference exceeds a screen
   double clean_flip = 0;
   /// For each seed, the estimated RMSE of the clean image divided by the true one.

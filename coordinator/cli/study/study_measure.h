@@ -61,7 +61,7 @@ struct StudyOfScene {
   std::string scene;
   double reference_error = 0;  ///< estimated relative RMSE of the reference
   std::vector<StudyLine> lines;
-  std::vector<CleanPoint> clean = {};  ///< of StudyPlan::denoise
+  std::vector<CleanPoint> clean = {};  ///< results with StudyPlan::denoise
 };
 
 struct StudyPlan {

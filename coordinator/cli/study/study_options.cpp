@@ -1,7 +1,6 @@
-#include "coordinator/cli/study/study_options.h"
-
 #include <limits>
 
+#include "coordinator/cli/options/add_options.h"
 #include "coordinator/cli/options/quantities.h"
 #include "coordinator/cli/study/study_outputs.h"
 #include "proto/wire/limits.h"

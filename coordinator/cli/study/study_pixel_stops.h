@@ -16,8 +16,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Sample i is the first sample of a seed of its own: a point of a scramble that no other sample
-/// shares, and therefore uniform and independent.
+/// Renders samples of random numbers that are independent: sample i of a pixel is the first sample
+/// of another seed, so each sample has an Owen scramble of its own.
 class IndependentSamples {
  public:
   /// All arguments MUST outlive the object.
@@ -25,7 +25,7 @@ class IndependentSamples {
                      const std::atomic<bool>& stop)
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop) {}
 
-  /// Renders the next sample of every pixel and returns its r, g, b. CANCELLED.
+  /// Renders the next sample of every pixel and returns its r, g, b. CANCELLED: `stop` was set.
   absl::StatusOr<std::vector<double>> next();
   /// Returns the mean of all samples rendered so far.
   Image mean() const;
@@ -47,13 +47,13 @@ inline constexpr std::array<double, 4> kTolerances = {0.4, 0.2, 0.1, 0.05};
 struct StoppedImages {
   std::array<Image, kTolerances.size()> images;
   std::array<double, kTolerances.size()> samples = {};  ///< per pixel, on average
-  /// Rays of the full number of samples in every pixel.
+  /// Number of rays if every pixel took `most` samples.
   double rays = 0;
 };
 
 /// Stops each pixel at the first multiple of 16 samples that satisfies the tolerance, or at `most`.
 /// This is the rule of Berkeley's CS184 course and of many ray tracers that follow it; it is
-/// applied to the mean of the channels.
+/// applied to the mean of the channels. CANCELLED: `stop` was set.
 absl::StatusOr<StoppedImages> stop_by_pixels(const Scene& scene, const RenderSettings& settings,
                                              std::uint64_t most, Pool& pool,
                                              const std::atomic<bool>& stop);

@@ -13,8 +13,8 @@ namespace bandsaw::coordinator {
 /// Error of the image after a pass.
 struct ErrorPoint {
   std::uint64_t samples = 0;  ///< per pixel, of the complete passes; > 0
-  double elapsed_s = 0;       ///< of the job so far
-  double cpu_s = 0;           ///< of rendering so far, summed over threads
+  double elapsed_s = 0;       ///< time of the job until then
+  double cpu_s = 0;           ///< CPU time of rendering until then, summed over threads
   ErrorEstimate estimate;
   friend bool operator==(const ErrorPoint&, const ErrorPoint&) = default;
 };

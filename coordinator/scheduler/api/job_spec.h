@@ -44,7 +44,7 @@ struct JobSpec {
   RenderSettings settings;
   StopRule stop;
   JobId sequence = 0;     ///< the sequence of a frame job (sequence_spec.h); 0: none
-  FrameNumber frame = 0;  ///< of the sequence
+  FrameNumber frame = 0;  ///< its number in the sequence
   /// Returns true if a band labelled with the hash `work` (render/work_hash.h) can belong to this
   /// job. The job id alone is not enough, because ids are reused after a reset of the data folder.
   /// 0: the band is not labelled, and is accepted.

@@ -19,7 +19,7 @@ struct JobWorkerView {
   std::string name;
   std::uint32_t threads = 0;
   double samples_per_s = 0;
-  RowRange rows;  ///< of its oldest lease of the job
+  RowRange rows;  ///< rows of its oldest lease of the job
   std::string state;
 };
 
@@ -37,18 +37,18 @@ struct JobView {
   JobSpec spec;
   JobState state = JobState::kRunning;
   std::string reason;
-  double fraction = 0;  ///< of the work that is done, [0, 1]
+  double fraction = 0;  ///< part of the work that is done, [0, 1]
   double elapsed_s = 0;
   double remaining_s = -1;  ///< negative: unknown
   double samples_per_s = 0;
   std::uint64_t samples_done = 0;       ///< pixel samples stored
-  std::uint64_t samples_per_pixel = 0;  ///< of the complete passes
+  std::uint64_t samples_per_pixel = 0;  ///< samples per pixel of the complete passes
   double error = -1;                    ///< negative: unknown
   Counters counters;
   double cpu_s = 0;
   std::uint32_t workers_used = 0;
   std::int32_t priority = 0;
-  std::string log_of;            ///< of a failed job: the worker that failed last
+  std::string log_of;            ///< for a failed job, the worker that failed last
   std::vector<std::string> log;  ///< the last lines of that worker's log
   /// Backup tasks that were granted. The duplicate work is counted in no other number.
   std::uint64_t bands_copied = 0;
@@ -56,8 +56,8 @@ struct JobView {
   std::uint64_t bands_audited = 0;
   std::vector<JobWorkerView> workers;
   ErrorCurve curve;                 ///< empty in lists of jobs
-  std::vector<WorkerShare> shares;  ///< of a final job; empty in lists of jobs
-  FrameCounts frames;               ///< of a sequence; of other jobs all 0
+  std::vector<WorkerShare> shares;  ///< for a final job; empty in lists of jobs
+  FrameCounts frames;               ///< for a sequence; all 0 for other jobs
   /// Returns true if this is a sequence.
   bool has_frames() const { return frames.all() > 0; }
 };
@@ -66,8 +66,8 @@ struct JobView {
 struct KeptJob {
   JobId id = 0;
   bool final = false;
-  std::vector<DigestHex> manifests;  ///< of its packages
-  std::vector<JobId> frame_jobs;     ///< of a sequence; their files belong to it
+  std::vector<DigestHex> manifests;  ///< manifests of its packages
+  std::vector<JobId> frame_jobs;     ///< for a sequence; their files belong to it
 };
 
 struct WorkerView {

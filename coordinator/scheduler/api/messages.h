@@ -118,8 +118,8 @@ struct BandStored {
   JobId job = 0;
   Band band;
   std::vector<std::uint64_t> row_digests;  ///< one per row, of the row's sums
-  std::string instance;         ///< of the worker that rendered it; empty if read back from disk
-  WorkerProcessId process = 0;  ///< that rendered it, if read back from disk
+  std::string instance;         ///< worker that rendered it; empty if read back from disk
+  WorkerProcessId process = 0;  ///< process that rendered it, if read back from disk
   Counters counters;
   double render_s = 0;
   double cpu_s = 0;
@@ -130,7 +130,7 @@ struct PassMerged {
   JobId job = 0;
   std::uint64_t samples = 0;
   std::optional<ErrorEstimate> error;      ///< std::nullopt: cannot be estimated yet
-  std::vector<HalfTileErrors> tiles = {};  ///< of an adaptive job (Film::tile_errors)
+  std::vector<HalfTileErrors> tiles = {};  ///< for an adaptive job: Film::tile_errors
 
   /// Returns the upper bound of the error; negative: unknown.
   double error_at_most() const { return known_error(error, samples); }
@@ -265,7 +265,7 @@ struct Step {
   std::vector<Record> records;
   std::vector<Action> actions;
   absl::Status status;  ///< answer to a user's request; for other inputs INTERNAL: a bug
-  JobId job = 0;        ///< of Submit
+  JobId job = 0;        ///< the job of Submit
 };
 
 }  // namespace bandsaw::coordinator

@@ -14,7 +14,7 @@ struct Compatibility {
 };
 
 struct SchedulerOptions {
-  Compatibility compatibility;      ///< of this coordinator
+  Compatibility compatibility;      ///< versions of this coordinator
   double heartbeat_interval_s = 1;  ///< requested of workers
   double heartbeat_timeout_s = 4;   ///< a worker that is silent for longer is disconnected
   double progress_timeout_s = 30;   ///< a lease without progress for longer is revoked

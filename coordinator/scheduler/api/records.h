@@ -22,7 +22,7 @@ namespace record {
 struct JobAdded {
   JobId job = 0;
   JobSpec spec;
-  std::uint32_t pixel_version = 0;  ///< of the coordinator at that time; 0: not journalled
+  std::uint32_t pixel_version = 0;  ///< coordinator's version at that time; 0: not journalled
 };
 /// A pass over `samples` of the whole image is planned. It is journalled because the passes of jobs
 /// with an error target or a time limit depend on measurements.
@@ -69,7 +69,7 @@ struct JobSummary {
   double cpu_s = 0;
   std::uint32_t workers_used = 0;
   std::uint64_t samples = 0;            ///< pixel samples stored
-  std::uint64_t samples_per_pixel = 0;  ///< of the complete passes
+  std::uint64_t samples_per_pixel = 0;  ///< samples per pixel of the complete passes
   double error = -1;                    ///< negative: unknown
   Counters counters;
 };
@@ -131,7 +131,7 @@ struct QuarantineLifted {
 struct SequenceAdded {
   JobId job = 0;
   SequenceSpec spec;
-  std::uint32_t pixel_version = 0;  ///< of the coordinator at that time
+  std::uint32_t pixel_version = 0;  ///< coordinator's version at that time
 };
 /// The frame waits to be rendered: its scene has arrived, or it is to be tried again. Its earlier
 /// frame job, if any, no longer belongs to it.
@@ -139,8 +139,8 @@ struct FrameWaits {
   JobId job = 0;
   FrameNumber frame = 0;
   DigestHex manifest;
-  std::uint32_t failures = 0;  ///< of its jobs so far
-  std::string reason;          ///< of the last failure
+  std::uint32_t failures = 0;  ///< number of its jobs that have failed
+  std::string reason;          ///< reason of the last failure
 };
 }  // namespace record
 

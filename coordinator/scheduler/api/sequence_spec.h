@@ -17,8 +17,8 @@ namespace bandsaw::coordinator {
 struct SequenceSpec {
   std::string request_id;  ///< as in JobSpec; sequences and jobs share the ids
   std::string name;
-  RenderSettings settings;          ///< of all frames; the seed is the one of frame 0
-  StopRule stop;                    ///< of each frame
+  RenderSettings settings;          ///< settings of all frames; the seed is that of frame 0
+  StopRule stop;                    ///< stop rule of each frame
   bool fixed_seed = false;          ///< all frames have the same seed
   std::vector<FrameNumber> frames;  ///< ascending; 1 to kMaxFrames
   friend bool operator==(const SequenceSpec&, const SequenceSpec&) = default;
@@ -65,7 +65,7 @@ struct FrameView {
   std::uint64_t changed = 0;  ///< grows with each change of a frame of the sequence, in one epoch
 };
 
-/// How many frames are in which state.
+/// Number of frames in each state.
 struct FrameCounts {
   std::size_t in[kFrameStates] = {};
 

@@ -19,7 +19,7 @@ class JobTable {
   /// place of their sequence, in the order of their ids.
   struct Rank {
     std::int32_t descending_priority = 0;
-    JobId place = 0;  ///< of the job, or of its sequence
+    JobId place = 0;  ///< id of the job, or of its sequence
     JobId job = 0;
     friend auto operator<=>(const Rank&, const Rank&) = default;
   };

@@ -17,7 +17,7 @@ namespace bandsaw::coordinator {
 class QuarantineList {
  public:
   struct Entry {
-    std::string name;  ///< that the worker reports; empty: it has not connected since
+    std::string name;  ///< name that the worker reports; empty: it has not connected since
     std::string reason;
     bool lifted = false;  ///< the machine is admitted again; the process's results stay void
   };

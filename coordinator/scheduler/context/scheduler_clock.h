@@ -7,7 +7,7 @@ namespace bandsaw::coordinator {
 /// Two clocks made from the time that comes with the inputs. Neither ever goes back.
 class SchedulerClock {
  public:
-  /// `max_patience_step`: by how much one input can advance the patience clock, in seconds.
+  /// `max_patience_step`: maximum advance of the patience clock by one input, in seconds.
   explicit SchedulerClock(double max_patience_step) : max_patience_step_(max_patience_step) {}
 
   void advance(Time now) {

@@ -21,7 +21,7 @@ namespace bandsaw::coordinator {
 struct Worker {
   WorkerId id = 0;
   std::string instance;
-  WorkerProcessId process = 0;  ///< of the instance
+  WorkerProcessId process = 0;  ///< id of the instance
   std::string name;             ///< displayed; unique among the known workers
   std::string reported_name;    ///< the name that it reports: that of its machine
   std::string address;

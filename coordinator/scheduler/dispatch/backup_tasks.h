@@ -1,6 +1,6 @@
 #pragma once
 
-// The end of a job, when nothing is free any more and workers are idle while others are late
+// Shares the end of a job, when nothing is free and workers are idle while others are late
 // (stragglers). A lease that its worker has not begun is stolen. One that is being rendered is also
 // given to idle workers, as backup tasks (speculative execution; Dean & Ghemawat 2004, "MapReduce",
 // section 3.6), in parts if that is sooner. The first result ends the others.
@@ -26,8 +26,8 @@ class BackupTasks {
         audits_(audits) {}
 
   /// Gives work of late workers to idle ones. Returns true if some idle worker got work; the number
-  /// of idle workers falls with each success, so a loop on it ends. Returns early once a job has
-  /// free rows again.
+  /// of idle workers falls with each success, so it can be called in a loop. Returns early once a
+  /// job has free rows again.
   bool share();
 
  private:

@@ -20,10 +20,10 @@ struct Sizing {
   std::uint32_t width = 0;  ///< pixels
   const CostMap* cost = nullptr;
   absl::Span<const float> tile_row_shares = {};  ///< as in CostMap::of
-  double work_rate = 0;   ///< of the worker on this job, work per second, > 0
+  double work_rate = 0;                          ///< work per second of the worker on this job, > 0
   bool measured = false;  ///< false: the rate is a guess; the band is small, to measure it
   double farm_share = 1;  ///< the worker's share of the farm's work rate, (0, 1]; 2: it works alone
-  double work_left = 0;   ///< of the job, not leased or stored
+  double work_left = 0;   ///< work of the job that is neither leased nor stored
   double target_s = 1;    ///< > 0
 };
 

@@ -4,10 +4,10 @@
 
 namespace bandsaw::coordinator {
 
-bool FrameChooser::has_crew(JobId job) const {
-  const auto crew = crew_of_.find(job);
-  return crew != crew_of_.end() &&
-         std::any_of(crew->second.begin(), crew->second.end(), [&](WorkerId id) {
+bool FrameChooser::is_being_rendered(JobId job) const {
+  const auto workers = workers_of_.find(job);
+  return workers != workers_of_.end() &&
+         std::any_of(workers->second.begin(), workers->second.end(), [&](WorkerId id) {
            const Worker* worker = context_.workers.by_id(id);
            return worker != nullptr && worker->eligible();
          });
@@ -26,7 +26,7 @@ std::vector<Job*> FrameChooser::order_for(const Worker& worker, const Sequence& 
     }
     if (job.state == JobState::kRunning) {
       const bool is_own = at != frame_of_.end() && at->second == id;
-      (is_own ? own : has_crew(id) ? others : fresh).push_back(&job);
+      (is_own ? own : is_being_rendered(id) ? others : fresh).push_back(&job);
     }
   }
   const auto free = static_cast<std::size_t>(
@@ -47,14 +47,14 @@ void FrameChooser::joined(const Worker& worker, const Job& job) {
   if (frame == job.id) {
     return;
   }
-  if (const auto left = crew_of_.find(frame); left != crew_of_.end()) {
+  if (const auto left = workers_of_.find(frame); left != workers_of_.end()) {
     left->second.erase(worker.id);
     if (left->second.empty()) {
-      crew_of_.erase(left);
+      workers_of_.erase(left);
     }
   }
   frame = job.id;
-  crew_of_[job.id].insert(worker.id);
+  workers_of_[job.id].insert(worker.id);
   forget_final();
 }
 
@@ -64,8 +64,8 @@ void FrameChooser::forget_final() {
     std::erase_if(frame_of_,
                   [&](const auto& one) { return context_.workers.by_id(one.first) == nullptr; });
   }
-  if (crew_of_.size() > 2 * context_.workers.all().size() + 16) {
-    std::erase_if(crew_of_,
+  if (workers_of_.size() > 2 * context_.workers.all().size() + 16) {
+    std::erase_if(workers_of_,
                   [&](const auto& one) { return !context_.jobs.active().contains(one.first); });
   }
 }

@@ -27,12 +27,12 @@ class FrameChooser {
 
  private:
   /// Returns true if a connected worker renders the frame.
-  bool has_crew(JobId job) const;
+  bool is_being_rendered(JobId job) const;
   void forget_final();
 
   Context& context_;
-  std::map<WorkerId, JobId> frame_of_;           ///< the frame job that a worker renders
-  std::map<JobId, std::set<WorkerId>> crew_of_;  ///< the same, by frame job
+  std::map<WorkerId, JobId> frame_of_;              ///< the frame job that a worker renders
+  std::map<JobId, std::set<WorkerId>> workers_of_;  ///< the same, by frame job
 };
 
 }  // namespace bandsaw::coordinator

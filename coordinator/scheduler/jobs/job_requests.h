@@ -29,7 +29,7 @@ class JobRequests {
   /// Skips frame jobs of a known sequence, which are forgotten with it.
   void forget(const input::Forget& in);
 
-  // For sequences (sequences.h).
+  // Used for sequences as well (sequences.h).
   static absl::Status check_priority(std::int32_t priority);
   /// Returns OK if `more` further jobs with this stop rule, image size and priority can be taken,
   /// otherwise the reason. RESOURCE_EXHAUSTED: too many jobs. INVALID_ARGUMENT: out of range.

@@ -17,7 +17,7 @@ namespace {
 /// frame, while others are being written.
 constexpr std::size_t kAheadPerWorker = 2;
 constexpr std::size_t kAheadInAll = 4;
-/// Maximum number of frame jobs that are not final, of all sequences. Their rest of the active jobs
+/// Maximum number of frame jobs that are not final, of all sequences. The rest of the active jobs
 /// is left to other jobs.
 constexpr std::size_t kMaxOpenFrames = wire::kActiveJobs / 2;
 /// Bytes of the numbers of failed frames in a reason.

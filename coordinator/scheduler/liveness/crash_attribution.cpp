@@ -90,8 +90,8 @@ void CrashAttribution::add_suspicion(Job& job, const Worker& worker, const HeldB
 /// machine are counted separately only if no other machine is left to render the band.
 void CrashAttribution::fail_if_blamed(Job& job, const Worker& worker, const Band& band) {
   std::set<std::string> names;
-  std::set<std::string> instances;  // of conclusive crashes
-  std::set<std::string> machines;   // likewise
+  std::set<std::string> instances;  // workers of conclusive crashes
+  std::set<std::string> machines;   // their machines
   std::size_t inconclusive = 0;
   for (const Suspicion& one : job.suspicions) {
     if (!overlap(one.band, band)) {

@@ -72,7 +72,7 @@ class CrashAttribution {
   Context& context_;
   const Eligibility& eligibility_;
   JobLifecycle& lifecycle_;
-  CrashRate rate_;  ///< of this epoch
+  CrashRate rate_;  ///< measured in this epoch
 };
 
 }  // namespace bandsaw::coordinator

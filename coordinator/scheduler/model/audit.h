@@ -19,9 +19,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns true if the band is selected for an audit. `share`: of all bands, [0, 1]. The selection
-/// is a hash of the band and of the submitter's request id. Workers never see the request id, so
-/// none can predict which bands are audited; and every epoch selects the same bands.
+/// Returns true if the band is selected for an audit. `share`: the share of all bands that is
+/// selected, [0, 1]. The selection is a hash of the band and of the submitter's request id. Workers
+/// never see the request id, so none can predict which bands are audited; and every epoch selects
+/// the same bands.
 bool is_audited(const JobSpec& spec, const Band& band, double share);
 
 /// Origin of a result: the worker process, and its machine under the name that the worker reports.
@@ -75,7 +76,7 @@ class Audit {
 
   LeaseId lease = 0;             ///< under which it is rendered again now; 0: none
   std::set<std::string> given;   ///< machines that had such a lease
-  std::set<std::string> unable;  ///< those of them that could not render it
+  std::set<std::string> unable;  ///< machines in `given` that could not render it
 
  private:
   Verdict verdict_for(const Result& right) const;
@@ -83,7 +84,7 @@ class Audit {
   std::size_t index_of(const Reporter& reporter) const;
 
   Band band_;
-  std::vector<Result> results_;  ///< of different machines; the first is the stored one
+  std::vector<Result> results_;  ///< one for each machine; the first is the stored one
 };
 
 }  // namespace bandsaw::coordinator

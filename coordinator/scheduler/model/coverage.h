@@ -30,7 +30,7 @@ class Coverage {
   Coverage(const SampleRange& pass, std::uint32_t height);
 
   struct Change {
-    std::vector<RowRange> rows;      ///< that changed owner, ascending
+    std::vector<RowRange> rows;      ///< rows that changed owner, ascending
     std::vector<LeaseId> overtaken;  ///< leases that lost cells
   };
 

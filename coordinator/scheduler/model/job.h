@@ -69,8 +69,8 @@ class Job {
   /// Drops passes, plans, failures and digests of a job that becomes final.
   void drop_details();
 
-  std::uint64_t planned_samples() const;   ///< of all passes
-  std::uint64_t complete_samples() const;  ///< of the complete passes, counted from the first
+  std::uint64_t planned_samples() const;   ///< samples per pixel of all passes
+  std::uint64_t complete_samples() const;  ///< the same of the complete passes
   bool complete() const { return fixed_samples && complete_samples() >= *fixed_samples; }
   bool any_free() const;
   /// Returns true if an audited band waits for a machine.
@@ -107,13 +107,13 @@ class Job {
   std::int32_t priority = 0;
   bool held = false;                           ///< paused by a user
   Time held_at = 0;                            ///< patience clock
-  std::string reason;                          ///< of the state
+  std::string reason;                          ///< why the job is in its state
   std::string notice;                          ///< shown to users while the job runs
   std::string damage;                          ///< damage of its bands on disk, in this epoch
   std::uint64_t damaged_bands = 0;             ///< found while the coordinator ran, in this epoch
   std::optional<std::uint64_t> fixed_samples;  ///< the job ends after this many samples per pixel
   std::vector<Pass> passes;                    ///< from sample 0 on, without gaps
-  std::optional<TilePlan> tile_plan;           ///< of an adaptive job, from the end of its pilot on
+  std::optional<TilePlan> tile_plan;           ///< for an adaptive job, after its pilot
   bool image_requested = false;                ///< WriteResult was returned in this epoch
   bool bands_on_disk = false;                  ///< bands were stored and not dropped
 
@@ -125,7 +125,7 @@ class Job {
   std::optional<input::PassMerged> pending_checkpoint;
 
   std::set<LeaseId> leases;
-  std::set<LeaseId> backups;           ///< those of `leases` that are backup tasks
+  std::set<LeaseId> backups;           ///< backup tasks among `leases`
   std::uint64_t backups_granted = 0;   ///< in this epoch
   std::deque<FailedAttempt> failures;  ///< the newest kMaxFailures
   std::deque<Suspicion> suspicions;    ///< the newest kMaxFailures
@@ -138,13 +138,13 @@ class Job {
   std::set<std::pair<Band, WorkerProcessId>> audited;
 
   std::map<WorkerProcessId, WorkerShare> shares;  ///< at most kMaxShares
-  std::optional<record::JobSummary> summary;      ///< of a final job
-  std::vector<WorkerShare> final_shares;          ///< of a final job, descending
+  std::optional<record::JobSummary> summary;      ///< for a final job
+  std::vector<WorkerShare> final_shares;          ///< for a final job, descending
 
   std::optional<Time> first_lease_at;  ///< in this epoch
   double elapsed_before = 0;           ///< seconds, in earlier epochs
   double elapsed_noted = 0;            ///< seconds in all epochs, as journalled last
-  RecentRate throughput;               ///< of pixel samples
+  RecentRate throughput;               ///< pixel samples per second
   CostMap cost;
   RowTimes row_times;
   bool alone = false;  ///< a frame job that one worker is to render (dispatch/frame_chooser.h)

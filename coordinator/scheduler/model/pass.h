@@ -54,7 +54,7 @@ class RowDigests {
 struct Pass {
   SampleRange samples;
   Coverage coverage;
-  TileSamples tiles;  ///< of the whole image
+  TileSamples tiles;  ///< samples of all half tiles of the image
   /// For each tile row, the samples that its pixels take over those of uniform sampling; empty: 1.
   std::vector<float> tile_row_shares;
   Totals stored;
@@ -62,19 +62,19 @@ struct Pass {
   /// Consecutive rows that were stored with one result.
   struct StoredBand {
     Band band;
-    Totals totals;  ///< of the whole result, counted at the first of its rows; 0 at the others
+    Totals totals;  ///< totals of the whole result at its first row; 0 at its other rows
   };
   /// All bands of the pass that one worker process stored.
   struct Part {
     std::vector<StoredBand> bands;
-    Totals totals;  ///< of all bands
+    Totals totals;  ///< sums over all bands
   };
   std::map<WorkerProcessId, Part> parts;
   /// Number of times that a band which begins at this sample and row was returned unfinished; for
   /// logs.
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> returned;
 
-  double mean_share() const;  ///< of tile_row_shares
+  double mean_share() const;  ///< mean of tile_row_shares
   TileSamples tiles_of(const Band& band) const { return tiles.of(samples, band); }
   /// Counts rows of a band as stored by a worker process.
   void add_stored(WorkerProcessId process, const Band& band, const std::vector<RowRange>& rows,

@@ -15,7 +15,7 @@ namespace bandsaw::coordinator {
 class MeanRate {
  public:
   static constexpr double kDefaultWeight = 0.4;
-  /// `weight`: of this measurement, (0, 1].
+  /// `weight`: the weight of this measurement, (0, 1].
   void measure(double per_second, double weight = kDefaultWeight) {
     mean_ = mean_ > 0 ? (1 - weight) * mean_ + weight * per_second : per_second;
   }

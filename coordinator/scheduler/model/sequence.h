@@ -27,8 +27,8 @@ class Sequence {
     DigestHex manifest;  ///< empty: not known yet
     FrameState state = FrameState::kExpected;
     JobId job = 0;               ///< its frame job; 0: none
-    std::uint32_t failures = 0;  ///< of its jobs, without the present one
-    std::string reason;          ///< of the last failure
+    std::uint32_t failures = 0;  ///< number of its earlier jobs that failed
+    std::string reason;          ///< reason of the last failure
     std::uint64_t changed = 0;   ///< as in FrameView
   };
 
@@ -65,14 +65,14 @@ class Sequence {
   JobState state = JobState::kRunning;  ///< never kFinishing
   std::int32_t priority = 0;
   bool held = false;                   ///< paused by a user
-  std::string reason;                  ///< of the state
+  std::string reason;                  ///< why the sequence is in its state
   double elapsed_noted = 0;            ///< seconds in all epochs, as journalled last
   double elapsed_before = 0;           ///< seconds, in earlier epochs
   std::optional<Time> first_lease_at;  ///< in this epoch
   std::size_t done_before = 0;         ///< frames that were done when this epoch began
-  Totals done;                         ///< of the frames that are done
-  double worst_error = -1;             ///< of those; negative: unknown
-  std::uint32_t workers_used = 0;      ///< the most that one of those had
+  Totals done;                         ///< totals of the frames that are done
+  double worst_error = -1;             ///< largest error of those frames; negative: unknown
+  std::uint32_t workers_used = 0;      ///< largest number of workers of one of those frames
   /// Costs and rate of the frame that was done last; the next frames start with them.
   CostMap cost;
   MeanRate work_rate;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxNumbers = 200;  ///< bytes of the numbers in a sentence
 
-/// Returns the frames of which the open ones are as many parts as they are rendered.
+/// Returns the sum of the parts that are done of the frames being rendered, each in [0, 1].
 double rendered_parts(const Context& context, const Sequence& sequence, Time now) {
   double parts = 0;
   for (const JobId id : sequence.open_jobs()) {

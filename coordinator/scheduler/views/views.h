@@ -28,6 +28,7 @@ class Views {
   std::vector<JobView> jobs(Time now) const;  ///< by id; without frame jobs
   /// Returns the frames of a sequence that changed after `after`; std::nullopt: no such sequence.
   std::optional<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
+  /// Returns all jobs and sequences with the packages and files that must be kept for them.
   std::vector<KeptJob> kept() const;
   std::vector<WorkerView> workers(Time now) const;  ///< by name
   /// Returns why a job is not done yet, in sentences, the most important first; empty: there is no

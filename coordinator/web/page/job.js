@@ -28,10 +28,10 @@ function figuresOf(status) {
 }
 
 function actions(id) {
-  const tell = (order) => () => attempt(() => post(`/api/jobs/${id}/${order}`));
-  const pause = el("button", {onclick: tell("pause")}, "Pause");
-  const resume = el("button", {onclick: tell("resume")}, "Resume");
-  const cancel = el("button.danger", {onclick: tell("cancel")}, "Cancel");
+  const command = (order) => () => attempt(() => post(`/api/jobs/${id}/${order}`));
+  const pause = el("button", {onclick: command("pause")}, "Pause");
+  const resume = el("button", {onclick: command("resume")}, "Resume");
+  const cancel = el("button.danger", {onclick: command("cancel")}, "Cancel");
   const priority = el("input", {type: "number", min: "-1000", max: "1000", step: "1", id: "priority"});
   priority.addEventListener("change", () => {
     if (priority.checkValidity() && priority.value !== "") {
@@ -64,7 +64,7 @@ export function jobView(id) {
   const orders = actions(id);
   const single = picture();
   const shown = el("div", {}, single.element);
-  let strip = null;  // of a job with frames
+  let strip = null;  // set for a job with frames
   const curve = plot();
   const side = el("div.stack", {},
     el("section.card", {}, el("div.big", {}, done, left), bar, why),

@@ -41,8 +41,8 @@ struct AnimationChoice {
   friend auto operator<=>(const AnimationChoice&, const AnimationChoice&) = default;
 };
 
-/// Returns the number of the chosen one of a model's animations; std::nullopt: none, the model is
-/// in its rest pose. Returns NOT_FOUND: "has no animation \"run\"; there are \"walk\", \"jump\"".
+/// Returns the index of the chosen animation in `names`; std::nullopt: none, the model is in its
+/// rest pose. Returns NOT_FOUND: "has no animation \"run\"; there are \"walk\", \"jump\"".
 absl::StatusOr<std::optional<std::size_t>> choose(const AnimationChoice& choice,
                                                   const std::vector<std::string>& names);
 

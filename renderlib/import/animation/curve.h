@@ -1,6 +1,7 @@
 #pragma once
 
-// A property over time, by keys: what the animations of models and of scene files consist of.
+// Curves: properties over time, given by keys. Animations of models and of scene files consist of
+// them.
 
 #include <cstddef>
 #include <vector>
@@ -45,7 +46,7 @@ class Curve {
   struct Place {
     std::size_t key = 0;
     std::size_t next = 0;
-    double share = 0;  ///< of the interval, [0, 1)
+    double share = 0;  ///< position in the interval, [0, 1)
   };
   Place place_of(double time) const;
   absl::Span<const double> value(std::size_t key) const;

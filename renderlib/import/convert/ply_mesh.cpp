@@ -42,7 +42,8 @@ bool begins_with_space(const PlyMesh& mesh) {
   return first <= ' ' && first != 0;
 }
 
-/// Returns the mesh with a vertex in front that no triangle has, beside the first one.
+/// Returns the mesh with an unused vertex in front, which lies close to the first one and whose
+/// first byte is no white space.
 PlyMesh with_plain_front(PlyMesh mesh) {
   const auto repeat_first = [](auto& list) {
     if (!list.empty()) {

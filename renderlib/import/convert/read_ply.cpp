@@ -26,7 +26,7 @@ enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDoub
 struct PlyProperty {
   std::string name;
   Type type = Type::kFloat;
-  std::optional<Type> count = std::nullopt;  ///< type of the length, of a list
+  std::optional<Type> count = std::nullopt;  ///< type of the length of a list
 };
 
 struct Element {
@@ -61,7 +61,7 @@ absl::StatusOr<Type> type_of(absl::string_view name) {
   return found->second;
 }
 
-/// Takes the numbers after the header, one after the other.
+/// Reads the numbers after the header, one after the other.
 class Numbers {
  public:
   Numbers(absl::string_view bytes, Encoding encoding) : rest_(bytes), encoding_(encoding) {}

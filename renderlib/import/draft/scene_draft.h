@@ -25,13 +25,13 @@ struct Model;
 struct FoundCamera {
   std::string model;                              ///< file of the model
   std::string name;                               ///< name of its node
-  std::string own_name;                           ///< of the camera itself; may be empty
+  std::string own_name;                           ///< name of the camera itself; may be empty
   Camera camera;                                  ///< when the shutter opens
   std::optional<Camera> at_close = std::nullopt;  ///< when it closes, if the camera moves
 };
 
 struct SceneDraft {
-  /// `memory_of_frames`: of the other frames of the scene; nullptr: there are none.
+  /// `memory_of_frames`: shared with the other frames of the scene; nullptr: there are none.
   SceneDraft(SceneFolder in, std::string scene_file, ImportMemory* memory_of_frames = nullptr)
       : folder(std::move(in)), file(std::move(scene_file)), memory(memory_of_frames) {}
   SceneDraft(const SceneDraft&) = delete;
@@ -60,7 +60,7 @@ struct SceneDraft {
   std::map<std::tuple<std::string, bool, AnimationChoice>, std::shared_ptr<const Model>> models;
   std::vector<FoundCamera> cameras;  ///< for a model with several placements, those of the first
   Shutter shutter;                   ///< in the scene's time: at the frame that is imported
-  AnimationChoice animation;         ///< of models whose entry names none
+  AnimationChoice animation;         ///< animation of models whose entry names none
 
   Contents world;
   /// Destination of shapes and placements that are read: the scene, or the group that is being read

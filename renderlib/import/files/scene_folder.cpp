@@ -53,8 +53,8 @@ absl::StatusOr<std::string> SceneFolder::resolve(const std::string& name,
   if (name.empty() || name.find('\0') != std::string::npos) {
     return absl::InvalidArgumentError("a file name must not be empty or hold a zero byte");
   }
-  const fs::path asked(name);
-  if (asked.is_absolute()) {
+  const fs::path requested(name);
+  if (requested.is_absolute()) {
     return absl::PermissionDeniedError(absl::StrCat(
         "\"", name, "\" is an absolute path; files are named relative to the scene's folder"));
   }
@@ -63,7 +63,7 @@ absl::StatusOr<std::string> SceneFolder::resolve(const std::string& name,
                                                     "\" lies outside of the scene's folder ", path_,
                                                     "; files are read only below it"));
   };
-  const fs::path whole = (fs::path(folder) / asked).lexically_normal();
+  const fs::path whole = (fs::path(folder) / requested).lexically_normal();
   if (!holds(whole.string())) {
     return outside();
   }

@@ -24,7 +24,7 @@ class TextureStore {
                          std::array<double, 6>, std::optional<ImageTexture::Wrap>, double>;
   struct Decoded {
     ImageTexture image;
-    std::vector<std::string> warnings;  ///< of the decoder
+    std::vector<std::string> warnings;  ///< warnings of the decoder
   };
 
  public:

@@ -31,16 +31,16 @@ class BsdfReader {
 
  private:
   absl::Status read_kind(const Parameters& from, Draft& draft);
-  /// Sets a colour, or a texture if it varies. Absent: the field stays unset.
+  /// Sets a colour, or a texture if it varies. If the parameter is absent, the field stays unset.
   absl::Status color_or_texture(const Parameters& from, const std::string& name,
                                 const std::function<scene::Color*()>& color,
                                 const std::function<scene::Texture*()>& texture);
-  /// Sets a colour; of a texture, a warning and no colour.
+  /// Sets a colour. For a texture, warns and sets nothing.
   absl::Status color_only(const Parameters& from, const std::string& name,
                           const std::function<scene::Color*()>& color);
   absl::Status diffuse(const Parameters& from, Draft& draft);
-  /// Returns the index of the inside divided by that of the outside; above 1, turned over if
-  /// needed.
+  /// Returns the index of the inside over that of the outside; if that is below 1, its inverse.
+  /// Draft::turned says which.
   absl::StatusOr<double> relative_index(const Parameters& from, const char* inside, Draft& draft);
   absl::StatusOr<scene::Microfacets> microfacets(const Parameters& from, double otherwise);
   absl::Status dielectric(const Parameters& from, Draft& draft);
@@ -55,13 +55,15 @@ class BsdfReader {
   absl::Status phong(const Parameters& from, Draft& draft);
   absl::Status ward(const Parameters& from, Draft& draft);
 
-  // principled_bsdfs.cpp
+  // Defined in principled_bsdfs.cpp:
   absl::Status parameter(const Parameters& from, const std::string& name, double most,
                          const std::function<scene::Parameter*()>& field);
+  template <class Message>
+  absl::Status common_parameters(const Parameters& from, Message& to);
   absl::Status principled(const Parameters& from, Draft& draft);
   absl::Status thin_principled(const Parameters& from, Draft& draft);
 
-  // bsdf_wrappers.cpp
+  // Defined in bsdf_wrappers.cpp:
   /// Returns the only bsdf inside a wrapper.
   absl::StatusOr<const Object*> inner(const Parameters& from);
   absl::Status two_sided(const Parameters& from, Draft& draft);

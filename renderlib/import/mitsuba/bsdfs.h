@@ -16,7 +16,7 @@ namespace bandsaw::mitsuba {
 
 /// The result of converting a surface of Mitsuba.
 struct SurfaceMaterial {
-  std::string name;     ///< of a material of ours; empty: there is no surface (null)
+  std::string name;     ///< name of our material; empty: there is no surface (null)
   bool turned = false;  ///< the geometry must be turned over: its inside is denser than its outside
 };
 
@@ -29,7 +29,7 @@ class Materials {
   /// `emitter` nullptr: it does not emit; otherwise an emitter of type area.
   absl::StatusOr<SurfaceMaterial> material_of(const Object* bsdf, const Object* emitter,
                                               const TexturedSurface& surface);
-  /// Returns `turned` of the material, without making it.
+  /// Returns SurfaceMaterial::turned, without adding the material.
   absl::StatusOr<SurfaceMaterial> sides_of(const Object* bsdf) const;
 
  private:
@@ -46,7 +46,7 @@ class Materials {
   Conversion& to_;
   std::map<Key, SurfaceMaterial> known_;
   std::set<std::string> names_;
-  std::map<std::string, int> counts_;  ///< of names with numbers
+  std::map<std::string, int> counts_;  ///< last number used in names of this form
 };
 
 /// Returns true if the picture depends on the uv coordinates of the surface.

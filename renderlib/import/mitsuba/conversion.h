@@ -1,6 +1,6 @@
 #pragma once
 
-// State of one conversion: where files come from, and what has been made and said so far.
+// State of one conversion: the files that it may read, the files that it has made, its warnings.
 
 #include <string>
 #include <vector>

@@ -12,7 +12,7 @@ struct Frame {
   Vec3 ahead;             ///< unit
   Vec3 up;                ///< unit
   bool mirrored = false;  ///< x is to the right
-  Vec3 scale{1, 1, 1};    ///< of x, y and z
+  Vec3 scale{1, 1, 1};    ///< along x, y and z
   bool skewed = false;    ///< the axes are not at right angles
 };
 

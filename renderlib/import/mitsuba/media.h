@@ -19,8 +19,8 @@ class Media {
   /// Media are added to `scene`. Both MUST outlive this object.
   Media(scene::Scene& scene, Conversion& to) : scene_(scene), to_(to) {}
 
-  /// Returns the name of a medium of ours, made if it is new. Grids are placed in the world, but
-  /// those of ours in the space of the shape, whose placement is `to_world`.
+  /// Returns the name of our medium, which is added if it is new. Mitsuba places grids in the
+  /// world, we place them in the space of the shape; `to_world` is the placement of the shape.
   absl::StatusOr<std::string> medium_of(const Object& medium, const Transform& to_world);
 
  private:

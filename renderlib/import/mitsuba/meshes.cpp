@@ -75,7 +75,7 @@ Rgb value_of(const MeshAttribute& attribute, std::size_t index) {
   return attribute.channels == 1 ? gray(at[0]) : Rgb{at[0], at[1], at[2]};
 }
 
-/// Bounds the channels of a texel that nothing shows by itself: a reflectance must stay one.
+/// Bounds the channels of an extrapolated texel, so that a reflectance stays in [0, 1].
 Rgb bounded(const Rgb& c, const std::array<Rgb, 3>& corner) {
   float most = 1;
   for (const Rgb& value : corner) {
@@ -86,7 +86,8 @@ Rgb bounded(const Rgb& c, const std::array<Rgb, 3>& corner) {
 }
 
 /// Returns the image of an attribute. The fourth texel is b + c - a, which makes the interpolation
-/// linear; only where that leaves [0, 1], its bound bends the colours near the longest edge.
+/// linear; where that leaves [0, 1], it is clamped, and the colours near the longest edge are not
+/// linear.
 Image image_of(const MeshAttribute& attribute, const PlyMesh& mesh, const Atlas& atlas) {
   Image image{2 * atlas.columns, 2 * atlas.rows, {}};
   image.pixels.resize(std::size_t{image.width} * image.height);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Mesh files of Mitsuba scenes: named as they are if our importer reads them as Mitsuba does,
-// otherwise made anew.
+// Mesh files of Mitsuba scenes. A file that our importer reads as Mitsuba does is used as it is;
+// otherwise a new file is made.
 
 #include <map>
 #include <memory>
@@ -27,11 +27,11 @@ struct MeshRequest {
   bool mirrored = false;                  ///< its placement mirrors it
   bool handed = false;                    ///< u, v and the normal must be right-handed
   bool closed = false;                    ///< it must be one mesh, because a medium is inside
-  std::set<std::string> attributes = {};  ///< those that textures use
+  std::set<std::string> attributes = {};  ///< attributes that textures use
 };
 
 struct MeshFile {
-  std::string name;         ///< of a file of the folder or of a made one
+  std::string name;         ///< name of a file of the folder or of a made one
   TexturedSurface surface;  ///< for its material
 };
 

@@ -19,7 +19,7 @@ class Parameters {
   const Object& object() const { return object_; }
   const Place& place() const { return object_.place; }
 
-  /// Returns the parameter, or nullptr. Of several with one name the last counts.
+  /// Returns the parameter, or nullptr. If several have this name, the last one counts.
   const Property* find(const std::string& name) const;
   bool has(const std::string& name) const { return find(name) != nullptr; }
 
@@ -30,7 +30,7 @@ class Parameters {
   absl::StatusOr<bool> boolean(const std::string& name, bool otherwise) const;
   absl::StatusOr<std::string> text(const std::string& name, const std::string& otherwise) const;
   absl::StatusOr<Vec3> vector(const std::string& name, const Vec3& otherwise) const;
-  /// The identity if there is none.
+  /// Returns the identity if there is no such parameter.
   absl::StatusOr<Transform> transform(const std::string& name) const;
 
   /// Returns the parameters that are objects of this tag, whatever their names, in their order.

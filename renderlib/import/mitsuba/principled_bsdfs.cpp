@@ -1,6 +1,7 @@
 // The principled materials.
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "renderlib/base/status_macros.h"
@@ -29,25 +30,30 @@ absl::Status BsdfReader::parameter(const Parameters& from, const std::string& na
   return absl::OkStatus();
 }
 
-absl::Status BsdfReader::principled(const Parameters& from, Draft& draft) {
-  scene::Principled& to = *draft.material.mutable_principled();
+/// Reads the base colour and the parameters that both kinds have, and `metallic` if `to` has it.
+template <class Message>
+absl::Status BsdfReader::common_parameters(const Parameters& from, Message& to) {
   RETURN_IF_ERROR(color_or_texture(
       from, "base_color", [&] { return to.mutable_base_color(); },
       [&] { return to.mutable_base_color_texture(); }));
-  const std::pair<const char*, std::function<scene::Parameter*()>> fields[] = {
-      {"roughness", [&] { return to.mutable_roughness(); }},
-      {"anisotropic", [&] { return to.mutable_anisotropic(); }},
-      {"metallic", [&] { return to.mutable_metallic(); }},
-      {"spec_trans", [&] { return to.mutable_spec_trans(); }},
-      {"spec_tint", [&] { return to.mutable_spec_tint(); }},
-      {"sheen", [&] { return to.mutable_sheen(); }},
-      {"sheen_tint", [&] { return to.mutable_sheen_tint(); }},
-      {"flatness", [&] { return to.mutable_flatness(); }},
-      {"clearcoat", [&] { return to.mutable_clearcoat(); }},
-      {"clearcoat_gloss", [&] { return to.mutable_clearcoat_gloss(); }}};
-  for (const auto& [name, field] : fields) {
-    RETURN_IF_ERROR(parameter(from, name, 1, field));
+  RETURN_IF_ERROR(parameter(from, "roughness", 1, [&] { return to.mutable_roughness(); }));
+  RETURN_IF_ERROR(parameter(from, "anisotropic", 1, [&] { return to.mutable_anisotropic(); }));
+  if constexpr (std::is_same_v<Message, scene::Principled>) {
+    RETURN_IF_ERROR(parameter(from, "metallic", 1, [&] { return to.mutable_metallic(); }));
   }
+  RETURN_IF_ERROR(parameter(from, "spec_trans", 1, [&] { return to.mutable_spec_trans(); }));
+  RETURN_IF_ERROR(parameter(from, "spec_tint", 1, [&] { return to.mutable_spec_tint(); }));
+  RETURN_IF_ERROR(parameter(from, "sheen", 1, [&] { return to.mutable_sheen(); }));
+  RETURN_IF_ERROR(parameter(from, "sheen_tint", 1, [&] { return to.mutable_sheen_tint(); }));
+  return parameter(from, "flatness", 1, [&] { return to.mutable_flatness(); });
+}
+
+absl::Status BsdfReader::principled(const Parameters& from, Draft& draft) {
+  scene::Principled& to = *draft.material.mutable_principled();
+  RETURN_IF_ERROR(common_parameters(from, to));
+  RETURN_IF_ERROR(parameter(from, "clearcoat", 1, [&] { return to.mutable_clearcoat(); }));
+  RETURN_IF_ERROR(
+      parameter(from, "clearcoat_gloss", 1, [&] { return to.mutable_clearcoat_gloss(); }));
   if (from.has("eta")) {
     ASSIGN_OR_RETURN(const double eta, from.number("eta", 1.5));
     to.set_index_of_refraction(std::clamp(eta, 1.0, 5.0));
@@ -65,20 +71,7 @@ absl::Status BsdfReader::principled(const Parameters& from, Draft& draft) {
 absl::Status BsdfReader::thin_principled(const Parameters& from, Draft& draft) {
   scene::ThinPrincipled& to = *draft.material.mutable_thin_principled();
   draft.transmits = true;
-  RETURN_IF_ERROR(color_or_texture(
-      from, "base_color", [&] { return to.mutable_base_color(); },
-      [&] { return to.mutable_base_color_texture(); }));
-  const std::pair<const char*, std::function<scene::Parameter*()>> fields[] = {
-      {"roughness", [&] { return to.mutable_roughness(); }},
-      {"anisotropic", [&] { return to.mutable_anisotropic(); }},
-      {"spec_trans", [&] { return to.mutable_spec_trans(); }},
-      {"spec_tint", [&] { return to.mutable_spec_tint(); }},
-      {"sheen", [&] { return to.mutable_sheen(); }},
-      {"sheen_tint", [&] { return to.mutable_sheen_tint(); }},
-      {"flatness", [&] { return to.mutable_flatness(); }}};
-  for (const auto& [name, field] : fields) {
-    RETURN_IF_ERROR(parameter(from, name, 1, field));
-  }
+  RETURN_IF_ERROR(common_parameters(from, to));
   RETURN_IF_ERROR(parameter(from, "diff_trans", 2, [&] { return to.mutable_diff_trans(); }));
   ASSIGN_OR_RETURN(const double eta, from.number("eta", 1.5));
   to.set_index_of_refraction(std::clamp(eta, 1.0, 5.0));

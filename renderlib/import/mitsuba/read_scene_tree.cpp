@@ -30,11 +30,11 @@ absl::Status at_place(const Place& place, const absl::Status& why) {
 
 namespace {
 
-constexpr std::uint64_t kMaxXmlBytes = std::uint64_t{64} << 20;  ///< of all files together
+constexpr std::uint64_t kMaxXmlBytes = std::uint64_t{64} << 20;  ///< total size of all files
 constexpr int kMaxIncludeDepth = 15;
 constexpr int kMaxIncludes = 1000;
 constexpr std::size_t kMaxAttribute = std::size_t{1} << 20;  ///< with its parameters
-constexpr std::uint64_t kMaxParts = 10'000;  ///< of a bsdf, a texture, a medium, …
+constexpr std::uint64_t kMaxParts = 10'000;  ///< objects in a bsdf, a texture, a medium, …
 constexpr std::uint64_t kMaxSpectrumBytes = std::uint64_t{1} << 20;
 
 /// Returns "to_world" for "toWorld" and "int_ior" for "intIOR", as Mitsuba 2 and 3 do when they
@@ -123,7 +123,7 @@ class Reader {
   Reader(const ForeignScene& from, Files& files, SceneTree& tree)
       : files_(files), tree_(tree), parameters_(from.parameters.begin(), from.parameters.end()) {
     for (const auto& [name, value] : parameters_) {
-      asked_.insert(name);
+      unused_.insert(name);
     }
   }
 
@@ -141,10 +141,10 @@ class Reader {
 
   /// Returns INVALID_ARGUMENT if the user gave a parameter that no file uses.
   absl::Status check_parameters(const std::string& name) const {
-    return asked_.empty()
+    return unused_.empty()
                ? absl::OkStatus()
                : absl::InvalidArgumentError(absl::StrCat(name, ": has no parameter \"",
-                                                         *asked_.begin(), "\", which -D sets"));
+                                                         *unused_.begin(), "\", which -D sets"));
   }
 
  private:
@@ -199,7 +199,7 @@ class Reader {
                         absl::StrCat("parameter in \"", value.substr(0, 60),
                                      "\" is not defined: give it with -D NAME=VALUE"));
       }
-      asked_.erase(best->first);
+      unused_.erase(best->first);
       if (value.size() + best->second.size() > kMaxAttribute) {
         return error_at(source.at(node), "an attribute with its parameters is longer than 1 MB");
       }
@@ -274,7 +274,7 @@ class Reader {
         return error_at(place, "<default> needs a name");
       }
       parameters_.emplace(node.attribute("name").value(), std::move(value));
-      asked_.erase(node.attribute("name").value());
+      unused_.erase(node.attribute("name").value());
       return absl::OkStatus();
     }
     if (tag == "path") {
@@ -402,7 +402,7 @@ class Reader {
         ASSIGN_OR_RETURN(const double all, read_number(parts[0]));
         return Vec3{all, all, all};
       }
-      if (parts.size() == 2) {  // of a transform in the plane
+      if (parts.size() == 2) {  // a transform in the plane
         ASSIGN_OR_RETURN(const double x, read_number(parts[0]));
         ASSIGN_OR_RETURN(const double y, read_number(parts[1]));
         return Vec3{x, y, otherwise};
@@ -553,7 +553,7 @@ class Reader {
   Files& files_;
   SceneTree& tree_;
   std::map<std::string, std::string> parameters_;
-  std::set<std::string> asked_;  ///< parameters of the user that nothing has used yet
+  std::set<std::string> unused_;  ///< parameters of the user that nothing has used yet
   std::uint64_t bytes_ = 0;
   int includes_ = 0;
   std::vector<std::string> open_;  ///< real paths of the files that are being included

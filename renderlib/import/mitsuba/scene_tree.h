@@ -77,7 +77,7 @@ struct SceneTree {
   const Object* root = nullptr;
   std::deque<Object> objects;                       ///< owns them
   std::vector<std::unique_ptr<std::string>> files;  ///< names, for places
-  std::vector<std::string> warnings;                ///< of elements that are not known
+  std::vector<std::string> warnings;                ///< warnings about elements that are not known
 };
 
 /// Largest nesting of elements, and of objects by references.

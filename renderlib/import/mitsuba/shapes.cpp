@@ -69,7 +69,7 @@ SourceMesh cube_mesh() {
   return out;
 }
 
-constexpr int kSegments = 192;  ///< of round shapes that become meshes
+constexpr int kSegments = 192;  ///< segments of round shapes that become meshes
 
 /// Adds a strip of triangles between two rows of kSegments + 1 vertices, seen from the side to
 /// which the first row is below and the vertices go counter-clockwise.

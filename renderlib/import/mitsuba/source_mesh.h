@@ -17,7 +17,7 @@ struct SourceMesh {
   /// none.
   PlyMesh mesh;
   std::vector<MeshAttribute> attributes;  ///< for mesh_attribute textures
-  bool faceted = false;  ///< the file itself asks for normals of faces
+  bool faceted = false;                   ///< the file itself requests face normals
 };
 
 /// Largest size of a mesh file, and of one in memory.

@@ -193,7 +193,7 @@ absl::StatusOr<MetalIndex> metal_of(const std::string& name) {
   if (found == metals().end()) {
     return absl::NotFoundError(name);
   }
-  // Under equal energy, not D65: Mitsuba's reference images of metals show it.
+  // The illuminant is that of equal energy, not D65, as in Mitsuba's reference images of metals.
   const auto color = [](const std::array<double, 14>& values) {
     return rounded(spectrum::light_rgb({metal_wavelengths(), {values.begin(), values.end()}}));
   };

@@ -9,8 +9,8 @@
 
 namespace bandsaw::mitsuba {
 
-/// Returns the colour of a spectrum: of a light as it is, of a surface under D65. Channels below 0
-/// become 0.
+/// Returns the colour of a spectrum: that of a light itself, that of a surface under D65. Channels
+/// below 0 become 0.
 Rgb rgb_of(const Spectrum& spectrum, ColorOf of);
 Rgb rgb_of(const BlackBody& body);
 /// Reads the parameters of a spectrum of type "regular" or "irregular".

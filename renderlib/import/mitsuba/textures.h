@@ -14,8 +14,8 @@
 
 namespace bandsaw::mitsuba {
 
-/// How the uv coordinates of a surface of ours follow from Mitsuba's, where v = 0 is the top row of
-/// an image.
+/// The relation of the uv coordinates of our surface to Mitsuba's, where v = 0 is the top row of an
+/// image.
 enum class UvFrame {
   kSame,
   kFlipped,  ///< v of ours is 1 - v of Mitsuba's

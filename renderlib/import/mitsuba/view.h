@@ -8,9 +8,9 @@
 
 namespace bandsaw::mitsuba {
 
-/// Sets camera and image.
+/// Sets the camera and the image of `scene`.
 absl::Status set_sensor(const Object& sensor, scene::Scene& scene, Conversion& to);
-/// Sets kind and depth.
+/// Sets the kind and the depth of the scene's integrator.
 absl::Status set_integrator(const Object& integrator, scene::Scene& scene, Conversion& to);
 
 }  // namespace bandsaw::mitsuba

@@ -56,7 +56,7 @@ struct GltfExtensions {
   /// Materials that the scene uses, in the order in which Assimp visits them: nodes depth first,
   /// each after its children. Empty for glTF 1.
   std::vector<GltfMaterial> materials;
-  std::vector<GltfAtNode> cameras;  ///< of the default scene; empty for glTF 1
+  std::vector<GltfAtNode> cameras;  ///< those of the default scene; empty for glTF 1
   std::vector<GltfAtNode> lights;   ///< the same for lights
   std::map<std::size_t, std::vector<std::size_t>> bones;  ///< as in GltfLoadOrder
   std::size_t scenes = 1;

@@ -115,10 +115,10 @@ class Walk {
   std::vector<std::pair<const Json*, bool>> stack_;  ///< with a flag: children have been visited
   std::map<const Json*, std::size_t> numbers_;       ///< indices of the nodes, parents first
   std::set<const Json*> seen_;
-  Loaded cameras_;  ///< with their indices
+  Loaded cameras_;  ///< cameras that were added, with their indices
   Loaded lights_;
-  Loaded first_meshes_;                       ///< with Assimp's number of their first primitive
-  std::size_t meshes_ = 0;                    ///< number of Assimp's meshes
+  Loaded first_meshes_;     ///< meshes, with Assimp's number of their first primitive
+  std::size_t meshes_ = 0;  ///< number of Assimp's meshes
   std::map<const Json*, const Json*> skins_;  ///< skins of meshes
 };
 

@@ -34,10 +34,10 @@ struct LoadedModel {
   RefusedFiles refused;
   Assimp::Importer importer;  ///< owns the scene
   const aiScene* scene = nullptr;
-  GltfExtensions gltf;  ///< of a glTF file
+  GltfExtensions gltf;  ///< set for a glTF file
   std::vector<std::string> animation_names;
   std::optional<Animation> animation;  ///< the chosen one
-  StillMeshes still_meshes;            ///< those that were converted
+  StillMeshes still_meshes;            ///< still meshes that were converted
 };
 
 }  // namespace bandsaw

@@ -27,7 +27,7 @@ struct ModelCamera {
 /// A model whose meshes, materials and textures have been added to the draft; its placements have
 /// not.
 struct Model {
-  std::vector<Frame> frames = {};         ///< of moving nodes, in the model's own space
+  std::vector<Frame> frames = {};         ///< frames of moving nodes, in the model's space
   std::vector<Instance> instances = {};   ///< in the model's own space, or in a frame above
   std::vector<Instance> filled = {};      ///< the same for Media::boundaries
   std::vector<ModelCamera> cameras = {};  ///< in the order of the nodes

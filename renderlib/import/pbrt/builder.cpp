@@ -16,7 +16,7 @@ constexpr std::uint64_t kMaxImageBytes = std::uint64_t{1} << 30;
 
 struct ColorSpace {
   const char* name;
-  double to_srgb[3][3];  ///< of linear RGB; white is white
+  double to_srgb[3][3];  ///< matrix to linear sRGB; maps white to white
 };
 constexpr ColorSpace kColorSpaces[] = {
     {"srgb", {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}},

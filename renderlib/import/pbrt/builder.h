@@ -1,6 +1,6 @@
 #pragma once
 
-// The scene under construction, and what all parts of the conversion share.
+// The scene under construction, and the state that all parts of the conversion share.
 
 #include <map>
 #include <optional>
@@ -48,7 +48,7 @@ struct Builder {
 
   /// Factor of all light: exposure time x ISO / 100 of the film.
   double light_factor = 1;
-  double start_time = 0;  ///< of the motion
+  double start_time = 0;  ///< when the motion starts
   double end_time = 1;
   bool has_motion = false;
   Extent extent;
@@ -64,7 +64,7 @@ struct Builder {
   std::set<std::string> taken_media;
   bool needs_vacuum = false;
   std::map<std::string, std::string> material_names;  ///< serialised material -> name
-  std::set<std::string> taken_names;                  ///< of materials
+  std::set<std::string> taken_names;                  ///< names of materials in use
   std::map<std::string, int> name_counts;             ///< names made from a label
   std::set<std::string> taken_textures;
   std::map<std::string, int> texture_counts;
@@ -79,6 +79,7 @@ struct Builder {
   std::set<std::string> warned;
 };
 
+// Write values into messages of a scene file.
 void set_rgb(const Rgb3& rgb, scene::Color* to);
 scene::Texture constant_texture(const Rgb3& rgb);
 void set_matrix(const Transform& t, google::protobuf::RepeatedField<double>* to);
@@ -102,7 +103,8 @@ absl::StatusOr<std::optional<spectrum::Sampled>> spectrum_of(const Parameter& pa
                                                              Builder& builder);
 
 /// Returns the bytes of a file of the scene's folder; std::nullopt after a warning that it is
-/// missing, with `instead` saying what stands in its place. PERMISSION_DENIED: it lies outside.
+/// missing; `instead` completes the warning with the substitute. PERMISSION_DENIED: it lies
+/// outside.
 absl::StatusOr<std::optional<std::string>> read_or_warn(const std::string& name, const Place& place,
                                                         absl::string_view instead,
                                                         Builder& builder);

@@ -16,8 +16,8 @@ class GraphicsState {
  public:
   State& current() { return current_; }
 
-  /// Replaces the active transformations, or multiplies them from the right. Errors: a number that
-  /// is not finite or beyond 1e30.
+  /// Replaces the active transformations, or multiplies them from the right. INVALID_ARGUMENT: a
+  /// number is not finite or beyond 1e30.
   absl::Status set(const Place& place, const Transform& to);
   absl::Status concatenate(const Place& place, const Transform& by);
 
@@ -25,7 +25,7 @@ class GraphicsState {
   /// Returns false if there is no system of this name.
   bool use_system(const std::string& name);
 
-  /// Saves the state. RESOURCE_EXHAUSTED: more than 1024 within each other.
+  /// Saves the state. RESOURCE_EXHAUSTED: more than 1024 are nested.
   absl::Status save(const Place& place);
   /// Restores all of the state that was saved last, or its transformations alone.
   absl::Status restore(const Place& place);

@@ -33,8 +33,8 @@ struct LightSource {
     }
     return rgb;
   }
-  /// Returns the factor that gives the light `wanted` ("power", "illuminance") if it is given, when
-  /// light of luminance 1 has `own`.
+  /// Returns the factor by which the light is scaled to have the parameter `wanted` ("power",
+  /// "illuminance"); 1 if that is absent. `own`: the power or illuminance of light of luminance 1.
   absl::StatusOr<double> factor_for(const std::string& wanted, double own) const {
     ASSIGN_OR_RETURN(const double value, parameters.number(wanted, -1));
     if (!(value > 0)) {
@@ -70,7 +70,8 @@ absl::StatusOr<std::optional<Image>> read_picture(const std::string& file, const
   return *std::move(picture);
 }
 
-absl::StatusOr<Vec3> point(const LightSource& from, const std::string& name, const Vec3& otherwise) {
+absl::StatusOr<Vec3> point(const LightSource& from, const std::string& name,
+                           const Vec3& otherwise) {
   ASSIGN_OR_RETURN(const Vec3 p, from.parameters.point(name, otherwise));
   return from.to_world().point(p);
 }

@@ -1,4 +1,5 @@
-// Names of materials: a surface with what a shape adds to it, each stored once.
+// Names of materials: each combination of a surface with the emission and opacity of a shape is
+// stored once.
 
 #include <algorithm>
 
@@ -8,7 +9,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Adds what a shape emits.
+/// Adds the emission of a shape.
 void add_emission(const ShapeLook& look, const Surface& surface, const Place& place,
                   scene::Material& to, Builder& builder) {
   const Rgb3 emission = look.emission.value_or(Rgb3{0, 0, 0});

@@ -25,7 +25,7 @@ struct MaterialSource {
 /// Roughness along u and v.
 struct Roughness {
   double alpha[2] = {0, 0};
-  std::optional<scene::Texture> texture;  ///< of alpha, if it varies
+  std::optional<scene::Texture> texture;  ///< texture of alpha, if alpha varies
   bool is_smooth() const;
   double mean() const { return texture ? 1 : (alpha[0] + alpha[1]) / 2; }
 };

@@ -165,7 +165,7 @@ void add_vertex(const Vec3& p, const std::optional<Vec3>& n, double u, double v,
 }
 
 absl::StatusOr<PlyMesh> bilinear_mesh(const Parameters& in) {
-  constexpr int kCells = 16;  // of a patch that is not flat, each way
+  constexpr int kCells = 16;  // cells along each side of a patch that is not flat
   ASSIGN_OR_RETURN(const PlyMesh from, read_vertices(in));
   ASSIGN_OR_RETURN(const auto corners, indices(in, 4, from.positions.size()));
   in.ignore({"faceIndices"});

@@ -10,8 +10,8 @@ namespace bandsaw::pbrt {
 
 /// Returns the mesh of a shape of kind trianglemesh, loopsubdiv, bilinearmesh, plymesh, or a
 /// quadric (sphere, disk, cylinder). Its triangles are oriented as pbrt's normals are without
-/// ReverseOrientation. INVALID_ARGUMENT: its parameters; std::nullopt after a warning: the file is
-/// missing, or nothing is left.
+/// ReverseOrientation. INVALID_ARGUMENT: its parameters are wrong; std::nullopt after a warning:
+/// the file is missing, or no triangle is left.
 absl::StatusOr<std::optional<PlyMesh>> mesh_of(const std::string& type,
                                                const Parameters& parameters, Builder& builder);
 
@@ -23,8 +23,8 @@ absl::StatusOr<PlyMesh> subdivided(const std::vector<Vec3>& points,
                                    const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                    int levels);
 
-/// Returns true if each edge belongs to two triangles that run along it in opposite directions,
-/// where points at the same position are one.
+/// Returns true if each edge belongs to two triangles that run along it in opposite directions.
+/// Points at the same position count as one.
 bool is_closed(const PlyMesh& mesh);
 /// Returns six times the volume that a closed mesh encloses; negative if its triangles face
 /// inwards.

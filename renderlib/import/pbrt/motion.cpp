@@ -13,7 +13,8 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Returns axis and angle of a rotation by the largest of the four terms of its quaternion.
+/// Sets axis and angle of the rotation with these columns, from the largest of the four terms of
+/// its quaternion.
 void set_rotation(const Vec3 columns[3], Pose& pose) {
   const auto m = [&](int row, int column) { return columns[column][row]; };
   const double trace = m(0, 0) + m(1, 1) + m(2, 2);
@@ -80,8 +81,8 @@ Placed& add_to(scene::Group& group, Placed placed) {
   }
 }
 
-/// Adds what is sheared and moves without changing that shear: the second transformation is a pose
-/// after the first. Returns false if it is not.
+/// Adds an object that is sheared and moves without changing the shear: its second transformation
+/// is a pose after the first. Returns false if the second is not such a product.
 template <class Placed>
 bool add_sheared(const Transforms& transforms, Placed& placed, Builder& builder) {
   const auto back = inverse(transforms[0]);

@@ -20,8 +20,8 @@ struct Parameter {
   std::string type;  ///< "float", "rgb", "texture" …
   std::string name;
   Place place;
-  std::vector<double> numbers = {};     ///< of number types; bools are 0 and 1
-  std::vector<std::string> texts = {};  ///< of "string", "texture", and of "spectrum" by name
+  std::vector<double> numbers = {};     ///< values of number types; bools are 0 and 1
+  std::vector<std::string> texts = {};  ///< values of "string", "texture" and named "spectrum"
   mutable bool is_used = false;
 };
 
@@ -29,7 +29,7 @@ struct Parameter {
 class Parameters {
  public:
   std::vector<Parameter> list;
-  Place place;  ///< of the directive
+  Place place;  ///< place of the directive
 
   /// Adds `defaults` that are not in the list. They count as used.
   void add_defaults(const std::vector<Parameter>& defaults);

@@ -19,18 +19,18 @@ absl::Status at_place(const Place& place, const absl::Status& status) {
 
 }  // namespace
 
-absl::Status Tokens::include(const std::string& name, const Place& asked) {
+absl::Status Tokens::include(const std::string& name, const Place& place) {
   const auto path = folder_.resolve(name, folder_.path());
   if (!path.ok()) {
-    return at_place(asked, path.status());
+    return at_place(place, path.status());
   }
   for (const Source& source : open_) {
     if (source.path == *path) {
-      return error_at(asked, absl::StrCat("\"", name, "\" includes itself"));
+      return error_at(place, absl::StrCat("\"", name, "\" includes itself"));
     }
   }
   if (open_.size() >= kMaxIncludes) {
-    return at_place(asked, absl::ResourceExhaustedError(absl::StrCat("more than ", kMaxIncludes,
+    return at_place(place, absl::ResourceExhaustedError(absl::StrCat("more than ", kMaxIncludes,
                                                                      " files include each other")));
   }
   auto bytes = read_whole_file(*path, kMaxFileBytes);
@@ -38,13 +38,13 @@ absl::Status Tokens::include(const std::string& name, const Place& asked) {
     bytes = inflate(*bytes, DeflateKind::kGzip, kMaxFileBytes);
   }
   if (!bytes.ok()) {
-    return at_place(asked,
+    return at_place(place,
                     absl::Status(bytes.status().code(),
                                  absl::StrCat("\"", name, "\": ", bytes.status().message())));
   }
   total_bytes_ += bytes->size();
   if (total_bytes_ > kMaxSceneBytes) {
-    return at_place(asked, absl::ResourceExhaustedError("the scene has more than 4 GiB of text"));
+    return at_place(place, absl::ResourceExhaustedError("the scene has more than 4 GiB of text"));
   }
   open_.push_back({*path, name, *std::move(bytes)});
   return absl::OkStatus();

@@ -15,7 +15,8 @@ namespace bandsaw::pbrt {
 /// Bounds, so that a hostile scene ends with an error.
 inline constexpr std::size_t kMaxIncludes = 32;  ///< files within each other
 inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{2} << 30;
-inline constexpr std::uint64_t kMaxSceneBytes = std::uint64_t{4} << 30;  ///< of all files together
+/// Maximum total size of all files.
+inline constexpr std::uint64_t kMaxSceneBytes = std::uint64_t{4} << 30;
 
 struct Token {
   enum class Kind { kWord, kString, kOpen, kClose };
@@ -30,10 +31,10 @@ class Tokens {
   /// `folder` MUST outlive the object.
   explicit Tokens(const SceneFolder& folder) : folder_(folder) {}
 
-  /// Continues with the first word of the file `name`, relative to the scene's folder. `asked` is
-  /// where it is included. NOT_FOUND, PERMISSION_DENIED: the file; INVALID_ARGUMENT: it includes
-  /// itself; RESOURCE_EXHAUSTED: a bound.
-  absl::Status include(const std::string& name, const Place& asked);
+  /// Continues with the first word of the file `name`, relative to the scene's folder. `place` is
+  /// the place of the directive that includes it. NOT_FOUND, PERMISSION_DENIED: the file;
+  /// INVALID_ARGUMENT: it includes itself; RESOURCE_EXHAUSTED: a bound.
+  absl::Status include(const std::string& name, const Place& place);
 
   /// Returns the next word; std::nullopt after the last. INVALID_ARGUMENT: a string without end.
   absl::StatusOr<std::optional<Token>> next();

@@ -112,7 +112,7 @@ absl::Status read_integrator(const ViewSource& view, Builder& builder) {
   return absl::OkStatus();
 }
 
-/// Where the camera is at one time, in the world.
+/// The position and the axes of the camera at one time, in the world.
 struct CameraPlace {
   Vec3 position;
   Vec3 ahead;       ///< unit

@@ -13,7 +13,7 @@ struct ViewSource {
   std::optional<std::pair<std::string, Parameters>> filter;
   std::optional<std::pair<std::string, Parameters>> integrator;
   Transforms to_camera;  ///< the current transformation at Camera
-  std::string medium;    ///< in which the camera is; empty: none
+  std::string medium;    ///< medium around the camera; empty: none
   Place medium_place;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/scene_file/material_fields.h"
@@ -29,6 +30,7 @@ absl::StatusOr<Number> read_number(const Field& in, const char* name, bool given
   return to;
 }
 
+/// Reads the base colour.
 template <class From>
 absl::StatusOr<TextureId> read_base_color(const Field& in, const From& from, SceneDraft& draft) {
   return read_reflectance(
@@ -36,6 +38,29 @@ absl::StatusOr<TextureId> read_base_color(const Field& in, const From& from, Sce
       {"base_color_texture", from.has_base_color_texture(), from.base_color_texture(), "base_color",
        from.has_base_color(), from.base_color(), 0.5f},
       draft);
+}
+
+/// Reads the numbers that both kinds have, and `metallic` if the kind has it.
+template <class From, class To>
+absl::Status read_common_numbers(const Field& in, const From& from, SceneDraft& draft, To& to) {
+  ASSIGN_OR_RETURN(to.roughness, read_number(in, "roughness", from.has_roughness(),
+                                             from.roughness(), 0.5, draft));
+  ASSIGN_OR_RETURN(to.anisotropic, read_number(in, "anisotropic", from.has_anisotropic(),
+                                               from.anisotropic(), 0, draft));
+  if constexpr (std::is_same_v<To, Principled>) {
+    ASSIGN_OR_RETURN(to.metallic,
+                     read_number(in, "metallic", from.has_metallic(), from.metallic(), 0, draft));
+  }
+  ASSIGN_OR_RETURN(to.spec_trans, read_number(in, "spec_trans", from.has_spec_trans(),
+                                              from.spec_trans(), 0, draft));
+  ASSIGN_OR_RETURN(to.spec_tint,
+                   read_number(in, "spec_tint", from.has_spec_tint(), from.spec_tint(), 0, draft));
+  ASSIGN_OR_RETURN(to.sheen, read_number(in, "sheen", from.has_sheen(), from.sheen(), 0, draft));
+  ASSIGN_OR_RETURN(to.sheen_tint, read_number(in, "sheen_tint", from.has_sheen_tint(),
+                                              from.sheen_tint(), 0, draft));
+  ASSIGN_OR_RETURN(to.flatness,
+                   read_number(in, "flatness", from.has_flatness(), from.flatness(), 0, draft));
+  return absl::OkStatus();
 }
 
 /// Returns the index of refraction of a principled material: as given, or by `specular`.
@@ -60,21 +85,7 @@ absl::StatusOr<Material> read_principled(const Field& in, const scene::Principle
   ASSIGN_OR_RETURN(to.base_color, read_base_color(in, from, draft));
   ASSIGN_OR_RETURN(to.index_of_refraction, read_index(in, from));
   RETURN_IF_ERROR(check_range(in, "index_of_refraction", to.index_of_refraction, 1, 5));
-  ASSIGN_OR_RETURN(to.roughness, read_number(in, "roughness", from.has_roughness(),
-                                             from.roughness(), 0.5, draft));
-  ASSIGN_OR_RETURN(to.anisotropic, read_number(in, "anisotropic", from.has_anisotropic(),
-                                               from.anisotropic(), 0, draft));
-  ASSIGN_OR_RETURN(to.metallic,
-                   read_number(in, "metallic", from.has_metallic(), from.metallic(), 0, draft));
-  ASSIGN_OR_RETURN(to.spec_trans, read_number(in, "spec_trans", from.has_spec_trans(),
-                                              from.spec_trans(), 0, draft));
-  ASSIGN_OR_RETURN(to.spec_tint,
-                   read_number(in, "spec_tint", from.has_spec_tint(), from.spec_tint(), 0, draft));
-  ASSIGN_OR_RETURN(to.sheen, read_number(in, "sheen", from.has_sheen(), from.sheen(), 0, draft));
-  ASSIGN_OR_RETURN(to.sheen_tint, read_number(in, "sheen_tint", from.has_sheen_tint(),
-                                              from.sheen_tint(), 0, draft));
-  ASSIGN_OR_RETURN(to.flatness,
-                   read_number(in, "flatness", from.has_flatness(), from.flatness(), 0, draft));
+  RETURN_IF_ERROR(read_common_numbers(in, from, draft, to));
   ASSIGN_OR_RETURN(to.clearcoat,
                    read_number(in, "clearcoat", from.has_clearcoat(), from.clearcoat(), 0, draft));
   ASSIGN_OR_RETURN(to.clearcoat_gloss,
@@ -91,19 +102,7 @@ absl::StatusOr<Material> read_thin_principled(const Field& in, const scene::Thin
     to.index_of_refraction = from.index_of_refraction();
   }
   RETURN_IF_ERROR(check_range(in, "index_of_refraction", to.index_of_refraction, 1, 5));
-  ASSIGN_OR_RETURN(to.roughness, read_number(in, "roughness", from.has_roughness(),
-                                             from.roughness(), 0.5, draft));
-  ASSIGN_OR_RETURN(to.anisotropic, read_number(in, "anisotropic", from.has_anisotropic(),
-                                               from.anisotropic(), 0, draft));
-  ASSIGN_OR_RETURN(to.spec_trans, read_number(in, "spec_trans", from.has_spec_trans(),
-                                              from.spec_trans(), 0, draft));
-  ASSIGN_OR_RETURN(to.spec_tint,
-                   read_number(in, "spec_tint", from.has_spec_tint(), from.spec_tint(), 0, draft));
-  ASSIGN_OR_RETURN(to.sheen, read_number(in, "sheen", from.has_sheen(), from.sheen(), 0, draft));
-  ASSIGN_OR_RETURN(to.sheen_tint, read_number(in, "sheen_tint", from.has_sheen_tint(),
-                                              from.sheen_tint(), 0, draft));
-  ASSIGN_OR_RETURN(to.flatness,
-                   read_number(in, "flatness", from.has_flatness(), from.flatness(), 0, draft));
+  RETURN_IF_ERROR(read_common_numbers(in, from, draft, to));
   ASSIGN_OR_RETURN(to.diff_trans, read_number(in, "diff_trans", from.has_diff_trans(),
                                               from.diff_trans(), 0, draft, 2));
   return to;

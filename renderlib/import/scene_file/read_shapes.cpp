@@ -112,7 +112,7 @@ absl::Status read_shape(const Field& in, const scene::Shape& from, MaterialId ma
   return in.error("is of no kind: write sphere, quad, triangle, box or disk");
 }
 
-/// Returns true if the shape is seen at one moment only.
+/// Appends the shapes, translated by `by`.
 void add_moved(const Shapes& shape, const Vec3& by, Shapes& to) {
   for (Sphere sphere : shape.spheres) {
     sphere.center = sphere.center + by;

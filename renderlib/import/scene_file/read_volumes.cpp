@@ -61,7 +61,7 @@ absl::StatusOr<FileGrid> read_file(const Field& in, const scene::VolumeGrid& fro
   return read;
 }
 
-/// Reads a grid from its file, in its place in the space of the medium.
+/// Reads a grid from its file and places it in the space of the medium.
 absl::StatusOr<VolumeGrid> read_grid(const Field& in, const scene::VolumeGrid& from,
                                      const std::string& otherwise, SceneDraft& draft) {
   ASSIGN_OR_RETURN(FileGrid read, read_file(in, from, otherwise, draft));

@@ -13,7 +13,7 @@ inline constexpr int kLastNm = 780;
 /// Returns the colour matching function x, y or z (k = 0, 1, 2) at a wavelength in [kFirstNm,
 /// kLastNm].
 double observer(std::size_t k, int nm);
-/// Returns D65 at a wavelength in [kFirstNm, kLastNm], 100 at 560 nm.
+/// Returns the relative power of D65 at a wavelength in [kFirstNm, kLastNm]; 100 at 560 nm.
 double daylight(int nm);
 
 }  // namespace bandsaw::spectrum

@@ -39,8 +39,8 @@ TEST(Doctor, VersionsMustBeEqual) {
 }
 
 TEST(Doctor, ADiskNeedsRoom) {
-  EXPECT_TRUE(room_check("disk", "/x", 2ull << 30).ok);
-  const Check full = room_check("disk", "/x", 100'000'000);
+  EXPECT_TRUE(disk_space_check("disk", "/x", 2ull << 30).ok);
+  const Check full = disk_space_check("disk", "/x", 100'000'000);
   EXPECT_FALSE(full.ok);
   EXPECT_THAT(full.found, HasSubstr("only 0.1 GB"));
 }

@@ -12,10 +12,13 @@
 #include "tests/support/media.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
+#include "tests/unit/integrate/techniques.h"
 
 namespace bandsaw {
 namespace {
 
+using test::expect_techniques_agree;
+using test::light_along;
 using test::Moments;
 using test::SceneMaker;
 
@@ -38,19 +41,6 @@ Material blended(double alpha) {
 MaterialId add(SceneMaker& maker, const Material& material) {
   maker.scene.materials.push_back(material);
   return MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
-}
-
-Moments light_along(const SceneMaker& maker, const Ray& ray, int samples,
-                    Technique technique = Technique::kBoth) {
-  const auto scene = maker.build();
-  Moments sum;
-  PathCounts counts;
-  const PathOptions options{.technique = technique};
-  for (int i = 0; i < samples; ++i) {
-    const PixelSampler sampler(5, static_cast<std::uint32_t>(i), 3);
-    sum.add(path_radiance(*scene, ray, sampler, 0, options, counts).g);
-  }
-  return sum;
 }
 
 /// Texture 0 is white, so that factors alone define a material.
@@ -99,20 +89,6 @@ TEST(Alpha, AMaskedSurfaceIsPresentOrAbsent) {
         light_along(maker, {.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}}, 2000);
     EXPECT_NEAR(sum.mean(), cutoff > 0.5 ? 1 : 0, 0.07);
   }
-}
-
-/// Checks that light sampling alone, BSDF sampling alone and both together have the same mean along
-/// the ray.
-void expect_techniques_agree(const SceneMaker& maker, const Ray& ray, double at_least) {
-  const Moments both = light_along(maker, ray, 20000);
-  const Moments lights = light_along(maker, ray, 20000, Technique::kLightsOnly);
-  const Moments found = light_along(maker, ray, 60000, Technique::kScatteringOnly);
-  const auto agree = [](const Moments& a, const Moments& b) {
-    return std::abs(a.mean() - b.mean()) <= 4 * std::hypot(a.standard_error(), b.standard_error());
-  };
-  EXPECT_GT(both.mean(), at_least);
-  EXPECT_TRUE(agree(both, lights)) << both.mean() << " " << lights.mean();
-  EXPECT_TRUE(agree(both, found)) << both.mean() << " " << found.mean();
 }
 
 TEST(Alpha, AttenuatesShadowRaysAndAllTechniquesAgree) {

@@ -9,10 +9,13 @@
 #include "renderlib/material/mixture.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
+#include "tests/unit/integrate/techniques.h"
 
 namespace bandsaw {
 namespace {
 
+using test::expect_techniques_agree;
+using test::light_along;
 using test::Moments;
 using test::SceneMaker;
 
@@ -21,33 +24,6 @@ constexpr double kFar = 100;
 MaterialId add(SceneMaker& maker, const Material& material) {
   maker.scene.materials.push_back(material);
   return MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
-}
-
-Moments light_along(const SceneMaker& maker, const Ray& ray, int samples,
-                    Technique technique = Technique::kBoth) {
-  const auto scene = maker.build();
-  Moments sum;
-  PathCounts counts;
-  const PathOptions options{.technique = technique};
-  for (int i = 0; i < samples; ++i) {
-    const PixelSampler sampler(5, static_cast<std::uint32_t>(i), 3);
-    sum.add(path_radiance(*scene, ray, sampler, 0, options, counts).g);
-  }
-  return sum;
-}
-
-/// Checks that light sampling alone, BSDF sampling alone and both together have the same mean along
-/// the ray, at 4 standard errors each.
-void expect_techniques_agree(const SceneMaker& maker, const Ray& ray, double at_least) {
-  const Moments both = light_along(maker, ray, 15000);
-  const Moments lights = light_along(maker, ray, 15000, Technique::kLightsOnly);
-  const Moments scattering = light_along(maker, ray, 40000, Technique::kScatteringOnly);
-  const auto agree = [](const Moments& a, const Moments& b) {
-    return std::abs(a.mean() - b.mean()) <= 4 * std::hypot(a.standard_error(), b.standard_error());
-  };
-  EXPECT_GT(both.mean(), at_least);
-  EXPECT_TRUE(agree(both, lights)) << both.mean() << " " << lights.mean();
-  EXPECT_TRUE(agree(both, scattering)) << both.mean() << " " << scattering.mean();
 }
 
 SceneMaker with_sky(float radiance) {

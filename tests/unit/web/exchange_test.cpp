@@ -55,8 +55,8 @@ class ExchangeTest : public ::testing::Test {
     }
     return all;
   }
-  void serve(std::chrono::milliseconds patience = Connection::kPatience) const {
-    Connection connection(sockets_[1], nullptr, patience);
+  void serve(std::chrono::milliseconds timeout = Connection::kTimeout) const {
+    Connection connection(sockets_[1], nullptr, timeout);
     exchange(connection, &echo, {{"X-Every", "answer"}});
     shutdown(sockets_[1], SHUT_RDWR);
   }

@@ -181,9 +181,9 @@ TEST_F(RoutesTest, TheGalleryRendersItsScenes) {
   EXPECT_EQ(gallery.scene(0).name(), "box");
   EXPECT_EQ(gallery.scene(0).about(), "A box. With a lamp.");
   EXPECT_FALSE(gallery.scene(0).has_job());
-  const std::string wish = R"({"scene": "box", "width": 30, "samples": "16"})";
-  EXPECT_EQ(message<web::Submitted>(post("/api/gallery/render", wish)).job(), 1u);
-  EXPECT_EQ(message<web::Submitted>(post("/api/gallery/render", wish)).job(), 2u);
+  const std::string request = R"({"scene": "box", "width": 30, "samples": "16"})";
+  EXPECT_EQ(message<web::Submitted>(post("/api/gallery/render", request)).job(), 1u);
+  EXPECT_EQ(message<web::Submitted>(post("/api/gallery/render", request)).job(), 2u);
   gallery = message<web::Gallery>(get("/api/gallery"));
   EXPECT_EQ(gallery.scene(0).job().status().job(), 2u);
   EXPECT_EQ(gallery.scene(0).job().status().settings().width(), 30u);

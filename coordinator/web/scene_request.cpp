@@ -1,12 +1,12 @@
-#include "coordinator/web/scene_wish.h"
+#include "coordinator/web/scene_request.h"
 
 #include "absl/strings/numbers.h"
 
 namespace bandsaw::coordinator {
 
-absl::StatusOr<SceneWish> scene_wish(const HttpRequest& request) {
+absl::StatusOr<SceneRequest> scene_request(const HttpRequest& request) {
   constexpr std::size_t kMaxTitle = 200;
-  SceneWish wanted;
+  SceneRequest wanted;
   wanted.inside = request.parameter("scene");
   wanted.title = request.parameter("title").substr(0, kMaxTitle);
   const std::string width = request.parameter("width");

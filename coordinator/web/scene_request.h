@@ -11,6 +11,6 @@ namespace bandsaw::coordinator {
 /// Reads `width` (pixels), `title` (the job's name), `scene` (the scene file in a zip), and one of
 /// `samples` (a pixel), `error` (0.02: two percent), `time` (seconds). INVALID_ARGUMENT naming the
 /// parameter.
-absl::StatusOr<SceneWish> scene_wish(const HttpRequest& request);
+absl::StatusOr<SceneRequest> scene_request(const HttpRequest& request);
 
 }  // namespace bandsaw::coordinator

@@ -19,12 +19,12 @@ const absl::Status& status_of(const absl::StatusOr<T>& result) {
 }
 
 /// Repeats `call`, which returns a Status or a StatusOr, while the farm cannot be reached, for at
-/// most a minute. Returns the last result. (A call alone does not make the connection try again.)
+/// most a minute. Returns the last result. (gRPC reconnects only while a client waits for it.)
 template <class Call>
-auto patiently(FarmClient& client, Call call) {
-  constexpr double kPatience_s = 60;
+auto call_with_retries(FarmClient& client, Call call) {
+  constexpr double kMaxRetry_s = 60;
   constexpr std::chrono::milliseconds kPause{200};
-  const double until = steady_seconds() + kPatience_s;
+  const double until = steady_seconds() + kMaxRetry_s;
   auto result = call();
   while (absl::IsUnavailable(status_of(result))) {
     const double left = until - steady_seconds();

@@ -1,4 +1,4 @@
-#include "coordinator/cli/base/asked_child.h"
+#include "coordinator/cli/base/coprocess.h"
 
 #include <poll.h>
 #include <signal.h>
@@ -35,7 +35,7 @@ void send_all(int stream, const std::string& bytes) {
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<AskedChild>> AskedChild::start(
+absl::StatusOr<std::unique_ptr<Coprocess>> Coprocess::start(
     const std::vector<std::string>& arguments, const std::string& prefix, bool errors_too) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
@@ -48,10 +48,10 @@ absl::StatusOr<std::unique_ptr<AskedChild>> AskedChild::start(
     close(ends[0]);
     return pid.status();
   }
-  return std::unique_ptr<AskedChild>(new AskedChild(*pid, ends[0], prefix));
+  return std::unique_ptr<Coprocess>(new Coprocess(*pid, ends[0], prefix));
 }
 
-AskedChild::~AskedChild() {
+Coprocess::~Coprocess() {
   close(stream_);
   if (pid_ > 0) {
     kill(pid_, SIGKILL);
@@ -59,14 +59,14 @@ AskedChild::~AskedChild() {
   }
 }
 
-ChildOutcome AskedChild::killed(ChildOutcome::End why) {
+ChildOutcome Coprocess::killed(ChildOutcome::End why) {
   ChildOutcome outcome{.end = why, .output = skipped_ + received_};
   kill(pid_, SIGKILL);
   waitpid(std::exchange(pid_, -1), &outcome.wait_status, 0);
   return outcome;
 }
 
-std::optional<ChildOutcome> AskedChild::exited() {
+std::optional<ChildOutcome> Coprocess::exited() {
   ChildOutcome outcome{.output = skipped_ + received_};
   if (waitpid(pid_, &outcome.wait_status, WNOHANG) == 0) {
     return std::nullopt;
@@ -75,8 +75,7 @@ std::optional<ChildOutcome> AskedChild::exited() {
   return outcome;
 }
 
-/// Takes the next answer out of what was received; std::nullopt: it is not there yet.
-std::optional<std::string> AskedChild::next_answer() {
+std::optional<std::string> Coprocess::next_answer() {
   constexpr std::size_t kMaxSkipped = 64 << 10;
   for (std::size_t end; (end = received_.find('\n')) != std::string::npos;) {
     std::string line = received_.substr(0, end);
@@ -90,8 +89,8 @@ std::optional<std::string> AskedChild::next_answer() {
   return std::nullopt;
 }
 
-std::variant<std::string, ChildOutcome> AskedChild::ask(const std::string& line, double seconds,
-                                                        const std::atomic<bool>* stop) {
+std::variant<std::string, ChildOutcome> Coprocess::exchange(const std::string& line, double seconds,
+                                                            const std::atomic<bool>* stop) {
   constexpr int kLookEveryMs = 20;
   send_all(stream_, line + "\n");
   const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);

@@ -1,0 +1,50 @@
+#pragma once
+
+// Parts of record_text.cpp: groups of records as fields. Each read function reads the output of the
+// write function of the same name; FieldReader keeps its first error.
+
+#include <optional>
+
+#include "absl/strings/string_view.h"
+#include "coordinator/scheduler/api/messages.h"
+#include "coordinator/store/fields.h"
+
+namespace bandsaw::coordinator {
+
+// The specification of a job or sequence, the plan of an adaptive job, and the scene of a frame
+// (record_text_job.cpp).
+void write_job(FieldWriter& out, const record::JobAdded& added);
+record::JobAdded read_job(FieldReader& in);
+
+void write_tiles(FieldWriter& out, const record::TilesPlanned& r);
+/// Reports an error in `in` if a level is not a digit.
+record::TilesPlanned read_tiles(FieldReader& in);
+
+void write_sequence(FieldWriter& out, const record::SequenceAdded& added);
+/// Reports an error in `in` if the frames are not what parse_frames reads.
+record::SequenceAdded read_sequence(FieldReader& in);
+
+void write_frame(FieldWriter& out, const record::FrameWaits& r);
+record::FrameWaits read_frame(FieldReader& in);
+
+// Records from which a job's report is made (record_text_report.cpp).
+/// The id of a worker process. Schema versions below 8 call the field "renderer".
+void write_process(FieldWriter& out, WorkerProcessId process);
+WorkerProcessId read_process(FieldReader& in);
+
+void write_error(FieldWriter& out, const record::ErrorMeasured& r);
+record::ErrorMeasured read_error(FieldReader& in);
+
+void write_share(FieldWriter& out, const record::ShareCounted& r);
+record::ShareCounted read_share(FieldReader& in);
+
+// Results of audits (record_text_audit.cpp). Each write function returns the record's kind.
+const char* write_audit(FieldWriter& out, const record::BandAudited& r);
+const char* write_audit(FieldWriter& out, const record::BandLost& r);
+const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r);
+const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r);
+const char* write_audit(FieldWriter& out, const record::QuarantineLifted& r);
+/// Returns std::nullopt if the kind is none of these.
+std::optional<Record> read_audit(absl::string_view kind, FieldReader& in);
+
+}  // namespace bandsaw::coordinator
