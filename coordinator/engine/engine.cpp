@@ -46,16 +46,16 @@ SchedulerOptions scheduler_options(const EngineOptions& options, const std::stri
 }
 
 /// Returns OK if a little data can be written in addition to the reserve. Otherwise releases the
-/// reserve, so that the journal can be opened and the rest of the start has room for small files.
+/// reserve, so that the journal can be opened and the rest of the start has space for small files.
 absl::Status ensure_disk_space(const DataFolder& folder) {
   constexpr std::uint64_t kLittle = 1 << 20;
   Reserve reserve(folder.reserve());
-  absl::Status room = reserve.hold();
-  room.Update(probe_disk(folder.path(), kLittle));
-  if (!room.ok()) {
+  absl::Status space = reserve.hold();
+  space.Update(probe_disk(folder.path(), kLittle));
+  if (!space.ok()) {
     reserve.release();
   }
-  return room;
+  return space;
 }
 
 class BlobUpload : public Engine::BlobWriter {
@@ -101,9 +101,9 @@ Engine::Engine(const EngineOptions& options, EngineDependencies dependencies, Da
 absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options,
                                                       EngineDependencies dependencies) {
   ASSIGN_OR_RETURN(DataFolder folder, DataFolder::open(options.data_folder));
-  const absl::Status room = ensure_disk_space(folder);
-  if (!room.ok() && !absl::IsResourceExhausted(room)) {
-    return room;
+  const absl::Status space = ensure_disk_space(folder);
+  if (!space.ok() && !absl::IsResourceExhausted(space)) {
+    return space;
   }
   ASSIGN_OR_RETURN(std::unique_ptr<BlobStore> blobs, BlobStore::open(folder.blobs()));
   if (dependencies.journal == nullptr) {
@@ -114,7 +114,7 @@ absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options,
   }
   std::unique_ptr<Engine> engine(
       new Engine(options, std::move(dependencies), std::move(folder), std::move(blobs)));
-  RETURN_IF_ERROR(engine->scheduler_.restore(engine->store_, engine->film_, room));
+  RETURN_IF_ERROR(engine->scheduler_.restore(engine->store_, engine->film_, space));
   engine->film_mailbox_.start();
   engine->store_mailbox_.start();
   engine->scheduler_mailbox_.start();
@@ -129,7 +129,8 @@ Engine::~Engine() {
 
 void Engine::submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
                     std::int32_t priority) {
-  // The package is read from the disk, so not on the caller's thread and not on the scheduler's.
+  // The check reads the package from the disk. So it runs on the store's thread, where it delays
+  // neither the caller nor the scheduler.
   to_store_.post([this, spec = std::move(spec), priority,
                   answer = Answer<JobId>(std::move(done))](StoreThread&) mutable {
     if (const absl::Status fit = check_submit(spec, *blobs_); !fit.ok()) {

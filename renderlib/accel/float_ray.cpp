@@ -77,9 +77,9 @@ void FloatRay::set_planes(std::size_t k, double from, float factor, double slack
   far_factor[k] = factor * static_cast<float>(1 + 8 * kUnit);
   const double near_at = from * double{near_factor[k]};
   const double far_at = from * double{far_factor[k]};
-  const double room = 5 * kUnit * std::abs(near_at) + slack;
-  near_offset[k] = static_cast<float>(-near_at - room);
-  far_offset[k] = static_cast<float>(-far_at + room);
+  const double margin = 5 * kUnit * std::abs(near_at) + slack;
+  near_offset[k] = static_cast<float>(-near_at - margin);
+  far_offset[k] = static_cast<float>(-far_at + margin);
 }
 
 void FloatRay::disable_culling() {

@@ -20,10 +20,10 @@ DiskAxes axes_of(const Disk& disk) {
 }
 
 Box bounds(const Disk& disk) {
-  const double room = kMargin * (disk.radius + max_abs(disk.center));
+  const double margin = kMargin * (disk.radius + max_abs(disk.center));
   // For a normal almost along an axis, 1 - n^2 would lose the precision of the other components.
   const auto reach = [&](double a, double b) {
-    return disk.radius * std::sqrt(a * a + b * b) + room;
+    return disk.radius * std::sqrt(a * a + b * b) + margin;
   };
   const Vec3 n = normalize(disk.normal);
   const Vec3 half = {reach(n.y, n.z), reach(n.z, n.x), reach(n.x, n.y)};

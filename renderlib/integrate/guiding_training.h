@@ -19,10 +19,10 @@
 
 namespace bandsaw {
 
-/// Trains the field of the scene with three quarters of a path and, if there are casters, two
-/// photons for each pixel; an image counts as one of 2^15 to 2^18 pixels. Each of the first
-/// eight vertices of a path is a record, as is each photon that arrives: at most 93 MB, twice, while
-/// the training runs. Returns nullptr if `stop` was set.
+/// Trains the field of the scene: 3/4 n paths and, if there are casters, 2 n photons, where n is
+/// the number of pixels of the image, clamped to [2^15, 2^18]. The first eight vertices of each
+/// path and each photon that arrives become records, which take at most 2 x 93 MB during the
+/// training. Returns nullptr if `stop` was set.
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
                                                     Pool& pool, const std::atomic<bool>& stop);
 

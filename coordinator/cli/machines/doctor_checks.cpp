@@ -64,11 +64,11 @@ Check check_data_folder(const std::string& folder) {
                                       "; give this account the right to write there, or name "
                                       "another folder with --data"));
   }
-  const absl::StatusOr<std::uint64_t> room = free_bytes(there);
-  if (!room.ok()) {
-    return problem(name, std::string(room.status().message()));
+  const absl::StatusOr<std::uint64_t> free = free_bytes(there);
+  if (!free.ok()) {
+    return problem(name, std::string(free.status().message()));
   }
-  return disk_space_check(name, there == folder ? folder : folder + " (does not exist yet)", *room);
+  return disk_space_check(name, there == folder ? folder : folder + " (does not exist yet)", *free);
 }
 
 Check check_memory() {

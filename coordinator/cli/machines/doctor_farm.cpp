@@ -15,7 +15,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::chrono::milliseconds kPatienceWithFarm{5'000};
+constexpr std::chrono::milliseconds kFarmTimeout{5'000};
 
 double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -26,7 +26,7 @@ Check failed(const std::string& name, const absl::Status& status, const std::str
 }
 
 Check check_certificate(const std::string& address) {
-  const auto pem = link::fetch_certificate_pem(address, kPatienceWithFarm);
+  const auto pem = link::fetch_certificate_pem(address, kFarmTimeout);
   if (!pem.ok()) {
     return failed("certificate", pem.status(), "");
   }

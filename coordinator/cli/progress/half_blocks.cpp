@@ -18,9 +18,9 @@ struct Grid {
   std::uint32_t height = 0;  ///< two pixels per line
 };
 
-Grid grid_of(const Image& image, TerminalSize room) {
-  const double scale = std::min({1.0, static_cast<double>(room.columns) / image.width,
-                                 2.0 * static_cast<double>(room.rows) / image.height});
+Grid grid_of(const Image& image, TerminalSize available) {
+  const double scale = std::min({1.0, static_cast<double>(available.columns) / image.width,
+                                 2.0 * static_cast<double>(available.rows) / image.height});
   const auto scaled = [scale](std::uint32_t side) {
     return std::max(1U, static_cast<std::uint32_t>(std::floor(side * scale)));
   };
@@ -60,12 +60,12 @@ std::string colour(const char* kind, const Codes& codes) {
 }  // namespace
 
 std::vector<std::string> half_blocks(const Image& image, const Display& display,
-                                     TerminalSize room) {
+                                     TerminalSize available) {
   std::vector<std::string> lines;
-  if (image.pixels.empty() || room.columns == 0 || room.rows == 0) {
+  if (image.pixels.empty() || available.columns == 0 || available.rows == 0) {
     return lines;
   }
-  const Grid grid = grid_of(image, room);
+  const Grid grid = grid_of(image, available);
   for (std::uint32_t y = 0; y < grid.height; y += 2) {
     std::string& line = lines.emplace_back();
     std::string last;

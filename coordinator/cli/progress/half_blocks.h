@@ -11,9 +11,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns lines that fit into `room`. Each pixel drawn is a mean of image pixels; the aspect ratio
-/// is kept, assuming characters twice as high as wide; the picture is never larger than the image.
-/// Each line resets the colours (ECMA-48 SGR, colours by ISO 8613-6).
-std::vector<std::string> half_blocks(const Image& image, const Display& display, TerminalSize room);
+/// Returns lines that fit into `available`. Each pixel drawn is a mean of image pixels; the aspect
+/// ratio is kept, assuming characters twice as high as wide; the picture is never larger than the
+/// image. Each line resets the colours (ECMA-48 SGR, colours by ISO 8613-6).
+std::vector<std::string> half_blocks(const Image& image, const Display& display,
+                                     TerminalSize available);
 
 }  // namespace bandsaw::coordinator

@@ -10,8 +10,8 @@ namespace bandsaw::coordinator {
 std::string Painter::frame(const std::vector<std::string>& lines, TerminalSize size,
                            const std::vector<std::string>& picture) {
   std::string out = back_to_first();
-  const std::size_t room = std::max<std::size_t>(size.rows, 2) - 1;
-  drawn_ = std::min(picture.size() + lines.size(), room);
+  const std::size_t available = std::max<std::size_t>(size.rows, 2) - 1;
+  drawn_ = std::min(picture.size() + lines.size(), available);
   for (std::size_t i = 0; i < drawn_; ++i) {
     // One column is left free, because a full line wraps on some terminals.
     const std::string line = i < picture.size() ? picture[i]

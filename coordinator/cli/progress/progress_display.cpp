@@ -78,9 +78,9 @@ void ProgressDisplay::show_terminal(const Progress& progress) {
   constexpr std::size_t kKept = 3;  // rows kept free for the header, the bar and the cursor
   std::vector<std::string> lines = {bar_line(progress, std::max<std::size_t>(size.columns, 1) - 1)};
   constexpr std::size_t kBesidePicture = 4;
-  const std::size_t room =
+  const std::size_t available =
       image_.pixels.empty() ? std::max(size.rows, kKept + 1) - kKept : kBesidePicture;
-  for (std::string& line : worker_lines(progress, room)) {
+  for (std::string& line : worker_lines(progress, available)) {
     lines.push_back(std::move(line));
   }
   const TerminalSize above{std::max<std::size_t>(size.columns, 1) - 1,
@@ -169,8 +169,8 @@ void ProgressDisplay::done(const Progress& progress, const std::vector<std::stri
     }
   }
   const TerminalSize size = console_.size();
-  const TerminalSize room{size.columns - 1, size.rows - std::min<std::size_t>(size.rows, 4)};
-  for (const std::string& line : half_blocks(image_, shown_as_, room)) {
+  const TerminalSize available{size.columns - 1, size.rows - std::min<std::size_t>(size.rows, 4)};
+  for (const std::string& line : half_blocks(image_, shown_as_, available)) {
     console_.line(line);
   }
   const std::string name =

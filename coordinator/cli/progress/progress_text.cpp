@@ -88,8 +88,8 @@ std::string bar_line(const Progress& progress, std::size_t width) {
   const std::string before = percent_done(progress.job) + " ";
   const std::string after = " " + absl::StrJoin(measures(progress.job), kDot);
   const std::size_t taken = columns(before) + columns(after);
-  const std::size_t room = width > taken ? width - taken : 0;
-  return before + bar(progress.job.fraction, std::min(room, kBarColumns)) + after;
+  const std::size_t available = width > taken ? width - taken : 0;
+  return before + bar(progress.job.fraction, std::min(available, kBarColumns)) + after;
 }
 
 std::string plain_line(const Progress& progress) {

@@ -15,7 +15,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 static_assert(sizeof(Rgb) == 3 * sizeof(float), "pixels are copied as they are");
 
-constexpr std::chrono::seconds kPatience{5};
+constexpr std::chrono::seconds kTevTimeout{5};
 constexpr std::size_t kPacketPixels = 1 << 18;  // 3 MB
 
 enum class Operation : std::uint8_t { kCreateImage = 4, kUpdateImageV3 = 6 };
@@ -53,7 +53,7 @@ void channels(Packet& packet) {
   }
 }
 
-link::Deadline soon() { return std::chrono::steady_clock::now() + kPatience; }
+link::Deadline soon() { return std::chrono::steady_clock::now() + kTevTimeout; }
 
 }  // namespace
 

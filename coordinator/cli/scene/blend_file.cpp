@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPatience_s = 600;
+constexpr double kBlenderTimeout_s = 600;
 constexpr std::uint64_t kMaxText = 1 << 20;
 constexpr char kAddon[] = "bandsaw_blender.zip";
 /// Begins the line by which the add-on reports that a frame is written.
@@ -113,8 +113,8 @@ absl::Status killed(const std::string& path, const ChildOutcome& outcome) {
     return absl::CancelledError(absl::StrCat(name_of(path), ": Blender was interrupted"));
   }
   return outcome.end == ChildOutcome::End::kTimedOut
-             ? absl::DeadlineExceededError(
-                   absl::StrCat(name_of(path), ": Blender took longer than ", kPatience_s, " s"))
+             ? absl::DeadlineExceededError(absl::StrCat(
+                   name_of(path), ": Blender took longer than ", kBlenderTimeout_s, " s"))
              : absl::OkStatus();
 }
 
@@ -150,7 +150,7 @@ absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(const std::strin
                                                                 std::optional<std::int64_t> frame) {
   ASSIGN_OR_RETURN(std::unique_ptr<BlendScene> made, empty_scene(path));
   const auto ran = run_child(blender_command(path, *made, frame ? absl::StrCat(*frame) : ""),
-                             kPatience_s, &stop, {.errors_too = true});
+                             kBlenderTimeout_s, &stop, {.errors_too = true});
   if (!ran.ok()) {
     return not_started(path, ran.status());
   }
@@ -177,7 +177,7 @@ BlendSession::~BlendSession() = default;
 
 absl::StatusOr<const BlendScene*> BlendSession::at(std::int64_t frame,
                                                    const std::atomic<bool>& stop) {
-  const auto answer = blender_->exchange(absl::StrCat(frame), kPatience_s, &stop);
+  const auto answer = blender_->exchange(absl::StrCat(frame), kBlenderTimeout_s, &stop);
   if (const auto* outcome = std::get_if<ChildOutcome>(&answer)) {
     RETURN_IF_ERROR(killed(path_, *outcome));
     return no_scene(path_, outcome->output);

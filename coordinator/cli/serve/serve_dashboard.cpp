@@ -24,7 +24,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// Shorter than for a command, because a user waits in a browser.
-constexpr double kPatience_s = 120;
+constexpr double kImportTimeout_s = 120;
 constexpr std::size_t kPieceBytes = 16 << 20;
 
 absl::Status store(Engine& engine, const wire::Digest& digest, absl::Span<const std::byte> bytes) {
@@ -43,7 +43,7 @@ ImportScene import_and_store(Engine& engine) {
   return [&engine](const std::string& path, const std::string& inside,
                    const std::atomic<bool>& stop) -> absl::StatusOr<SceneOnFarm> {
     ImportLimits limits;
-    limits.seconds = kPatience_s;
+    limits.seconds = kImportTimeout_s;
     limits.stop = &stop;
     ASSIGN_OR_RETURN(ImportedPackage package, import_in_process(path, limits, {.inside = inside}));
     ASSIGN_OR_RETURN(const std::vector<BlobRef> blobs, package_blobs(package.manifest()));

@@ -33,7 +33,8 @@ namespace {
 constexpr std::uint64_t kMaxXmlBytes = std::uint64_t{64} << 20;  ///< total size of all files
 constexpr int kMaxIncludeDepth = 15;
 constexpr int kMaxIncludes = 1000;
-constexpr std::size_t kMaxAttribute = std::size_t{1} << 20;  ///< with its parameters
+/// Longest text of an attribute after its parameters are replaced, in bytes.
+constexpr std::size_t kMaxAttribute = std::size_t{1} << 20;
 constexpr std::uint64_t kMaxParts = 10'000;  ///< objects in a bsdf, a texture, a medium, …
 constexpr std::uint64_t kMaxSpectrumBytes = std::uint64_t{1} << 20;
 

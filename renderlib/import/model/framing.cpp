@@ -28,10 +28,11 @@ void for_each_vertex(const Geometry& geometry, const std::vector<Instance>& inst
   }
 }
 
-// The tightest pair of parallel planes of given slope around points: with half-angle tangent t, a
-// point (x, z), z towards the camera, is seen when |x - a| <= t (d - z). So d t >= x + t z - a and
-// d t >= -x + t z + a; the least d is half the sum of the two maxima over t, and a half their
-// difference.
+// Finds the nearest place of a camera that sees all points, in one direction of the image. A camera
+// at (a, d) with half-angle tangent t sees a point (x, z), z towards the camera, if
+// |x - a| <= t (d - z). So d t >= x + t z - a and d t >= -x + t z + a. Let R be the maximum of
+// x + t z over the points and L that of -x + t z: the least d is (R + L) / (2 t), at a = (R - L)
+// / 2.
 struct Fit {
   double tangent;
   double right = -std::numeric_limits<double>::infinity();
