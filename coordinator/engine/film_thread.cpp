@@ -13,8 +13,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// True if reading the band again cannot succeed. UNKNOWN is the code of an unreadable sector
-/// (EIO).
+/// Returns true if reading the band again cannot succeed. UNKNOWN is the code of an unreadable
+/// sector (EIO).
 bool is_damage(const absl::Status& status) {
   return absl::IsDataLoss(status) || absl::IsOutOfRange(status) || absl::IsNotFound(status) ||
          absl::IsUnknown(status);

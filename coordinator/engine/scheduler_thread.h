@@ -79,7 +79,7 @@ class SchedulerThread {
   /// for it, and informs the watchers.
   void settle();
 
-  /// True if the disk has room for new data. Any thread.
+  /// Returns true if the disk has space for new data. Any thread.
   bool has_disk_space() const { return has_disk_space_; }
 
  private:

@@ -38,7 +38,7 @@ class PutBandsCall final
   BandIntake intake_;
   farm::PutBandReply reply_;  ///< accessed by the thread that answers
   Mutex mutex_;
-  /// A band is with the engine, or its answer is being written.
+  /// Returns true while a band is with the engine or its answer is being written.
   bool handed_over_ GUARDED_BY(mutex_) = false;
   bool finished_ GUARDED_BY(mutex_) = false;
   std::optional<absl::Status> end_ GUARDED_BY(mutex_);

@@ -44,8 +44,8 @@ class Scheduler {
   /// interval.
   Step step(const Input& input, Time now);
 
-  // Restart: all journalled records in their order, then all bands found on disk and their damage,
-  // then `replayed` once, then inputs.
+  // For a restart. Call replay for all journalled records in their order, then for all bands found
+  // on disk and their damage, then `replayed` once, then step for inputs.
   void replay(const Record& record);
   void replay(const input::BandStored& band);
   /// `bytes` of a job's band log, > 0, belong to no whole band. They are shown to users (why).

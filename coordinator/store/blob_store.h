@@ -25,7 +25,8 @@ class BlobStore : public BlobSource {
   static absl::StatusOr<std::unique_ptr<BlobStore>> open(const std::string& folder);
 
   bool has(const wire::Digest& digest) const;
-  /// Number of bytes that are kept of an interrupted upload of a blob that is not stored.
+  /// Returns the number of bytes that are kept of an interrupted upload of a blob that is not
+  /// stored.
   std::uint64_t partial(const wire::Digest& digest) const { return partials_->size(digest); }
 
   /// Returns the blob, memory-mapped. Its digest is checked at the first call since the process

@@ -32,7 +32,7 @@ class FieldReader {
   std::string text(absl::string_view name);
   std::uint64_t number(absl::string_view name, std::uint64_t most = UINT64_MAX);
   double real(absl::string_view name);
-  /// True if the next field has this name. For fields that older versions did not write.
+  /// Returns true if the next field has this name. For fields that older versions did not write.
   bool next_is(absl::string_view name) const;
   /// Returns the status. DATA_LOSS: a field is missing, malformed, out of range, or left over at
   /// the end.

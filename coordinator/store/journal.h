@@ -22,7 +22,7 @@ class Journal {
   virtual absl::Status replay(absl::FunctionRef<void(const Record&)> each) = 0;
   /// Atomically replaces all records by these. Errors as append.
   virtual absl::Status rewrite(absl::Span<const Record> records) = 0;
-  /// Number of records in the journal.
+  /// Returns the number of records in the journal.
   virtual std::uint64_t size() const = 0;
 };
 

@@ -23,7 +23,7 @@ class PartialBlobs {
   /// Creates the folder; removes everything in it that is not a partial blob.
   static absl::StatusOr<std::unique_ptr<PartialBlobs>> open(const std::string& folder);
 
-  /// Number of bytes from which an upload can resume; 0 while an upload is in progress.
+  /// Returns the number of bytes from which an upload can resume; 0 while an upload is in progress.
   std::uint64_t size(const wire::Digest& digest) const EXCLUDES(mutex_);
 
   /// A file for an incoming blob. No other claim gets the same file while it is held.
@@ -36,8 +36,8 @@ class PartialBlobs {
     /// Makes the bytes left in the file available as a partial blob.
     ~Claim();
     const std::string& path() const { return path_; }
-    /// True if bytes left in the file can be resumed later. False if another claim already has the
-    /// blob's own file.
+    /// Returns true if an upload can be resumed from the bytes in the file, false if another claim
+    /// already has the blob's own file.
     bool resumable() const { return resumable_; }
 
    private:

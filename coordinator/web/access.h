@@ -31,7 +31,7 @@ class Access {
   /// RESOURCE_EXHAUSTED: too many wrong secrets.
   absl::Status check(const HttpRequest& request) EXCLUDES(mutex_);
 
-  /// True if the request has a valid cookie.
+  /// Returns true if the request has a valid cookie.
   bool logged_in(const HttpRequest& request) EXCLUDES(mutex_);
 
   /// Sets the cookie in `reply`. `text`: the users' join string, or the secret in it.

@@ -47,7 +47,7 @@ class Connection {
 
   /// Numeric address of the peer; empty: unknown.
   const std::string& remote_address() const { return remote_; }
-  /// Port of this end; 0: unknown.
+  /// Returns the port of this end; 0: unknown.
   int local_port() const { return local_port_; }
 
  private:

@@ -37,10 +37,10 @@ class HttpServer {
   void cut() EXCLUDES(mutex_);
 
  private:
-  /// Body of each thread: accepts a connection, serves it, closes it.
+  /// Runs on each thread: accepts a connection, serves it, closes it.
   void run() EXCLUDES(mutex_);
   void serve(int socket) EXCLUDES(mutex_);
-  /// False: the server is being stopped, or the address has too many connections.
+  /// Returns false if the server is being stopped, or the address has too many connections.
   bool enter(int socket, const std::string& address) EXCLUDES(mutex_);
   void leave(int socket) EXCLUDES(mutex_);
   /// Waits after a failed accept. False: the server is being stopped.

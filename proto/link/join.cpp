@@ -79,8 +79,8 @@ bool take_tail(absl::string_view& rest, std::size_t length, absl::string_view& t
   return true;
 }
 
-/// True if `rest` ends in "-plain" after a port. A digest contains neither colon nor plus, so
-/// nothing else ends in ":PORT-plain" or "+PORT-plain".
+/// Returns true if `rest` ends in "-plain" after a port. A digest contains neither colon nor plus,
+/// so nothing else ends in ":PORT-plain" or "+PORT-plain".
 bool is_plain(absl::string_view rest) {
   if (!absl::ConsumeSuffix(&rest, absl::StrCat("-", kPlain))) {
     return false;

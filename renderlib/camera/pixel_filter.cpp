@@ -8,7 +8,7 @@
 namespace bandsaw {
 namespace {
 
-/// Inverse of the cumulative distribution of 1 - |x| on [-1, 1].
+/// Returns the inverse of the cumulative distribution of 1 - |x| on [-1, 1].
 double tent(double u) { return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u)); }
 
 /// Samples a normal distribution in units of the standard deviation, truncated at three of them

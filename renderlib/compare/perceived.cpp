@@ -17,7 +17,7 @@ constexpr double kToXyz[3][3] = {
 
 double row_sum(int row) { return kToXyz[row][0] + kToXyz[row][1] + kToXyz[row][2]; }
 
-// The function f of CIE 1976 L*a*b*.
+// Returns the function f of CIE 1976 L*a*b*.
 double cube_root_part(double t) {
   constexpr double kKnee = 6.0 / 29;
   return t > kKnee * kKnee * kKnee ? pow(t, 1.0 / 3) : t / (3 * kKnee * kKnee) + 4.0 / 29;

@@ -6,6 +6,7 @@
 namespace bandsaw {
 namespace {
 
+// Differences of the guides that count as a distance of 1; that of the depth is relative.
 constexpr float kAlbedoReach = 0.3f;
 constexpr float kNormalReach = 0.2f;
 constexpr float kDepthReach = 0.1f;

@@ -6,10 +6,11 @@
 
 namespace bandsaw::gallery {
 
-/// A finger ring of radius 0.8 that lies on y = 0, 0.42 high, with a rounded profile.
+/// Returns a finger ring of radius 0.8 that lies on y = 0, 0.42 high, with a rounded profile.
 std::string ring();
 
-/// The surface of water over [-2, 2]^2 about y = 0: a sum of five waves, with smooth normals.
+/// Returns the surface of water over [-2, 2]^2 about y = 0: a sum of five waves, with smooth
+/// normals.
 std::string waves();
 
 }  // namespace bandsaw::gallery

@@ -6,9 +6,11 @@
 
 namespace bandsaw::gallery {
 
-/// Density, at most 1: smoke that rises and drifts, in the box from [-1.2, 0, -1] to [1.8, 4, 1].
+/// Returns the density of smoke that rises and drifts, at most 1, in the box from [-1.2, 0, -1] to
+/// [1.8, 4, 1].
 std::string smoke_volume();
-/// Flames in the box from [-0.5, 0, -0.5] to [0.5, 1.5, 0.5]: how hot they are, at most 1.
+/// Returns the temperature of flames, at most 1, in the box from [-0.5, 0, -0.5] to [0.5, 1.5,
+/// 0.5].
 std::string flame_volume();
 
 }  // namespace bandsaw::gallery

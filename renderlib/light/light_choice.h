@@ -48,7 +48,8 @@ class LightChoice {
   double probability(const Receiver& receiver, std::size_t light) const;
 
  private:
-  /// Number of candidates: the few lights or the tree as a whole, and the distant lights.
+  /// Returns the number of candidates: the few lights or the tree as a whole, and the distant
+  /// lights.
   std::size_t candidates() const;
   template <typename From>
   double weight(std::size_t candidate, const From& receiver) const;

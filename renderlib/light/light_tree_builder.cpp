@@ -229,7 +229,8 @@ class LightTreeBuilder {
       for (const std::uint32_t light : range) {
         bins[bin_of(light, axis, box)].add(group_of(lights_[light]));
       }
-      // Regularisation factor K_r of Conty Estevez and Kulla: it makes thin slices more expensive.
+      // Returns the regularisation factor K_r of Conty Estevez and Kulla: it makes thin slices more
+      // expensive.
       try_splits(bins, axis, longest / extent, best);
     }
     return best;

@@ -12,8 +12,8 @@ namespace {
 
 enum Lobe : std::size_t { kSpecular, kDiffuse, kCoat };
 
-/// The coat's distribution of normals: generalised Trowbridge and Reitz with exponent 1 (Burley
-/// 2012, appendix B.2), for alpha in (0, 1).
+/// Returns the coat's distribution of normals: generalised Trowbridge and Reitz with exponent 1
+/// (Burley 2012, appendix B.2), for alpha in (0, 1).
 double gtr1(double cos_theta, double alpha) {
   const double a2 = alpha * alpha;
   return (a2 - 1) / (kPi * log(a2) * (1 + (a2 - 1) * cos_theta * cos_theta));

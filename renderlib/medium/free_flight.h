@@ -20,8 +20,8 @@ namespace bandsaw {
 
 class FreeFlight {
  public:
-  /// Light of weight `throughput` (>= 0, finite) enters a segment of the given length (scene units,
-  /// > 0, may be infinite).
+  /// A segment of the given length (scene units, > 0, may be infinite), which light of weight
+  /// `throughput` (>= 0, finite) enters.
   FreeFlight(const Medium& medium, const Rgb& throughput, double length);
 
   /// Returns the probability of scattering in the segment, in [0, 1]; 0 if nothing is scattered.

@@ -56,8 +56,8 @@ void add_what_moves(SceneDescription& scene) {
   g.instances.push_back(placed);
 }
 
-/// A scene with every kind of shape, material, light and texture, small enough that most paths hit
-/// several of them.
+/// Returns a scene with every kind of shape, material, light and texture, small enough that most
+/// paths hit several of them.
 SceneDescription every_feature() {
   SceneDescription scene;
   scene.camera = PerspectiveCamera{.position = {0.3, 1.7, 5.1}, .look_at = {0, 1, 0}};
@@ -185,7 +185,8 @@ SceneDescription in_a_cloud() {
   return scene;
 }
 
-/// An area light, a ball and a wall on a floor, with a black background: pixels reuse paths.
+/// Returns a scene of an area light, a ball and a wall on a floor, with a black background: pixels
+/// reuse paths.
 SceneDescription room() {
   SceneDescription scene;
   scene.textures = {ConstantTexture{{0.7f, 0.5f, 0.3f}}, ConstantTexture{gray(5)}};
@@ -199,8 +200,8 @@ SceneDescription room() {
   return scene;
 }
 
-/// A ball and a pyramid on a floor under a sky, without lights: paths are split into several
-/// directions.
+/// Returns a scene of a ball and a pyramid on a floor under a sky, without lights: paths are split
+/// into several directions.
 SceneDescription outdoors() {
   SceneDescription scene;
   scene.background = {{0.9f, 0.8f, 0.7f}, {0.4f, 0.5f, 0.7f}};

@@ -2,15 +2,15 @@
 
 // Tiles, and the samples that they take in a pass.
 //
-// A tile is a square of 16 x 16 pixels of the image, counted from its top left; tiles at the right
-// and lower edge may be smaller. Its pixels form 32 groups of eight (render/tile_pattern.h), and
-// the even and the odd groups two halves; each has eight pixels in every row of a whole tile. A
-// half tile is the unit of adaptive sampling (render/adaptive_plan.h): the samples of one half are
-// decided from the errors of the other.
+// The image is divided into tiles of 16 x 16 pixels from its top left; tiles at the right and lower
+// edge may be smaller. The pixels of a tile form 32 groups of eight (render/tile_pattern.h). The
+// even groups are one half tile, the odd groups the other; each has eight pixels in every row of a
+// whole tile. A half tile is the unit of adaptive sampling (render/adaptive_plan.h): its number of
+// samples is decided from the errors of the other half.
 //
-// A pass determines when samples are rendered; the plan decides which samples of its own sequence a
-// half tile takes in it: a node (render/band.h) that follows those it has, or none. So a half tile
-// always has the first samples of its sequence.
+// In each pass, a half tile takes the next node (render/band.h) of its own sequence of samples, or
+// none, as the plan says. So it always has the first samples of its sequence, and the pass
+// determines only when it takes them.
 
 #include <array>
 #include <cstddef>
@@ -84,8 +84,8 @@ class TileSamples {
   std::uint64_t count(std::uint32_t width, const Band& band) const;
   /// Returns the part for some of the rows.
   TileSamples of(const RowRange& rows) const;
-  /// Returns the part for a band with some of the rows and a node within the pass. The halves of a
-  /// pass take the halves of what a half tile takes; a single block goes to the left one.
+  /// Returns the part for a band with some of the rows and a node within the pass. The first half
+  /// of a pass takes the first half of each half tile's samples, or its only block.
   TileSamples of(const SampleRange& pass, const Band& band) const;
 
   /// Returns two numbers for each half tile in the order of TileGrid: its first sample and its

@@ -28,7 +28,8 @@ struct Entry {
   }
 };
 
-/// True if the cache created the file. A folder that was given by mistake loses nothing else.
+/// Returns true if the cache created the file. A folder that was given by mistake loses nothing
+/// else.
 bool is_ours(const std::filesystem::path& path) {
   const bool whole_or_part = path.extension().empty() || path.extension() == ".part";
   return whole_or_part && wire::digest_from_hex(path.stem().string()).ok();
@@ -53,8 +54,8 @@ std::vector<Entry> entries(const std::string& folder) {
   return found;
 }
 
-/// True if `fd` is still the file of that name: another worker may have renamed it while this one
-/// waited for its lock.
+/// Returns true if `fd` is still the file of that name: another worker may have renamed it while
+/// this one waited for its lock.
 bool is_at(int fd, const std::string& path) {
   struct stat open_file {};
   struct stat named {};

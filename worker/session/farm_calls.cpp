@@ -53,8 +53,8 @@ class FarmCalls::BandStream {
   /// Cancels a transfer in progress.
   ~BandStream();
 
-  /// True if the next band may be sent on it: it was opened on this channel, and the time to its
-  /// deadline is sufficient for a slow connection.
+  /// Returns true if the next band may be sent on it: it was opened on this channel, and the time
+  /// to its deadline is sufficient for a slow connection.
   bool serves(const std::shared_ptr<grpc::Channel>& channel) const;
 
   /// Sends a band and waits for the coordinator's answer. After an error the stream must not be

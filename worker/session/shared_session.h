@@ -31,7 +31,7 @@ class SharedSession {
   // For the rendering threads; see Session.
   void preparing(TaskId task, std::uint64_t prepared) EXCLUDES(mutex_);
   void rendering(TaskId task, std::uint32_t rows_done) EXCLUDES(mutex_);
-  /// False: the band is no longer wanted, discard its pixels.
+  /// Returns false if the band is no longer needed; then discard its pixels.
   bool finished(TaskId task) EXCLUDES(mutex_);
   void failed(TaskId task, const std::string& reason, const std::vector<std::string>& log)
       EXCLUDES(mutex_);

@@ -239,7 +239,8 @@ absl::StatusOr<std::string> FarmClient::rotate_secret(link::Role role) {
   farm::RotateSecretRequest request;
   request.set_role(role == link::Role::kWorker ? farm::SECRET_ROLE_WORKER : farm::SECRET_ROLE_FARM);
   farm::RotateSecretReply reply;
-  // Not retried: the first attempt may have made the secret void that a second would use.
+  // Not retried: if the first attempt was executed, the secret that a second would use is no longer
+  // valid.
   RETURN_IF_ERROR(try_once(kCallTimeout, [&](grpc::ClientContext& context) {
     return control_->RotateSecret(&context, request, &reply);
   }));

@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// True if the farm has fewer bytes of the blob than assumed, or has deleted damaged ones.
+/// Returns true if the farm has fewer bytes of the blob than assumed, or has deleted damaged ones.
 bool other_is_there(const absl::Status& status) {
   return absl::IsFailedPrecondition(status) || absl::IsDataLoss(status);
 }

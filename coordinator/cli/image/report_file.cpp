@@ -29,7 +29,7 @@ bool is_report(const std::string& path) {
          begins == kReportBegins;
 }
 
-/// True if a report may be written there: no file exists, or it is a report.
+/// Returns true if a report may be written there: no file exists, or it is a report.
 bool is_free(const std::string& path) { return !is_there(path) || is_report(path); }
 
 absl::Status taken(const std::string& path) {

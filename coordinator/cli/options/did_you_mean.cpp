@@ -6,8 +6,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Optimal string alignment distance (Damerau 1964, without repeated edits of one place), by dynamic
-// programming.
+// Returns the optimal string alignment distance (Damerau 1964, without repeated edits of one
+// place), by dynamic programming.
 std::size_t edits(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {

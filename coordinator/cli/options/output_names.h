@@ -9,8 +9,8 @@
 
 namespace bandsaw::coordinator {
 
-/// True if the name ends in .band (any case): a file with the sums of some rows instead of a
-/// picture.
+/// Returns true if the name ends in .band (any case): a file with the sums of some rows instead of
+/// a picture.
 inline bool is_part_name(const std::string& path) {
   return absl::EndsWithIgnoreCase(path, ".band");
 }

@@ -29,7 +29,7 @@ class ProgressDisplay {
   /// header. Calls that come too soon after the previous output are skipped.
   void update(const Progress& progress, double now) EXCLUDES(mutex_);
 
-  /// True if a picture is requested and can be drawn.
+  /// Returns true if a picture is requested and can be drawn.
   bool draws() const { return draws_; }
   /// Sets the picture to be drawn above the progress; done() leaves it on the terminal. No effect
   /// if pictures are not drawn.

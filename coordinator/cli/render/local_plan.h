@@ -24,9 +24,10 @@ class LocalPlan {
   /// Returns the end of the last planned pass.
   std::uint64_t planned() const { return planned_; }
 
-  /// True if the image may be done: the next call of next() decides by the error.
+  /// Returns true if the image may be done: the next call of next() decides by the error.
   bool wants_error() const { return passes_.empty() && std::holds_alternative<StopAtError>(stop_); }
-  /// True if the tiles are to be planned now, before the call of next() with the same error.
+  /// Returns true if the tiles are to be planned now, before the call of next() with the same
+  /// error.
   bool wants_tiles(double error) const;
   /// Plans the samples of the half tiles from their errors after samples [0, samples).
   void plan(absl::Span<const HalfTileErrors> tiles, std::uint64_t samples);

@@ -125,8 +125,8 @@ class Panel {
     return out;
   }
 
-  /// True if the legend goes to the top left: rising lines leave room there, falling lines at the
-  /// bottom left.
+  /// Returns true if the legend goes to the top left: rising lines leave space there, falling lines
+  /// at the bottom left.
   bool names_on_top() const {
     int below = 0;
     for (const PlotLine& line : panel_.lines) {

@@ -33,9 +33,9 @@ struct CleanOfScene {
   std::vector<CleanPoint> points;  ///< sorted by samples
 };
 
-/// A table in Markdown, a row for each scene and number of samples, then the geometric means and
-/// the least gains over the scenes; then the share of images whose estimated error is within 0.7 to
-/// 1.5 of the true one. Ends with a line end.
+/// Returns a table in Markdown, a row for each scene and number of samples, then the geometric
+/// means and the least gains over the scenes; then the share of images whose estimated error is
+/// within 0.7 to 1.5 of the true one. Ends with a line end.
 std::string clean_table(const std::vector<CleanOfScene>& studies);
 
 }  // namespace bandsaw::coordinator

@@ -10,14 +10,14 @@
 
 namespace bandsaw::coordinator {
 
-/// Two tables in Markdown: the benefit of each technique, and the decrease of the error. Ends with
-/// a line end.
+/// Returns two tables in Markdown: the benefit of each technique, and the decrease of the error.
+/// Ends with a line end.
 std::string study_table(const std::vector<StudyOfScene>& studies);
 
-/// One line per point (RFC 4180), fractions and seconds, with a header.
+/// Returns one line per point (RFC 4180), fractions and seconds, with a header.
 std::string study_csv(const std::vector<StudyOfScene>& studies);
 
-/// Error against CPU seconds, one panel per scene.
+/// Returns a plot of the error against CPU seconds, one panel per scene.
 Plot study_plot(const std::vector<StudyOfScene>& studies);
 
 }  // namespace bandsaw::coordinator

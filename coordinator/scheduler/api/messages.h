@@ -233,7 +233,7 @@ struct AddToFilm {
   std::string worker;      ///< displayed name; empty: the worker is not known any more
   TileSamples tiles = {};  ///< of the band
 };
-/// Everything that this worker process rendered of the job is void: rebuild the film without it,
+/// Discard everything that this worker process rendered of the job: rebuild the film without it,
 /// and send PassMerged again for its passes as they become complete.
 struct Retract {
   JobId job = 0;

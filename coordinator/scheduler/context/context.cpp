@@ -4,7 +4,7 @@
 
 namespace bandsaw::coordinator {
 
-// One input advances the patience clock by at most a third of the heartbeat timeout.
+// One input advances the timeout clock by at most a third of the heartbeat timeout.
 Context::Context(SchedulerOptions scheduler_options)
     : options(std::move(scheduler_options)),
       clock(options.heartbeat_timeout_s / 3),
@@ -18,7 +18,7 @@ void Context::flush_revocations() {
 }
 
 bool Context::is_silent(const Worker& worker) const {
-  return clock.patience() - worker.heard_at > 2 * options.heartbeat_interval_s;
+  return clock.timeout_clock() - worker.heard_at > 2 * options.heartbeat_interval_s;
 }
 
 Reporter Context::reporter_of(const input::BandStored& in) const {
@@ -128,7 +128,7 @@ void Context::apply(const record::PriorityChanged& r) {
 void Context::apply(const record::HoldChanged& r) {
   if (Job* job = jobs.find(r.job)) {
     job->held = r.held;
-    job->held_at = clock.patience();
+    job->held_at = clock.timeout_clock();
   } else if (Sequence* sequence = sequences.find(r.job)) {
     sequence->held = r.held;
   }

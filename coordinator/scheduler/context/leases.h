@@ -28,7 +28,7 @@ struct Lease {
   std::uint64_t prepared = 0;
   Time progress_at = 0;  ///< wall clock: when rows_done last grew
   Time begun_at = 0;     ///< wall clock: when it became the first lease of its worker
-  /// Patience clock (scheduler_clock.h): when this lease, or a lease that its worker renders before
+  /// Timeout clock (scheduler_clock.h): when this lease, or a lease that its worker renders before
   /// it, last made progress.
   Time advanced_at = 0;
 };

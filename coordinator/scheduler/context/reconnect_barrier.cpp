@@ -5,7 +5,7 @@
 namespace bandsaw::coordinator {
 
 void ReconnectBarrier::begin_grace() {
-  until_ = context_.clock.patience() + context_.options.reattach_grace_s;
+  until_ = context_.clock.timeout_clock() + context_.options.reattach_grace_s;
 }
 
 void ReconnectBarrier::begin_after_restart() {
@@ -18,7 +18,7 @@ void ReconnectBarrier::worker_lost() {
     return;
   }
   lost_together_.clear();
-  const Time now = context_.clock.patience();
+  const Time now = context_.clock.timeout_clock();
   for (const auto& [id, worker] : context_.workers.all()) {
     const bool lately = now - worker.heard_at <= 2 * context_.options.heartbeat_timeout_s;
     if (worker.fell_silent && lately && !worker.draining && !worker.quarantined) {
@@ -36,7 +36,7 @@ void ReconnectBarrier::worker_connected(const Worker& worker) {
 }
 
 bool ReconnectBarrier::active() const {
-  return !awaited_.empty() && context_.clock.patience() < until_;
+  return !awaited_.empty() && context_.clock.timeout_clock() < until_;
 }
 
 void ReconnectBarrier::expire() {

@@ -40,7 +40,7 @@ class ReconnectBarrier {
   Context& context_;
   std::set<std::string> awaited_;        ///< instances
   std::set<std::string> lost_together_;  ///< instances; no worker was left
-  Time until_ = 0;                       ///< patience clock
+  Time until_ = 0;                       ///< time of the timeout clock
 };
 
 }  // namespace bandsaw::coordinator

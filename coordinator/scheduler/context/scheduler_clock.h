@@ -7,13 +7,13 @@ namespace bandsaw::coordinator {
 /// Two clocks made from the time that comes with the inputs. Neither ever goes back.
 class SchedulerClock {
  public:
-  /// `max_patience_step`: maximum advance of the patience clock by one input, in seconds.
-  explicit SchedulerClock(double max_patience_step) : max_patience_step_(max_patience_step) {}
+  /// `max_timeout_step`: maximum advance of the timeout clock by one input, in seconds.
+  explicit SchedulerClock(double max_timeout_step) : max_timeout_step_(max_timeout_step) {}
 
   void advance(Time now) {
     const double passed = started_ && now > wall_ ? now - wall_ : 0;
     wall_ = started_ ? wall_ + passed : now;
-    patience_ += passed < max_patience_step_ ? passed : max_patience_step_;
+    timeout_clock_ += passed < max_timeout_step_ ? passed : max_timeout_step_;
     started_ = true;
   }
 
@@ -22,14 +22,14 @@ class SchedulerClock {
 
   /// Returns the time for timeouts. After the coordinator was stopped, or its clock was set, hours
   /// can lie between two inputs while messages of the workers are still unread. So one input
-  /// advances this clock by at most max_patience_step.
-  Time patience() const { return patience_; }
+  /// advances this clock by at most max_timeout_step.
+  Time timeout_clock() const { return timeout_clock_; }
 
  private:
-  double max_patience_step_;
+  double max_timeout_step_;
   bool started_ = false;
   Time wall_ = 0;
-  Time patience_ = 0;
+  Time timeout_clock_ = 0;
 };
 
 }  // namespace bandsaw::coordinator

@@ -35,7 +35,7 @@ struct Worker {
   std::string doing;
   std::string reason;           ///< why it is disconnected, draining or quarantined
   Time connected_at = 0;        ///< wall clock
-  Time heard_at = 0;            ///< patience clock: last message
+  Time heard_at = 0;            ///< timeout clock: last message
   std::vector<LeaseId> leases;  ///< in the order granted, in which it renders them
   /// Revoked leases that its heartbeats may still name: it may be rendering one of them.
   std::set<LeaseId> revoked;

@@ -16,7 +16,7 @@ void LeaseLedger::grant(Worker& worker, Job& job, Pass& pass, const Band& band, 
 void LeaseLedger::add(Worker& worker, Job& job, const Pass& pass, Lease lease) {
   const SchedulerClock& clock = context_.clock;
   lease.begun_at = clock.wall();
-  lease.advanced_at = clock.patience();
+  lease.advanced_at = clock.timeout_clock();
   context_.leases.add(lease);
   worker.leases.push_back(lease.id);
   job.leases.insert(lease.id);
@@ -105,7 +105,7 @@ void LeaseLedger::end_all(const std::vector<LeaseId>& leases, Revoke revoke) {
 
 void LeaseLedger::note_progress(const Worker& worker, std::size_t from) {
   for (std::size_t i = from; i < worker.leases.size(); ++i) {
-    context_.leases.find(worker.leases[i])->advanced_at = context_.clock.patience();
+    context_.leases.find(worker.leases[i])->advanced_at = context_.clock.timeout_clock();
   }
 }
 

@@ -151,7 +151,7 @@ void JobLifecycle::storage_back() {
 void JobLifecycle::resume(Job& job) {
   context_.emit(record::StateChanged{job.id, JobState::kRunning, ""});
   for (const LeaseId id : job.leases) {
-    context_.leases.find(id)->advanced_at = context_.clock.patience();
+    context_.leases.find(id)->advanced_at = context_.clock.timeout_clock();
   }
   context_.jobs.mark_leasable(job);
   advance(job);
@@ -161,7 +161,7 @@ void JobLifecycle::revoke_from_held_jobs() {
   std::vector<LeaseId> late;
   for (const auto& [id, lease] : context_.leases.all()) {
     const Job& job = context_.jobs.at(lease.job);
-    if (job.held && context_.clock.patience() - job.held_at >= kPauseGrace_s &&
+    if (job.held && context_.clock.timeout_clock() - job.held_at >= kPauseGrace_s &&
         lease.rows_done < lease.band.rows.count()) {
       late.push_back(id);
     }

@@ -29,7 +29,7 @@ void BandFailures::band_failed(const input::BandFailed& in) {
   }
   Job& job = context_.jobs.at(lease->job);
   const Band band = lease->band;
-  worker->heard_at = context_.clock.patience();
+  worker->heard_at = context_.clock.timeout_clock();
   if (lease->audit) {
     audits_.give_up(*lease, *worker, in.reason);
     return;
@@ -68,7 +68,7 @@ void BandFailures::check_progress() {
   std::vector<LeaseId> stuck;
   const auto is_late = [this](const Lease& lease) {
     const bool rendered = lease.rows_done >= lease.band.rows.count();
-    return context_.clock.patience() - lease.advanced_at >
+    return context_.clock.timeout_clock() - lease.advanced_at >
            context_.options.progress_timeout_s * (rendered ? kUploadFactor : 1);
   };
   for (const auto& [id, lease] : context_.leases.all()) {
@@ -87,7 +87,7 @@ void BandFailures::check_progress() {
     Job& job = context_.jobs.at(lease->job);
     Worker& worker = *context_.workers.by_id(lease->worker);
     const std::string reason = absl::StrCat(
-        "no progress for ", std::lround(context_.clock.patience() - lease->advanced_at), " s");
+        "no progress for ", std::lround(context_.clock.timeout_clock() - lease->advanced_at), " s");
     if (lease->audit) {
       audits_.give_up(*lease, worker, reason);
       continue;
@@ -107,7 +107,7 @@ void BandFailures::check_renderable(Job& job) {
   if (context_.available.eligible() == 0) {
     return;  // no worker is connected: the time neither counts nor begins again
   }
-  const Time now = context_.clock.patience();
+  const Time now = context_.clock.timeout_clock();
   job.unable_since = job.unable_since.value_or(now);
   if (now - *job.unable_since >=
       context_.options.heartbeat_timeout_s + context_.options.reattach_grace_s) {

@@ -97,7 +97,7 @@ void Sessions::admit(Worker& worker, const input::Hello& in) {
   worker.draining = false;
   worker.doing.clear();
   worker.reason.clear();
-  worker.heard_at = context_.clock.patience();
+  worker.heard_at = context_.clock.timeout_clock();
   if (!context_.joined.contains(worker.instance)) {
     context_.emit(record::WorkerJoined{worker.instance});
   }
@@ -153,7 +153,7 @@ bool Sessions::keep_lease(Worker& worker, const WorkerHello::Held& held) {
     const bool same =
         lease->worker == worker.id && lease->job == held.job && lease->band == held.band;
     if (same) {
-      lease->advanced_at = context_.clock.patience();
+      lease->advanced_at = context_.clock.timeout_clock();
       lease->in_hello = true;
       context_.act(action::Lease{*worker.session, held.lease, job->id, job->spec.manifest,
                                  job->spec.settings, held.band, pass->tiles_of(held.band), 1,
@@ -176,7 +176,7 @@ void Sessions::heartbeat(const input::Heartbeat& in) {
   if (worker == nullptr) {
     return;
   }
-  worker->heard_at = context_.clock.patience();
+  worker->heard_at = context_.clock.timeout_clock();
   worker->doing = clean_text(in.doing, wire::kReasonBytes);
   std::erase_if(worker->revoked, [&](LeaseId id) {
     return std::none_of(in.leases.begin(), in.leases.end(),
@@ -203,7 +203,7 @@ void Sessions::draining(const input::Draining& in) {
   if (Worker* worker = context_.workers.by_session(in.session)) {
     worker->draining = true;
     worker->reason = clean_text(in.reason, wire::kReasonBytes);
-    worker->heard_at = context_.clock.patience();
+    worker->heard_at = context_.clock.timeout_clock();
     context_.available.update(*worker);
   }
 }
@@ -235,7 +235,7 @@ void Sessions::check_silence() {
   const double timeout_s = context_.options.heartbeat_timeout_s;
   std::vector<WorkerId> silent;
   for (const auto& [id, worker] : context_.workers.all()) {
-    if (worker.session && context_.clock.patience() - worker.heard_at > timeout_s) {
+    if (worker.session && context_.clock.timeout_clock() - worker.heard_at > timeout_s) {
       silent.push_back(id);
     }
   }

@@ -102,11 +102,11 @@ class Job {
 
   JobId id = 0;
   JobSpec spec;
-  std::uint32_t pixel_version = 0;  ///< with which it was begun; 0: unknown
+  std::uint32_t pixel_version = 0;  ///< the version with which the job was begun; 0: unknown
   JobState state = JobState::kRunning;
   std::int32_t priority = 0;
   bool held = false;                           ///< paused by a user
-  Time held_at = 0;                            ///< patience clock
+  Time held_at = 0;                            ///< time of the timeout clock
   std::string reason;                          ///< why the job is in its state
   std::string notice;                          ///< shown to users while the job runs
   std::string damage;                          ///< damage of its bands on disk, in this epoch
@@ -129,7 +129,7 @@ class Job {
   std::uint64_t backups_granted = 0;   ///< in this epoch
   std::deque<FailedAttempt> failures;  ///< the newest kMaxFailures
   std::deque<Suspicion> suspicions;    ///< the newest kMaxFailures
-  std::optional<Time> unable_since;    ///< patience clock: no connected worker may render it
+  std::optional<Time> unable_since;    ///< timeout clock: no connected worker may render it
   std::string log_of;                  ///< the worker that failed a band last
   std::vector<std::string> log;        ///< the last lines of its log
   std::vector<Audit> audits;           ///< open, at most kMaxAudits

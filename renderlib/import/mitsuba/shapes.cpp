@@ -35,7 +35,7 @@ std::optional<double> even_scale(const Transform& t) {
   return even ? std::optional<double>(scale) : std::nullopt;
 }
 
-/// The square [-1, 1]^2 in z = 0, as Mitsuba's rectangle.
+/// Returns the square [-1, 1]^2 in z = 0, as Mitsuba's rectangle.
 SourceMesh rectangle_mesh() {
   SourceMesh out;
   out.mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -45,7 +45,7 @@ SourceMesh rectangle_mesh() {
   return out;
 }
 
-/// The cube [-1, 1]^3; each side has uvs from (0, 0) to (1, 1).
+/// Returns the cube [-1, 1]^3; each side has uvs from (0, 0) to (1, 1).
 SourceMesh cube_mesh() {
   SourceMesh out;
   const auto side = [&](const Vec3& normal, const Vec3& u) {
@@ -80,7 +80,7 @@ void add_strip(std::uint32_t below, std::uint32_t above, PlyMesh& mesh) {
   }
 }
 
-/// The unit disk in z = 0; u is the distance from the centre, v the angle in turns.
+/// Returns the unit disk in z = 0; u is the distance from the centre, v the angle in turns.
 SourceMesh disk_mesh() {
   SourceMesh out;
   for (const float radius : {0.0f, 1.0f}) {
@@ -98,7 +98,7 @@ SourceMesh disk_mesh() {
   return out;
 }
 
-/// An open cylinder of radius 1 around z from 0 to 1; u is the angle in turns, v is z.
+/// Returns an open cylinder of radius 1 around z from 0 to 1; u is the angle in turns, v is z.
 SourceMesh cylinder_mesh() {
   SourceMesh out;
   for (const float z : {0.0f, 1.0f}) {
@@ -114,7 +114,7 @@ SourceMesh cylinder_mesh() {
   return out;
 }
 
-/// The unit sphere; u is the angle around z in turns, v that from +z in half turns.
+/// Returns the unit sphere; u is the angle around z in turns, v that from +z in half turns.
 SourceMesh sphere_mesh() {
   SourceMesh out;
   constexpr int kRows = kSegments / 2;

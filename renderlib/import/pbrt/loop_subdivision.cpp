@@ -94,7 +94,7 @@ absl::StatusOr<Topology> topology_of(std::size_t points, const std::vector<Trian
   return out;
 }
 
-/// Loop's weight of each neighbour of an inner vertex with `valence` of them.
+/// Returns Loop's weight of each neighbour of an inner vertex with `valence` of them.
 double weight_of(std::size_t valence) {
   return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * static_cast<double>(valence));
 }

@@ -9,7 +9,7 @@ namespace bandsaw::pbrt {
 
 absl::Status conductor(const MaterialSource& from, Surface& to);
 
-/// A metal under a clear coat: glTF's metal with clear coat stands for it.
+/// Converts a metal under a clear coat to glTF's metal with a clear coat.
 absl::Status coated_conductor(const MaterialSource& from, Surface& to);
 
 }  // namespace bandsaw::pbrt

@@ -166,17 +166,17 @@ TEST(RecentRate, CoversTheLastTenSeconds) {
   EXPECT_EQ(t.per_second(140), 0);
 }
 
-TEST(SchedulerClock, NeverGoesBackAndLimitsThePatienceOfOneInput) {
+TEST(SchedulerClock, NeverGoesBackAndLimitsTheTimeoutStepOfOneInput) {
   SchedulerClock clock(1);
   clock.advance(50);
   clock.advance(50.5);
   EXPECT_EQ(clock.wall(), 50.5);
-  EXPECT_EQ(clock.patience(), 0.5);
+  EXPECT_EQ(clock.timeout_clock(), 0.5);
   clock.advance(40);
   EXPECT_EQ(clock.wall(), 50.5);
   clock.advance(1050.5);
   EXPECT_EQ(clock.wall(), 1050.5);
-  EXPECT_EQ(clock.patience(), 1.5);
+  EXPECT_EQ(clock.timeout_clock(), 1.5);
 }
 
 }  // namespace
