@@ -63,7 +63,7 @@ void FilmThread::add_later(JobId id, const IncomingBand& incoming,
   job->second.rebuild = true;
 }
 
-void FilmThread::want_image(JobId id, std::uint64_t samples) {
+void FilmThread::request_image(JobId id, std::uint64_t samples) {
   if (const auto job = jobs_.find(id); job != jobs_.end()) {
     job->second.image_of = samples;
     work(id, job->second).IgnoreError();  // the scheduler was informed
@@ -131,7 +131,7 @@ absl::Status FilmThread::work(JobId id, OneJob& job) {
   if (!status.ok()) {
     // The scheduler pauses the job before the store can report that the disk is back.
     scheduler_.storage_failed(id, status);
-    store_.expect_trouble();
+    store_.test_disk_until_writable();
   }
   return status;
 }

@@ -40,7 +40,7 @@ class FilmThread {
   /// the log at the next retry.
   void add_later(JobId job, const IncomingBand& incoming, const std::vector<RowRange>& rows);
   /// Sends the image of samples [0, samples) to the store as soon as the film has them.
-  void want_image(JobId job, std::uint64_t samples);
+  void request_image(JobId job, std::uint64_t samples);
   /// Retries the additions and images that failed.
   void retry();
   /// Removes the bands of this worker process: builds the film again from the log of the others,

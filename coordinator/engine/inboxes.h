@@ -24,7 +24,7 @@ class SchedulerInbox {
   virtual void band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests) = 0;
   virtual void band_failed(IncomingBand incoming, const absl::Status& status) = 0;
   virtual void result_written(JobId job, const absl::Status& status) = 0;
-  /// The disk takes data again after StoreInbox::expect_trouble.
+  /// The disk takes data again after StoreInbox::test_disk_until_writable.
   virtual void disk_is_back() = 0;
   /// These jobs are final and exceed a limit of engine/collector.h.
   virtual void forget(std::vector<JobId> jobs) = 0;
@@ -48,7 +48,7 @@ class StoreInbox {
   virtual void drop_bands(JobId job) = 0;
   virtual void drop_job(JobId job) = 0;
   virtual void collect(std::vector<KeptJob> jobs) = 0;
-  virtual void expect_trouble() = 0;
+  virtual void test_disk_until_writable() = 0;
 };
 
 /// Messages to the film's thread; see FilmThread.
@@ -58,7 +58,7 @@ class FilmInbox {
   virtual void add_job(JobId job, const RenderSettings& settings, bool adaptive) = 0;
   virtual void plan(JobId job, std::uint64_t samples) = 0;
   virtual void add(IncomingBand incoming, std::vector<RowRange> rows) = 0;
-  virtual void want_image(JobId job, std::uint64_t samples) = 0;
+  virtual void request_image(JobId job, std::uint64_t samples) = 0;
   virtual void retry() = 0;
   virtual void retract(JobId job, std::uint64_t process) = 0;
   virtual void drop(JobId job) = 0;

@@ -29,7 +29,7 @@ class MemoryBudget {
     ~Share() { resize(0); }
 
     /// Changes the size of the share. Growing never fails, because the data is in memory already;
-    /// later shares are refused until the budget has room again.
+    /// later shares are refused until the budget has space again.
     void resize(std::uint64_t bytes) {
       if (budget_ != nullptr) {
         budget_->left_ += bytes_ - static_cast<std::int64_t>(bytes);

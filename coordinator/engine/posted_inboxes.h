@@ -52,7 +52,7 @@ class PostedStoreInbox final : public StoreInbox, public Posting<StoreThread> {
   void drop_bands(JobId job) override { call(&StoreThread::drop_bands, job); }
   void drop_job(JobId job) override { call(&StoreThread::drop_job, job); }
   void collect(std::vector<KeptJob> jobs) override { call(&StoreThread::collect, std::move(jobs)); }
-  void expect_trouble() override { call(&StoreThread::expect_trouble); }
+  void test_disk_until_writable() override { call(&StoreThread::test_disk_until_writable); }
 };
 
 class PostedFilmInbox final : public FilmInbox, public Posting<FilmThread> {
@@ -66,8 +66,8 @@ class PostedFilmInbox final : public FilmInbox, public Posting<FilmThread> {
     const JobId job = incoming.job;
     call(&FilmThread::add, job, std::move(incoming), std::move(rows));
   }
-  void want_image(JobId job, std::uint64_t samples) override {
-    call(&FilmThread::want_image, job, samples);
+  void request_image(JobId job, std::uint64_t samples) override {
+    call(&FilmThread::request_image, job, samples);
   }
   void retry() override { call(&FilmThread::retry); }
   void retract(JobId job, std::uint64_t process) override {

@@ -69,7 +69,7 @@ void SchedulerThread::absorb(const Step& step, IncomingBand* incoming) {
 void SchedulerThread::perform(const Action& action) {
   if (const auto* result = std::get_if<action::WriteResult>(&action)) {
     if (results_on_the_way_.insert(result->job).second) {
-      film_.want_image(result->job, result->samples);
+      film_.request_image(result->job, result->samples);
     }
   } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
     results_on_the_way_.erase(drop->job);
@@ -182,7 +182,7 @@ bool SchedulerThread::flush() {
 }
 
 void SchedulerThread::journal_failed(const absl::Status& status) {
-  store_.expect_trouble();
+  store_.test_disk_until_writable();
   if (!journal_status_.ok()) {
     return;
   }
@@ -193,7 +193,7 @@ void SchedulerThread::journal_failed(const absl::Status& status) {
 }
 
 void SchedulerThread::disk_is_full(const absl::Status& status) {
-  store_.expect_trouble();
+  store_.test_disk_until_writable();
   if (!disk_status_.ok()) {
     return;
   }

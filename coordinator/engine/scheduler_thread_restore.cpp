@@ -33,7 +33,7 @@ absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
     disk_is_full(disk);
   }
   for (const auto& [id, status] : failed) {
-    store_.expect_trouble();
+    store_.test_disk_until_writable();
     storage_failed(id, status);
   }
   return absl::OkStatus();

@@ -54,7 +54,7 @@ void StoreThread::append(IncomingBand incoming) {
   }
   const absl::Status written = write(job->second, incoming);
   if (!written.ok()) {
-    expect_trouble();
+    test_disk_until_writable();
     scheduler_.band_failed(std::move(incoming), written);
     return;
   }
@@ -114,7 +114,7 @@ void StoreThread::settle(OpenJob& job) {
     if (synced.ok()) {
       compare(std::move(incoming));
     } else {
-      expect_trouble();
+      test_disk_until_writable();
       scheduler_.band_failed(std::move(incoming), synced);
     }
   }
@@ -138,7 +138,7 @@ void StoreThread::write_result(JobId id, const Finished& finished) {
     written = coordinator::write_result(finished.image, folder_.job(id), folder_.result(id));
   }
   if (!written.ok()) {
-    expect_trouble();
+    test_disk_until_writable();
   }
   scheduler_.result_written(id, written);
 }
@@ -195,7 +195,7 @@ void StoreThread::collect(const std::vector<KeptJob>& jobs) {
   }
 }
 
-void StoreThread::expect_trouble() {
+void StoreThread::test_disk_until_writable() {
   if (!trouble_) {
     trouble_ = true;
     tested_at_ = clock_.now();

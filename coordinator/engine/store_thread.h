@@ -57,8 +57,8 @@ class StoreThread {
   /// Removes blobs and folders that are no longer needed, and sends the scheduler the jobs that
   /// exceed a limit of engine/collector.h. `jobs`: all known jobs.
   void collect(const std::vector<KeptJob>& jobs);
-  /// A write failed: sends disk_is_back once the disk takes data.
-  void expect_trouble();
+  /// For a failed write: tests the disk until it takes data, then sends disk_is_back.
+  void test_disk_until_writable();
 
  private:
   struct OpenJob {

@@ -85,7 +85,7 @@ class BlobStore : public BlobSource {
   };
   /// Starts writing a blob. `offset` > 0 resumes after that many bytes of an earlier upload.
   /// FAILED_PRECONDITION: fewer bytes are there. RESOURCE_EXHAUSTED: the blob is too large, or the
-  /// disk has no room for it.
+  /// disk has no space for it.
   absl::StatusOr<Writer> write(const wire::Digest& digest, std::uint64_t size,
                                std::uint64_t offset = 0);
 

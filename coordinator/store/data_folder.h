@@ -39,7 +39,7 @@ class DataFolder {
   File lock_;
 };
 
-/// Returns OK if the disk has room for `bytes`, by default those of the largest band, and accepts
+/// Returns OK if the disk has space for `bytes`, by default those of the largest band, and accepts
 /// data. Tests this with a file: reserves space, writes, syncs, removes.
 absl::Status probe_disk(const std::string& folder, std::uint64_t bytes = wire::kBandBytes);
 

@@ -37,7 +37,8 @@ SurfacePoint on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit, boo
   return p;
 }
 
-/// `ready` is its precomputed unit normal, if there is one; zero if it has no normal.
+/// Returns the surface of a triangle or quad. `ready` is its precomputed unit normal or nullptr;
+/// the normal is zero if the shape has no area.
 SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, const Vec3* ready,
                      MaterialId material, const Ray& ray, const Hit& hit) {
   SurfacePoint p;

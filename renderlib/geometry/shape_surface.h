@@ -63,8 +63,8 @@ struct Placement {
   std::array<Vec3, 3> rows;
   std::array<Vec3, 3> cofactors;
   double determinant;
-  /// True if the placement scales different directions so differently that the rounding of rays
-  /// that are transformed back to the primitive's own space matters there.
+  /// True if the condition number of the placement is so large that rounding matters in rays that
+  /// are transformed back to the primitive's own space (README.md, "Squashed space").
   bool squashes;
   double moved;  ///< the largest component of the translation
 };

@@ -2,10 +2,10 @@
 
 // Groups of pixels that share their paths (integrate/path_reuse.h), in the scenes that do so.
 //
-// They are the groups of the pattern of tiles (render/tile_pattern.h). In a tile that the edge of
-// the image cuts, the pixels of each half form as many groups as they fill, in the order of the
-// pattern. A group is a function of the size of the image and of the place of its half tile in it,
-// so bands of any rows agree about it.
+// In a whole tile, they are the groups of the pattern (render/tile_pattern.h). In a tile at the
+// edge of the image, the pixels of each half are divided into groups of at most eight, in the order
+// of the pattern. A group is a function of the size of the image and of the place of its half tile
+// in it, so bands of any rows agree about it.
 
 #include <array>
 #include <cstdint>

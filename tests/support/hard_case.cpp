@@ -39,7 +39,7 @@ void at_least(std::string_view id, std::string_view what, double figure, double 
   print(id, std::string(what) + ": " + text(figure) + " >= " + text(limit));
 }
 
-void holds(std::string_view id, std::string_view what) {
+void report_hard_case(std::string_view id, std::string_view what) {
   if (!::testing::Test::HasFailure()) {
     print(id, std::string(what));
   }

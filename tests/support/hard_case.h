@@ -7,13 +7,14 @@
 
 namespace bandsaw::test {
 
-/// Fails unless `figure` <= `limit`; NaN fails. `id`: "S1". `what`: description of the figure.
+/// Fails unless `figure` <= `limit`; NaN fails. `id`: the id of the hard case in cases.txt, such as
+/// "S1". `what`: description of the figure.
 void at_most(std::string_view id, std::string_view what, double figure, double limit);
 /// Fails unless `figure` >= `limit`; NaN fails.
 void at_least(std::string_view id, std::string_view what, double figure, double limit);
-/// Reports a property that the test has asserted case by case, with the count: "no leak of 20,000
-/// rays". Not printed if the test has failed.
-void holds(std::string_view id, std::string_view what);
+/// Prints a property of the hard case `id` that the test has asserted, with the count: "no leak of
+/// 20,000 rays". Not printed if the test has failed.
+void report_hard_case(std::string_view id, std::string_view what);
 
 /// Returns the number of tries: `few` in the default tests, `full` if BANDSAW_FULL_COUNTS is set in
 /// the environment (label hard_cases_full).

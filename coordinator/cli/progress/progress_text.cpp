@@ -116,10 +116,10 @@ std::vector<std::string> worker_lines(const Progress& progress, std::size_t most
     name_columns = std::clamp(columns(printable(worker.name)), name_columns, kMaxName);
   }
   for (std::size_t i = 0; i < workers.size() && lines.size() < most; ++i) {
-    const bool no_room = lines.size() + 1 == most && i + 1 < workers.size();
-    lines.push_back(no_room ? absl::StrCat("   … and ", workers.size() - i, " more workers")
+    const bool is_full = lines.size() + 1 == most && i + 1 < workers.size();
+    lines.push_back(is_full ? absl::StrCat("   … and ", workers.size() - i, " more workers")
                             : worker_line(workers[i], name_columns));
-    if (no_room) {
+    if (is_full) {
       break;
     }
   }

@@ -40,7 +40,7 @@ absl::Status make_folder(const std::string& folder) {
                : absl::OkStatus();
 }
 
-/// The dashboard's logins and link are derived from the users' secret.
+/// Renews the role's secret in the identity, the join strings and the dashboard's logins and link.
 absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::Role role,
                                                const ServedDashboard& web) {
   ASSIGN_OR_RETURN(RenewedSecret renewed, rotate_secret(folder, role));
@@ -51,13 +51,14 @@ absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::
   return renewed;
 }
 
-/// A full disk does not prevent the start: then the file of an earlier start remains.
+/// Returns OK if the disk is full, and logs the error: then the file of an earlier start remains.
 absl::Status unless_full(const absl::Status& written) {
   if (!absl::IsResourceExhausted(written)) {
     return written;
   }
-  spdlog::error("{}; it is as it was, and may name another address: start again when there is room",
-                written.ToString());
+  spdlog::error(
+      "{}; the file is unchanged and may name another address; start again when the disk has space",
+      written.ToString());
   return absl::OkStatus();
 }
 

@@ -44,7 +44,8 @@ void JobLifecycle::advance(Job& job) {
 
 void JobLifecycle::pass_merged(const input::PassMerged& in) {
   Job* job = context_.jobs.find(in.job);
-  // An error of more samples than are complete was measured on pixels that have been freed since.
+  // If the error is of more samples than are complete, it was measured on pixels that are free
+  // again.
   if (job == nullptr || is_final(job->state) || in.samples < job->error_samples ||
       in.samples > job->complete_samples()) {
     return;

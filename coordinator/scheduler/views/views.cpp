@@ -262,7 +262,7 @@ std::vector<std::string> Views::why(JobId id, Time now) const {
   return lines;
 }
 
-/// The sentences about its frames, and those about the first frame that is rendered.
+/// Returns the sentences about its frames, then those about the first frame that is being rendered.
 std::vector<std::string> Views::why_of_sequence(const Sequence& sequence, Time now) const {
   if (sequence.state == JobState::kDone) {
     return {"it is done"};

@@ -9,14 +9,14 @@
 
 namespace bandsaw::mitsuba {
 
-/// Returns the colour of a spectrum: that of a light itself, that of a surface under D65. Channels
-/// below 0 become 0.
+/// Returns the colour of a spectrum. The spectrum of a surface is multiplied by D65, that of a
+/// light is taken as it is. Channels below 0 become 0.
 Rgb rgb_of(const Spectrum& spectrum, ColorOf of);
 Rgb rgb_of(const BlackBody& body);
 /// Reads the parameters of a spectrum of type "regular" or "irregular".
 absl::StatusOr<Spectrum> sampled_spectrum(const Parameters& from);
 
-/// Returns the index of refraction of a named material ("bk7"), or that of a number.
+/// Returns the index of refraction that a parameter gives as a number or by the name of a material.
 absl::StatusOr<double> index_of_refraction(const Parameters& from, const std::string& name,
                                            const std::string& otherwise);
 

@@ -179,7 +179,7 @@ TEST(Agreement, B4_HoldsForRaysAlongAxesAndWithinFaces) {
     return ray;
   });
   EXPECT_EQ(agreement.different, 0);
-  holds("B4", "20,000 rays with 0, -0, 1e-30 answered as by testing all");
+  report_hard_case("B4", "20,000 rays with 0, -0, 1e-30 answered as by testing all");
 }
 
 Vec3 scatter(Random& random, double size) { return size * random_point(random); }

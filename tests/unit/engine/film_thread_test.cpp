@@ -53,7 +53,7 @@ class RecordedStore : public StoreInbox {
   void drop_bands(JobId) override {}
   void drop_job(JobId) override {}
   void collect(std::vector<KeptJob>) override {}
-  void expect_trouble() override { ++troubles; }
+  void test_disk_until_writable() override { ++troubles; }
 
   std::vector<Image> images;
   std::optional<Image> samples;
@@ -141,7 +141,7 @@ TEST_F(FilmThreadTest, BandsOfAWorkerCanBeRetracted) {
   EXPECT_EQ(scheduler_.merged.size(), 2u);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 32, 16, 32}));
-  thread_.want_image(1, 32);
+  thread_.request_image(1, 32);
   ASSERT_EQ(store_.images.size(), 1u);
   EXPECT_EQ(store_.images[0].pixels, local(32));
 }
@@ -163,7 +163,7 @@ TEST_F(FilmThreadTest, DamagedBandsAreLeftOutAndReported) {
   }
   ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
   EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 16}));
-  thread_.want_image(1, 16);
+  thread_.request_image(1, 16);
   ASSERT_EQ(store_.images.size(), 1u);
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
@@ -184,7 +184,7 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsMadeOnTheNextRequest) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(remove_file(folder_.bands(1)).ok());
-  thread_.want_image(1, 16);
+  thread_.request_image(1, 16);
   EXPECT_TRUE(store_.images.empty());
   ASSERT_EQ(scheduler_.damaged.size(), 1u) << "what lies beyond is not needed any more";
   BandLogReport report;
@@ -192,7 +192,7 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsMadeOnTheNextRequest) {
       folder_.job(1), folder_.bands(1), [](BandRecord, std::uint64_t) {}, report));
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   EXPECT_TRUE(store_.images.empty());
-  thread_.want_image(1, 16);
+  thread_.request_image(1, 16);
   ASSERT_EQ(store_.images.size(), 1u);
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
@@ -204,7 +204,7 @@ TEST_F(FilmThreadTest, LoggedBandsAreReadWhenTheFilmHasRoom) {
   EXPECT_TRUE(scheduler_.merged.empty());
   thread_.retry();
   EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16}));
-  thread_.want_image(1, 16);
+  thread_.request_image(1, 16);
   ASSERT_EQ(store_.images.size(), 1u);
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
@@ -212,7 +212,7 @@ TEST_F(FilmThreadTest, LoggedBandsAreReadWhenTheFilmHasRoom) {
 TEST_F(FilmThreadTest, AddsOnlyTheRowsThatAreNew) {
   ASSERT_TRUE(add({0, 16}, {2, 5}).ok());
   ASSERT_TRUE(add({0, 16}, {0, 8}, {{0, 2}, {5, 8}}).ok());
-  thread_.want_image(1, 16);
+  thread_.request_image(1, 16);
   ASSERT_EQ(store_.images.size(), 1u);
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
@@ -221,14 +221,14 @@ TEST_F(FilmThreadTest, AnImageLeavesOutRowsWithLaterSamples) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(add({16, 32}, {2, 5}, {{3, 5}}).ok());
-  thread_.want_image(1, 16);
+  thread_.request_image(1, 16);
   ASSERT_EQ(store_.images.size(), 1u);
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
   ASSERT_TRUE(add({0, 16}, {0, 7}).ok());
-  thread_.want_image(1, 16);
+  thread_.request_image(1, 16);
   EXPECT_TRUE(store_.images.empty());
   ASSERT_TRUE(add({0, 16}, {7, 8}).ok());
   ASSERT_EQ(store_.images.size(), 1u);
@@ -242,7 +242,7 @@ TEST_F(FilmThreadTest, AnAdaptiveJobHasTheNumberOfSamplesOfEachPixel) {
   even.set(0, {16, 32});
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(thread_.add(1, logged({16, 32}, {0, 8}, even), {{0, 8}}).ok());
-  thread_.want_image(1, 32);
+  thread_.request_image(1, 32);
   ASSERT_TRUE(store_.samples.has_value());
   ASSERT_EQ(store_.samples->pixels.size(), 48u);
   for (std::uint32_t y = 0; y < 8; ++y) {
@@ -262,7 +262,7 @@ TEST_F(FilmThreadTest, BandsRefusedByAFullDiskAreAddedLater) {
     EXPECT_EQ(thread_.add(1, std::move(first), {{0, 4}}).code(),
               absl::StatusCode::kResourceExhausted);
     EXPECT_FALSE(thread_.add(1, std::move(second), {{4, 8}}).ok());
-    thread_.want_image(1, 16);
+    thread_.request_image(1, 16);
     EXPECT_GE(scheduler_.failed, 2);
     EXPECT_EQ(store_.troubles, scheduler_.failed) << "the store tests the disk";
   }
@@ -278,7 +278,7 @@ TEST_F(FilmThreadTest, ADroppedJobIgnoresBands) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   thread_.drop(1);
   EXPECT_TRUE(add({16, 32}, {0, 8}).ok());
-  thread_.want_image(1, 16);
+  thread_.request_image(1, 16);
   EXPECT_TRUE(store_.images.empty());
 }
 
@@ -315,7 +315,7 @@ TEST_F(FilmThreadTest, AttributionIsSentWithTheImageAndReadFromItsFileLater) {
   IncomingBand incoming = logged({0, 16}, {0, 8});
   incoming.worker = "anna";
   ASSERT_TRUE(thread_.add(1, std::move(incoming), {{0, 8}}).ok());
-  thread_.want_image(1, 16);
+  thread_.request_image(1, 16);
   const std::vector<RowsBy> by_anna = {{{0, 8}, "anna"}};
   EXPECT_EQ(store_.attribution, by_anna);
   thread_.drop(1);

@@ -221,7 +221,7 @@ TEST(RepairLight, L9InvalidTexelsAreRepairedAndCounted) {
   EXPECT_EQ(repair_light(image), 0u);
   ImageTexture bad = test::float_image(2, 2, [&](auto, auto) { return kInf; });
   EXPECT_EQ(repair_light(bad), 4u) << "nothing is left, but nothing is infinite either";
-  test::holds("L9", "repaired and counted");
+  test::report_hard_case("L9", "repaired and counted");
 }
 
 /// One triangle, and lights at two nodes, one of which is moved, rotated and scaled.

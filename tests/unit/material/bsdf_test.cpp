@@ -107,9 +107,10 @@ TEST(Bsdf, M14ValuesAreTheReflectanceTimesTheDensity) {
     EXPECT_NEAR(value.value.g / value.pdf, 0.25, 1e-6);
     EXPECT_NEAR(value.value.b / value.pdf, 1, 1e-6);
   }
-  test::holds("M14",
-              "value / density is the reflectance within 1e-6; what would leave below the horizon "
-              "is absorbed, as in the books");
+  test::report_hard_case(
+      "M14",
+      "value / density is the reflectance within 1e-6; what would leave below the horizon "
+      "is absorbed, as in the books");
 }
 
 TEST(Bsdf, M10NoLightPassesOpaqueSurfacesForAnyShadingNormal) {
@@ -133,7 +134,7 @@ TEST(Bsdf, M10NoLightPassesOpaqueSurfacesForAnyShadingNormal) {
       ASSERT_TRUE(!drawn || wo.z * drawn->wi.z > 0);
     }
   }
-  test::holds("M10", "nothing passes in 60,000 pairs of directions");
+  test::report_hard_case("M10", "nothing passes in 60,000 pairs of directions");
 }
 
 TEST(Bsdf, MirrorsAndGlassLoseNothingUnderAnyShadingNormal) {
@@ -171,7 +172,7 @@ TEST(Bsdf, M6GlassOfIndexOneIsInvisible) {
   ASSERT_TRUE(through);
   EXPECT_NEAR(length(through->wi + wo), 0, 1e-14);
   EXPECT_EQ(through->weight, gray(1));
-  test::holds("M6", "smooth: direction within 1e-14, weight 1");
+  test::report_hard_case("M6", "smooth: direction within 1e-14, weight 1");
 }
 
 TEST(Bsdf, M1CornersOfTheUnitSquareGiveFiniteSamples) {
@@ -190,7 +191,7 @@ TEST(Bsdf, M1CornersOfTheUnitSquareGiveFiniteSamples) {
       }
     }
   }
-  test::holds("M1", "0 NaN at the corners");
+  test::report_hard_case("M1", "0 NaN at the corners");
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TEST(Ggx, M3TheDistributionIsExactHoweverSmoothTheSurface) {
       ASSERT_NEAR(ggx_distribution(h, alpha) / truth, 1, 1e-13);
     }
   }
-  test::holds("M3", "5,000 values within 1e-13");
+  test::report_hard_case("M3", "5,000 values within 1e-13");
 }
 
 // Weak white furnace: the facets that are visible from o cover the whole direction.
@@ -64,7 +64,7 @@ TEST(Ggx, M5WeightsOfVisibleNormalsStayInTheUnitIntervalEvenAtGrazingDirections)
       }
     }
   }
-  test::holds("M5", "40,000 weights in [0, 1 + 1e-9]");
+  test::report_hard_case("M5", "40,000 weights in [0, 1 + 1e-9]");
 }
 
 // Single scattering with F = 1: by quadrature in another program; in closed form 1 - ln 2 at alpha

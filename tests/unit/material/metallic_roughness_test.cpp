@@ -209,7 +209,7 @@ TEST(MetallicRoughness, M2M5EdgesOfTheirRangesGiveFiniteNumbers) {
       }
     }
   }
-  test::holds("M2", "0 NaN at the edges of every range (glTF)");
+  test::report_hard_case("M2", "0 NaN at the edges of every range (glTF)");
 }
 
 TEST(MetallicRoughness, SmoothDielectricsReflectFresnelAtNormalIncidence) {
@@ -242,7 +242,7 @@ TEST(RoughGlass, M6OfIndexOneIsInvisible) {
   const auto through = sample(bsdf(Dielectric{1, 0.5}, wo), 0.3, 0.2, 0.1);
   ASSERT_TRUE(through && through->delta);
   EXPECT_NEAR(length(through->wi + wo), 0, 1e-14);
-  test::holds("M6", "rough: not there");
+  test::report_hard_case("M6", "rough: not there");
 }
 
 TEST(ShadingNormal, AFlatTexelChangesNothingAndATiltedOneTiltsAlongTheUvs) {
@@ -279,7 +279,7 @@ TEST(ShadingNormal, T15_UvsWithoutAreaGiveAUnitNormal) {
     const Vec3 n = mapped_normal(p, {0.9f, 0.1f, 0.4f}, 2);
     EXPECT_NEAR(length(n), 1, 1e-12);
   }
-  test::holds("T15", "a unit normal without NaN");
+  test::report_hard_case("T15", "a unit normal without NaN");
 }
 
 TEST(ShadingNormal, NormalsThatFaceAwayAreBentAsLittleAsNeeded) {

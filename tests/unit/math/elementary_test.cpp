@@ -230,7 +230,7 @@ TEST(ElementaryBits, Y4_AreTheOnesRecorded) {
     hash_in(hash, pow(x, random.uniform(-3, 3)));
   }
   EXPECT_EQ(hash, 11035229411989415933u);
-  test::holds("Y4", "one hash, recorded");
+  test::report_hard_case("Y4", "one hash, recorded");
 }
 
 }  // namespace

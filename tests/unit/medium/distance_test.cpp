@@ -135,7 +135,7 @@ TEST(FreeFlight, V10_WeightsStayBounded) {
       }
     }
   }
-  test::holds("V10", "24,000 weights <= 3");
+  test::report_hard_case("V10", "24,000 weights <= 3");
 }
 
 /// Both ends of the range of u give finite distances.
@@ -150,7 +150,7 @@ TEST(FreeFlight, V2_ExtremeNumbersGiveFiniteDistances) {
       EXPECT_GT(flight.pdf(far), 0);
     }
   }
-  test::holds("V2", "finite at u = 0 and the largest");
+  test::report_hard_case("V2", "finite at u = 0 and the largest");
 }
 
 TEST(Equiangular, DistancesFollowThePdf) {
@@ -182,7 +182,7 @@ TEST(Equiangular, V8_IsFiniteForALightOnTheRay) {
       }
     }
   }
-  test::holds("V8", "finite on the ray, at its start, far away");
+  test::report_hard_case("V8", "finite on the ray, at its start, far away");
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST(Film, A6_AnyPartitionInAnyOrderGivesTheSameBits) {
     }
     expect_image(film, samples);
   }
-  test::holds("A6", "any partition in any order: same bits");
+  test::report_hard_case("A6", "any partition in any order: same bits");
 }
 
 TEST(Film, GivesTheSameOnDisk) {

@@ -124,7 +124,7 @@ TEST(RenderBand, C5_PathReuseGivesTheSameBitsForAnyBandsAndThreads) {
       ASSERT_EQ(some[k], takes_part ? whole[k] : 0) << x << ", " << y;
     }
   }
-  test::holds("C5", "same bits in bands of 1, 3, 7 rows where pixels share paths");
+  test::report_hard_case("C5", "same bits in bands of 1, 3, 7 rows where pixels share paths");
 }
 
 // Light sampling, BSDF sampling, both, and both with guided directions have the same mean and
@@ -166,7 +166,7 @@ TEST(RenderBand, C5_RowsAreTheSameInEveryBand) {
     }
     EXPECT_EQ(sums, whole.sums) << rows;
   }
-  test::holds("C5", "same bits in bands of 1, 3, 7 rows");
+  test::report_hard_case("C5", "same bits in bands of 1, 3, 7 rows");
 }
 
 TEST(RenderBand, A7_ANodeIsTheSumOfItsHalvesToTheBit) {
@@ -181,7 +181,7 @@ TEST(RenderBand, A7_ANodeIsTheSumOfItsHalvesToTheBit) {
     }
     EXPECT_EQ(whole.counters.rays, left.counters.rays + right.counters.rays);
   }
-  test::holds("A7", "sums of halves equal to the bit");
+  test::report_hard_case("A7", "sums of halves equal to the bit");
 }
 
 TEST(RenderBand, R6A7_BandsInAnyOrderEqualOneRender) {
@@ -210,7 +210,7 @@ TEST(RenderBand, R6A7_BandsInAnyOrderEqualOneRender) {
   }
   EXPECT_EQ(film->snapshot().image.pixels, straight->film.snapshot().image.pixels);
   EXPECT_EQ(film->snapshot().least_samples, samples);
-  test::holds("R6", "bands in any order: same bits");
+  test::report_hard_case("R6", "bands in any order: same bits");
 }
 
 TEST(RenderBand, SeedsAndPixelsGiveDifferentSamples) {
@@ -275,7 +275,7 @@ TEST(RenderBand, A3_OverflowingSamplesAreCountedAndDiscarded) {
   for (const double sum : pixels->sums) {
     EXPECT_TRUE(std::isfinite(sum));
   }
-  test::holds("A3", "left out of the sums, counted, the first one named");
+  test::report_hard_case("A3", "left out of the sums, counted, the first one named");
 }
 
 TEST(RenderBand, A3_APixelIsTheMeanOfItsOtherSamples) {
@@ -294,7 +294,7 @@ TEST(RenderBand, A3_APixelIsTheMeanOfItsOtherSamples) {
   for (const double sum : pixels->sums) {
     EXPECT_NEAR(sum / 64, 1, 1e-12);
   }
-  test::holds("A3", "the pixel is the mean of the others of each block");
+  test::report_hard_case("A3", "the pixel is the mean of the others of each block");
 }
 
 TEST(RenderBand, CountsTruncatedPathsAndDroppedPrimitives) {

@@ -91,8 +91,8 @@ TEST(Texture, TX2TX3LookupsNeverReadOutsideTheImage) {
       }
     }
   }
-  test::holds("TX2", "inside for -1e-20");
-  test::holds("TX3", "inside up to 1e308");
+  test::report_hard_case("TX2", "inside for -1e-20");
+  test::report_hard_case("TX3", "inside up to 1e308");
 }
 
 TEST(Texture, TX1AtTheCornersAreTheCornerTexels) {
@@ -101,7 +101,7 @@ TEST(Texture, TX1AtTheCornersAreTheCornerTexels) {
   EXPECT_EQ(at(texture, 1, 0), 23);
   EXPECT_EQ(at(texture, 0, 1), 0);
   EXPECT_EQ(at(texture, 1, 1), 3);
-  test::holds("TX1", "the corner texels");
+  test::report_hard_case("TX1", "the corner texels");
 }
 
 TEST(Texture, WrapModesRepeatClampAndMirror) {
@@ -206,7 +206,7 @@ TEST(Texture, TX7HasNoSeamOnASphere) {
     EXPECT_NEAR(on_sphere({1e-12, pole, 0}), row + 3 * 31.5f / 255, kTwoSteps);
     EXPECT_NEAR(on_sphere({-1e-12, pole, 1e-13}), row, kTwoSteps);
   }
-  test::holds("TX7", "no seam");
+  test::report_hard_case("TX7", "no seam");
 }
 
 TEST(Texture, TX3FarRepetitionsAreWithinAHundredthOfATexel) {
@@ -216,7 +216,7 @@ TEST(Texture, TX3FarRepetitionsAreWithinAHundredthOfATexel) {
       EXPECT_NEAR(at(texture, u + turns, 0.5), at(texture, u, 0.5), 0.01) << turns << " " << u;
     }
   }
-  test::holds("TX3", "within 0.01 texel");
+  test::report_hard_case("TX3", "within 0.01 texel");
 }
 
 TEST(Texture, TX6MayBeASinglePixelOrALine) {
@@ -225,7 +225,7 @@ TEST(Texture, TX6MayBeASinglePixelOrALine) {
   for (const double u : {0.0, 1.0, 0.99999, -1e-20}) {
     EXPECT_EQ(at(line, u, u), 1);
   }
-  test::holds("TX6", "one pixel, a line");
+  test::report_hard_case("TX6", "one pixel, a line");
 }
 
 }  // namespace
