@@ -1,7 +1,7 @@
 #pragma once
 
-// BVH over loose shapes in one space: those of a group, or those of the world together with its
-// instances (top_tree.h).
+// BVH over loose shapes in one space: the shapes of a group, or the shapes of the world together
+// with its instances (top_tree.h).
 
 #include <cstdint>
 #include <vector>

@@ -17,8 +17,8 @@ inline constexpr double kPixelsPerDegree = 67;
 /// the same size.
 Plane flip(const Image& image, const Image& reference, double pixels_per_degree = kPixelsPerDegree);
 
-/// Returns the maximum error over a range of exposures, from the one that shows the reference's
-/// maximum to the one that shows its median, through a film curve (section 3).
+/// Returns the maximum error over a range of exposures and through a film curve (section 3). The
+/// range is from the exposure for the reference's maximum to that for its median.
 Plane hdr_flip(const Image& image, const Image& reference,
                double pixels_per_degree = kPixelsPerDegree);
 

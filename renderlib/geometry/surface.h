@@ -80,8 +80,8 @@ inline Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, double t_m
 /// surface by `target_offset` (SurfacePoint::offset of the target; 0 for a point in space).
 Ray spawn_ray_to(const SurfacePoint& from, const Vec3& target, double target_offset);
 
-/// Returns a shadow ray to another surface: it ends off that surface, on the side that faces
-/// `from`, so that the surface itself never occludes it, even if seen edge-on.
+/// Returns a shadow ray to another surface. The ray ends beside that surface, on the side that
+/// faces `from`, so that the surface never occludes it, even if seen edge-on.
 Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& target);
 
 /// Returns SurfacePoint::offset of a point at `position` on a primitive of `size` in world space,

@@ -65,7 +65,7 @@ struct Dielectric {
 struct Emissive {
   TextureId radiance{};
   bool one_sided = false;  ///< only to the side of the geometric normal
-  /// A lamp: the camera does not see it, and it stops no light. Scattered rays that meet it from a
+  /// The camera does not see the surface, and it stops no light. Scattered rays that meet it from a
   /// side to which it emits receive its radiance and go on.
   bool hidden = false;
 };

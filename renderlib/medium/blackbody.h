@@ -19,8 +19,8 @@ inline constexpr double kDarkKelvin = 100;
 
 /// Returns linear sRGB of a black body at `kelvin` (>= 0, finite): Planck's spectrum by the colour
 /// matching functions of CIE 1931. Colours outside of the gamut (below 1900 K) lose their negative
-/// channel and keep their luminance. Black below 100 K; the hue is that of 500 K below 500 K, where
-/// it is pure red, and that of 100,000 K above.
+/// channel and keep their luminance. Black below 100 K. Below 500 K the hue is that of 500 K, which
+/// is pure red; above 100,000 K it is that of 100,000 K.
 Rgb blackbody(double kelvin, BlackbodyScale scale);
 
 /// The same, precomputed. Between its temperatures, 1/256 of a power of 2 apart, it is
@@ -28,7 +28,7 @@ Rgb blackbody(double kelvin, BlackbodyScale scale);
 class BlackbodyTable {
  public:
   explicit BlackbodyTable(BlackbodyScale scale);
-  /// `kelvin` >= 0. Black below 100 K; above 131,072 K that of 131,072 K.
+  /// Returns the colour at `kelvin` >= 0: black below 100 K, and above 131,072 K as at 131,072 K.
   Rgb at(double kelvin) const;
 
  private:

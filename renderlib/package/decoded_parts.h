@@ -1,7 +1,7 @@
 #pragma once
 
-// The large parts of packages that are in use. A package that is decoded later shares those that it
-// has as well, so that of the frames of a sequence only what changes is read.
+// The large parts of packages that are in use. If a package that is decoded later has equal parts,
+// it shares them. So for each frame of a sequence only the parts that change are read.
 
 #include <cstddef>
 #include <map>

@@ -19,8 +19,8 @@ class FrameChooser {
 
   /// Returns the running frame jobs of a sequence in the order in which they are offered to the
   /// worker: the frame that it renders already, frames that no connected worker renders, frames of
-  /// others. Sets for each of them whether one worker is to render it (Job::alone), and gives new
-  /// ones the costs and rates that were measured in earlier frames.
+  /// others. Sets Job::alone of each frame job: whether one worker is to render it. Copies the
+  /// costs and rates measured in earlier frames to new frame jobs.
   std::vector<Job*> order_for(const Worker& worker, const Sequence& sequence);
   /// MUST be called when a worker is granted a band of a frame job.
   void joined(const Worker& worker, const Job& job);

@@ -1,5 +1,5 @@
-// The frames of a job: one of them large, a strip with all of them that fills as they are done, and
-// play.
+// Shows the frames of a job: one frame large, and a strip with all frames that are done; plays
+// them.
 
 import {get, post} from "./api.js";
 import {el, text} from "./dom.js";

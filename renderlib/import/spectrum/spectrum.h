@@ -42,8 +42,8 @@ Rgb3 light_rgb_of_luminance_1(const Sampled& light);
 /// Returns the luminance of linear RGB.
 double luminance(const Rgb3& rgb);
 
-/// Returns the colour of a reflectance, or any other factor: that of D65 times the spectrum over
-/// that of D65. A constant spectrum has three equal channels.
+/// Returns the colour of a reflectance, or any other factor: the RGB of D65 times `factor`, divided
+/// by the RGB of D65. A constant spectrum has three equal channels.
 Rgb3 factor_rgb(const Sampled& factor);
 
 /// Complex index of refraction of a metal for each channel.
