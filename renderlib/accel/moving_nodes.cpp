@@ -9,8 +9,8 @@
 namespace bandsaw {
 namespace {
 
-/// Bound of the error of interpolation in float, of a bound and of a vertex within it: at most 7u
-/// of the larger end (README.md, "Moving boxes").
+/// Interpolating a bound in float, and a vertex within it, is off by at most 7u of the larger end
+/// (README.md, "Moving boxes").
 constexpr double kLerpError = 8 * 0x1p-24;
 constexpr double kTiny = 0x1p-120;
 
