@@ -53,12 +53,12 @@ class Bounds {
 
   void set_plane(std::uint32_t node, std::size_t row, std::size_t i, double open, double close,
                  double outwards) {
-    const double room = kLerpError * std::max(std::abs(open), std::abs(close)) + kTiny;
+    const double margin = kLerpError * std::max(std::abs(open), std::abs(close)) + kTiny;
     const auto rounded = [outwards](double x) {
       return outwards < 0 ? round_down(x) : round_up(x);
     };
-    const float from = rounded(open + outwards * room);
-    const float change = rounded(close + outwards * room) - from;
+    const float from = rounded(open + outwards * margin);
+    const float change = rounded(close + outwards * margin) - from;
     if (!std::isfinite(change)) {  // No ray may miss a box whose movement no float holds.
       tree_.nodes[node].bounds[row][i] = outwards < 0 ? -FloatBox::kInf : FloatBox::kInf;
       return;

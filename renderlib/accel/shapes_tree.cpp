@@ -8,13 +8,10 @@
 #include "renderlib/base/check.h"
 #include "renderlib/geometry/disk.h"
 #include "renderlib/geometry/intersect.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw {
 namespace {
-
-std::array<float, 3> rounded(const Vec3& p) {
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
 
 /// Returns the two triangles that the intersection test of a quad uses (geometry/intersect.h).
 std::array<Triangle, 2> halves(const Quad& quad) {
@@ -93,7 +90,7 @@ ChildRef ShapeItems::make_leaf(const BinaryTree& tree, const BinaryNode& leaf) {
   FlatPacker packer(tree_.flats.emplace_back());
   for (const ItemRef& item : items) {
     const Triangle t = flat(item.index);
-    packer.add_rounded({rounded(t.a), rounded(t.b), rounded(t.c)}, item.index / 2);
+    packer.add_rounded({float3(t.a), float3(t.b), float3(t.c)}, item.index / 2);
   }
   return last(tree_.flats);
 }

@@ -15,7 +15,8 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kMinReference = 0.01;  // Prevents ratios for dark pixels from dominating.
+/// Added to divisors, so that ratios for dark pixels do not dominate.
+constexpr double kDivisorOffset = 0.01;
 
 struct Sums {
   double squares = 0;
@@ -34,11 +35,11 @@ double add_channel(float image, float reference, Sums& sums) {
   const double difference = a - b;
   const double on_screen = shown(image) - shown(reference);
   sums.squares += difference * difference;
-  sums.relative += std::abs(difference) / (std::abs(b) + kMinReference);
+  sums.relative += std::abs(difference) / (std::abs(b) + kDivisorOffset);
   sums.coded_squares += on_screen * on_screen;
   sums.reference += b;
   ++sums.count;
-  return difference * difference / (b * b + kMinReference);
+  return difference * difference / (b * b + kDivisorOffset);
 }
 
 struct PixelError {

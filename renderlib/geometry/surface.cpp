@@ -7,11 +7,10 @@
 #include "renderlib/geometry/deforming_mesh.h"
 #include "renderlib/geometry/placement.h"
 #include "renderlib/geometry/shape_surface.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw {
 namespace {
-
-Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
 /// A mesh triangle in the mesh's space.
 struct Corners {
@@ -29,13 +28,13 @@ Corners corners(const Mesh& mesh, const Interval& shutter, double time, const Hi
     }
   } else {
     const auto now = corners_at(mesh, hit.id.primitive, shutter, time);
-    at = {vec(now[0]), vec(now[1]), vec(now[2])};
+    at = {vec3(now[0]), vec3(now[1]), vec3(now[2])};
   }
   return {at[0], at[1] - at[0], at[2] - at[0]};
 }
 
 Vec3 interpolate(const std::array<std::array<float, 3>, 3>& at, const Hit& hit) {
-  return vec(at[0]) * (1 - hit.u - hit.v) + vec(at[1]) * hit.u + vec(at[2]) * hit.v;
+  return vec3(at[0]) * (1 - hit.u - hit.v) + vec3(at[1]) * hit.u + vec3(at[2]) * hit.v;
 }
 
 /// Returns the interpolated uv, or `otherwise` if the mesh has no such uvs.

@@ -7,6 +7,7 @@
 #include "renderlib/geometry/shape_surface.h"
 #include "renderlib/geometry/surface.h"
 #include "renderlib/math/constants.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw {
 namespace {
@@ -16,8 +17,6 @@ struct Directions {
   Vec3 v;
 };
 
-Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
-
 /// Returns dp/du and dp/dv of the affine map from the triangle's uvs to its corners.
 Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool second,
                       const SurfacePoint& point) {
@@ -25,8 +24,8 @@ Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool 
   const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
   const auto& corner = mesh.triangles[point.id.primitive];
   const auto at = corners_at(mesh, point.id.primitive, geometry.shutter, point.time);
-  const Vec3 e1 = to_world.direction(vec(at[1]) - vec(at[0]));
-  const Vec3 e2 = to_world.direction(vec(at[2]) - vec(at[0]));
+  const Vec3 e1 = to_world.direction(vec3(at[1]) - vec3(at[0]));
+  const Vec3 e2 = to_world.direction(vec3(at[2]) - vec3(at[0]));
   const auto& uvs = second && !mesh.uvs2.empty() ? mesh.uvs2 : mesh.uvs;
   if (uvs.empty()) {
     return {e1, e2};

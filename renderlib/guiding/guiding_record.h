@@ -2,21 +2,13 @@
 
 // A record of the training of path guiding: light that arrived at a point of a surface.
 
-#include <array>
 #include <cstdint>
 
-#include "renderlib/math/vec.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw {
 
-/// A vector in single precision, which is enough for a record: fields only choose directions.
-using Float3 = std::array<float, 3>;
-
-inline Float3 float3(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-inline Vec3 vec3(const Float3& v) { return {v[0], v[1], v[2]}; }
-
+/// Single precision is enough for a record, because fields only choose directions.
 struct GuidingRecord {
   enum class Kind : std::uint8_t {
     /// A vertex of a path from the camera: `weight` estimates the irradiance of the vertex.

@@ -5,6 +5,7 @@
 #include "renderlib/geometry/disk.h"
 #include "renderlib/geometry/placement.h"
 #include "renderlib/light/shape_light.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw {
 namespace {
@@ -15,8 +16,6 @@ using Kind = ShapeView::Kind;
 /// a sphere.
 constexpr double kRound = 0x1p-46;
 
-Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
-
 ShapeView triangle_view(const Vec3& a, const Vec3& b, const Vec3& c, bool mirrored) {
   return {.kind = Kind::kTriangle, .a = a, .u = b - a, .v = c - a, .mirrored = mirrored};
 }
@@ -25,8 +24,8 @@ ShapeView mesh_view(const Geometry& geometry, const Instance& instance, std::uin
                     const Transform& to_world, double time) {
   const auto at =
       corners_at(geometry.meshes[index_of(instance.mesh)], primitive, geometry.shutter, time);
-  return triangle_view(to_world.point(vec(at[0])), to_world.point(vec(at[1])),
-                       to_world.point(vec(at[2])), determinant(to_world) < 0);
+  return triangle_view(to_world.point(vec3(at[0])), to_world.point(vec3(at[1])),
+                       to_world.point(vec3(at[2])), determinant(to_world) < 0);
 }
 
 /// Returns the shape in the space of `shapes`.
@@ -90,7 +89,7 @@ Box local_box(const Geometry& geometry, const Instance& instance, std::uint32_t 
     for (const double time : {shutter.open, shutter.close}) {
       for (const auto& p :
            corners_at(geometry.meshes[index_of(instance.mesh)], primitive, shutter, time)) {
-        box.add(vec(p));
+        box.add(vec3(p));
       }
     }
     return box;

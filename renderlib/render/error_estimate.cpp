@@ -11,7 +11,8 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kMinMean = 0.01;  // Prevents relative errors of dark pixels from dominating.
+/// Added to divisors, so that relative errors of dark pixels do not dominate.
+constexpr double kDivisorOffset = 0.01;
 
 // Let T be the squared error of one image and V its estimate from the nodes. Both are sums over
 // groups of pixels, which are independent (sampling/sampler.h, render/pixel_groups.h). Let the
@@ -89,7 +90,7 @@ void ErrorSums::add(absl::Span<const NodeSums> nodes) {
   double value = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const Estimated channel = of_channel(nodes, c);
-    relative_squares_ += channel.variance / (channel.mean * channel.mean + kMinMean);
+    relative_squares_ += channel.variance / (channel.mean * channel.mean + kDivisorOffset);
     of_pixel += channel.variance;
     value += channel.mean;
   }
@@ -121,8 +122,8 @@ ErrorEstimate ErrorSums::estimate() const {
         std::sqrt((std::max(0.0, squares_) + beyond) / count) / out.mean - out.relative_rmse;
     std::vector<float> relative(variances_.size());
     for (std::size_t i = 0; i < relative.size(); ++i) {
-      relative[i] =
-          static_cast<float>(std::sqrt(double{variances_[i]}) / (means_[i] + kMinMean * out.mean));
+      relative[i] = static_cast<float>(std::sqrt(double{variances_[i]}) /
+                                       (means_[i] + kDivisorOffset * out.mean));
     }
     out.median = quantile(relative, 0.5);
     out.percentile_95 = quantile(relative, 0.95);

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/geometry/closed.h"
+#include "renderlib/math/float3.h"
 #include "renderlib/scene/validate_field.h"
 
 namespace bandsaw {
@@ -87,8 +88,8 @@ absl::Status check_fog(const Media& media) {
 
 absl::Status check_closed(const std::string& field, const Mesh& mesh) {
   for (const auto* positions : {&mesh.positions, &mesh.positions_at_close}) {
-    for (const std::array<float, 3>& p : *positions) {
-      if (!is_finite(Vec3{p[0], p[1], p[2]})) {
+    for (const Float3& p : *positions) {
+      if (!is_finite(vec3(p))) {
         return invalid(field + ".positions", "must be finite");
       }
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "renderlib/math/float3.h"
 #include "renderlib/sampling/basis.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/scenes.h"
@@ -68,8 +69,7 @@ TEST(Triangle, T4_WithoutAreaIsNeverHit) {
   for (const Triangle& t : degenerate) {
     maker.triangle(t.a, t.b, t.c, lamp);
     for (const Vec3& p : {t.a, t.b, t.c}) {
-      mesh.positions.push_back(
-          {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
+      mesh.positions.push_back(float3(p));
     }
     const auto next = static_cast<std::uint32_t>(mesh.positions.size());
     mesh.triangles.push_back({next - 3, next - 2, next - 1});

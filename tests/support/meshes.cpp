@@ -5,13 +5,10 @@
 #include <utility>
 
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw::test {
 namespace {
-
-std::array<float, 3> to_float(const Vec3& p) {
-  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
-}
 
 /// Splits every triangle at the midpoints of its edges, projected to the unit sphere.
 class Splitter {
@@ -59,7 +56,7 @@ Mesh icosphere(int levels) {
   }
   Mesh mesh;
   for (const Vec3& p : points) {
-    mesh.positions.push_back(to_float(p));
+    mesh.positions.push_back(float3(p));
   }
   mesh.triangles = std::move(triangles);
   return mesh;
@@ -69,7 +66,7 @@ Mesh rough_sphere(int slices, int stacks, double spread, std::uint64_t seed) {
   Random random(seed);
   Mesh mesh;
   const auto add = [&](const Vec3& unit) {
-    mesh.positions.push_back(to_float(unit * random.uniform(1, spread)));
+    mesh.positions.push_back(float3(unit * random.uniform(1, spread)));
   };
   add({0, 1, 0});
   for (int i = 1; i < stacks; ++i) {
@@ -105,7 +102,7 @@ Mesh triangle_soup(int count, double size, std::uint64_t seed) {
   for (int i = 0; i < count; ++i) {
     const Vec3 center = random_point(random);
     for (int corner = 0; corner < 3; ++corner) {
-      mesh.positions.push_back(to_float(center + (size / 2) * random_point(random)));
+      mesh.positions.push_back(float3(center + (size / 2) * random_point(random)));
     }
     const auto first = static_cast<std::uint32_t>(3 * i);
     mesh.triangles.push_back({first, first + 1, first + 2});
@@ -115,14 +112,14 @@ Mesh triangle_soup(int count, double size, std::uint64_t seed) {
 
 Mesh moved(Mesh mesh, const Vec3& by) {
   for (auto& p : mesh.positions) {
-    p = to_float(Vec3{p[0], p[1], p[2]} + by);
+    p = float3(vec3(p) + by);
   }
   return mesh;
 }
 
 Mesh scaled(Mesh mesh, double by) {
   for (auto& p : mesh.positions) {
-    p = to_float(Vec3{p[0], p[1], p[2]} * by);
+    p = float3(vec3(p) * by);
   }
   return mesh;
 }

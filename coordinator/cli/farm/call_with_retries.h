@@ -18,12 +18,14 @@ const absl::Status& status_of(const absl::StatusOr<T>& result) {
   return result.status();
 }
 
+/// Time for which commands wait for a farm that cannot be reached, and the pause between attempts.
+inline constexpr double kMaxRetry_s = 60;
+inline constexpr std::chrono::milliseconds kUnreachablePause{200};
+
 /// Repeats `call`, which returns a Status or a StatusOr, while the farm cannot be reached, for at
-/// most a minute. Returns the last result. (gRPC reconnects only while a client waits for it.)
+/// most kMaxRetry_s. Returns the last result. (gRPC reconnects only while a client waits for it.)
 template <class Call>
 auto call_with_retries(FarmClient& client, Call call) {
-  constexpr double kMaxRetry_s = 60;
-  constexpr std::chrono::milliseconds kPause{200};
   const double until = steady_seconds() + kMaxRetry_s;
   auto result = call();
   while (absl::IsUnavailable(status_of(result))) {
@@ -32,7 +34,7 @@ auto call_with_retries(FarmClient& client, Call call) {
         !client.wait_for_farm(std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000)))) {
       break;
     }
-    client.pause(kPause);
+    client.pause(kUnreachablePause);
     result = call();
   }
   return result;

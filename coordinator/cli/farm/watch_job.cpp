@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/base/ticker.h"
+#include "coordinator/cli/farm/call_with_retries.h"
 #include "coordinator/cli/farm/clean_job.h"
 #include "coordinator/cli/farm/farm_client.h"
 #include "coordinator/cli/farm/farm_errors.h"
@@ -73,9 +74,6 @@ void FollowedImage::look() {
   next_ = end + std::max(kInterval_s, (end - begin) / kMaxShare);
 }
 
-constexpr double kMaxRetry_s = 60;  // seconds for which the farm may be unreachable
-constexpr std::chrono::milliseconds kPause{200};
-
 std::string come_back(JobId job, const std::vector<std::string>& outputs) {
   return absl::StrCat("Come back with: bandsaw watch ", job, " -o ",
                       outputs.empty() ? "FILE" : outputs.front());
@@ -129,7 +127,7 @@ class Watch {
                                : absl::UnavailableError(absl::StrCat(
                                      "the farm at ", client_.address(), " did not come back"));
     }
-    client_.pause(kPause);
+    client_.pause(kUnreachablePause);
     return absl::OkStatus();
   }
 

@@ -119,12 +119,12 @@ RemoteOutcome RemoteScript::run(const std::string& host, double seconds,
 void for_each_host(const std::vector<std::string>& hosts,
                    const std::function<RemoteOutcome(const std::string& host)>& work,
                    const std::function<void(const RemoteOutcome&)>& report) {
-  Mutex telling;
+  Mutex reporting;
   std::atomic<std::size_t> next{0};
   const auto take_hosts = [&] {
     for (std::size_t i = next++; i < hosts.size(); i = next++) {
       const RemoteOutcome outcome = work(hosts[i]);
-      MutexLock lock(telling);
+      MutexLock lock(reporting);
       report(outcome);
     }
   };

@@ -26,9 +26,9 @@ class Triangles:
 
     def _selected(self, which, indices):
         """Triangles of the vertices `which`."""
-        normals = None if self.normals is None else self.normals[which]
+        frame = Vertices(self.positions, self.normals)[which]
         ends = None if self.ends is None else tuple(end[which] for end in self.ends)
-        return Triangles(self.positions[which], normals, [uv[which] for uv in self.uvs], indices.astype(np.uint32).reshape(-1, 3), ends)
+        return Triangles(frame.positions, frame.normals, [uv[which] for uv in self.uvs], indices.astype(np.uint32).reshape(-1, 3), ends)
 
     def box(self):
         """The lowest and the highest coordinates."""

@@ -7,6 +7,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw::mitsuba {
 namespace {
@@ -15,10 +16,6 @@ void add_numbers(const Vec3& v, google::protobuf::RepeatedField<double>* to) {
   to->Add(v.x);
   to->Add(v.y);
   to->Add(v.z);
-}
-
-std::array<float, 3> floats(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 /// Returns the factor of a transform that scales all directions alike; std::nullopt for others.
@@ -53,8 +50,8 @@ SourceMesh cube_mesh() {
     const auto first = static_cast<std::uint32_t>(out.mesh.positions.size());
     for (const auto& [s, t] :
          {std::pair(-1.0, -1.0), std::pair(1.0, -1.0), std::pair(1.0, 1.0), std::pair(-1.0, 1.0)}) {
-      out.mesh.positions.push_back(floats(normal + u * s + v * t));
-      out.mesh.normals.push_back(floats(normal));
+      out.mesh.positions.push_back(float3(normal + u * s + v * t));
+      out.mesh.normals.push_back(float3(normal));
       out.mesh.uvs.push_back({static_cast<float>((s + 1) / 2), static_cast<float>((t + 1) / 2)});
     }
     out.mesh.triangles.push_back({first, first + 1, first + 2});
@@ -87,7 +84,7 @@ SourceMesh disk_mesh() {
     for (int i = 0; i <= kSegments; ++i) {
       const double turns = static_cast<double>(i) / kSegments;
       const SinCos at = sincos_turns(turns);
-      out.mesh.positions.push_back(floats(Vec3{at.cos, at.sin, 0} * radius));
+      out.mesh.positions.push_back(float3(Vec3{at.cos, at.sin, 0} * radius));
       out.mesh.normals.push_back({0, 0, 1});
       out.mesh.uvs.push_back({radius, static_cast<float>(turns)});
     }
@@ -105,8 +102,8 @@ SourceMesh cylinder_mesh() {
     for (int i = 0; i <= kSegments; ++i) {
       const double turns = static_cast<double>(i) / kSegments;
       const SinCos at = sincos_turns(turns);
-      out.mesh.positions.push_back(floats({at.cos, at.sin, z}));
-      out.mesh.normals.push_back(floats({at.cos, at.sin, 0}));
+      out.mesh.positions.push_back(float3({at.cos, at.sin, z}));
+      out.mesh.normals.push_back(float3({at.cos, at.sin, 0}));
       out.mesh.uvs.push_back({static_cast<float>(turns), z});
     }
   }
@@ -123,8 +120,8 @@ SourceMesh sphere_mesh() {
     for (int i = 0; i <= kSegments; ++i) {
       const SinCos around = sincos_turns(static_cast<double>(i) / kSegments);
       const Vec3 at{down.sin * around.cos, down.sin * around.sin, down.cos};
-      out.mesh.positions.push_back(floats(at));
-      out.mesh.normals.push_back(floats(at));
+      out.mesh.positions.push_back(float3(at));
+      out.mesh.normals.push_back(float3(at));
       out.mesh.uvs.push_back({static_cast<float>(i) / kSegments, static_cast<float>(row) / kRows});
     }
   }

@@ -5,21 +5,16 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/convert/read_ply.h"
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/float3.h"
 #include "renderlib/math/vec.h"
 
 namespace bandsaw::mitsuba {
 namespace {
 
-Vec3 vec(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
-
-std::array<float, 3> normal_of(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
 /// Returns (b - a) x (c - a).
 Vec3 across(const PlyMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
-  const Vec3 a = vec(mesh.positions[triangle[0]]);
-  return cross(vec(mesh.positions[triangle[1]]) - a, vec(mesh.positions[triangle[2]]) - a);
+  const Vec3 a = vec3(mesh.positions[triangle[0]]);
+  return cross(vec3(mesh.positions[triangle[1]]) - a, vec3(mesh.positions[triangle[2]]) - a);
 }
 
 /// Returns the angle between two vectors in radians; 0 if one has no length.
@@ -48,15 +43,15 @@ void add_smooth_normals(PlyMesh& mesh) {
       continue;
     }
     for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3 corner = vec(mesh.positions[triangle[i]]);
-      const Vec3 next = vec(mesh.positions[triangle[(i + 1) % 3]]) - corner;
-      const Vec3 last = vec(mesh.positions[triangle[(i + 2) % 3]]) - corner;
+      const Vec3 corner = vec3(mesh.positions[triangle[i]]);
+      const Vec3 next = vec3(mesh.positions[triangle[(i + 1) % 3]]) - corner;
+      const Vec3 last = vec3(mesh.positions[triangle[(i + 2) % 3]]) - corner;
       sums[triangle[i]] = sums[triangle[i]] + normalize(normal) * angle_between(next, last);
     }
   }
   mesh.normals.clear();
   for (const Vec3& sum : sums) {
-    mesh.normals.push_back(length(sum) > 0 ? normal_of(normalize(sum))
+    mesh.normals.push_back(length(sum) > 0 ? float3(normalize(sum))
                                            : std::array<float, 3>{1, 0, 0});
   }
 }
@@ -66,8 +61,8 @@ void orient_by_normals(PlyMesh& mesh) {
     return;
   }
   for (auto& triangle : mesh.triangles) {
-    const Vec3 sum = vec(mesh.normals[triangle[0]]) + vec(mesh.normals[triangle[1]]) +
-                     vec(mesh.normals[triangle[2]]);
+    const Vec3 sum = vec3(mesh.normals[triangle[0]]) + vec3(mesh.normals[triangle[1]]) +
+                     vec3(mesh.normals[triangle[2]]);
     if (dot(across(mesh, triangle), sum) < 0) {
       std::swap(triangle[1], triangle[2]);
     }
@@ -79,7 +74,7 @@ void turn_over(PlyMesh& mesh) {
     std::swap(triangle[1], triangle[2]);
   }
   for (auto& normal : mesh.normals) {
-    normal = normal_of(-vec(normal));
+    normal = float3(-vec3(normal));
   }
 }
 

@@ -17,6 +17,7 @@
 #include "renderlib/image/srgb.h"
 #include "renderlib/import/model/model_pose.h"
 #include "renderlib/import/model/repair_mesh.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw {
 namespace {
@@ -48,11 +49,8 @@ void add_vertices(const aiMesh& from, const Poses& poses, Mesh& mesh) {
 absl::Status add_triangles(const aiMesh& from, const std::string& title, Mesh& mesh,
                            Counts& counts) {
   const auto finite = [&](std::uint32_t index) {
-    const auto is_finite = [&](const std::array<float, 3>& p) {
-      return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-    };
-    return is_finite(mesh.positions[index]) &&
-           (!deforms(mesh) || is_finite(mesh.positions_at_close[index]));
+    return is_finite(vec3(mesh.positions[index])) &&
+           (!deforms(mesh) || is_finite(vec3(mesh.positions_at_close[index])));
   };
   for (unsigned i = 0; i < from.mNumFaces; ++i) {
     const aiFace& face = from.mFaces[i];

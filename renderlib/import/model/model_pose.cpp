@@ -7,17 +7,12 @@
 #include <vector>
 
 #include "renderlib/import/model/model_nodes.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw {
 namespace {
 
-using Float3 = std::array<float, 3>;
-
-Vec3 vec(const Float3& v) { return {v[0], v[1], v[2]}; }
 Vec3 vec(const aiVector3D& v) { return {v.x, v.y, v.z}; }
-Float3 floats(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
 
 std::vector<Float3> vectors(const aiVector3D* from, std::size_t count) {
   std::vector<Float3> to(count);
@@ -30,7 +25,7 @@ std::vector<Float3> vectors(const aiVector3D* from, std::size_t count) {
 void add_target(const aiVector3D* target, const aiVector3D* base, double weight,
                 std::vector<Float3>& to) {
   for (std::size_t i = 0; i < to.size(); ++i) {
-    to[i] = floats(vec(to[i]) + weight * (vec(target[i]) - vec(base[i])));
+    to[i] = float3(vec3(to[i]) + weight * (vec(target[i]) - vec(base[i])));
   }
 }
 
@@ -83,11 +78,11 @@ void add_skin(const aiMesh& from, const std::vector<Transform>& bones, const Tra
       moves = nothing;
       add_scaled(blended[i], 1 / weights[i], moves);
     }
-    to.positions[i] = floats(moves.point(vec(to.positions[i])));
+    to.positions[i] = float3(moves.point(vec3(to.positions[i])));
     if (const auto back = inverse(moves); back && !to.normals.empty()) {
-      const Vec3 normal = normal_to_world(*back, vec(to.normals[i]));
+      const Vec3 normal = normal_to_world(*back, vec3(to.normals[i]));
       const double size = length(normal);
-      to.normals[i] = floats(size > 0 ? normal / size : normal);
+      to.normals[i] = float3(size > 0 ? normal / size : normal);
     }
   }
 }

@@ -3,7 +3,6 @@
 // Poses of a model at a time: its nodes, morph targets and skins. Without an animation this is the
 // rest pose: initial weights, and every bone at its node.
 
-#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "renderlib/import/animation/animation.h"
+#include "renderlib/math/float3.h"
 #include "renderlib/math/transform.h"
 
 struct aiMesh;
@@ -37,8 +37,8 @@ struct MeshPose {
 };
 
 struct Vertices {
-  std::vector<std::array<float, 3>> positions;
-  std::vector<std::array<float, 3>> normals;  ///< empty, or one per position
+  std::vector<Float3> positions;
+  std::vector<Float3> normals;  ///< empty, or one per position
   friend bool operator==(const Vertices&, const Vertices&) = default;
 };
 

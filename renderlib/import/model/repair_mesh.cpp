@@ -1,4 +1,5 @@
 #include "renderlib/import/model/repair_mesh.h"
+#include "renderlib/math/float3.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +8,8 @@
 namespace bandsaw {
 namespace {
 
-Vec3 wide(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
-
 bool is_good_normal(const std::array<float, 3>& n) {
-  const double squared = length_squared(wide(n));
+  const double squared = length_squared(vec3(n));
   return std::isfinite(squared) && squared > 0;
 }
 
@@ -39,8 +38,8 @@ std::size_t repair(const std::vector<std::array<std::uint32_t, 3>>& triangles,
     return 0;
   }
   for (const auto& [a, b, c] : triangles) {
-    const Vec3 p = wide(positions[a]);
-    const Vec3 normal = cross(wide(positions[b]) - p, wide(positions[c]) - p);
+    const Vec3 p = vec3(positions[a]);
+    const Vec3 normal = cross(vec3(positions[b]) - p, vec3(positions[c]) - p);
     for (const std::uint32_t corner : {a, b, c}) {
       if (const auto found = repaired.find(corner); found != repaired.end()) {
         found->second = found->second + normal;
@@ -49,8 +48,7 @@ std::size_t repair(const std::vector<std::array<std::uint32_t, 3>>& triangles,
   }
   for (const auto& [vertex, sum] : repaired) {
     const Vec3 unit = length_squared(sum) > 0 ? normalize(sum) : Vec3{0, 1, 0};
-    normals[vertex] = {static_cast<float>(unit.x), static_cast<float>(unit.y),
-                       static_cast<float>(unit.z)};
+    normals[vertex] = float3(unit);
   }
   return repaired.size();
 }
@@ -58,7 +56,7 @@ std::size_t repair(const std::vector<std::array<std::uint32_t, 3>>& triangles,
 }  // namespace
 
 void drop_unused_vertices(Mesh& mesh) {
-  const auto finite = [](const std::array<float, 3>& p) { return is_finite(wide(p)); };
+  const auto finite = [](const std::array<float, 3>& p) { return is_finite(vec3(p)); };
   const auto all_finite = [&](const std::vector<std::array<float, 3>>& positions) {
     return std::all_of(positions.begin(), positions.end(), finite);
   };

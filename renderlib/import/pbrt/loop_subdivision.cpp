@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/import/pbrt/mesh_shapes.h"
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -212,10 +213,8 @@ absl::StatusOr<PlyMesh> subdivided(const std::vector<Vec3>& points,
         const Vec3 n = limit_normal(limit, *topology, v);
         normal = length(n) > 0 ? normalize(n) : normal;
       }
-      mesh.positions.push_back({static_cast<float>(limit[v].x), static_cast<float>(limit[v].y),
-                                static_cast<float>(limit[v].z)});
-      mesh.normals.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y),
-                              static_cast<float>(normal.z)});
+      mesh.positions.push_back(float3(limit[v]));
+      mesh.normals.push_back(float3(normal));
     }
     return mesh;
   }

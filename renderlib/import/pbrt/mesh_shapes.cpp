@@ -12,6 +12,7 @@
 #include "renderlib/import/files/inflate.h"
 #include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/float3.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -19,12 +20,6 @@ namespace {
 constexpr double kMaxCoordinate = 1e30;
 constexpr int kAround = 128;  // segments of a whole turn of a quadric
 constexpr std::uint64_t kMaxPlyBytes = std::uint64_t{4} << 30;
-
-std::array<float, 3> floats(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-Vec3 vec3(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
 /// Reads a list of float tuples.
 template <std::size_t n>
@@ -157,9 +152,9 @@ void add_grid(int columns, int rows, const F& f, PlyMesh& mesh) {
 }
 
 void add_vertex(const Vec3& p, const std::optional<Vec3>& n, double u, double v, PlyMesh& mesh) {
-  mesh.positions.push_back(floats(p));
+  mesh.positions.push_back(float3(p));
   if (n) {
-    mesh.normals.push_back(floats(*n));
+    mesh.normals.push_back(float3(*n));
   }
   mesh.uvs.push_back({static_cast<float>(u), static_cast<float>(v)});
 }

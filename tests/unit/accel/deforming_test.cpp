@@ -12,6 +12,7 @@
 #include "renderlib/accel/mesh_tree.h"
 #include "renderlib/geometry/deforming_mesh.h"
 #include "renderlib/geometry/surface.h"
+#include "renderlib/math/float3.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/meshes.h"
 
@@ -72,8 +73,6 @@ double time_of(int i, Random& random) {
       return random.uniform(kShutter.open, kShutter.close);
   }
 }
-
-Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
 TEST(ShutterTime, IsExactAtBothEndsAndNeverLeavesThem) {
   Random random(1);
@@ -179,7 +178,7 @@ TEST(Deforming, DoesNotLeakAtAnyTime) {
       const double s = i % 2 == 0 ? 0 : random.uniform();
       Ray ray{
           .origin = at + (0.3 * size) * test::random_point(random), .direction = {}, .time = time};
-      ray.direction = lerp(vec(corners[0]), vec(corners[1]), s) - ray.origin;
+      ray.direction = lerp(vec3(corners[0]), vec3(corners[1]), s) - ray.origin;
       escaped += accel.closest(ray) && accel.occluded(ray) ? 0 : 1;
     }
     return escaped;
@@ -220,7 +219,7 @@ TEST(Deforming, TwoMeshesWithOneBorderDoNotLeak) {
     const auto at = corners_at(
         whole, random.below(static_cast<std::uint32_t>(whole.triangles.size())), kShutter, time);
     Ray ray{.origin = 0.3 * test::random_point(random), .direction = {}, .time = time};
-    ray.direction = lerp(vec(at[0]), vec(at[1]), random.uniform()) - ray.origin;
+    ray.direction = lerp(vec3(at[0]), vec3(at[1]), random.uniform()) - ray.origin;
     ASSERT_TRUE(accel.closest(ray)) << i;
   }
 }

@@ -1,0 +1,18 @@
+#pragma once
+
+// Vectors in single precision, as meshes and guiding fields store them, and their conversions.
+
+#include <array>
+
+#include "renderlib/math/vec.h"
+
+namespace bandsaw {
+
+using Float3 = std::array<float, 3>;
+
+inline Float3 float3(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+inline Vec3 vec3(const Float3& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace bandsaw
