@@ -1,6 +1,7 @@
 """The Python module without a farm: the farm's string, files of scenes, images; and what of the add-on does not need Blender."""
 
 import array
+import json
 import os
 import socket
 import struct
@@ -351,6 +352,39 @@ class AddOn(unittest.TestCase):
         found = split.uvs[0][split.indices.reshape(-1)]
         self.assertTrue((found == uv6).all())
         self.assertTrue((split.positions[split.indices.reshape(-1)] == positions[of_corner.reshape(-1)]).all())
+
+    def test_a_mesh_that_deforms_is_a_morph_target(self):
+        np, geometry = bandsaw.numpy, self.geometry
+        positions = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=np.float32)
+        corners = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+        up = np.tile(np.array([[0, 0, 1]], dtype=np.float32), (4, 1))
+        # One loop a corner. When the shutter closes, the third vertex has two normals, so it is split.
+        of_corner, loops = np.array([0, 1, 2, 0, 2, 3]), np.arange(6).reshape(2, 3)
+        pose = geometry.Vertices(positions, up[[0, 0, 0, 0, 0, 0]])
+        bent = pose.normals.copy()
+        bent[4] = (1, 0, 0)
+        ends = geometry.Vertices(positions - 1, pose.normals), geometry.Vertices(positions * 3, bent)
+        made = geometry._indexed(pose, [], loops, corners, ends)
+        self.assertEqual(len(made.positions), 5)
+        flat = made.indices.reshape(-1)
+        for (end, expected) in zip(made.ends, ends):
+            self.assertTrue((end.positions[flat] == expected.positions[of_corner]).all())
+            self.assertTrue((end.normals[flat] == expected.normals).all())
+        self.assertTrue((made.compact().corners().ends[1].normals == bent).all())
+
+        data = geometry.glb(made)
+        size = int.from_bytes(data[12:16], "little")
+        root, binary = json.loads(data[20:20 + size]), data[28 + size:]
+
+        def vectors(accessor):
+            start = root["bufferViews"][root["accessors"][accessor]["bufferView"]]["byteOffset"]
+            return np.frombuffer(binary, dtype="<f4", offset=start, count=15).reshape(5, 3)
+
+        primitive = root["meshes"][0]["primitives"][0]
+        for name, last in (("POSITION", made.ends[1].positions), ("NORMAL", made.ends[1].normals)):
+            self.assertTrue((vectors(primitive["attributes"][name]) + vectors(primitive["targets"][0][name]) == last).all())
+        self.assertEqual(root["animations"][0]["name"], geometry.DEFORMS)
+        self.assertEqual(len(data), int.from_bytes(data[8:12], "little"))
 
     def test_hsv_and_back(self):
         np = bandsaw.numpy
