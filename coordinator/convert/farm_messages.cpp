@@ -258,6 +258,7 @@ farm::WorkerStatus to_message(const WorkerView& worker) {
   message.set_address(worker.address);
   message.set_build(worker.build);
   message.set_connected_s(worker.connected_s);
+  message.set_browser(worker.browser);
   return message;
 }
 

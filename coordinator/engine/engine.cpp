@@ -337,10 +337,11 @@ void Engine::worker_log(SessionId session, std::vector<std::string> lines) {
 
 void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                       double render_s, double cpu_s,
-                      std::function<void(absl::StatusOr<BandOutcome>)> done) {
+                      std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser) {
   IncomingBand incoming{.job = job,
                         .work = work,
                         .instance = std::move(instance),
+                        .browser = browser,
                         .pixels = std::move(pixels),
                         .worker = {},
                         .render_s = render_s,

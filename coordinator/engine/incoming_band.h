@@ -26,6 +26,7 @@ struct IncomingBand {
   /// (renderlib/render/work_hash.h); 0: unknown.
   std::uint64_t work = 0;
   std::string instance;       ///< instance of the worker
+  bool browser = false;       ///< a browser sent it
   std::uint64_t process = 0;  ///< id of the worker process (scheduler/api/worker_process.h)
   BandPixels pixels;
   std::string worker;      ///< name of the worker, from action::AddToFilm

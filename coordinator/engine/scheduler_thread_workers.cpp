@@ -46,6 +46,11 @@ void SchedulerThread::add_worker_log(SessionId session, std::vector<std::string>
 }
 
 void SchedulerThread::put_band(IncomingBand incoming) {
+  if (incoming.browser && !scheduler_.is_browser(incoming.instance)) {
+    incoming.answer(absl::FailedPreconditionError(
+        "no browser of this instance has joined; send Hello first, then the band again"));
+    return;
+  }
   const auto known = known_.find(incoming.job);
   if (known == known_.end() || is_final(known->second.state) ||
       !known->second.spec.may_be(incoming.work)) {

@@ -173,6 +173,7 @@ absl::StatusOr<WorkerHello> worker_hello(const farm::Hello& message, std::string
                     .canary = message.canary(),
                     .threads = message.threads(),
                     .max_bands = message.max_bands(),
+                    .memory_bytes = message.memory_bytes(),
                     .held = {}};
   for (const farm::Held& held : message.held()) {
     ASSIGN_OR_RETURN(WorkerHello::Held converted, held_lease(held));

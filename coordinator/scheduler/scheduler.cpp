@@ -151,6 +151,10 @@ std::optional<std::vector<FrameView>> Scheduler::frames(JobId id, std::uint64_t 
   return views_.frames(id, after);
 }
 std::vector<WorkerView> Scheduler::workers(Time now) const { return views_.workers(now); }
+bool Scheduler::is_browser(const std::string& instance) const {
+  const Worker* worker = context_.workers.by_instance(instance);
+  return worker != nullptr && worker->browser;
+}
 
 std::optional<std::string> Scheduler::broken_invariant() const {
   return coordinator::broken_invariant(context_);

@@ -16,6 +16,12 @@ std::string label(const char* name, const std::string& value) {
                       "\"");
 }
 
+std::string kind_label(bool browser) { return label("kind", browser ? "browser" : "native"); }
+
+std::string labels_of(const WorkerView& worker) {
+  return absl::StrCat(label("worker", worker.name), ",", kind_label(worker.browser));
+}
+
 class Text {
  public:
   /// Begins a metric; the following lines are its values.
@@ -46,18 +52,20 @@ void add_counts(Text& out, const std::vector<JobView>& jobs,
   }
   std::map<std::string, int> workers_by_state;
   for (const char* state : {"idle", "rendering", "draining", "lost", "refused", "quarantined"}) {
-    workers_by_state[state] = 0;
+    for (const bool browser : {false, true}) {
+      workers_by_state[absl::StrCat(label("state", state), ",", kind_label(browser))] = 0;
+    }
   }
   for (const WorkerView& worker : workers) {
-    ++workers_by_state[worker.state];
+    ++workers_by_state[absl::StrCat(label("state", worker.state), ",", kind_label(worker.browser))];
   }
   out.gauge("bandsaw_jobs", "Jobs that are known, by state.");
   for (const auto& [state, count] : jobs_by_state) {
     out.line(label("state", state), count);
   }
-  out.gauge("bandsaw_workers", "Workers, by state.");
-  for (const auto& [state, count] : workers_by_state) {
-    out.line(label("state", state), count);
+  out.gauge("bandsaw_workers", "Workers, by state and kind.");
+  for (const auto& [labels, count] : workers_by_state) {
+    out.line(labels, count);
   }
 }
 
@@ -86,11 +94,11 @@ std::string metrics(const std::vector<JobView>& jobs, const std::vector<WorkerVi
   add_counts(out, jobs, workers);
   out.gauge("bandsaw_worker_samples_per_second", "A worker's pace, as last measured.");
   for (const WorkerView& worker : workers) {
-    out.line(label("worker", worker.name), worker.samples_per_s);
+    out.line(labels_of(worker), worker.samples_per_s);
   }
   out.gauge("bandsaw_worker_threads", "A worker's threads.");
   for (const WorkerView& worker : workers) {
-    out.line(label("worker", worker.name), worker.threads);
+    out.line(labels_of(worker), worker.threads);
   }
   add_jobs(out, "bandsaw_job_fraction", "How much of a job is done, 0 to 1.", jobs,
            [](const JobView& job) { return job.fraction; });

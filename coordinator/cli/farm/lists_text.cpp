@@ -10,6 +10,13 @@
 #include "coordinator/scheduler/api/job_spec.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+const char* worker_kind(const farm::WorkerStatus& worker) {
+  return worker.browser() ? "browser" : "native";
+}
+
+}  // namespace
 
 std::vector<std::string> table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths;
@@ -76,13 +83,14 @@ std::string log_json(const std::string& worker, const std::vector<std::string>& 
 
 std::vector<std::string> workers_table(const farm::ListWorkersReply& reply) {
   std::vector<std::vector<std::string>> rows = {
-      {"worker", "state", "threads", "rate", "job", "connected", "address", "build"}};
+      {"worker", "kind", "state", "threads", "rate", "job", "connected", "address", "build"}};
   for (const farm::WorkerStatus& worker : reply.worker()) {
-    rows.push_back(
-        {printable(worker.name()), printable(worker.state()), absl::StrCat(worker.threads()),
-         worker.samples_per_s() > 0 ? si(worker.samples_per_s()) + "/s" : "",
-         worker.job() > 0 ? absl::StrCat(worker.job()) : "", duration(worker.connected_s()),
-         printable(worker.address()), printable(worker.build())});
+    rows.push_back({printable(worker.name()), worker_kind(worker), printable(worker.state()),
+                    absl::StrCat(worker.threads()),
+                    worker.samples_per_s() > 0 ? si(worker.samples_per_s()) + "/s" : "",
+                    worker.job() > 0 ? absl::StrCat(worker.job()) : "",
+                    duration(worker.connected_s()), printable(worker.address()),
+                    printable(worker.build())});
     if (!worker.reason().empty()) {
       rows.back().push_back(printable(worker.reason()));
     }
@@ -98,6 +106,7 @@ std::vector<std::string> workers_json(const farm::ListWorkersReply& reply) {
     lines.push_back(JsonObject()
                         .text("event", "worker")
                         .text("name", worker.name())
+                        .text("kind", worker_kind(worker))
                         .text("state", worker.state())
                         .text("reason", worker.reason())
                         .whole("threads", worker.threads())

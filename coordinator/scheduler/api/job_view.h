@@ -80,6 +80,7 @@ struct WorkerView {
   double samples_per_s = 0;
   JobId job = 0;
   double connected_s = 0;
+  bool browser = false;  ///< it renders in a browser
 };
 
 }  // namespace bandsaw::coordinator

@@ -29,6 +29,8 @@ struct WorkerHello {
   std::uint64_t canary = 0;
   std::uint32_t threads = 1;
   std::uint32_t max_bands = 2;
+  bool browser = false;  ///< it renders in a browser; the connection says so, not the worker
+  std::uint64_t memory_bytes = 0;  ///< of its scenes; 0: no limit
   /// A lease that the worker held before it reconnected.
   struct Held {
     JobId job = 0;

@@ -28,6 +28,8 @@ struct Worker {
   std::string build;
   std::uint32_t threads = 1;
   std::uint32_t credits = 1;         ///< number of leases it may hold
+  bool browser = false;              ///< it renders in a browser
+  std::uint64_t memory_bytes = 0;    ///< of its scenes; 0: no limit
   std::optional<SessionId> session;  ///< std::nullopt: not connected
   bool draining = false;
   bool fell_silent = false;  ///< it was silent when it was disconnected last

@@ -78,6 +78,7 @@ void Sessions::refuse_incompatible(const input::Hello& in, const std::string& re
   view.address = in.worker.address;
   view.build = in.worker.build;
   view.threads = in.worker.threads;
+  view.browser = in.worker.browser;
   refusals_.push_back({in.worker.instance, std::move(view), context_.clock.wall()});
   if (refusals_.size() > kMaxRefusals) {
     refusals_.pop_front();
@@ -94,6 +95,8 @@ void Sessions::admit(Worker& worker, const input::Hello& in) {
   worker.build = in.worker.build;
   worker.threads = std::clamp<std::uint32_t>(in.worker.threads, 1, wire::kThreadsPerWorker);
   worker.credits = std::clamp<std::uint32_t>(in.worker.max_bands, 1, wire::kBandsPerWorker);
+  worker.browser = in.worker.browser;
+  worker.memory_bytes = in.worker.memory_bytes;
   worker.draining = false;
   worker.doing.clear();
   worker.reason.clear();

@@ -141,6 +141,7 @@ std::vector<WorkerView> Views::workers(Time now) const {
     view.threads = worker.threads;
     view.samples_per_s = worker.speed.mean();
     view.job = worker.leases.empty() ? 0 : context_.leases.find(worker.leases.front())->job;
+    view.browser = worker.browser;
     view.connected_s = worker.session ? std::max(0.0, now - worker.connected_at) : 0;
     views.push_back(std::move(view));
   }

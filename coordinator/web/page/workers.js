@@ -29,7 +29,7 @@ function workerCard(first) {
       bar.firstChild.style.width = `${100 * share}%`;
       text(job, worker.job === "0" ? "" : `job ${worker.job}`);
       job.href = `#/jobs/${worker.job}`;
-      const words = [worker.reason, worker.threads === 1 ? "1 thread" : `${worker.threads} threads`, worker.address];
+      const words = [worker.reason, worker.browser && "in a browser", worker.threads === 1 ? "1 thread" : `${worker.threads} threads`, worker.address];
       if (worker.connected_s > 0) words.push(`here for ${duration(worker.connected_s)}`);
       words.push(worker.build);
       text(about, words.filter(Boolean).join(" · "));

@@ -38,7 +38,10 @@ TEST(Lists, WorkersAreATable) {
   worker.set_state("idle");
   worker.set_threads(4);
   EXPECT_EQ(workers_table(reply).size(), 2u);
-  EXPECT_THAT(workers_json(reply).front(), HasSubstr("\"name\":\"anna\""));
+  EXPECT_THAT(workers_json(reply).front(), HasSubstr("\"name\":\"anna\",\"kind\":\"native\""));
+  reply.mutable_worker(0)->set_browser(true);
+  EXPECT_THAT(workers_table(reply).back(), HasSubstr("anna    browser  idle"));
+  EXPECT_THAT(workers_json(reply).front(), HasSubstr("\"kind\":\"browser\""));
 }
 
 TEST(FarmErrors, MapToExitCodes) {

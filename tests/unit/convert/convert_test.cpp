@@ -132,6 +132,22 @@ TEST(Convert, EveryFieldOfAJobIsSet) {
   }
 }
 
+TEST(Convert, EveryFieldOfAWorkerIsSet) {
+  const farm::WorkerStatus message = to_message(WorkerView{.name = "desk",
+                                                           .state = "idle",
+                                                           .reason = "reason",
+                                                           .address = "::1",
+                                                           .build = "build",
+                                                           .threads = 1,
+                                                           .samples_per_s = 2,
+                                                           .job = 3,
+                                                           .connected_s = 4,
+                                                           .browser = true});
+  std::vector<const google::protobuf::FieldDescriptor*> set;
+  message.GetReflection()->ListFields(message, &set);
+  EXPECT_EQ(static_cast<int>(set.size()), message.GetDescriptor()->field_count());
+}
+
 TEST(Convert, EveryStateRoundTrips) {
   for (const JobState state : {JobState::kRunning, JobState::kPaused, JobState::kFinishing,
                                JobState::kDone, JobState::kFailed, JobState::kCancelled}) {

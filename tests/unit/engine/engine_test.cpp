@@ -115,6 +115,14 @@ TEST_F(EngineTest, SettingsOutOfRangeAreRefused) {
   EXPECT_EQ(farm_.submit(bad).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
+TEST_F(EngineTest, ABrowserSendsNoBandOfAWorkerThatIsNoBrowser) {
+  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const BandPixels top = rendered({.samples = {0, 16}, .rows = {0, 8}});
+  EXPECT_EQ(farm_.put(job, top, 0, true).status().code(), absl::StatusCode::kFailedPrecondition)
+      << "nobody has joined";
+  EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);
+}
+
 TEST_F(EngineTest, ABandIsStoredOnceThenADuplicateAndUnwantedWhenTheJobIsOver) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   const BandPixels top = rendered({.samples = {0, 16}, .rows = {0, 7}});

@@ -101,10 +101,12 @@ absl::StatusOr<StoredResult> TestFarm::result(JobId job, FinishedPart part) {
   return box->take();
 }
 
-absl::StatusOr<BandOutcome> TestFarm::put(JobId job, const BandPixels& pixels, std::uint64_t work) {
+absl::StatusOr<BandOutcome> TestFarm::put(JobId job, const BandPixels& pixels, std::uint64_t work,
+                                          bool browser) {
   const auto box = std::make_shared<Box<absl::StatusOr<BandOutcome>>>();
-  engine_->put_band(job, work, "nobody", pixels, 0, 0,
-                    [box](absl::StatusOr<BandOutcome> outcome) { box->put(std::move(outcome)); });
+  engine_->put_band(
+      job, work, "nobody", pixels, 0, 0,
+      [box](absl::StatusOr<BandOutcome> outcome) { box->put(std::move(outcome)); }, browser);
   return box->take();
 }
 

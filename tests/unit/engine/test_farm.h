@@ -32,7 +32,8 @@ class TestFarm {
   JobView wait_until(JobId job, const std::function<bool(const JobView&)>& fits);
   JobView wait_final(JobId job);
   absl::StatusOr<StoredResult> result(JobId job, FinishedPart part = FinishedPart::kImage);
-  absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels, std::uint64_t work = 0);
+  absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels, std::uint64_t work = 0,
+                                  bool browser = false);
   std::string bands_file(JobId job) const {
     return folder_ + "/jobs/" + std::to_string(job) + "/bands";
   }

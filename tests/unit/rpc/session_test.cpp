@@ -103,6 +103,7 @@ TEST_F(StreamTest, AdmitsACompatibleWorker) {
   ASSERT_EQ(workers.worker_size(), 1);
   EXPECT_EQ(workers.worker(0).address(), "127.0.0.1");
   EXPECT_EQ(workers.worker(0).threads(), 2U);
+  EXPECT_FALSE(workers.worker(0).browser()) << "no message of a native worker can say otherwise";
   stream->WritesDone();
   while (stream->Read(&answer)) {
   }

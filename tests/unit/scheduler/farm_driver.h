@@ -53,6 +53,20 @@ inline std::vector<std::uint64_t> honest_digests(const Band& band) {
   return digests;
 }
 
+inline WorkerHello test_worker(const std::string& instance, std::uint32_t max_bands = 2,
+                               std::vector<WorkerHello::Held> held = {}) {
+  WorkerHello worker;
+  worker.instance = instance;
+  worker.name = "worker-" + instance;
+  worker.build = "test build";
+  worker.protocol = 1;
+  worker.pixel_version = 2;
+  worker.canary = 3;
+  worker.max_bands = max_bands;
+  worker.held = std::move(held);
+  return worker;
+}
+
 class FarmDriver {
   std::unique_ptr<Scheduler> owned_;  // before `scheduler`, which refers to it
 
@@ -80,15 +94,16 @@ class FarmDriver {
 
   Step hello(SessionId session, const std::string& instance, std::uint32_t max_bands = 2,
              std::vector<WorkerHello::Held> held = {}) {
-    WorkerHello worker;
-    worker.instance = instance;
-    worker.name = "worker-" + instance;
-    worker.build = "test build";
-    worker.protocol = 1;
-    worker.pixel_version = 2;
-    worker.canary = 3;
-    worker.max_bands = max_bands;
-    worker.held = std::move(held);
+    return send(input::Hello{session, test_worker(instance, max_bands, std::move(held))});
+  }
+
+  /// A browser joins, with its tab's name "tab" and this much memory for scenes (0: no limit).
+  Step hello_tab(SessionId session, const std::string& instance, std::uint64_t memory_bytes = 0,
+                 std::vector<WorkerHello::Held> held = {}) {
+    WorkerHello worker = test_worker(instance, 1, std::move(held));
+    worker.name = "tab";
+    worker.browser = true;
+    worker.memory_bytes = memory_bytes;
     return send(input::Hello{session, std::move(worker)});
   }
 

@@ -204,10 +204,17 @@ TEST(Metrics, EscapeNamesAndOmitUnknownValues) {
   worker.name = "desk";
   worker.state = "idle";
   worker.threads = 4;
-  const std::string text = metrics({job}, {worker}, 1000, "0.1");
+  WorkerView tab;
+  tab.name = "phone";
+  tab.state = "idle";
+  tab.threads = 2;
+  tab.browser = true;
+  const std::string text = metrics({job}, {worker, tab}, 1000, "0.1");
   EXPECT_THAT(text, HasSubstr("bandsaw_job_fraction{job=\"3\",name=\"a \\\"b\\\"\\\\\"} 0.5\n"));
-  EXPECT_THAT(text, HasSubstr("bandsaw_workers{state=\"idle\"} 1\n"));
-  EXPECT_THAT(text, HasSubstr("bandsaw_worker_threads{worker=\"desk\"} 4\n"));
+  EXPECT_THAT(text, HasSubstr("bandsaw_workers{state=\"idle\",kind=\"native\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("bandsaw_workers{state=\"idle\",kind=\"browser\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("bandsaw_worker_threads{worker=\"desk\",kind=\"native\"} 4\n"));
+  EXPECT_THAT(text, HasSubstr("bandsaw_worker_threads{worker=\"phone\",kind=\"browser\"} 2\n"));
   EXPECT_THAT(text, HasSubstr("bandsaw_free_bytes 1000\n"));
   EXPECT_THAT(text, ::testing::Not(HasSubstr("bandsaw_job_error{")));
 }
