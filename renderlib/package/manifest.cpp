@@ -1,9 +1,11 @@
 #include "renderlib/package/manifest.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 
 #include "absl/status/status.h"
@@ -297,6 +299,29 @@ absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest_b
     }
     return absl::OkStatus();
   }));
+  return blobs;
+}
+
+absl::StatusOr<std::vector<BlobRef>> missing_blobs(const std::string& manifest_bytes,
+                                                   const DecodedParts& parts) {
+  ASSIGN_OR_RETURN(std::vector<BlobRef> blobs, package_blobs(manifest_bytes));
+  ASSIGN_OR_RETURN(package::Manifest manifest, parse_manifest(manifest_bytes));
+  const auto remove_known = [&](google::protobuf::RepeatedPtrField<package::Mesh>& meshes) {
+    const auto known = std::remove_if(meshes.begin(), meshes.end(), [&](const auto& mesh) {
+      return parts.mesh(mesh.SerializeAsString()) != nullptr;
+    });
+    meshes.erase(known, meshes.end());
+  };
+  remove_known(*manifest.mutable_mesh());
+  remove_known(*manifest.mutable_boundaries()->mutable_mesh());
+  std::set<std::string> missing;
+  RETURN_IF_ERROR(for_each_blob(manifest, [&](const package::Blob& blob, const std::string&) {
+    missing.insert(blob.sha256());
+    return absl::OkStatus();
+  }));
+  std::erase_if(blobs, [&](const BlobRef& blob) {
+    return !missing.contains(blob.digest.raw()) || parts.blob(blob.digest) != nullptr;
+  });
   return blobs;
 }
 

@@ -48,6 +48,11 @@ absl::StatusOr<PackageInfo> package_info(const std::string& manifest);
 /// manifest is broken or exceeds a limit.
 absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest);
 
+/// Returns those of them that decode_package reads if it is called with `parts` now, in the same
+/// order. Errors as above.
+absl::StatusOr<std::vector<BlobRef>> missing_blobs(const std::string& manifest,
+                                                   const DecodedParts& parts);
+
 /// Returns the scene, which is valid (scene/validate.h). Returns INVALID_ARGUMENT naming the field
 /// that is wrong, and NOT_FOUND or DATA_LOSS from `blobs`. With `parts`, meshes, texels and grids
 /// of packages that were decoded with it and are still in use are shared, not read again; the

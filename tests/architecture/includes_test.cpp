@@ -90,6 +90,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"worker/cache", {"renderlib/package"}},
     {"worker/executor", {"worker/cache", "renderlib/render"}},
     {"worker/session", {"worker/executor", "proto/convert", "proto/link"}},
+    {"worker/browser", {"worker/session"}},
     {"worker", {"worker/session"}},
 };
 

@@ -5,9 +5,8 @@
 #include <memory>
 #include <span>
 
-#include "proto/convert/render_values.h"
 #include "proto/wire/limits.h"
-#include "renderlib/render/work_hash.h"
+#include "worker/session/band_header.h"
 
 namespace bandsaw::worker {
 namespace {
@@ -19,22 +18,9 @@ constexpr std::chrono::milliseconds kServes{60'000};
 
 farm::BandHeader header_of(const FinishedBand& band, const std::string& instance,
                            const LeaseName& lease) {
-  const BandPixels& pixels = band.pixels;
-  const absl::Span<const std::byte> bytes = std::as_bytes(std::span(pixels.sums));
-  farm::BandHeader header;
-  header.set_job(band.task.job);
-  *header.mutable_band() = to_message(pixels.band);
-  header.set_lease(lease.lease);
-  header.set_epoch(lease.epoch);
-  header.set_instance(instance);
-  header.set_size(bytes.size());
-  header.set_sha256(wire::sha256(bytes).raw());
-  header.set_work(work_hash(band.task.manifest.hex(), band.task.settings));
-  farm::Counters* counters = header.mutable_counters();
-  *counters = to_message(pixels.counters);
-  counters->set_render_s(band.cost.render_s);
-  counters->set_cpu_s(band.cost.cpu_s);
-  return header;
+  const absl::Span<const std::byte> bytes = std::as_bytes(std::span(band.pixels.sums));
+  return band_header(band.task, {.size = bytes.size(), .digest = wire::sha256(bytes)},
+                     band.pixels.counters, band.cost, instance, lease);
 }
 
 // Sufficient for a slow connection; an interrupted transfer resumes at its offset.

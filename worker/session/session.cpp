@@ -8,8 +8,8 @@
 #include "proto/wire/limits.h"
 #include "proto/wire/versions.h"
 #include "renderlib/base/clean_text.h"
-#include "renderlib/base/status_macros.h"
 #include "renderlib/render/work_hash.h"
+#include "worker/session/lease_task.h"
 
 namespace bandsaw::worker {
 namespace {
@@ -32,21 +32,6 @@ farm::FromWorker failure(std::uint64_t lease, const std::string& reason,
     failed->add_log(plain(log[i], wire::kLogLineBytes));
   }
   return message;
-}
-
-absl::StatusOr<Task> task_of(const farm::Lease& lease) {
-  Task task{.id = 0,
-            .job = lease.job(),
-            .manifest = {},
-            .settings = settings_of(lease.settings()),
-            .band = band_of(lease.band()),
-            .tiles = {}};
-  ASSIGN_OR_RETURN(task.manifest, wire::digest_from_raw(lease.manifest_sha256()));
-  RETURN_IF_ERROR(validate(task.settings));
-  RETURN_IF_ERROR(validate(task.band, task.settings));
-  ASSIGN_OR_RETURN(task.tiles, TileSamples::from_numbers(lease.tile_samples(), task.settings.width,
-                                                         task.band.rows));
-  return task;
 }
 
 }  // namespace
@@ -72,6 +57,7 @@ farm::FromWorker Session::hello() const {
   hello->set_threads(info_.threads);
   hello->set_max_bands(info_.max_bands);
   hello->set_build(info_.build);
+  hello->set_memory_bytes(info_.memory_bytes);
   for (const Held& held : held_) {
     farm::Held* h = hello->add_held();
     h->set_job(held.task.job);
@@ -271,6 +257,11 @@ std::optional<farm::FromWorker> Session::drain(const std::string& reason) {
     return std::nullopt;
   }
   return draining_message();
+}
+
+void Session::offer(std::uint32_t threads, std::uint64_t memory_bytes) {
+  info_.threads = threads;
+  info_.memory_bytes = memory_bytes;
 }
 
 }  // namespace bandsaw::worker

@@ -24,6 +24,7 @@ struct WorkerInfo {
   std::uint32_t max_bands = 3;
   std::uint32_t pixel_version = 0;
   std::uint64_t canary = 0;
+  std::uint64_t memory_bytes = 0;  ///< that scenes may take here; 0: no limit
 };
 
 /// The coordinator dismissed this worker.
@@ -57,6 +58,8 @@ class Session {
   // The stream.
   /// Returns the first message of a stream, which lists all leases held.
   farm::FromWorker hello() const;
+  /// Changes what the next Hello offers.
+  void offer(std::uint32_t threads, std::uint64_t memory_bytes);
   SessionEffects receive(const farm::ToWorker& message);
   void disconnected() { connected_ = false; }
   farm::FromWorker heartbeat() const;
@@ -80,10 +83,12 @@ class Session {
   void settled(TaskId task);
   std::optional<LeaseName> lease_of(TaskId task) const;
 
-  // Shutdown.
+  // Shutdown, and pauses.
   /// Requests no more leases. Returns the message to send, or std::nullopt if not connected. On
   /// later streams the message follows Welcome.
   std::optional<farm::FromWorker> drain(const std::string& reason);
+  /// Requests leases again, on the next stream.
+  void resume() { drain_reason_.reset(); }
   bool drained() const { return drain_reason_.has_value() && held_.empty(); }
 
  private:
@@ -103,7 +108,7 @@ class Session {
   farm::FromWorker draining_message() const;
   std::string doing() const;
 
-  const WorkerInfo info_;
+  WorkerInfo info_;
   std::vector<Held> held_;  ///< in the order of their leases
   TaskId last_task_ = 0;
   bool connected_ = false;

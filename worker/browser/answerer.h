@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "absl/status/statusor.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
+#include "worker/browser/exports.h"
+
+namespace bandsaw::worker {
+
+/// Keeps the bytes of the last answer.
+class Answerer {
+ public:
+  const BandsawAnswer* bytes(std::string bytes) {
+    bytes_ = std::move(bytes);
+    return refer(bytes_.data(), bytes_.size(), 0);
+  }
+  const BandsawAnswer* none() { return bytes(""); }
+  /// `data` MUST live until the next answer.
+  const BandsawAnswer* refer(const void* data, std::size_t size, std::uint32_t failed) {
+    answer_ = {data, size, failed};
+    return &answer_;
+  }
+  const BandsawAnswer* error(const absl::Status& status) {
+    bytes_ = clean_text(std::string(status.message()), wire::kReasonBytes);
+    return refer(bytes_.data(), bytes_.size(), 1);
+  }
+  const BandsawAnswer* status(const absl::Status& status) {
+    return status.ok() ? none() : error(status);
+  }
+  const BandsawAnswer* text(const absl::StatusOr<std::string>& text) {
+    return text.ok() ? bytes(*text) : error(text.status());
+  }
+  const BandsawAnswer* last() const { return &answer_; }
+
+ private:
+  std::string bytes_;
+  BandsawAnswer answer_ = {nullptr, 0, 0};
+};
+
+}  // namespace bandsaw::worker

@@ -1,0 +1,73 @@
+#pragma once
+
+// One core of a browser's tab: loads scenes from blobs that it is given, and renders rows of bands.
+// The page's JavaScript fetches the blobs and checks their digests.
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "proto/wire/digest.h"
+#include "renderlib/base/pool.h"
+#include "renderlib/base/shared_bytes.h"
+#include "renderlib/image/display.h"
+#include "renderlib/package/decoded_parts.h"
+#include "renderlib/package/package.h"
+#include "renderlib/render/band.h"
+#include "renderlib/scene/scene.h"
+#include "worker/executor/task.h"
+
+namespace bandsaw::worker {
+
+class BrowserRenderer {
+ public:
+  BrowserRenderer() : pool_(1) {}
+
+  /// Begins a scene. `text`: the manifest, whose digest was checked. Returns the blobs that it
+  /// needs, in the order in which they are used; those that it shares with scenes that are loaded
+  /// are not among them. Drops a scene that was begun and not built. INVALID_ARGUMENT: the manifest
+  /// is broken.
+  absl::StatusOr<std::vector<BlobRef>> begin_scene(const wire::Digest& manifest, std::string text);
+  /// Takes a blob of the scene that was begun. Its digest was checked. INVALID_ARGUMENT: the scene
+  /// has no such blob, or not of this size.
+  absl::Status add_blob(const wire::Digest& digest, SharedBytes bytes);
+  /// Builds the scene from its blobs. NOT_FOUND: one is missing. INVALID_ARGUMENT: the package is
+  /// broken.
+  absl::Status build_scene();
+  /// Frees a scene, if it is loaded.
+  void drop_scene(const wire::Digest& manifest) { scenes_.erase(manifest); }
+  /// Returns the number of rows at whose multiples a band should be divided: 16 if pixels share
+  /// paths, because rows of a tile then have to be rendered together; otherwise 1. NOT_FOUND: the
+  /// scene is not loaded.
+  absl::StatusOr<std::uint32_t> row_step(const wire::Digest& manifest) const;
+
+  /// Renders rows of a task's band; the sums are those of the same rows in the whole band.
+  /// NOT_FOUND: the scene is not loaded. INVALID_ARGUMENT: the rows do not lie in the band.
+  absl::StatusOr<BandPixels> render(const Task& task, const RowRange& rows);
+  /// Returns the rows as 8-bit sRGB, 4 bytes a pixel, the last of them 255, with the scene's
+  /// exposure and tone. Pixels without samples are black. `pixels`: of render() with `task`.
+  std::vector<std::uint8_t> picture(const Task& task, const BandPixels& pixels) const;
+
+ private:
+  struct Loaded {
+    std::shared_ptr<const Scene> scene;
+    Display display;
+  };
+  /// A scene whose blobs are being collected.
+  struct Begun {
+    wire::Digest manifest;
+    std::string text;
+    std::map<wire::Digest, std::uint64_t> sizes;
+    std::map<wire::Digest, SharedBytes> blobs;
+  };
+
+  Pool pool_;
+  DecodedParts parts_;
+  std::unique_ptr<Begun> begun_;
+  std::map<wire::Digest, Loaded> scenes_;
+};
+
+}  // namespace bandsaw::worker

@@ -1,0 +1,84 @@
+#pragma once
+
+// The session of a browser's tab: worker::Session, whose messages are bytes, and the bands that the
+// tab holds. Without clock, thread or socket: the page's JavaScript has those.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "worker/session/session.h"
+
+namespace bandsaw::worker {
+
+/// A band to render. `lease`: the bytes of the farm.Lease, for BrowserRenderer.
+struct BrowserBand {
+  Task task;
+  std::string lease;
+};
+
+/// Effects of a message from the coordinator, to be applied in this order.
+struct BrowserOrders {
+  std::vector<TaskId> stop;
+  std::optional<BrowserBand> start;
+  std::vector<std::string> send;  ///< messages for the coordinator
+  std::optional<Dismissal> dismissal;
+};
+
+class BrowserSession {
+ public:
+  /// INVALID_ARGUMENT: a text of `info` is empty or out of bounds, or its number of threads is.
+  static absl::StatusOr<BrowserSession> create(WorkerInfo info);
+
+  const Session& session() const { return session_; }
+
+  // The stream. The messages that are returned are bytes to send.
+  std::string hello() const;
+  void offer(std::uint32_t threads, std::uint64_t memory_bytes);
+  /// INVALID_ARGUMENT: the bytes are no message.
+  absl::StatusOr<BrowserOrders> receive(const std::string& message);
+  void disconnected() { session_.disconnected(); }
+  std::string heartbeat() const;
+
+  // Rendering; see Session. Calls for a band that is not held have no effect.
+  void preparing(TaskId task, std::uint64_t prepared) { session_.preparing(task, prepared); }
+  /// Notes that `rows_done` rows of the band are rendered; `counters`: the bytes of the
+  /// farm.Counters of the rows that were added. INVALID_ARGUMENT: they are no such message.
+  absl::Status rendering(TaskId task, std::uint32_t rows_done, const std::string& counters);
+  /// Returns false if the band is not wanted any more.
+  bool finished(TaskId task) { return session_.finished(task); }
+  /// Returns the message to send, or an empty text.
+  std::string failed(TaskId task, const std::string& reason, const std::vector<std::string>& log);
+
+  // Sending pixels.
+  /// Returns the first bytes of the body of POST /join/band: the length of the header as 4 bytes,
+  /// little-endian, and the header; the sums follow. UNAVAILABLE: not connected. NOT_FOUND: the
+  /// band is not held.
+  absl::StatusOr<std::string> band_header(TaskId task, std::uint64_t size,
+                                          const wire::Digest& digest, const RenderCost& cost) const;
+  /// Takes the bytes of the coordinator's farm.PutBandReply, and drops the band. Returns "stored",
+  /// "duplicate" or "unwanted". INVALID_ARGUMENT: they are no such message.
+  absl::StatusOr<std::string> band_reply(TaskId task, const std::string& reply);
+
+  /// Returns the message to send, or an empty text; see Session.
+  std::string drain(const std::string& reason);
+  void resume() { session_.resume(); }
+
+ private:
+  /// A band that is held.
+  struct Held {
+    Task task;
+    Counters counters;
+  };
+
+  explicit BrowserSession(WorkerInfo info) : instance_(info.instance), session_(std::move(info)) {}
+  void drop(TaskId task);
+
+  std::string instance_;
+  Session session_;
+  std::map<TaskId, Held> held_;
+};
+
+}  // namespace bandsaw::worker

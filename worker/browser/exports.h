@@ -1,0 +1,103 @@
+#pragma once
+
+// The functions of bandsaw.wasm, in C, for the page's JavaScript
+// (coordinator/web/page/join_wasm.js). Texts and bytes are passed as an address and a length. A tab
+// has one module: one instance of it holds a session, each of the others a renderer. Nothing is
+// thrown; a call that fails says why in its answer. Memory that cannot be had ends the instance.
+
+#include <stddef.h>
+#include <stdint.h>
+
+extern "C" {
+
+/// Result of a call: the text of an error if `failed` is 1; otherwise bytes, as the function says,
+/// or none. Belongs to the object that was called, and is valid until its next call.
+struct BandsawAnswer {
+  const void* data;
+  size_t size;
+  uint32_t failed;
+};
+
+struct BandsawSession;
+struct BandsawRenderer;
+
+/// Returns memory for arguments; bandsaw_free frees it.
+void* bandsaw_allocate(size_t size);
+void bandsaw_free(void* memory);
+
+// ---- BrowserSession. Numbers of tasks are at most 2^32. ----
+
+/// A session that is not connected. `instance`: 32 hexadecimal digits, new for each tab.
+/// bandsaw_session_answer tells whether the arguments were right.
+BandsawSession* bandsaw_session_new(const char* instance, size_t instance_size, const char* name,
+                                    size_t name_size, const char* build, size_t build_size,
+                                    uint32_t threads, double memory_bytes);
+void bandsaw_session_delete(BandsawSession* session);
+/// Returns the answer of the last call.
+const BandsawAnswer* bandsaw_session_answer(BandsawSession* session);
+/// Answers a message to send, as do heartbeat, failed, drain and log; empty: none.
+const BandsawAnswer* bandsaw_session_hello(BandsawSession* session);
+const BandsawAnswer* bandsaw_session_heartbeat(BandsawSession* session);
+const BandsawAnswer* bandsaw_session_offer(BandsawSession* session, uint32_t threads,
+                                           double memory_bytes);
+/// Takes a message. Answers JSON: {"stop": [task…], "start": {"task", "job", "manifest", "width",
+/// "height", "first", "last", "lease"} or null, "send": [message…], "dismissal": {"reason",
+/// "wait_ms", "for_ever"} or null}. Rows are [first, last); "lease" and messages are base64.
+const BandsawAnswer* bandsaw_session_receive(BandsawSession* session, const void* message,
+                                             size_t size);
+const BandsawAnswer* bandsaw_session_disconnected(BandsawSession* session);
+/// Answers JSON: {"connected", "welcomed", "drained": booleans, "name", "heartbeat_ms"}.
+const BandsawAnswer* bandsaw_session_state(BandsawSession* session);
+const BandsawAnswer* bandsaw_session_preparing(BandsawSession* session, uint32_t task,
+                                               double prepared);
+/// `counters`: as bandsaw_renderer_counters answers them.
+const BandsawAnswer* bandsaw_session_rendering(BandsawSession* session, uint32_t task,
+                                               uint32_t rows_done, const void* counters,
+                                               size_t counters_size);
+/// Answers "true" or "false": the band is not wanted any more.
+const BandsawAnswer* bandsaw_session_finished(BandsawSession* session, uint32_t task);
+/// `log`: lines that end with line breaks.
+const BandsawAnswer* bandsaw_session_failed(BandsawSession* session, uint32_t task,
+                                            const char* reason, size_t reason_size, const char* log,
+                                            size_t log_size);
+/// Answers what precedes the sums in the body of POST /join/band. `digest`: 32 bytes, SHA-256 of
+/// the sums; `size`: their bytes. Times are in seconds.
+const BandsawAnswer* bandsaw_session_band_header(BandsawSession* session, uint32_t task,
+                                                 const void* digest, size_t digest_size,
+                                                 double size, double render_s, double cpu_s);
+/// Takes the answer of POST /join/band. Answers "stored", "duplicate" or "unwanted".
+const BandsawAnswer* bandsaw_session_band_reply(BandsawSession* session, uint32_t task,
+                                                const void* reply, size_t size);
+const BandsawAnswer* bandsaw_session_drain(BandsawSession* session, const char* reason,
+                                           size_t size);
+const BandsawAnswer* bandsaw_session_resume(BandsawSession* session);
+const BandsawAnswer* bandsaw_session_log(BandsawSession* session, const char* lines, size_t size);
+/// Answers the SHA-256 of the bytes, 32 bytes. For pages without crypto.subtle.
+const BandsawAnswer* bandsaw_session_sha256(BandsawSession* session, const void* bytes,
+                                            size_t size);
+
+// ---- BrowserRenderer. Digests are 64 hexadecimal digits. ----
+
+BandsawRenderer* bandsaw_renderer_new(void);
+void bandsaw_renderer_delete(BandsawRenderer* renderer);
+/// Answers JSON: [{"digest", "size"}…], the blobs to add.
+const BandsawAnswer* bandsaw_renderer_begin_scene(BandsawRenderer* renderer, const char* digest,
+                                                  size_t digest_size, const void* manifest,
+                                                  size_t size);
+/// Takes `memory` of bandsaw_allocate over, also if it fails.
+const BandsawAnswer* bandsaw_renderer_add_blob(BandsawRenderer* renderer, const char* digest,
+                                               size_t digest_size, void* memory, size_t size);
+/// Answers JSON: {"row_step"}.
+const BandsawAnswer* bandsaw_renderer_build_scene(BandsawRenderer* renderer, const char* digest,
+                                                  size_t digest_size);
+const BandsawAnswer* bandsaw_renderer_drop_scene(BandsawRenderer* renderer, const char* digest,
+                                                 size_t digest_size);
+/// Renders the rows [first, last) of a lease. Answers rows x width x 3 doubles.
+const BandsawAnswer* bandsaw_renderer_render(BandsawRenderer* renderer, const void* lease,
+                                             size_t size, uint32_t first, uint32_t last);
+/// Answers a farm.Counters of the rows that were rendered last.
+const BandsawAnswer* bandsaw_renderer_counters(BandsawRenderer* renderer);
+/// Answers these rows as 8-bit RGBA.
+const BandsawAnswer* bandsaw_renderer_picture(BandsawRenderer* renderer);
+
+}  // extern "C"
