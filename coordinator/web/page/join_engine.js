@@ -1,0 +1,48 @@
+// Renders for a farm in this tab: what the page /join calls.
+
+const GIGABYTE = 2 ** 30;
+const MOST_OF_AN_INSTANCE = 3.5 * GIGABYTE;  // a 32-bit program has at most 4
+
+/// Returns the bytes that all scenes may take: half of the memory, as far as the browser tells it; otherwise as if it had 4 GB.
+const memory = () => (navigator.deviceMemory ?? 4) * GIGABYTE / 2;
+
+/// Returns a few words on the browser, as in "Firefox 140 on Linux".
+export function describe(agent = navigator.userAgent) {
+  const found = /(Firefox|Edg|OPR|Chrome|CriOS|FxiOS|Version)\/(\d+)/g;
+  const all = [...agent.matchAll(found)].map(([, name, version]) => ({name, version}));
+  const names = {Edg: "Edge", OPR: "Opera", CriOS: "Chrome", FxiOS: "Firefox", Version: "Safari"};
+  const one = all.find(({name}) => name === "Edg" || name === "OPR") ?? all[0];
+  const browser = one ? `${names[one.name] ?? one.name} ${one.version}` : "a browser";
+  const on = [[/Android/, "Android"], [/iPhone|iPad/, "iOS"], [/Windows/, "Windows"], [/Mac OS/, "macOS"], [/CrOS/, "ChromeOS"],
+    [/Linux/, "Linux"]].find(([pattern]) => pattern.test(agent))?.[1];
+  return on ? `${browser} on ${on}` : browser;
+}
+
+/// Starts to render. `secret`: of the link. `base`: the coordinator's address, as in "https://desk:8787". `cores`: number of
+/// cores to render with. `name`: shown to the farm's users. `onState`: called with changes of the state; the fields are those
+/// of `state` in join_session.js, and `rows` {first, last, rgb} when rows of the image are rendered.
+export function startEngine({secret, base = location.origin, cores = 1, name = "", onState}) {
+  const worker = new Worker("/join_session.js", {type: "module"});
+  let over = false;
+  const take = (state) => {
+    if (over) return;
+    over = state.phase === "stopped" || state.phase === "failed";
+    if (over) worker.terminate();
+    onState(state);
+  };
+  worker.onmessage = ({data}) => take(data);
+  worker.onerror = (event) => {
+    event.preventDefault();
+    take({phase: "failed", text: `The renderer could not start here: ${event.message || "a file is missing"}. Reload the page.`});
+  };
+  const send = (message) => over || worker.postMessage(message);
+  send({call: "start", secret, base, cores, name: name || describe(), build: `WebAssembly, ${describe()}`,
+    memory: memory(), mostOfAnInstance: MOST_OF_AN_INSTANCE});
+  return {
+    setCores: (count) => send({call: "cores", count}),
+    /// Finishes the bands that are held, and takes no more. `why`: a sentence.
+    pause: (why = "Paused.") => send({call: "pause", why}),
+    resume: () => send({call: "pause", why: null}),
+    stop: () => send({call: "stop"}),
+  };
+}

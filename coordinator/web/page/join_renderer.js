@@ -1,0 +1,109 @@
+// One core of the tab, as the session sees it: a worker with join_render.js, and the scenes that it has loaded.
+
+const SCENES = 2;          // of a sequence, the next frame's besides the present one's
+const AHEAD = 4;           // blobs that are fetched while earlier ones are copied
+const SCENE_PER_BYTE = 4;  // memory of a scene over the bytes of its blobs (coordinator/scheduler/README.md)
+
+/// The renderer has ended; another one can be started in its place.
+export class RendererEnded extends Error {}
+
+export class Renderer {
+  /// `memoryBytes`: what its scenes may take.
+  constructor(module, memoryBytes) {
+    this.memoryBytes = memoryBytes;
+    this.scenes = new Map();  // digest of the manifest: {rowStep, size}, the most recently used last
+    this.asked = new Map();   // id: {done, failed}
+    this.lastId = 0;
+    this.busy = false;
+    this.leaving = false;
+    this.worker = new Worker("/join_render.js", {type: "module"});
+    this.worker.onmessage = ({data}) => this.answer(data);
+    this.worker.onerror = (event) => {
+      event.preventDefault();
+      this.end(`the renderer ended: ${event.message || "its file is missing"}`);
+    };
+    this.started = false;
+    this.ready = this.ask("start", {module}).then(() => { this.started = true; });
+    this.ready.catch((error) => this.end(error.message));
+  }
+
+  answer({id, value, error, fatal}) {
+    const one = this.asked.get(id);
+    this.asked.delete(id);
+    if (fatal) {
+      one?.failed(new RendererEnded(error));
+      this.end(error);
+    } else if (error !== undefined) {
+      one?.failed(new Error(error));
+    } else {
+      one?.done(value);
+    }
+  }
+
+  /// Ends the worker; all that was asked fails.
+  end(why) {
+    if (this.ended) return;
+    this.ended = why;
+    this.worker.terminate();
+    for (const one of this.asked.values()) one.failed(new RendererEnded(why));
+    this.asked.clear();
+  }
+
+  ask(call, values = {}, moved = []) {
+    if (this.ended) return Promise.reject(new RendererEnded(this.ended));
+    const id = ++this.lastId;
+    const answer = new Promise((done, failed) => this.asked.set(id, {done, failed}));
+    this.worker.postMessage({id, call, ...values}, moved);
+    return answer;
+  }
+
+  has(scene) {
+    return this.scenes.has(scene);
+  }
+
+  /// Returns the multiples of rows at which bands of the scene should be divided.
+  rowStep(scene) {
+    const known = this.scenes.get(scene);
+    this.scenes.delete(scene);
+    this.scenes.set(scene, known);
+    return known.rowStep;
+  }
+
+  /// Loads a scene. `get`: a function from a digest to a promise of its blob; `step`: called with each step of progress.
+  async load(scene, get, step) {
+    await this.ready;
+    while (this.scenes.size >= SCENES) await this.drop();
+    const manifest = await get(scene);
+    let blobs = await this.ask("begin", {scene, manifest});
+    const size = manifest.byteLength + blobs.reduce((sum, blob) => sum + blob.size, 0);
+    const loaded = [...this.scenes.values()].reduce((sum, one) => sum + one.size, 0);
+    if (this.scenes.size > 0 && SCENE_PER_BYTE * (size + loaded) > this.memoryBytes) {
+      while (this.scenes.size > 0) await this.drop();
+      blobs = await this.ask("begin", {scene, manifest});  // nothing is shared any more
+    }
+    const fetched = [];
+    const fetchNext = () => {
+      if (fetched.length >= blobs.length) return;
+      const bytes = get(blobs[fetched.length].digest);
+      bytes.catch(() => {});  // it is awaited below
+      fetched.push(bytes);
+    };
+    for (let i = 0; i < AHEAD; ++i) fetchNext();
+    for (let i = 0; i < blobs.length; ++i) {
+      const bytes = await fetched[i];
+      fetched[i] = null;
+      fetchNext();
+      await this.ask("blob", {digest: blobs[i].digest, bytes});
+      step();
+    }
+    const {row_step: rowStep} = await this.ask("build", {scene});
+    this.scenes.set(scene, {rowStep, size});
+    step();
+  }
+
+  async drop() {
+    const [scene] = this.scenes.keys();
+    this.scenes.delete(scene);
+    await this.ask("drop", {scene});
+  }
+}

@@ -1,0 +1,536 @@
+// The worker that holds the tab's session with the coordinator. It passes rows of the leased bands to renderers, one for each
+// core, and sends the finished bands. Its timers are not slowed when the tab is hidden, and it never computes for long, so that
+// heartbeats go on.
+
+import {Blobs, Final, LinkEnded, sentence} from "/join_blobs.js";
+import {Renderer} from "/join_renderer.js";
+import {Alarm, Backoff} from "/join_wait.js";
+import {Program, fromBase64} from "/join_wasm.js";
+
+const PIECE_S = 0.1;            // rendering time of the rows that a renderer is given at once
+const RATE_OVER_S = 8;
+const STATE_EVERY_MS = 200;
+const OTHER_CORES_MS = 1000;    // after the last change of their number, the coordinator is told
+const SILENCE_MS = 15000;       // without a message from the coordinator: is it there?
+const ANSWER_MS = 10000;
+const FULL_DISK_MS = 5000;
+const NOT_ADMITTED_TIMES = 20;  // a restarted coordinator may not have leased the band to this tab yet
+const LOG_LINES = 50;
+
+const alarm = new Alarm();      // rings when the connection is there
+const connectBackoff = new Backoff();
+const sendBackoff = new Backoff();
+
+let options;
+let program;
+let session;                    // address of the BandsawSession
+let module;
+let blobs;
+let socket = null;
+let reconnecting = null;        // timer
+let beating = null;             // timer
+let connected = false;
+let heardAt = 0;
+let pausedWhy = null;
+let dismissed = null;           // {reason, until}: when the coordinator takes the tab again
+let over = false;
+let renderers = [];
+const tasks = new Map();        // the bands that are held, in the order of their leases
+const secondsPerRow = new Map();  // by job
+let outgoing = [];              // finished bands
+let sending = false;
+let lastEnd = 0;
+const pieces = [];              // {at, samples} of the last seconds
+const newLines = [];
+const lastLines = [];
+
+/// What the page shows; the meaning of the phases is in README.md of coordinator/web.
+const state = {phase: "starting", text: "Loading the renderer …", rowsDone: 0, bandsDone: 0, samplesPerSecond: 0, job: 0, width: 0,
+  height: 0, name: "", cores: 0, memoryBytes: 0};
+
+// ---- The state that the page shows. ----
+
+let shownAt = 0;
+let showing = null;
+
+function show(now = false) {
+  if (over) return;
+  const due = shownAt + STATE_EVERY_MS - performance.now();
+  if (!now && due > 0) {
+    showing ??= setTimeout(() => show(true), due);
+    return;
+  }
+  clearTimeout(showing);
+  showing = null;
+  shownAt = performance.now();
+  const since = shownAt / 1000 - RATE_OVER_S;
+  while (pieces.length > 0 && pieces[0].at < since) pieces.shift();
+  const span = pieces.length > 0 ? Math.max(1, shownAt / 1000 - pieces[0].began) : 1;
+  state.samplesPerSecond = Math.round(pieces.reduce((sum, one) => sum + one.samples, 0) / span);
+  postMessage({...state});
+}
+
+function setPhase(phase, text) {
+  if (state.phase === phase && state.text === text) return;
+  Object.assign(state, {phase, text});
+  show(true);
+}
+
+function look() {
+  if (over) return;
+  const held = tasks.size;
+  const rendering = [...tasks.values()].some((task) => task.rowsGiven > task.first);
+  if (pausedWhy) {
+    if (held > 0) setPhase("pausing", `${pausedWhy} The rows that it has begun are finished first.`);
+    else setPhase("paused", pausedWhy);
+  } else if (!connected) {
+    setPhase("connecting", state.phase === "connecting" ? state.text : "Connecting to the coordinator …");
+  } else if (rendering) {
+    setPhase("rendering", "Rendering.");
+  } else if (held > 0) {
+    setPhase("loading", "Loading the scene …");
+  } else {
+    setPhase("waiting", "Connected. There is nothing to render now.");
+  }
+}
+
+function log(text) {
+  const line = `${new Date().toISOString()} ${text}`;
+  for (const lines of [newLines, lastLines]) {
+    lines.push(line);
+    if (lines.length > LOG_LINES) lines.shift();
+  }
+}
+
+/// Ends the engine. `phase`: "stopped" or "failed".
+function end(phase, text) {
+  if (over) return;
+  setPhase(phase, text);
+  over = true;
+  clearTimeout(reconnecting);
+  clearInterval(beating);
+  socket?.close(1000);
+  renderers.forEach((renderer) => renderer.end("the tab has left"));
+}
+
+// ---- The stream. ----
+
+const send = (bytes) => {
+  if (bytes.length > 0 && socket?.readyState === WebSocket.OPEN) socket.send(bytes);
+};
+
+function connect() {
+  clearTimeout(reconnecting);
+  reconnecting = null;
+  if (over || socket || isDrained()) return;
+  const mine = new WebSocket(`${options.base.replace(/^http/, "ws")}/join/session`, ["bandsaw.1", `bandsaw.secret.${options.secret}`]);
+  mine.binaryType = "arraybuffer";
+  let opened = false;
+  mine.onopen = () => {
+    opened = true;
+    heardAt = performance.now();
+    mine.send(program.bytes("session_hello", session));
+  };
+  mine.onmessage = ({data}) => {
+    if (mine === socket) receive(new Uint8Array(data));
+  };
+  mine.onclose = ({code, reason}) => {
+    if (mine === socket) disconnected(code, reason, opened);
+  };
+  socket = mine;
+}
+
+/// Ends the present stream, and opens another one.
+function reconnect() {
+  const old = socket;
+  socket = null;
+  lost();
+  old?.close(1000);
+  connect();
+}
+
+function lost() {
+  connected = false;
+  clearInterval(beating);
+  program.bytes("session_disconnected", session);
+  look();
+}
+
+async function disconnected(code, reason, opened) {
+  socket = null;
+  lost();
+  if (over) return;
+  if (code === 4401) {
+    end("stopped", reason || "The link has ended.");
+    return;
+  }
+  if (!opened && await linkEnded()) return;
+  if (over || socket || isDrained()) return;
+  if (reason) log(`the coordinator closed the connection: ${reason}`);
+  const wait = dismissed ? dismissed.until - Date.now() : 0;
+  const why = wait > 0 ? `The coordinator does not take this tab now: ${dismissed.reason}`
+    : reason ? `The coordinator has ended the connection (${reason}). Trying again …`
+    : "The coordinator cannot be reached. Trying again …";
+  setPhase(pausedWhy ? "pausing" : "connecting", why);
+  reconnecting = setTimeout(connect, Math.max(connectBackoff.next(), wait));
+}
+
+/// Returns true, and ends the engine, if the coordinator answers that the link has ended. Otherwise `reached` is called if it
+/// answers at all.
+async function linkEnded(reached = () => {}) {
+  try {
+    const answer = await fetch(`${options.base}/join/about`,
+      {headers: blobs.headers(), cache: "no-store", signal: AbortSignal.timeout(ANSWER_MS)});
+    if (answer.status === 401) {
+      end("stopped", sentence(await answer.text()));
+      return true;
+    }
+    reached();
+  } catch {
+    // It cannot be reached.
+  }
+  return false;
+}
+
+function receive(message) {
+  heardAt = performance.now();
+  let orders;
+  try {
+    orders = program.json("session_receive", session, message);
+  } catch (error) {
+    log(error.message);
+    socket.close(4000, "bytes that are no message");
+    return;
+  }
+  for (const task of orders.stop) drop(task);
+  for (const bytes of orders.send) send(fromBase64(bytes));
+  if (!connected) welcomed();
+  if (orders.start) take(orders.start);
+  if (orders.dismissal) dismiss(orders.dismissal);
+  look();
+}
+
+function welcomed() {
+  const now = program.json("session_state", session);
+  if (!now.connected) return;
+  connected = true;
+  state.name = now.name;
+  connectBackoff.reset();
+  sendBackoff.reset();
+  log(`joined as ${now.name}`);
+  clearInterval(beating);
+  beating = setInterval(beat, now.heartbeat_ms);
+  alarm.ring();
+  leaveIfDrained();
+}
+
+function dismiss({reason, wait_ms: wait, for_ever: forEver}) {
+  log(`dismissed: ${reason}`);
+  if (forEver) {
+    end("stopped", `The coordinator has sent this tab away: ${reason}`);
+    return;
+  }
+  dismissed = {reason, until: Date.now() + wait};
+  socket?.close(1000);
+}
+
+function beat() {
+  if (!connected) return;
+  send(program.bytes("session_heartbeat", session));
+  if (newLines.length > 0) send(program.bytes("session_log", session, newLines.splice(0).join("\n")));
+  if (performance.now() - heardAt > SILENCE_MS) {
+    heardAt = performance.now() + ANSWER_MS;  // one question at a time
+    let there = false;
+    linkEnded(() => { there = true; }).then((ended) => there || ended || over || reconnect());
+  }
+}
+
+// ---- Rendering. ----
+
+function take(start) {
+  log(`leased job=${start.job} rows=${start.first}:${start.last}`);
+  tasks.set(start.task, {...start, id: start.task, scene: start.manifest, lease: fromBase64(start.lease), rowsGiven: start.first,
+    rowsDone: 0, parts: [], began: 0, seconds: 0, prepared: 0});
+  Object.assign(state, {job: start.job, width: start.width, height: start.height});
+  pump();
+}
+
+/// Forgets a band that is not wanted any more, or has failed.
+function drop(id) {
+  tasks.delete(id);
+  outgoing = outgoing.filter((band) => band.task.id !== id);
+}
+
+function fail(task, reason) {
+  if (tasks.get(task.id) !== task) return;
+  drop(task.id);
+  log(`failed job=${task.job} rows=${task.first}:${task.last}: ${reason}`);
+  send(program.bytes("session_failed", session, task.id, reason, lastLines.join("\n")));
+  leaveIfDrained();
+  look();
+}
+
+/// Gives work to the renderers that have none.
+function pump() {
+  for (const renderer of renderers) {
+    if (renderer.busy || renderer.leaving) continue;
+    const task = [...tasks.values()].find((one) => one.rowsGiven < one.last);
+    if (!task) return;
+    renderer.busy = true;
+    const work = renderer.has(task.scene) ? renderRows(renderer, task) : loadScene(renderer, task);
+    work.catch((error) => failed(renderer, task, error)).then(() => {
+      renderer.busy = false;
+      if (renderer.ended) replace(renderer);
+      if (renderer.leaving) renderer.end("fewer cores are wanted");
+      look();
+      pump();
+    });
+  }
+}
+
+function failed(renderer, task, error) {
+  if (error instanceof LinkEnded) {
+    end("stopped", error.message);
+    return;
+  }
+  // Wrong blobs serve for none of the bands of the scene.
+  for (const one of [...tasks.values()]) {
+    if (one === task || (one.scene === task.scene && error instanceof Final)) fail(one, error.message);
+  }
+}
+
+/// Starts another renderer in the place of one that has ended.
+function replace(renderer) {
+  const at = renderers.indexOf(renderer);
+  if (at < 0 || over) return;
+  log(renderer.ended);
+  if (!renderer.started) {
+    end("failed", `The renderer cannot run here: ${renderer.ended}`);
+    return;
+  }
+  renderers[at] = new Renderer(module, state.memoryBytes);
+}
+
+async function loadScene(renderer, task) {
+  // Progress counts for the first band of the scene, as long as none of its rows is rendered.
+  const step = (amount) => {
+    if (task.rowsGiven === task.first && tasks.has(task.id)) {
+      program.bytes("session_preparing", session, task.id, task.prepared += amount);
+    }
+  };
+  step(1);
+  beat();
+  look();
+  const wanted = () => !over && [...tasks.values()].some((one) => one.scene === task.scene);
+  const began = performance.now();
+  await renderer.load(task.scene, (digest) => blobs.get(digest, wanted, step), () => step(1));
+  log(`scene ${task.scene.slice(0, 12)}: ready in ${((performance.now() - began) / 1000).toFixed(2)} s`);
+}
+
+/// Returns the end of the rows that a renderer is given next. They begin at multiples of `step`, if the band does.
+function endOfPiece(task, step) {
+  const known = secondsPerRow.get(task.job);
+  const share = (task.last - task.rowsGiven) / (2 * renderers.length);  // so that all renderers end together
+  const rows = known ? Math.max(1, Math.min(PIECE_S / known, share)) : 1;
+  return Math.min(task.last, Math.ceil((task.rowsGiven + Math.floor(rows)) / step) * step);
+}
+
+async function renderRows(renderer, task) {
+  const first = task.rowsGiven;
+  const last = endOfPiece(task, renderer.rowStep(task.scene));
+  if (task.rowsGiven === task.first) {
+    task.began = performance.now() / 1000;
+    program.bytes("session_rendering", session, task.id, 0, new Uint8Array(0));
+    beat();
+  }
+  task.rowsGiven = last;
+  look();
+  const {sums, counters, seconds, rgb} = await renderer.ask("render", {lease: task.lease, first, last, picture: true});
+  const samples = task.samples * (last - first) / (task.last - task.first);
+  const now = performance.now() / 1000;
+  pieces.push({at: now, began: now - seconds, samples});
+  secondsPerRow.set(task.job, seconds / (last - first));
+  if (tasks.get(task.id) !== task) return;  // it is not wanted any more
+  task.parts.push({first, sums});
+  task.rowsDone += last - first;
+  task.seconds += seconds;
+  state.rowsDone += last - first;
+  program.bytes("session_rendering", session, task.id, task.rowsDone, counters);
+  postMessage({...state, job: task.job, width: task.width, height: task.height, rows: {first, last, rgb}}, [rgb.buffer]);
+  show();
+  if (task.rowsDone === task.last - task.first) finish(task);
+}
+
+function finish(task) {
+  if (program.text("session_finished", session, task.id) !== "true") {
+    drop(task.id);
+    return;
+  }
+  const rowBytes = task.width * 3 * 8;
+  const sums = new Uint8Array((task.last - task.first) * rowBytes);
+  for (const part of task.parts) sums.set(new Uint8Array(part.sums), (part.first - task.first) * rowBytes);
+  task.parts = [];
+  // While two bands overlap, the time counts once, for the one that ends first.
+  const now = performance.now() / 1000;
+  const renderSeconds = now - Math.max(task.began, lastEnd);
+  lastEnd = now;
+  log(`rendered job=${task.job} rows=${task.first}:${task.last} in ${renderSeconds.toFixed(2)} s`);
+  outgoing.push({task, sums, renderSeconds, refusals: 0});
+  beat();
+  sendBands();
+}
+
+// ---- Finished bands. ----
+
+async function sha256(bytes) {
+  if (crypto.subtle) return new Uint8Array(await crypto.subtle.digest("SHA-256", bytes));
+  return program.bytes("session_sha256", session, bytes);
+}
+
+/// Sends the finished bands one after the other, each until the coordinator has taken or refused it.
+async function sendBands() {
+  if (sending) return;
+  sending = true;
+  while (outgoing.length > 0 && !over) {
+    const band = outgoing[0];
+    const wait = await sendOnce(band);
+    if (wait > 0) await alarm.wait(wait);
+  }
+  sending = false;
+}
+
+/// Tries to send a band. Returns the milliseconds to wait before the next try.
+async function sendOnce(band) {
+  const {task, sums} = band;
+  band.digest ??= await sha256(sums);
+  if (!connected) return sendBackoff.next();
+  if (!tasks.has(task.id)) return 0;
+  let header;
+  let response;
+  let answer;
+  try {
+    header = program.bytes("session_band_header", session, task.id, band.digest, sums.length, band.renderSeconds, task.seconds);
+  } catch (error) {
+    fail(task, error.message);
+    return 0;
+  }
+  try {
+    response = await fetch(`${options.base}/join/band`, {method: "POST", body: new Blob([header, sums]),
+      headers: {...blobs.headers(), "X-Bandsaw": "1", "Content-Type": "application/octet-stream"}});
+    answer = new Uint8Array(await response.arrayBuffer());
+  } catch {
+    return sendBackoff.next();
+  }
+  if (!tasks.has(task.id)) return 0;
+  if (response.ok) {
+    sent(band, program.text("session_band_reply", session, task.id, answer));
+    return 0;
+  }
+  const why = sentence(new TextDecoder().decode(answer));
+  if (response.status === 401) {
+    end("stopped", why);
+    return 0;
+  }
+  log(`kept job=${task.job} rows=${task.first}:${task.last}: ${why}`);
+  const final = response.status === 400 || response.status === 404 || response.status === 413 ||
+    ((response.status === 403 || response.status === 409) && ++band.refusals > NOT_ADMITTED_TIMES);
+  if (final) {
+    fail(task, why);
+    return 0;
+  }
+  return response.status === 429 ? FULL_DISK_MS : sendBackoff.next();
+}
+
+function sent({task}, outcome) {
+  drop(task.id);
+  sendBackoff.reset();
+  ++state.bandsDone;
+  log(`${outcome} job=${task.job} rows=${task.first}:${task.last}`);
+  leaveIfDrained();
+  look();
+  show();
+}
+
+// ---- What the page asks for. ----
+
+/// A pause has finished the held bands.
+const isDrained = () => pausedWhy !== null && program.json("session_state", session).drained;
+
+/// After a pause has finished the held bands: closes the stream.
+function leaveIfDrained() {
+  if (!isDrained()) return;
+  const old = socket;
+  socket = null;
+  lost();
+  old?.close(1000);
+}
+
+/// Notes the number of cores, and the memory of each.
+function share(count) {
+  state.cores = Math.max(1, Math.floor(count));
+  state.memoryBytes = Math.floor(Math.min(options.memory / state.cores, options.mostOfAnInstance));
+}
+
+function setCores(count) {
+  share(count);
+  while (renderers.length < state.cores) renderers.push(new Renderer(module, state.memoryBytes));
+  for (const renderer of renderers.splice(state.cores)) {
+    renderer.leaving = true;
+    if (!renderer.busy) renderer.end("fewer cores are wanted");
+  }
+  renderers.forEach((renderer) => { renderer.memoryBytes = state.memoryBytes; });
+  pump();
+  show();
+}
+
+let offering = null;
+
+const calls = {
+  async start(given) {
+    options = given;
+    module = await compile();
+    program = await Program.start(module);
+    const instance = Array.from(crypto.getRandomValues(new Uint8Array(16)), (one) => one.toString(16).padStart(2, "0")).join("");
+    share(given.cores);
+    session = program.run("session_new", instance, given.name, given.build, state.cores, state.memoryBytes) >>> 0;
+    program.read(program.run("session_answer", session));
+    blobs = new Blobs(given.base, given.secret, sha256);
+    setCores(state.cores);
+    look();
+    if (!pausedWhy) connect();
+  },
+  cores({count}) {
+    setCores(count);
+    program.bytes("session_offer", session, state.cores, state.memoryBytes);
+    clearTimeout(offering);
+    offering = setTimeout(() => connected && reconnect(), OTHER_CORES_MS);
+  },
+  /// `why`: a sentence; null: goes on.
+  pause({why}) {
+    const was = pausedWhy;
+    pausedWhy = why;
+    if (why && !was) {
+      send(program.bytes("session_drain", session, why));
+      leaveIfDrained();
+    } else if (!why && was) {
+      program.bytes("session_resume", session);
+      reconnect();
+    }
+    look();
+  },
+  stop() {
+    end("stopped", "Stopped. Bands that were not finished are rendered by others.");
+  },
+};
+
+async function compile() {
+  const response = await fetch(`${options.base}/join/bandsaw.wasm`, {cache: "no-cache"});
+  if (!response.ok) throw new Error(sentence(await response.text()));
+  return WebAssembly.compileStreaming(response);
+}
+
+// One call after the other: the start takes a moment.
+let lastCall = Promise.resolve();
+onmessage = ({data}) => {
+  lastCall = lastCall.then(() => over || calls[data.call](data)).catch((error) => end("failed", `The renderer cannot run here: ${error.message}`));
+};

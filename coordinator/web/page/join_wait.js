@@ -1,0 +1,31 @@
+// Waiting, for the session.
+
+/// Waits that double from 200 ms to 5 s, each shortened by a random part of up to one half, so that the tabs do not all come
+/// back at the same moment.
+export class Backoff {
+  constructor() {
+    this.reset();
+  }
+  reset() {
+    this.most = 200;
+  }
+  next() {
+    const wait = this.most * (0.5 + 0.5 * Math.random());
+    this.most = Math.min(2 * this.most, 5000);
+    return wait;
+  }
+}
+
+export const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+
+/// A wait that can be ended early.
+export class Alarm {
+  /// Returns after `ms`, or when ring() is called.
+  wait(ms) {
+    return new Promise((done) => {
+      this.ring = done;
+      setTimeout(done, ms);
+    });
+  }
+  ring() {}
+}

@@ -1,0 +1,111 @@
+// The functions of bandsaw.wasm (worker/browser/exports.h) for JavaScript.
+
+const BAD_FILE = 8;  // errno values of WASI
+const NOT_SUPPORTED = 58;
+
+/// The functions of the system that a program for WASI may call. It has a console, clocks and random numbers, no files.
+function system(memory) {
+  const view = () => new DataView(memory().buffer);
+  const empty = (count, size) => {
+    view().setUint32(count, 0, true);
+    view().setUint32(size, 0, true);
+    return 0;
+  };
+  return {
+    args_sizes_get: empty,
+    args_get: () => 0,
+    environ_sizes_get: empty,
+    environ_get: () => 0,
+    clock_time_get(clock, precision, at) {
+      const ms = clock === 0 ? Date.now() : performance.now();
+      view().setBigUint64(at, BigInt(Math.round(ms * 1e6)), true);
+      return 0;
+    },
+    random_get(at, size) {
+      crypto.getRandomValues(new Uint8Array(memory().buffer, at, size));
+      return 0;
+    },
+    fd_write(file, pieces, count, written) {
+      let text = "";
+      let size = 0;
+      for (let i = 0; i < count; ++i) {
+        const at = view().getUint32(pieces + 8 * i, true);
+        const length = view().getUint32(pieces + 8 * i + 4, true);
+        text += new TextDecoder().decode(new Uint8Array(memory().buffer, at, length));
+        size += length;
+      }
+      view().setUint32(written, size, true);
+      console.warn(text.trimEnd());
+      return 0;
+    },
+    fd_prestat_get: () => BAD_FILE,
+    proc_exit(code) {
+      throw new WebAssembly.RuntimeError(`the program ended with code ${code}`);
+    },
+  };
+}
+
+/// Returns what the module imports. A function that is not known fails when it is called.
+function imports(module, memory) {
+  const known = system(memory);
+  const out = {};
+  for (const {module: from, name, kind} of WebAssembly.Module.imports(module)) {
+    if (kind !== "function") throw new Error(`bandsaw.wasm wants ${from}.${name}, which a page does not have`);
+    (out[from] ??= {})[name] = known[name] ?? (() => NOT_SUPPORTED);
+  }
+  return out;
+}
+
+/// One instance of the module.
+export class Program {
+  static async start(module) {
+    const program = new Program();
+    const instance = await WebAssembly.instantiate(module, imports(module, () => program.memory));
+    program.functions = instance.exports;
+    program.memory = instance.exports.memory;
+    program.functions._initialize?.();
+    return program;
+  }
+
+  /// Returns the address of a copy of the bytes.
+  place(bytes) {
+    const at = this.functions.bandsaw_allocate(bytes.length) >>> 0;
+    new Uint8Array(this.memory.buffer, at, bytes.length).set(bytes);
+    return at;
+  }
+
+  /// Calls `bandsaw_NAME` with the arguments: numbers as they are, texts and bytes as address and length. Returns its result.
+  run(name, ...args) {
+    const placed = [];
+    const flat = args.flatMap((arg) => {
+      if (typeof arg === "number") return [arg];
+      const bytes = typeof arg === "string" ? new TextEncoder().encode(arg) : arg;
+      placed.push(this.place(bytes));
+      return [placed.at(-1), bytes.length];
+    });
+    const result = this.functions[`bandsaw_${name}`](...flat);
+    placed.forEach((at) => this.functions.bandsaw_free(at));
+    return result;
+  }
+
+  /// Returns a copy of the bytes of a BandsawAnswer, or throws its error.
+  read(answer) {
+    const view = new DataView(this.memory.buffer);
+    const at = answer >>> 0;
+    const bytes = new Uint8Array(this.memory.buffer, view.getUint32(at, true), view.getUint32(at + 4, true)).slice();
+    if (view.getUint32(at + 8, true)) throw new Error(new TextDecoder().decode(bytes));
+    return bytes;
+  }
+
+  bytes(name, ...args) {
+    return this.read(this.run(name, ...args));
+  }
+  text(name, ...args) {
+    return new TextDecoder().decode(this.bytes(name, ...args));
+  }
+  json(name, ...args) {
+    return JSON.parse(this.text(name, ...args));
+  }
+}
+
+export const fromBase64 = (text) => Uint8Array.from(atob(text), (one) => one.charCodeAt(0));
