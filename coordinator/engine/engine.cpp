@@ -41,6 +41,8 @@ SchedulerOptions scheduler_options(const EngineOptions& options, const std::stri
   wanted.progress_timeout_s = options.progress_timeout_s;
   wanted.reattach_grace_s = options.reattach_grace_s;
   wanted.audit_share = options.audit_share;
+  wanted.browser_audit_share = options.browser_audit_share;
+  wanted.browsers = options.browsers;
   wanted.epoch = epoch;
   return wanted;
 }
@@ -159,11 +161,14 @@ void Engine::add_frames(JobId sequence, std::vector<FrameScene> scenes,
                         std::function<void(absl::StatusOr<JobView>)> done) {
   to_store_.post([this, sequence, scenes = std::move(scenes),
                   answer = Answer<JobView>(std::move(done))](StoreThread&) mutable {
-    for (const FrameScene& scene : scenes) {
-      if (const absl::Status fit = check_package(scene.manifest, *blobs_); !fit.ok()) {
-        answer(absl::Status(fit.code(), absl::StrCat("frame ", scene.number, ": ", fit.message())));
+    for (FrameScene& scene : scenes) {
+      const absl::StatusOr<std::uint64_t> bytes = check_package(scene.manifest, *blobs_);
+      if (!bytes.ok()) {
+        answer(absl::Status(bytes.status().code(),
+                            absl::StrCat("frame ", scene.number, ": ", bytes.status().message())));
         return;
       }
+      scene.package_bytes = *bytes;
     }
     to_scheduler_.call(&SchedulerThread::command, sequence,
                        Input(input::AddFrames{.job = sequence, .scenes = std::move(scenes)}),

@@ -39,7 +39,10 @@ struct EngineOptions {
   /// A lease whose rows do not advance this long is given to another worker.
   double progress_timeout_s = 30;
   double reattach_grace_s = 6;  ///< after a restart: time to wait for the workers from before
-  double audit_share = 0.01;    ///< share of all bands that two machines render, [0, 1]
+  /// Share of the bands of native workers that two machines render, [0, 1].
+  double audit_share = 0.01;
+  double browser_audit_share = 0.1;  ///< the same of the bands of browsers
+  Browsers browsers = Browsers::kAlso;
   Keep keep = {};  ///< retention of jobs that are over; applied every ten minutes and 1,000 jobs
 };
 

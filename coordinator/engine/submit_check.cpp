@@ -75,11 +75,12 @@ absl::StatusOr<std::string> read_manifest(const DigestHex& hex, BlobSource& blob
 
 }  // namespace
 
-absl::Status check_submit(const JobSpec& spec, BlobStore& blobs) {
+absl::Status check_submit(JobSpec& spec, BlobStore& blobs) {
   RETURN_IF_ERROR(check_words(spec.request_id, spec.name));
   RETURN_IF_ERROR(validate(spec.settings));
   RETURN_IF_ERROR(check_stop(spec.stop));
-  return check_package(spec.manifest, blobs);
+  ASSIGN_OR_RETURN(spec.package_bytes, check_package(spec.manifest, blobs));
+  return absl::OkStatus();
 }
 
 absl::Status check_sequence(const SequenceSpec& spec) {
@@ -88,21 +89,23 @@ absl::Status check_sequence(const SequenceSpec& spec) {
   return check_stop(spec.stop);
 }
 
-absl::Status check_package(const DigestHex& digest_hex, BlobStore& blobs) {
+absl::StatusOr<std::uint64_t> check_package(const DigestHex& digest_hex, BlobStore& blobs) {
   ASSIGN_OR_RETURN(const std::string manifest, read_manifest(digest_hex, blobs));
   RETURN_IF_ERROR(package_info(manifest).status());
   ASSIGN_OR_RETURN(const std::vector<BlobRef> refs, package_blobs(manifest));
   // The collector must not remove the blobs before the scheduler has the job.
   ASSIGN_OR_RETURN(const wire::Digest manifest_digest, wire::digest_from_hex(digest_hex));
   blobs.touch(manifest_digest);
+  std::uint64_t bytes = manifest.size();
   for (const BlobRef& ref : refs) {
+    bytes += ref.size;
     blobs.touch(ref.digest);
     if (!blobs.has(ref.digest)) {
       return absl::FailedPreconditionError(absl::StrCat(
           "blob ", ref.digest.hex(), " of the package is missing; send it, then submit again"));
     }
   }
-  return absl::OkStatus();
+  return bytes;
 }
 
 Display display_of(const DigestHex& manifest, BlobSource& blobs) {

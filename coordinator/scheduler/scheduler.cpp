@@ -49,6 +49,7 @@ Step Scheduler::finish_step() {
 }
 
 void Scheduler::on(const input::Tick&) {
+  context_.note_natives();
   barrier_.expire();
   lifecycle_.revoke_from_held_jobs();
   sessions_.forget_refusals();
@@ -88,7 +89,7 @@ void Scheduler::on(const input::BandStored& in) {
   if (worker != nullptr) {
     measure(*worker, *job, in);
     worker->on_job[job->id].failures = 0;
-    if (!job->is_suspect(in.band)) {
+    if (!job->is_suspect(in.band) && !worker->browser) {
       crashes_.count_band();
     }
   }
@@ -152,8 +153,7 @@ std::optional<std::vector<FrameView>> Scheduler::frames(JobId id, std::uint64_t 
 }
 std::vector<WorkerView> Scheduler::workers(Time now) const { return views_.workers(now); }
 bool Scheduler::is_browser(const std::string& instance) const {
-  const Worker* worker = context_.workers.by_instance(instance);
-  return worker != nullptr && worker->browser;
+  return context_.is_browser(instance);
 }
 
 std::optional<std::string> Scheduler::broken_invariant() const {

@@ -73,7 +73,8 @@ class Scheduler {
   /// belong to it.
   std::vector<KeptJob> kept() const { return views_.kept(); }
   std::vector<WorkerView> workers(Time now) const;  ///< by name
-  /// Returns true if a worker of this instance has joined and is a browser.
+  /// Returns true if a browser of this instance has joined, in this epoch or for a job that is not
+  /// over.
   bool is_browser(const std::string& instance) const;
 
   /// Returns a sentence about the first invariant that does not hold; std::nullopt: all hold. For

@@ -146,7 +146,10 @@ Record read_record(absl::string_view kind, FieldReader& in) {
     return read_frame(in);
   }
   if (kind == "worker_joined") {
-    return record::WorkerJoined{.instance = in.text("instance")};
+    record::WorkerJoined joined;  // versions below 10 had no browsers
+    joined.browser = in.next_is("browser") && in.number("browser", 1) == 1;
+    joined.instance = in.text("instance");
+    return joined;
   }
   if (kind == "worker_left") {
     return record::WorkerLeft{.instance = in.text("instance")};
@@ -235,6 +238,7 @@ RecordText to_text(const Record& record) {
                               return "frame_waits";
                             },
                             [&](const record::WorkerJoined& r) {
+                              out.number("browser", r.browser ? 1 : 0);
                               out.text("instance", r.instance);
                               return "worker_joined";
                             },

@@ -76,6 +76,11 @@ FrameNumber read_number(FieldReader& in) {
          kMaxFrameNumber;
 }
 
+/// Journals of versions below 10 lack this field.
+std::uint64_t read_package_bytes(FieldReader& in) {
+  return in.next_is("package_bytes") ? in.number("package_bytes") : 0;
+}
+
 }  // namespace
 
 void write_job(FieldWriter& out, const record::JobAdded& added) {
@@ -88,6 +93,7 @@ void write_job(FieldWriter& out, const record::JobAdded& added) {
   out.text("request_id", added.spec.request_id);
   out.text("name", added.spec.name);
   out.text("manifest", added.spec.manifest);
+  out.number("package_bytes", added.spec.package_bytes);
   write_settings(out, added.spec.settings);
   write_stop(out, added.spec.stop);
 }
@@ -104,6 +110,7 @@ record::JobAdded read_job(FieldReader& in) {
   spec.request_id = in.text("request_id");
   spec.name = in.text("name");
   spec.manifest = in.text("manifest");
+  spec.package_bytes = read_package_bytes(in);
   spec.settings = read_settings(in);
   spec.stop = read_stop(in);
   return {
@@ -160,6 +167,7 @@ void write_frame(FieldWriter& out, const record::FrameWaits& r) {
   out.number("job", r.job);
   write_number(out, r.frame);
   out.text("manifest", r.manifest);
+  out.number("package_bytes", r.package_bytes);
   out.number("failures", r.failures);
   out.text("reason", r.reason);
 }
@@ -168,6 +176,7 @@ record::FrameWaits read_frame(FieldReader& in) {
   return {.job = in.number("job"),
           .frame = read_number(in),
           .manifest = in.text("manifest"),
+          .package_bytes = read_package_bytes(in),
           .failures = static_cast<std::uint32_t>(in.number("failures", UINT32_MAX)),
           .reason = in.text("reason")};
 }

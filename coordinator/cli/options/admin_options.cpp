@@ -45,8 +45,18 @@ void add_serve(CLI::App& app, RawOptions& raw) {
       ->type_name("HOST:PORT");
   add_keep(app, raw);
   app.add_option("--audit", raw.audit,
-                 "Share of all bands that two machines render and that are compared [default: 1%]")
+                 "Share of the bands of native workers that two machines render and that are "
+                 "compared [default: 1%]")
       ->type_name("P%");
+  app.add_option("--browser-audit", raw.browser_audit,
+                 "The same of the bands of browsers, which a native worker renders again "
+                 "[default: 10%]")
+      ->type_name("P%");
+  app.add_option(
+         "--browsers", raw.browsers,
+         "Browsers that join render: none (they are refused), also, or only (native workers "
+         "just compare) [default: also]")
+      ->type_name("WHICH");
   app.add_flag("--reflection", raw.reflection,
                "List the gRPC calls to any client, such as grpcurl; the calls still need a secret");
   app.add_flag("--insecure", raw.insecure,

@@ -1,5 +1,7 @@
 // Checks the options of administration commands.
 
+#include <algorithm>
+
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/options/checked_options.h"
 #include "coordinator/cli/options/choices.h"
@@ -33,11 +35,24 @@ absl::StatusOr<Command> checked_quarantine(const RawOptions& raw) {
   return options;
 }
 
-absl::StatusOr<double> checked_audit(const RawOptions& raw, double standard) {
-  if (!raw.audit) {
+absl::StatusOr<double> checked_share(const std::string& option,
+                                     const std::optional<std::string>& text, double standard) {
+  if (!text) {
     return standard;
   }
-  return *raw.audit == "0%" ? 0 : parse_percent("--audit", *raw.audit);
+  return *text == "0%" ? 0 : parse_percent(option, *text);
+}
+
+absl::StatusOr<Browsers> checked_browsers(const RawOptions& raw) {
+  if (!raw.browsers) {
+    return Browsers::kAlso;
+  }
+  const std::vector<std::string> words = choices_of("--browsers");
+  const auto word = std::find(words.begin(), words.end(), *raw.browsers);
+  if (word == words.end()) {
+    return wrong_choice("--browsers", *raw.browsers);
+  }
+  return static_cast<Browsers>(word - words.begin());
 }
 
 absl::StatusOr<std::string> checked_web(const RawOptions& raw) {

@@ -265,7 +265,10 @@ absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   }
   RETURN_IF_ERROR(check_address("--listen", options.listen, "0.0.0.0:7878"));
   ASSIGN_OR_RETURN(options.web, checked_web(raw));
-  ASSIGN_OR_RETURN(options.audit_share, checked_audit(raw, options.audit_share));
+  ASSIGN_OR_RETURN(options.audit_share, checked_share("--audit", raw.audit, options.audit_share));
+  ASSIGN_OR_RETURN(options.browser_audit_share, checked_share("--browser-audit", raw.browser_audit,
+                                                              options.browser_audit_share));
+  ASSIGN_OR_RETURN(options.browsers, checked_browsers(raw));
   RETURN_IF_ERROR(read_positive("--keep-days", raw.keep_days, options.keep_days));
   RETURN_IF_ERROR(read_positive("--keep-size", raw.keep_size, options.keep_gb));
   RETURN_IF_ERROR(read_whole("--keep-jobs", raw.keep_jobs, 1, 1'000'000, options.keep_jobs));

@@ -26,7 +26,7 @@ struct RawOptions {
   std::vector<std::string> parameters;
   std::string inside, folder;
   bool strict = false, force = false;
-  std::optional<std::string> web, shell, audit;
+  std::optional<std::string> web, shell, audit, browser_audit, browsers;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
        quiet = false, json = false, preview = false, every_object = false, reflection = false,
        compare_clean = false, fixed_seed = false;
@@ -70,8 +70,10 @@ absl::Status check_frame_places(const std::vector<std::string>& outputs);
 /// Checks for HOST:PORT. `option` and `example` are used in the error.
 absl::Status check_address(const std::string& option, const std::string& address,
                            const std::string& example);
-/// Returns a share of all bands; `standard` if none is given.
-absl::StatusOr<double> checked_audit(const RawOptions& raw, double standard);
+/// Returns a share of bands, [0, 1]; `standard` if none is given.
+absl::StatusOr<double> checked_share(const std::string& option,
+                                     const std::optional<std::string>& text, double standard);
+absl::StatusOr<Browsers> checked_browsers(const RawOptions& raw);
 /// Returns the dashboard's address; empty: not given.
 absl::StatusOr<std::string> checked_web(const RawOptions& raw);
 /// `command` is used in the error.

@@ -45,6 +45,9 @@ std::vector<std::string> choices_of(const std::string& name) {
   if (name == "--denoise") {
     return {"regression", "oidn"};
   }
+  if (name == "--browsers") {
+    return {"none", "also", "only"};  // in the order of Browsers
+  }
   if (name == "action") {
     return {"rotate"};
   }

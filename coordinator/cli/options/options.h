@@ -10,6 +10,7 @@
 
 #include "coordinator/cli/options/scene_choices.h"
 #include "coordinator/scheduler/api/job_spec.h"
+#include "coordinator/scheduler/api/options.h"
 #include "proto/link/join.h"
 #include "renderlib/image/display.h"
 #include "renderlib/render/band.h"
@@ -79,7 +80,9 @@ struct ServeOptions {
   double keep_days = 30;             ///< maximum age of jobs that are over
   double keep_gb = 100;              ///< maximum size of results and scenes
   std::uint64_t keep_jobs = 10'000;  ///< maximum number of jobs that are over
-  double audit_share = 0.01;         ///< share of all bands, [0, 1]
+  double audit_share = 0.01;         ///< share of the bands of native workers, [0, 1]
+  double browser_audit_share = 0.1;  ///< share of the bands of browsers, [0, 1]
+  Browsers browsers = Browsers::kAlso;
 };
 
 /// Additional layers of an EXR file.

@@ -78,6 +78,8 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   engine_options.keep.jobs = options.keep_jobs;
   engine_options.keep.bytes = static_cast<std::uint64_t>(options.keep_gb * 1e9);
   engine_options.audit_share = options.audit_share;
+  engine_options.browser_audit_share = options.browser_audit_share;
+  engine_options.browsers = options.browsers;
   ASSIGN_OR_RETURN(serving.engine, Engine::start(engine_options));
   ASSIGN_OR_RETURN(const link::Identity identity, link::load_or_make_identity(folder));
   serving.folder = folder;

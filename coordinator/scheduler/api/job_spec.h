@@ -45,13 +45,20 @@ struct JobSpec {
   StopRule stop;
   JobId sequence = 0;     ///< the sequence of a frame job (sequence_spec.h); 0: none
   FrameNumber frame = 0;  ///< its number in the sequence
+  /// Bytes of the package, the manifest included; it follows from the manifest, so it is not
+  /// compared. 0: unknown, as of jobs that an earlier version has journalled.
+  std::uint64_t package_bytes = 0;
   /// Returns true if a band labelled with the hash `work` (render/work_hash.h) can belong to this
   /// job. The job id alone is not enough, because ids are reused after a reset of the data folder.
   /// 0: the band is not labelled, and is accepted.
   bool may_be(std::uint64_t work) const {
     return work == 0 || work == work_hash(manifest, settings);
   }
-  friend bool operator==(const JobSpec&, const JobSpec&) = default;
+  friend bool operator==(const JobSpec& a, const JobSpec& b) {
+    return a.request_id == b.request_id && a.name == b.name && a.manifest == b.manifest &&
+           a.settings == b.settings && a.stop == b.stop && a.sequence == b.sequence &&
+           a.frame == b.frame;
+  }
 };
 
 /// Priorities are in [-kMaxPriority, kMaxPriority]. Jobs of higher priority are leased first, jobs

@@ -18,6 +18,9 @@
 
 namespace bandsaw::coordinator {
 
+/// Ends the names of browsers, so that none can be taken for that of a native worker.
+inline constexpr char kBrowserSuffix[] = "@browser";
+
 /// A worker's report when it opens a session.
 struct WorkerHello {
   std::string instance;  ///< unique to its process, the same over reconnects
@@ -41,6 +44,9 @@ struct WorkerHello {
     std::uint64_t work = 0;  ///< render/work_hash.h; 0: not reported
   };
   std::vector<Held> held;
+
+  /// Returns the name under which it is known (context/workers.h).
+  std::string reported_name() const { return browser ? name + kBrowserSuffix : name; }
 };
 
 struct LeaseProgress {

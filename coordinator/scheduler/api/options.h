@@ -13,6 +13,13 @@ struct Compatibility {
   std::uint64_t canary = 0;
 };
 
+/// Which workers may be browsers.
+enum class Browsers {
+  kNone,  ///< browsers are refused
+  kAlso,  ///< browsers and native workers render
+  kOnly,  ///< native workers only compare what browsers rendered
+};
+
 struct SchedulerOptions {
   Compatibility compatibility;      ///< versions of this coordinator
   double heartbeat_interval_s = 1;  ///< requested of workers
@@ -26,8 +33,11 @@ struct SchedulerOptions {
   /// Minimum number of machines that must be lost at a suspect band before its job fails. More are
   /// required on farms that lose many workers, or of which little is known (CrashRate).
   std::size_t min_crashes_per_band = 3;
-  double audit_share = 0;  ///< [0, 1], of all bands: rendered by two machines (model/audit.h)
-  std::string epoch;       ///< names this run of the coordinator; a held lease is named with it
+  /// [0, 1], of the bands of native workers: rendered by two machines (model/audit.h)
+  double audit_share = 0;
+  double browser_audit_share = 0;  ///< [0, 1], the same of the bands of browsers
+  Browsers browsers = Browsers::kAlso;
+  std::string epoch;  ///< names this run of the coordinator; a held lease is named with it
 };
 
 }  // namespace bandsaw::coordinator

@@ -97,6 +97,7 @@ struct JobForgotten {
 /// because they may hold finished bands.
 struct WorkerJoined {
   std::string instance;
+  bool browser = false;  ///< it renders in a browser: all that it renders is audited as such
 };
 struct WorkerLeft {
   std::string instance;
@@ -139,8 +140,9 @@ struct FrameWaits {
   JobId job = 0;
   FrameNumber frame = 0;
   DigestHex manifest;
-  std::uint32_t failures = 0;  ///< number of its jobs that have failed
-  std::string reason;          ///< reason of the last failure
+  std::uint64_t package_bytes = 0;  ///< as in JobSpec
+  std::uint32_t failures = 0;       ///< number of its jobs that have failed
+  std::string reason;               ///< reason of the last failure
 };
 }  // namespace record
 

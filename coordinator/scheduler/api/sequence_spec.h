@@ -54,6 +54,7 @@ constexpr const char* frame_state_name(FrameState state) {
 struct FrameScene {
   FrameNumber number = 0;
   DigestHex manifest;
+  std::uint64_t package_bytes = 0;  ///< as in JobSpec
 };
 
 /// A frame as it is displayed.

@@ -23,23 +23,42 @@ bool Context::is_silent(const Worker& worker) const {
 
 Reporter Context::reporter_of(const input::BandStored& in) const {
   if (in.instance.empty()) {
-    return {.process = in.process, .machine = {}};
+    return absent(in.process);
   }
   const Worker* worker = workers.by_instance(in.instance);
-  return worker == nullptr ? Reporter{.process = worker_process_id(in.instance), .machine = {}}
-                           : worker->reporter();
+  return worker == nullptr ? absent(worker_process_id(in.instance)) : worker->reporter();
 }
 
 Reporter Context::reporter_of(WorkerProcessId process) const {
   const Worker* worker = workers.by_process(process);
-  return worker == nullptr ? Reporter{.process = process, .machine = {}} : worker->reporter();
+  return worker == nullptr ? absent(process) : worker->reporter();
+}
+
+Reporter Context::absent(WorkerProcessId process) const {
+  return {.process = process, .machine = {}, .browser = browsers.contains(process)};
+}
+
+bool Context::is_browser(const std::string& instance) const {
+  return browsers.contains(worker_process_id(instance));
+}
+
+void Context::note_natives() {
+  if (available.natives() > 0) {
+    native_seen_at_ = clock.timeout_clock();
+  }
+}
+
+bool Context::only_browsers() const {
+  return available.natives() == 0 && clock.timeout_clock() - native_seen_at_ >= kNativesAway_s;
 }
 
 std::string Context::name_of(const Reporter& reporter) const {
   if (const Worker* worker = workers.by_process(reporter.process)) {
     return worker->name;
   }
-  return reporter.machine.empty() ? "a worker that has left" : reporter.machine;
+  return reporter.browser           ? "a browser that has left"
+         : reporter.machine.empty() ? "a worker that has left"
+                                    : reporter.machine;
 }
 
 void Context::apply(const Record& record) {
@@ -99,6 +118,9 @@ void Context::apply(const record::StateChanged& r) {
   }
   Sequence* sequence = sequences.find(job->spec.sequence);
   if (is_final(r.state)) {
+    if (jobs.active() == std::set<JobId>{r.job}) {
+      forget_browsers();
+    }
     if (sequence != nullptr && r.state == JobState::kDone && job->work_rate.measured()) {
       sequence->cost = job->cost;
       sequence->work_rate = job->work_rate;
@@ -115,6 +137,11 @@ void Context::apply(const record::StateChanged& r) {
   if (r.state != JobState::kRunning) {
     jobs.unmark_leasable(*job);
   }
+}
+
+/// No job has bands that browsers rendered. Those that are connected may render more.
+void Context::forget_browsers() {
+  std::erase_if(browsers, [&](const auto& entry) { return !joined.contains(entry.second); });
 }
 
 void Context::apply(const record::PriorityChanged& r) {
@@ -172,7 +199,15 @@ void Context::apply(const record::JobForgotten& r) {
   sequences.remove(r.job);
   jobs.remove(r.job);
 }
-void Context::apply(const record::WorkerJoined& r) { joined.insert(r.instance); }
+void Context::apply(const record::WorkerJoined& r) {
+  joined.insert(r.instance);
+  if (r.browser) {
+    if (browsers.size() >= kMaxBrowsers) {
+      browsers.erase(browsers.begin());
+    }
+    browsers[worker_process_id(r.instance)] = r.instance;
+  }
+}
 void Context::apply(const record::WorkerLeft& r) { joined.erase(r.instance); }
 
 void Context::apply(const record::BandAudited& r) {
@@ -212,7 +247,7 @@ void Context::apply(const record::SequenceAdded& r) {
 
 void Context::apply(const record::FrameWaits& r) {
   if (Sequence* sequence = sequences.find(r.job)) {
-    sequence->wait(r.frame, r.manifest, r.failures, r.reason);
+    sequence->wait({r.frame, r.manifest, r.package_bytes}, r.failures, r.reason);
   }
 }
 

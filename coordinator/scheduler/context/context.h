@@ -57,6 +57,13 @@ class Context {
   /// Returns the origin of a result. After a restart only its process may be known.
   Reporter reporter_of(const input::BandStored& in) const;
   Reporter reporter_of(WorkerProcessId process) const;
+  /// Returns true if this worker process joined as a browser, in any epoch.
+  bool is_browser(const std::string& instance) const;
+  /// MUST be called at least once per heartbeat interval.
+  void note_natives();
+  /// Returns true if no native worker has been connected for kNativesAway_s: then, and only then,
+  /// browsers compare each other's pixels.
+  bool only_browsers() const;
   /// Returns the displayed name of the machine that returned a result.
   std::string name_of(const Reporter& reporter) const;
 
@@ -69,8 +76,18 @@ class Context {
   Leases leases;
   QuarantineList quarantine;
   std::set<std::string> joined;  ///< journalled: instances that were connected last
+  /// Journalled: the browsers, connected or not, that may have rendered bands of active jobs. If
+  /// there are more than kMaxBrowsers, some are forgotten; what these rendered is audited like
+  /// bands of native workers if it is read back from disk.
+  std::map<WorkerProcessId, std::string> browsers;
 
  private:
+  static constexpr std::size_t kMaxBrowsers = 16'384;
+  /// Long enough for the restart of a native worker or of the coordinator.
+  static constexpr double kNativesAway_s = 60;
+
+  Reporter absent(WorkerProcessId process) const;
+  void forget_browsers();
   void apply(const record::JobAdded& r);
   void apply(const record::PassPlanned& r);
   void apply(const record::TilesPlanned& r);
@@ -94,6 +111,7 @@ class Context {
   void apply(const record::SequenceAdded& r);
   void apply(const record::FrameWaits& r);
 
+  Time native_seen_at_ = 0;  ///< timeout clock
   Step step_;
   std::map<SessionId, std::vector<LeaseId>> revoked_;
 };

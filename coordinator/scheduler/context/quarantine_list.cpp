@@ -43,7 +43,7 @@ std::optional<record::WorkerQuarantined> QuarantineList::missing_name(
   if (own == entries_.end() || !own->second.name.empty()) {
     return std::nullopt;
   }
-  return record::WorkerQuarantined{own->first, worker.name, own->second.reason};
+  return record::WorkerQuarantined{own->first, worker.reported_name(), own->second.reason};
 }
 
 std::string QuarantineList::describe(const Entry& entry) {

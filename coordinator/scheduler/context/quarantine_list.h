@@ -17,7 +17,9 @@ namespace bandsaw::coordinator {
 class QuarantineList {
  public:
   struct Entry {
-    std::string name;  ///< name that the worker reports; empty: it has not connected since
+    /// Name that the worker reports, or displayed name of a browser; empty: it has not connected
+    /// since.
+    std::string name;
     std::string reason;
     bool lifted = false;  ///< the machine is admitted again; the process's results stay void
   };
@@ -29,7 +31,8 @@ class QuarantineList {
 
   /// Returns true if the process was ever quarantined.
   bool contains(WorkerProcessId process) const { return entries_.contains(process); }
-  /// Returns why a worker is not admitted; std::nullopt: it is.
+  /// Returns why a worker is not admitted; std::nullopt: it is. `reported_name`: empty for a
+  /// browser, which is known by its process only.
   std::optional<std::string> reason_against(const std::string& instance,
                                             const std::string& reported_name) const;
   /// Returns the record that adds the name of a process that was quarantined before it connected,

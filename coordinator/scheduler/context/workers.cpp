@@ -42,7 +42,13 @@ std::string Workers::name_of(const std::string& instance) const {
   return known == nullptr ? instance : known->name;
 }
 
-Worker& Workers::add(const std::string& instance, const std::string& name) {
+std::size_t Workers::connected_browsers() const {
+  return static_cast<std::size_t>(std::count_if(all_.begin(), all_.end(), [](const auto& entry) {
+    return entry.second.session && entry.second.browser;
+  }));
+}
+
+Worker& Workers::add(const std::string& instance, const std::string& name, bool browser) {
   std::string unique = name;
   for (std::uint32_t number = 2; by_name_.contains(unique); ++number) {
     unique = name + "-" + std::to_string(number);
@@ -53,6 +59,7 @@ Worker& Workers::add(const std::string& instance, const std::string& name) {
   worker.process = worker_process_id(instance);
   worker.name = unique;
   worker.reported_name = name;
+  worker.browser = browser;
   by_instance_[instance] = worker.id;
   by_name_[unique] = worker.id;
   gone_.push_back(worker.id);

@@ -23,7 +23,9 @@ struct Worker {
   std::string instance;
   WorkerProcessId process = 0;  ///< id of the instance
   std::string name;             ///< displayed; unique among the known workers
-  std::string reported_name;    ///< the name that it reports: that of its machine
+  /// The name that it reports: that of its machine. A browser's is chosen freely, and ends with
+  /// kBrowserSuffix (api/messages.h).
+  std::string reported_name;
   std::string address;
   std::string build;
   std::uint32_t threads = 1;
@@ -53,7 +55,12 @@ struct Worker {
   };
   std::map<JobId, OnJob> on_job;
 
-  Reporter reporter() const { return {.process = process, .machine = reported_name}; }
+  /// Returns what identifies its machine. The name of a browser identifies nothing: each tab counts
+  /// as a machine.
+  const std::string& machine() const { return browser ? instance : reported_name; }
+  Reporter reporter() const {
+    return {.process = process, .machine = machine(), .browser = browser};
+  }
   /// Returns true if it is connected and may get leases.
   bool eligible() const { return session && !draining && !quarantined; }
   bool has_spare_credit() const { return eligible() && leases.size() < credits; }
@@ -71,8 +78,11 @@ class Workers {
   /// Returns the displayed name of an instance; the instance itself if it is not known any more.
   std::string name_of(const std::string& instance) const;
 
-  /// Adds a worker that is not known yet, under a displayed name that no other has.
-  Worker& add(const std::string& instance, const std::string& name);
+  /// Adds a worker that is not known yet, under a displayed name that no other has. `name`: the
+  /// reported name.
+  Worker& add(const std::string& instance, const std::string& name, bool browser);
+  /// Returns the number of connected browsers. Searches all workers: only for rare events.
+  std::size_t connected_browsers() const;
   void connect(Worker& worker, SessionId session);
   /// Keeps the worker among those that have left; forgets the oldest of more than kMaxGone.
   void disconnect(Worker& worker);
@@ -107,8 +117,10 @@ class AvailableWorkers {
       return;
     }
     threads_ += worker.threads;
+    natives_ += worker.browser ? 0 : 1;
     Known& known = known_[worker.id];
     known.threads = worker.threads;
+    known.browser = worker.browser;
     if (worker.has_spare_credit()) {
       known.place = {worker.leases.size(), worker.id};
       places_.insert(*known.place);
@@ -126,10 +138,13 @@ class AvailableWorkers {
   /// Return the number of eligible workers, with or without spare credits, and of their threads.
   std::size_t eligible() const { return known_.size(); }
   std::uint64_t threads() const { return threads_; }
+  /// Returns the number of eligible workers that are not browsers.
+  std::size_t natives() const { return natives_; }
 
  private:
   struct Known {
     std::uint32_t threads = 0;
+    bool browser = false;
     std::optional<Place> place;
   };
 
@@ -139,6 +154,7 @@ class AvailableWorkers {
       return;
     }
     threads_ -= it->second.threads;
+    natives_ -= it->second.browser ? 0 : 1;
     if (it->second.place) {
       places_.erase(*it->second.place);
     }
@@ -148,6 +164,7 @@ class AvailableWorkers {
   std::set<Place> places_;
   std::map<WorkerId, Known> known_;
   std::uint64_t threads_ = 0;
+  std::size_t natives_ = 0;
 };
 
 }  // namespace bandsaw::coordinator

@@ -8,8 +8,9 @@ namespace bandsaw::coordinator {
 
 bool AuditLeases::may_render(const Worker& worker, const Job& job, const Audit& audit) const {
   const auto able = [&](const Worker& one) {
-    return one.eligible() && eligibility_.may_render(one, job) &&
-           !audit.unable.contains(one.reported_name);
+    return one.eligible() && eligibility_.may_audit(one, job) &&
+           !audit.unable.contains(one.machine()) &&
+           (!one.browser || (context_.only_browsers() && audit.only_browsers()));
   };
   if (!able(worker)) {
     return false;
@@ -39,7 +40,7 @@ void AuditLeases::grant(Worker& worker, Job& job, Audit& audit, std::uint32_t en
     rest = audit.split_at(end_row);
   }
   audit.lease = context_.leases.new_id();
-  audit.given.insert(worker.reported_name);
+  audit.given.insert(worker.machine());
   ledger_.add(
       worker, job, *job.pass_of(audit.band()),
       {.id = audit.lease, .job = job.id, .worker = worker.id, .band = audit.band(), .audit = true});
@@ -51,7 +52,7 @@ void AuditLeases::grant(Worker& worker, Job& job, Audit& audit, std::uint32_t en
 
 void AuditLeases::give_up(const Lease& lease, const Worker& worker, const std::string& reason) {
   if (Audit* audit = context_.jobs.at(lease.job).audit_under(lease.id)) {
-    audit->unable.insert(worker.reported_name);
+    audit->unable.insert(worker.machine());
   }
   context_.act(action::LogFailure{lease.job, lease.band, worker.name, reason});
   ledger_.end(lease.id, LeaseLedger::Revoke::kYes);
@@ -60,7 +61,7 @@ void AuditLeases::give_up(const Lease& lease, const Worker& worker, const std::s
 bool AuditLeases::block(const Job& job) const {
   const auto& workers = context_.workers.all();
   return std::any_of(job.audits.begin(), job.audits.end(), [&](const Audit& audit) {
-    return audit.lease != 0 || audit.disputed() || barrier_.active() ||
+    return audit.lease != 0 || audit.doubtful() || barrier_.active() ||
            std::any_of(workers.begin(), workers.end(),
                        [&](const auto& entry) { return may_render(entry.second, job, audit); });
   });

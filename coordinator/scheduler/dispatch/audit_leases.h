@@ -18,8 +18,10 @@ class AuditLeases {
               const ReconnectBarrier& barrier)
       : context_(context), ledger_(ledger), eligibility_(eligibility), barrier_(barrier) {}
 
-  /// Returns true if the worker's machine has returned no result yet. A machine that has one may
-  /// render the band once more if the audit is disputed and no other machine is left.
+  /// Returns true if the worker's machine has returned no result yet. Native workers audit all
+  /// bands; browsers audit those of other browsers, and only if no native worker is there. A
+  /// machine that has one may render the band once more if the audit is disputed and no other
+  /// machine is left.
   bool may_render(const Worker& worker, const Job& job, const Audit& audit) const;
   /// Returns the first waiting audit that the worker may render; nullptr: none.
   Audit* next_for(const Worker& worker, Job& job) const;

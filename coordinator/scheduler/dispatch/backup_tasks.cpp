@@ -121,7 +121,9 @@ std::vector<Worker*> BackupTasks::helpers(const Job& job, const Lease& lease,
                                           const std::vector<Worker*>& idle) const {
   std::vector<Worker*> able;
   for (Worker* worker : idle) {
-    if (worker->id != lease.worker && eligibility_.may_render(*worker, job) &&
+    const bool may =
+        lease.audit ? eligibility_.may_audit(*worker, job) : eligibility_.may_render(*worker, job);
+    if (worker->id != lease.worker && may &&
         !eligibility_.left_to_others(job, *worker, lease.band)) {
       able.push_back(worker);
     }
@@ -171,7 +173,7 @@ bool BackupTasks::move_audit(const Straggler& late, std::vector<Worker*>& idle) 
   Audit& audit = *job.audit_under(lease.id);
   std::vector<Worker*> able = helpers(job, lease, idle);
   std::erase_if(able, [&](const Worker* worker) {
-    return audit.given.contains(worker->reported_name) || !audits_.may_render(*worker, job, audit);
+    return audit.given.contains(worker->machine()) || !audits_.may_render(*worker, job, audit);
   });
   double together = 0;
   for (const Worker* worker : able) {

@@ -64,14 +64,15 @@ bool Dispatcher::offer(Worker& worker, Job& job) {
     context_.jobs.unmark_leasable(job);
     return false;
   }
-  if (!eligibility_.may_render(worker, job)) {
+  if (!eligibility_.may_audit(worker, job)) {
     return false;
   }
   if (Audit* audit = audits_.next_for(worker, job)) {
     audits_.grant(worker, job, *audit, chooser_.sized(job, worker, audit->band()).rows.last);
     return true;
   }
-  const auto band = chooser_.choose(job, worker);
+  const auto band =
+      eligibility_.may_render(worker, job) ? chooser_.choose(job, worker) : std::nullopt;
   if (!band) {
     return false;
   }

@@ -15,7 +15,7 @@ bool has_failed(const Worker& worker, const Job& job, const Band& band) {
 
 bool machine_was_lost_at(const Worker& worker, const Job& job, const Band& band) {
   return std::any_of(job.suspicions.begin(), job.suspicions.end(), [&](const Suspicion& one) {
-    return one.conclusive && one.machine == worker.reported_name && overlap(one.band, band);
+    return one.conclusive && one.machine == worker.machine() && overlap(one.band, band);
   });
 }
 
@@ -29,9 +29,36 @@ bool any_worker(const Context& context, const Condition& condition) {
 
 }  // namespace
 
-bool Eligibility::may_render(const Worker& worker, const Job& job) const {
+bool Eligibility::failed_too_often(const Worker& worker, const Job& job) {
   const auto on_job = worker.on_job.find(job.id);
-  return on_job == worker.on_job.end() || on_job->second.failures < kMaxFailuresPerWorker;
+  return on_job != worker.on_job.end() && on_job->second.failures >= kMaxFailuresPerWorker;
+}
+
+// A package of unknown size is given only to workers without a limit.
+bool Eligibility::fits(const Worker& worker, const Job& job) {
+  return worker.memory_bytes == 0 ||
+         (job.spec.package_bytes > 0 &&
+          job.spec.package_bytes <= worker.memory_bytes / kMemoryPerPackageByte);
+}
+
+bool Eligibility::may_audit(const Worker& worker, const Job& job) const {
+  return fits(worker, job) && !failed_too_often(worker, job);
+}
+
+bool Eligibility::may_render(const Worker& worker, const Job& job) const {
+  const bool wanted =
+      worker.browser ? !audits_lag(job) : context_.options.browsers != Browsers::kOnly;
+  return wanted && may_audit(worker, job);
+}
+
+bool Eligibility::audits_lag(const Job& job) const {
+  return context_.available.natives() > 0 && job.audits.size() >= Job::kMaxAudits / 2;
+}
+
+bool Eligibility::native_gave_up(const Job& job) const {
+  return any_worker(context_, [&](const Worker& worker) {
+    return !worker.browser && worker.eligible() && failed_too_often(worker, job);
+  });
 }
 
 bool Eligibility::someone_may_render(const Job& job) const {
@@ -60,7 +87,7 @@ std::vector<Band> Eligibility::left_to_others(const Job& job, const Worker& work
     }
   }
   for (const Suspicion& one : job.suspicions) {
-    if (one.conclusive && one.machine == worker.reported_name && another_machine(job, one.band)) {
+    if (one.conclusive && one.machine == worker.machine() && another_machine(job, one.band)) {
       bands.push_back(one.band);
     }
   }

@@ -14,10 +14,28 @@ class Eligibility {
  public:
   /// A worker that failed this many bands of a job in a row gets no more of it.
   static constexpr std::uint32_t kMaxFailuresPerWorker = 3;
+  /// Bytes of memory that a loaded scene takes, per byte of its package, at most: a mesh takes 18
+  /// bytes per triangle in its package (12 of indices, 6 of vertices), and its acceleration
+  /// structure 54 more (renderlib/accel/README.md). Textures take what they take in the package.
+  static constexpr std::uint64_t kMemoryPerPackageByte = 4;
 
   explicit Eligibility(const Context& context) : context_(context) {}
 
+  /// Returns true if its memory is enough and it has not failed too many bands of the job in a row.
+  /// Then it may render bands of the job for comparison.
+  bool may_audit(const Worker& worker, const Job& job) const;
+  /// Returns true if it may also render bands for the image: SchedulerOptions::browsers, and
+  /// audits_lag.
   bool may_render(const Worker& worker, const Job& job) const;
+  /// Returns true if so many bands wait for their audits that browsers get no more of the job until
+  /// native workers have rendered some of them. Otherwise bands would be stored without the audit
+  /// for which they are selected (Job::kMaxAudits).
+  bool audits_lag(const Job& job) const;
+  /// Returns true if the scene of the job fits into the worker's memory.
+  static bool fits(const Worker& worker, const Job& job);
+  static bool failed_too_often(const Worker& worker, const Job& job);
+  /// Returns true if a native worker that is connected failed too often.
+  bool native_gave_up(const Job& job) const;
   /// Returns true if some eligible worker may render the job.
   bool someone_may_render(const Job& job) const;
   /// Returns true if some eligible worker may render the job and has not failed the band.

@@ -98,7 +98,8 @@ void Sequences::add_frames(const input::AddFrames& in) {
   }
   for (const FrameScene& scene : in.scenes) {
     if (sequence->frame(scene.number)->state == FrameState::kExpected) {
-      context_.emit(record::FrameWaits{in.job, scene.number, scene.manifest, 0, ""});
+      context_.emit(
+          record::FrameWaits{in.job, scene.number, scene.manifest, scene.package_bytes, 0, ""});
     }
   }
 }
@@ -146,8 +147,8 @@ void Sequences::try_again(Sequence& sequence, FrameNumber number, std::uint32_t 
                           const std::string& reason) {
   const Sequence::Frame& frame = *sequence.frame(number);
   const JobId failed = frame.job;
-  context_.emit(record::FrameWaits{sequence.id, number, DigestHex(frame.manifest), failures,
-                                   std::string(reason)});
+  context_.emit(record::FrameWaits{sequence.id, number, DigestHex(frame.manifest),
+                                   frame.package_bytes, failures, std::string(reason)});
   forget_job(failed);
 }
 

@@ -49,7 +49,8 @@ void BandFailures::add(Job& job, Worker& worker, const Band& band, const std::st
   std::set<std::string> names;
   std::size_t count = 0;
   for (const FailedAttempt& failure : job.failures) {
-    if (overlap(failure.band, band)) {
+    // Whoever has the link could make any job fail with three browsers.
+    if (overlap(failure.band, band) && !context_.is_browser(failure.instance)) {
       names.insert(context_.workers.name_of(failure.instance));
       ++count;
     }
@@ -104,8 +105,8 @@ void BandFailures::check_renderable(Job& job) {
     job.unable_since.reset();
     return;
   }
-  if (context_.available.eligible() == 0) {
-    return;  // no worker is connected: the time neither counts nor begins again
+  if (!eligibility_.native_gave_up(job)) {
+    return;  // the job waits for a worker: the time neither counts nor begins again
   }
   const Time now = context_.clock.timeout_clock();
   job.unable_since = job.unable_since.value_or(now);

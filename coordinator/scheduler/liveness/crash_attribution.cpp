@@ -38,11 +38,12 @@ std::size_t CrashRate::required(std::size_t min_crashes, std::size_t own) const 
 // A worker may be rendering its first lease or its second, since the first may be finished and not
 // stored yet. Not counted: a worker that said that it leaves; backup tasks, because the original's
 // worker is at the same rows and a network failure would take both at once; audits, because another
-// worker has rendered these rows; and leases that were granted when the worker was silent already,
-// because it never began them.
+// worker has rendered these rows; browsers, which are closed at any time and cannot be told from
+// each other; and leases that were granted when the worker was silent already, because it never
+// began them.
 std::vector<HeldBand> CrashAttribution::held_bands(const Worker& worker) const {
   std::vector<HeldBand> held;
-  if (worker.draining || worker.quarantined) {
+  if (worker.draining || worker.quarantined || worker.browser) {
     return held;
   }
   const bool alone = worker.leases.size() == 1 && worker.revoked.empty();
@@ -78,7 +79,7 @@ void CrashAttribution::add_suspicion(Job& job, const Worker& worker, const HeldB
   job.suspicions.push_back({.band = held.band,
                             .piece_rows = piece_rows,
                             .instance = worker.instance,
-                            .machine = worker.reported_name,
+                            .machine = worker.machine(),
                             .conclusive = suspect && held.alone});
   if (job.suspicions.size() > Job::kMaxFailures) {
     job.suspicions.pop_front();

@@ -43,36 +43,53 @@ std::optional<std::string> incompatibility(const Compatibility& farm, const Work
 
 void Sessions::hello(const input::Hello& in) {
   if (const auto why = incompatibility(context_.options.compatibility, in.worker)) {
-    refuse_incompatible(in, *why);
+    refuse(in, *why);
+    return;
+  }
+  if (in.worker.browser && context_.options.browsers == Browsers::kNone) {
+    refuse(in, "this farm takes no browsers: it was started with --browsers none");
     return;
   }
   if (const auto named = context_.quarantine.missing_name(in.worker)) {
     context_.emit(*named);
   }
-  if (const auto why = context_.quarantine.reason_against(in.worker.instance, in.worker.name)) {
+  if (const auto why = context_.quarantine.reason_against(
+          in.worker.instance, in.worker.browser ? "" : in.worker.name)) {
     context_.act(action::Refuse{in.session, *why, kRetryRefusedMs});
     return;
   }
   Worker* worker = context_.workers.by_instance(in.worker.instance);
   const bool connected = worker != nullptr && worker->session;
-  if (!connected && context_.workers.connected() >= wire::kWorkers) {
-    context_.act(action::Refuse{
-        in.session, absl::StrCat("the farm is full: ", wire::kWorkers, " workers"), kRetryFullMs});
+  if (worker != nullptr && worker->browser != in.worker.browser) {
+    refuse(in, "another worker has this instance id");
+    return;
+  }
+  if (!connected && is_full(in.worker)) {
+    context_.act(action::Refuse{in.session,
+                                absl::StrCat("the farm is full: ", wire::kWorkers,
+                                             " workers, at most half of them browsers"),
+                                kRetryFullMs});
     return;
   }
   if (connected && *worker->session != in.session) {
     context_.act(action::Close{*worker->session, "the worker has opened another session"});
   }
   if (worker == nullptr) {
-    worker = &context_.workers.add(in.worker.instance, in.worker.name);
+    worker =
+        &context_.workers.add(in.worker.instance, in.worker.reported_name(), in.worker.browser);
   }
   admit(*worker, in);
 }
 
-void Sessions::refuse_incompatible(const input::Hello& in, const std::string& reason) {
+bool Sessions::is_full(const WorkerHello& worker) const {
+  return context_.workers.connected() >= wire::kWorkers ||
+         (worker.browser && context_.workers.connected_browsers() >= wire::kWorkers / 2);
+}
+
+void Sessions::refuse(const input::Hello& in, const std::string& reason) {
   std::erase_if(refusals_, [&](const Refusal& r) { return r.instance == in.worker.instance; });
   WorkerView view;
-  view.name = in.worker.name;
+  view.name = in.worker.reported_name();
   view.state = "refused";
   view.reason = clean_text(reason, wire::kReasonBytes);
   view.address = in.worker.address;
@@ -95,14 +112,13 @@ void Sessions::admit(Worker& worker, const input::Hello& in) {
   worker.build = in.worker.build;
   worker.threads = std::clamp<std::uint32_t>(in.worker.threads, 1, wire::kThreadsPerWorker);
   worker.credits = std::clamp<std::uint32_t>(in.worker.max_bands, 1, wire::kBandsPerWorker);
-  worker.browser = in.worker.browser;
   worker.memory_bytes = in.worker.memory_bytes;
   worker.draining = false;
   worker.doing.clear();
   worker.reason.clear();
   worker.heard_at = context_.clock.timeout_clock();
   if (!context_.joined.contains(worker.instance)) {
-    context_.emit(record::WorkerJoined{worker.instance});
+    context_.emit(record::WorkerJoined{worker.instance, worker.browser});
   }
   barrier_.worker_connected(worker);
   crashes_.worker_connected(worker);

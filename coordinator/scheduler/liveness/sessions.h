@@ -46,7 +46,9 @@ class Sessions {
  private:
   static constexpr std::size_t kMaxRefusals = 32;
 
-  void refuse_incompatible(const input::Hello& in, const std::string& reason);
+  /// Returns true if there is no place for one more worker. Browsers cannot take all places.
+  bool is_full(const WorkerHello& worker) const;
+  void refuse(const input::Hello& in, const std::string& reason);
   void admit(Worker& worker, const input::Hello& in);
   void reconcile_leases(Worker& worker, const std::vector<WorkerHello::Held>& held);
   bool keep_lease(Worker& worker, const WorkerHello::Held& held);

@@ -50,16 +50,34 @@ Audit::Verdict Audit::verdict_for(const Result& right) const {
   return verdict;
 }
 
-std::optional<Audit::Verdict> Audit::verdict() const {
+bool Audit::only_browsers() const {
+  return std::all_of(results_.begin(), results_.end(),
+                     [](const Result& result) { return result.reporter.browser; });
+}
+
+bool Audit::doubtful() const {
+  const auto native = [](const Result& result) { return !result.reporter.browser; };
+  return disputed() &&
+         (!native(stored()) || std::any_of(std::next(results_.begin()), results_.end(), native));
+}
+
+std::optional<Audit::Verdict> Audit::verdict(bool only_browsers_left) const {
+  const bool browsers_decide = only_browsers_left && only_browsers();
   for (auto one = results_.begin(); one != results_.end(); ++one) {
-    const auto agrees = [&](const Result& other) { return other.digests == one->digests; };
+    const auto agrees = [&](const Result& other) {
+      const bool counts = browsers_decide || !one->reporter.browser || !other.reporter.browser;
+      return counts && other.digests == one->digests;
+    };
     if (std::find_if(std::next(one), results_.end(), agrees) != results_.end()) {
       return verdict_for(*one);
     }
   }
-  const auto known = [](const Result& result) { return !result.reporter.machine.empty(); };
+  const auto known = [&](const Result& result) {
+    return !result.reporter.machine.empty() && (browsers_decide || !result.reporter.browser);
+  };
   const auto here = std::find_if(results_.begin(), results_.end(), known);
-  const bool alone = disputed() && std::count_if(results_.begin(), results_.end(), known) == 1;
+  const bool alone = disputed() && here != results_.end() &&
+                     std::count_if(results_.begin(), results_.end(), known) == 1;
   return alone && here->repeated ? std::optional(verdict_for(*here)) : std::nullopt;
 }
 

@@ -5,6 +5,11 @@
 // Rendering is a pure function, so results that differ prove that a machine is wrong. Two machines
 // that agree are taken to be right, because two wrong results would differ from each other. A
 // machine that renders the band again and contradicts its own first result is wrong for certain.
+//
+// That holds for native workers, which belong to the farm and are wrong by accident only. Who has
+// the link can open several browsers that return the same wrong pixels. So browsers that agree are
+// right only together with a native worker, or if no native worker is there to ask; and a native
+// worker that repeats its result wins against any number of browsers.
 
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +34,9 @@ bool is_audited(const JobSpec& spec, const Band& band, double share);
 /// The machine is the same when its worker is restarted.
 struct Reporter {
   WorkerProcessId process = 0;
-  std::string machine;  ///< empty: the process has not connected in this epoch
+  /// Empty: the process has not connected in this epoch. Each browser is a machine of its own.
+  std::string machine;
+  bool browser = false;
 
   bool same_machine(const Reporter& other) const {
     return process == other.process || (!machine.empty() && machine == other.machine);
@@ -55,10 +62,11 @@ class Audit {
   /// Adds a result. `requested`: it was rendered for this audit. If the machine contradicts its own
   /// earlier result, returns that earlier result, and nothing is added.
   std::optional<Result> add(Result result, bool requested);
-  /// Returns the verdict once two machines agree, else std::nullopt. Exception: the result of a
-  /// machine that repeated it wins against machines that have not connected in this epoch and so
-  /// cannot render the band again.
-  std::optional<Verdict> verdict() const;
+  /// Returns the verdict once two machines agree, else std::nullopt. Two browsers count only if
+  /// `only_browsers` (Context::only_browsers) and no native worker returned a result. Exception:
+  /// the result of a machine that repeated it wins against machines that have not connected in this
+  /// epoch and so cannot render the band again; that of a native worker also wins against browsers.
+  std::optional<Verdict> verdict(bool only_browsers) const;
   /// Fills in the machine of a reporter of which only the process was known.
   void identify(const Reporter& reporter);
   /// Cuts off the rows from `row` on and returns them as an audit of their own. REQUIRES a row
@@ -73,9 +81,14 @@ class Audit {
   const Result* result_of(const Reporter& reporter) const;
   /// Returns true if machines returned different results and none is known to be right.
   bool disputed() const { return results_.size() > 1; }
+  /// Returns true if the stored rows may be wrong: it is disputed, and not only by browsers against
+  /// a native worker.
+  bool doubtful() const;
+  /// Returns true if no native worker has returned a result.
+  bool only_browsers() const;
 
   LeaseId lease = 0;             ///< under which it is rendered again now; 0: none
-  std::set<std::string> given;   ///< machines that had such a lease
+  std::set<std::string> given;   ///< machines (Worker::machine) that had such a lease
   std::set<std::string> unable;  ///< machines in `given` that could not render it
 
  private:

@@ -47,8 +47,9 @@ const Sequence::Frame* Sequence::next_to_retry() const {
 
 JobSpec Sequence::job_spec(const Frame& frame) const {
   JobSpec job;
-  // Submitters cannot choose such an id, because they may not use '/'.
-  job.request_id = absl::StrCat("sequence/", id, "/", frame.number);
+  // Submitters cannot choose such an id, because they may not use '/'. Workers cannot guess it,
+  // because they do not know that of the sequence; so they cannot predict audits (model/audit.h).
+  job.request_id = absl::StrCat("sequence/", id, "/", spec.request_id, "/", frame.number);
   job.name = absl::StrCat(spec.name, " frame ", frame.number);
   job.manifest = frame.manifest;
   job.settings = spec.settings;
@@ -58,6 +59,7 @@ JobSpec Sequence::job_spec(const Frame& frame) const {
   job.stop = spec.stop;
   job.sequence = id;
   job.frame = frame.number;
+  job.package_bytes = frame.package_bytes;
   return job;
 }
 
@@ -79,11 +81,11 @@ void Sequence::change(Frame& frame, FrameState to) {
   frame.changed = ++changes_;
 }
 
-void Sequence::wait(FrameNumber number, const DigestHex& manifest, std::uint32_t failures,
-                    const std::string& why) {
-  if (Frame* frame = find(number)) {
+void Sequence::wait(const FrameScene& scene, std::uint32_t failures, const std::string& why) {
+  if (Frame* frame = find(scene.number)) {
     open_jobs_.erase(frame->job);
-    frame->manifest = manifest;
+    frame->manifest = scene.manifest;
+    frame->package_bytes = scene.package_bytes;
     frame->job = 0;
     frame->failures = failures;
     frame->reason = why;

@@ -26,10 +26,11 @@ class Sequence {
     FrameNumber number = 0;
     DigestHex manifest;  ///< empty: not known yet
     FrameState state = FrameState::kExpected;
-    JobId job = 0;               ///< its frame job; 0: none
-    std::uint32_t failures = 0;  ///< number of its earlier jobs that failed
-    std::string reason;          ///< reason of the last failure
-    std::uint64_t changed = 0;   ///< as in FrameView
+    JobId job = 0;                    ///< its frame job; 0: none
+    std::uint32_t failures = 0;       ///< number of its earlier jobs that failed
+    std::string reason;               ///< reason of the last failure
+    std::uint64_t changed = 0;        ///< as in FrameView
+    std::uint64_t package_bytes = 0;  ///< as in JobSpec
   };
 
   Sequence(JobId id, SequenceSpec spec, std::uint32_t pixel_version);
@@ -53,8 +54,7 @@ class Sequence {
   double elapsed(Time now) const;
 
   // Only Context::apply calls these three. They do nothing if there is no such frame.
-  void wait(FrameNumber number, const DigestHex& manifest, std::uint32_t failures,
-            const std::string& reason);
+  void wait(const FrameScene& scene, std::uint32_t failures, const std::string& reason);
   void start(FrameNumber number, JobId job);
   /// Ends the frame whose job this is. REQUIRES: is_final(job.state).
   void end(const Job& job);

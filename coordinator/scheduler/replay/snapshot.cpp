@@ -66,7 +66,8 @@ void add_sequence(const Sequence& sequence, std::vector<Record>& out) {
   }
   for (const Sequence::Frame& frame : sequence.frames()) {
     if (!frame.manifest.empty()) {
-      out.push_back(record::FrameWaits{sequence.id, frame.number, frame.manifest, frame.failures,
+      out.push_back(record::FrameWaits{sequence.id, frame.number, frame.manifest,
+                                       frame.package_bytes, frame.failures,
                                        frame.state == FrameState::kWaiting ? frame.reason : ""});
     }
   }
@@ -95,8 +96,14 @@ std::vector<Record> snapshot(const Context& context) {
     records.push_back(record::JobForgotten{next - 1});
   }
   context.quarantine.add_records(records);
+  for (const auto& [process, instance] : context.browsers) {
+    if (!context.joined.contains(instance)) {
+      records.push_back(record::WorkerJoined{instance, true});
+      records.push_back(record::WorkerLeft{instance});
+    }
+  }
   for (const std::string& instance : context.joined) {
-    records.push_back(record::WorkerJoined{instance});
+    records.push_back(record::WorkerJoined{instance, context.is_browser(instance)});
   }
   return records;
 }

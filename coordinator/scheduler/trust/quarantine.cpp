@@ -9,7 +9,13 @@
 
 namespace bandsaw::coordinator {
 
-void Quarantine::impose(const Reporter& reporter, const std::string& reason) {
+void Quarantine::impose(const Reporter& reporter, const std::string& cause) {
+  const std::string reason = reporter.browser
+                                 ? absl::StrCat(cause,
+                                                "; a page that is loaded again is a new worker, so "
+                                                "take the link back if this goes on")
+                                 : cause;
+  const std::string name = reporter.browser ? context_.name_of(reporter) : reporter.machine;
   std::set<WorkerProcessId> processes = {reporter.process};
   std::vector<WorkerId> workers;
   for (const auto& [id, worker] : context_.workers.all()) {
@@ -20,8 +26,8 @@ void Quarantine::impose(const Reporter& reporter, const std::string& reason) {
   }
   for (const WorkerProcessId process : processes) {
     if (process != 0 && !context_.quarantine.contains(process)) {
-      context_.emit(record::WorkerQuarantined{process, reporter.machine,
-                                              clean_text(reason, wire::kReasonBytes)});
+      context_.emit(
+          record::WorkerQuarantined{process, name, clean_text(reason, wire::kReasonBytes)});
     }
   }
   for (const WorkerId id : workers) {
@@ -39,8 +45,9 @@ void Quarantine::impose(const Reporter& reporter, const std::string& reason) {
 
 void Quarantine::expel(Worker& worker) {
   worker.quarantined = true;
-  worker.reason =
-      context_.quarantine.reason_against(worker.instance, worker.reported_name).value_or("");
+  worker.reason = context_.quarantine
+                      .reason_against(worker.instance, worker.browser ? "" : worker.reported_name)
+                      .value_or("");
   if (worker.session) {
     context_.act(action::Close{*worker.session, worker.reason});
     sessions_.disconnect(worker, worker.reason);
@@ -102,7 +109,9 @@ void Quarantine::lift(const input::LiftQuarantine& in) {
   for (auto& [id, worker] : context_.workers.all()) {
     if (worker.quarantined) {
       worker.reason =
-          context_.quarantine.reason_against(worker.instance, worker.reported_name).value_or("");
+          context_.quarantine
+              .reason_against(worker.instance, worker.browser ? "" : worker.reported_name)
+              .value_or("");
     }
   }
 }

@@ -44,7 +44,9 @@ std::vector<RowRange> not_audited(const Job& job, const Band& band, WorkerProces
 
 void ResultComparison::open_audits(Job& job, const input::BandStored& in, const Reporter& reporter,
                                    const std::vector<RowRange>& rows) {
-  if (!is_audited(job.spec, in.band, context_.options.audit_share)) {
+  const SchedulerOptions& options = context_.options;
+  const double share = reporter.browser ? options.browser_audit_share : options.audit_share;
+  if (!is_audited(job.spec, in.band, share)) {
     return;
   }
   for (const RowRange& range : rows) {
@@ -115,7 +117,7 @@ void ResultComparison::compare(Job& job, const Pass& pass, const input::BandStor
 /// if there is none.
 bool ResultComparison::decide_one(Job& job) {
   for (auto audit = job.audits.begin(); audit != job.audits.end(); ++audit) {
-    const auto verdict = audit->verdict();
+    const auto verdict = audit->verdict(context_.only_browsers());
     if (!verdict) {
       continue;
     }

@@ -1,11 +1,13 @@
 #include "coordinator/scheduler/views/views.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "coordinator/scheduler/model/band_text.h"
 #include "coordinator/scheduler/views/progress.h"
@@ -27,6 +29,24 @@ std::vector<std::string> failed_because(const Job& job, std::string reason) {
     lines.push_back(absl::StrCat(job.log_of, " | ", line));
   }
   return lines;
+}
+
+/// Returns "1.5 GB".
+std::string size_text(double bytes) {
+  return bytes < 1e9 ? absl::StrFormat("%.0f MB", std::ceil(bytes / 1e6))
+                     : absl::StrFormat("%.1f GB", std::ceil(bytes / 1e8) / 10);
+}
+
+/// Returns why the scene of a job does not fit into a worker's memory.
+std::string memory_reason(const Worker& worker, const Job& job) {
+  const std::string has =
+      absl::StrCat("it has ", size_text(static_cast<double>(worker.memory_bytes)));
+  return job.spec.package_bytes == 0
+             ? absl::StrCat("the size of its scene is not known, and ", has, " of memory")
+             : absl::StrCat("its scene needs about ",
+                            size_text(static_cast<double>(job.spec.package_bytes) *
+                                      Eligibility::kMemoryPerPackageByte),
+                            " of memory, ", has);
 }
 
 const char* state_of(const Worker& worker) {
@@ -135,7 +155,7 @@ std::vector<WorkerView> Views::workers(Time now) const {
     WorkerView view;
     view.name = worker.name;
     view.state = state_of(worker);
-    view.reason = worker.reason;
+    view.reason = worker.reason.empty() ? idle_reason(worker) : worker.reason;
     view.address = worker.address;
     view.build = worker.build;
     view.threads = worker.threads;
@@ -156,12 +176,39 @@ std::vector<WorkerView> Views::workers(Time now) const {
   return views;
 }
 
+/// Returns why an idle worker gets no band of the first job that has some; "" if no rule keeps it
+/// from any.
+std::string Views::idle_reason(const Worker& worker) const {
+  if (!worker.eligible() || !worker.leases.empty()) {
+    return "";
+  }
+  std::string reason;
+  for (const JobTable::Rank& rank : context_.jobs.leasable()) {
+    const Job& job = context_.jobs.at(rank.job);
+    if (eligibility_.may_render(worker, job)) {
+      return "";
+    }
+    if (reason.empty()) {
+      reason = absl::StrCat("gets no bands of job ", rank.place, ": ", refusal(worker, job));
+    }
+  }
+  return reason;
+}
+
+/// Returns why the worker may not render the job. REQUIRES: Eligibility::may_render is false.
+std::string Views::refusal(const Worker& worker, const Job& job) const {
+  return !Eligibility::fits(worker, job)              ? memory_reason(worker, job)
+         : Eligibility::failed_too_often(worker, job) ? "it failed too often"
+         : worker.browser ? "native workers have to compare what browsers rendered first"
+                          : "the farm renders in browsers only (--browsers only); it compares";
+}
+
 std::vector<WorkerView> Views::absent_quarantined() const {
   std::map<std::string, WorkerView> views;
   const auto& workers = context_.workers.all();
   for (const auto& [process, entry] : context_.quarantine.entries()) {
     const auto is_its_worker = [&name = entry.name](const auto& w) {
-      return w.second.quarantined && w.second.reported_name == name;
+      return w.second.quarantined && (w.second.reported_name == name || w.second.name == name);
     };
     const bool shown = std::any_of(workers.begin(), workers.end(), is_its_worker);
     if (!entry.lifted && !entry.name.empty() && !shown) {
@@ -197,23 +244,46 @@ std::string Views::waiting_reason(const Job& job) const {
                                            " was refused: ", refusals.back().worker.reason);
   }
   if (!eligibility_.someone_may_render(job)) {
-    return absl::StrCat("no connected worker can render it; the last: ", job.notice);
+    return nobody_reason(job);
   }
   const std::string busy = job.any_free() ? busy_with_others(job) : "";
   return busy.empty() ? job.notice : busy;
 }
 
+/// Returns why no connected worker may render the job.
+std::string Views::nobody_reason(const Job& job) const {
+  const Worker* largest = nullptr;
+  bool any_browser = false;
+  for (const auto& [id, worker] : context_.workers.all()) {
+    any_browser = any_browser || (worker.eligible() && worker.browser);
+    if (worker.eligible() && !Eligibility::fits(worker, job) &&
+        (largest == nullptr || worker.memory_bytes > largest->memory_bytes)) {
+      largest = &worker;
+    }
+  }
+  if (context_.options.browsers == Browsers::kOnly && !any_browser) {
+    return "no browser is connected, and the farm renders in browsers only (--browsers only)";
+  }
+  const std::string notice = job.notice.empty() ? "" : absl::StrCat("; the last: ", job.notice);
+  return largest == nullptr
+             ? absl::StrCat("no connected worker can render it", notice)
+             : absl::StrCat("no connected worker can render it: the largest browser is ",
+                            largest->name, ", and ", memory_reason(*largest, job),
+                            "; start a native worker", notice);
+}
+
 /// Returns the reason why the audits of a job with nothing left to render wait.
 std::string Views::audit_reason(const Job& job) const {
   for (const Audit& audit : job.audits) {
-    if (audit.disputed() && audit.lease == 0) {
+    if (audit.doubtful() && audit.lease == 0) {
       const auto append_name = [this](std::string* out, const Audit::Result& result) {
         absl::StrAppend(out, context_.name_of(result.reporter));
       };
       return absl::StrCat(absl::StrJoin(audit.results(), ", ", append_name),
                           " returned different pixels for ", name_of(audit.band()),
-                          "; another machine must decide: start a worker on one, or say which is "
-                          "wrong with: bandsaw quarantine NAME");
+                          "; another machine must decide: start a ",
+                          audit.only_browsers() ? "" : "native ",
+                          "worker on one, or say which is wrong with: bandsaw quarantine NAME");
     }
   }
   return absl::StrCat(job.audits.size(), job.audits.size() == 1 ? " band is" : " bands are",
@@ -346,7 +416,7 @@ std::vector<std::string> Views::not_working_on(const Job& job) const {
       out.push_back(absl::StrCat(
           worker.name, worker.quarantined ? " gets no work: " : " is leaving: ", worker.reason));
     } else if (worker.eligible() && !eligibility_.may_render(worker, job)) {
-      out.push_back(absl::StrCat(worker.name, " gets no more bands of it: it failed too often"));
+      out.push_back(absl::StrCat(worker.name, " gets no bands of it: ", refusal(worker, job)));
     } else if (worker.eligible() && !worker.leases.empty()) {
       const Job& other = context_.jobs.at(context_.leases.find(worker.leases.front())->job);
       if (other.id != job.id) {

@@ -200,6 +200,14 @@ TEST(CommandLine, ServeTakesItsOptions) {
   EXPECT_EQ(parsed<ServeOptions>("serve --keep-days 2").keep_days, 2);
   EXPECT_EQ(parsed<ServeOptions>("serve --keep-size 0.5").keep_gb, 0.5);
   EXPECT_EQ(parsed<ServeOptions>("serve --keep-jobs 50").keep_jobs, 50u);
+  EXPECT_EQ(parsed<ServeOptions>("serve --audit 0%").audit_share, 0);
+  EXPECT_EQ(parsed<ServeOptions>("serve").browser_audit_share, 0.1);
+  EXPECT_EQ(parsed<ServeOptions>("serve --browser-audit 0%").browser_audit_share, 0);
+  EXPECT_EQ(parsed<ServeOptions>("serve --browser-audit 100%").browser_audit_share, 1);
+  EXPECT_EQ(parsed<ServeOptions>("serve").browsers, Browsers::kAlso);
+  EXPECT_EQ(parsed<ServeOptions>("serve --browsers none").browsers, Browsers::kNone);
+  EXPECT_EQ(parsed<ServeOptions>("serve --browsers also").browsers, Browsers::kAlso);
+  EXPECT_EQ(parsed<ServeOptions>("serve --browsers only").browsers, Browsers::kOnly);
 }
 
 TEST(CommandLine, TheOtherCommandsTakeTheirOptions) {
@@ -252,6 +260,8 @@ TEST(CommandLine, WrongUseIsOneLineThatNamesTheWord) {
   expect_wrong("serve --keep-days 0", "--keep-days");
   expect_wrong("serve --keep-size much", "--keep-size");
   expect_wrong("serve --keep-jobs 0", "--keep-jobs");
+  expect_wrong("serve --browser-audit 101%", "--browser-audit");
+  expect_wrong("serve --browsers all", "--browsers: must be none, also or only");
   expect_wrong("pause", "number");
   expect_wrong("logs", "name");
   expect_wrong("doctor --listen 7878", "HOST:PORT");

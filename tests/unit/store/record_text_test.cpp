@@ -28,6 +28,7 @@ TEST(RecordText, AJobKeepsEveryField) {
   EXPECT_EQ(std::get<record::JobAdded>(*back).job, 5u);
   EXPECT_EQ(std::get<record::JobAdded>(*back).pixel_version, 8u);
   EXPECT_EQ(std::get<record::JobAdded>(*back).spec, spec);
+  EXPECT_EQ(std::get<record::JobAdded>(*back).spec.package_bytes, spec.package_bytes);
 }
 
 TEST(RecordText, AJobWithoutAnIntegratorUsesPath) {
@@ -46,6 +47,28 @@ TEST(RecordText, AJobWithoutAPixelVersionHasNone) {
   const std::string field = "pixel_version 8\n";
   text.fields.erase(text.fields.find(field), field.size());
   EXPECT_EQ(std::get<record::JobAdded>(from_text(text).value()).pixel_version, 0u);
+}
+
+TEST(RecordText, VersionsWithoutBrowsersAreRead) {
+  int fields = 0;
+  for (const Record& record : sample_records()) {
+    RecordText old = to_text(record);
+    for (const std::string field : {"package_bytes ", "browser "}) {
+      if (const std::size_t at = old.fields.find(field); at != std::string::npos) {
+        old.fields.erase(at, old.fields.find('\n', at) + 1 - at);
+        ++fields;
+      }
+    }
+    const absl::StatusOr<Record> back = from_text(old);
+    ASSERT_TRUE(back.ok()) << old.kind << ": " << back.status();
+    if (const auto* joined = std::get_if<record::WorkerJoined>(&*back)) {
+      EXPECT_FALSE(joined->browser);
+    }
+    if (const auto* added = std::get_if<record::JobAdded>(&*back)) {
+      EXPECT_EQ(added->spec.package_bytes, 0u) << "unknown";
+    }
+  }
+  EXPECT_GT(fields, 5);
 }
 
 TEST(RecordText, NamesOfOlderVersionsAreRead) {

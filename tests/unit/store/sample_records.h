@@ -14,7 +14,8 @@ inline JobSpec sample_spec(StopRule stop) {
           .name = std::string("a \"name\"\n with\ttabs, \xc3\xa4 and a \0 inside", 39),
           .manifest = std::string(64, 'a'),
           .settings = {.width = kMaxSide, .height = 1, .max_depth = kMaxDepth, .seed = UINT64_MAX},
-          .stop = stop};
+          .stop = stop,
+          .package_bytes = 12'345};
 }
 
 inline SequenceSpec sample_sequence() {
@@ -89,6 +90,7 @@ inline std::vector<Record> sample_records() {
           record::FailureLog{.job = 1, .worker = "desk", .log = {"one \\ line", "another"}},
           record::JobForgotten{.job = 3},
           record::WorkerJoined{.instance = "0123456789abcdef0123456789abcdef"},
+          record::WorkerJoined{.instance = "tab", .browser = true},
           record::WorkerLeft{.instance = ""},
           record::BandAudited{.job = 1, .band = {{16, 32}, {3, UINT32_MAX}}, .process = 7},
           record::BandLost{.job = 1, .band = {{0, 16}, {0, UINT32_MAX}}, .process = UINT64_MAX},
@@ -99,6 +101,7 @@ inline std::vector<Record> sample_records() {
           record::FrameWaits{.job = 4,
                              .frame = -1'000'000'000,
                              .manifest = std::string(64, 'b'),
+                             .package_bytes = UINT64_MAX,
                              .failures = 1,
                              .reason = "the mesh\nis broken"},
           record::JobAdded{.job = 5, .spec = sample_frame_job()}};
