@@ -29,6 +29,8 @@ void SimCoordinator::start() {
   options.epoch = epoch();
   options.progress_timeout_s = 8;
   options.audit_share = audit_share;
+  options.browser_audit_share = browser_audit_share;
+  options.browsers = browsers;
   scheduler_ = std::make_unique<Scheduler>(options);
   for (const Record& record : journal_) {
     scheduler_->replay(record);

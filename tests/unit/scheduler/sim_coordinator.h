@@ -44,6 +44,9 @@ class SimCoordinator {
   void damage_log();
 
   bool all_final() const;
+  std::uint64_t package_bytes(JobId job) { return disk_[job].spec.package_bytes; }
+  /// Notes the first thing that is wrong.
+  void fail(const std::string& what);
   Scheduler& scheduler() { return *scheduler_; }
 
   /// The first invariant that did not hold.
@@ -53,6 +56,8 @@ class SimCoordinator {
   std::map<JobId, std::uint64_t> results;  ///< samples per pixel
   double time_skew = 0;                    ///< of the coordinator's clock
   double audit_share = 0;
+  double browser_audit_share = 0.1;
+  Browsers browsers = Browsers::kAlso;
   /// Requires that images have no wrong row. This holds only if every band is audited and machines
   /// that are right stay connected until the end.
   bool must_be_right = false;
@@ -83,7 +88,6 @@ class SimCoordinator {
     std::set<std::uint64_t> reported;
   };
 
-  void fail(const std::string& what);
   void take(Step step, std::function<void()> then = {});
   void commit();
   void perform(const Action& action, const std::optional<input::BandStored>& band);

@@ -55,6 +55,8 @@ void SimWorker::connect() {
   hello.canary = 3;
   hello.threads = nature_.threads;
   hello.max_bands = nature_.max_bands;
+  hello.browser = nature_.browser;
+  hello.memory_bytes = nature_.memory_bytes;
   for (const Held& h : held_) {
     hello.held.push_back({h.lease.job, h.lease.band, h.lease.lease, h.epoch, h.finished});
   }
@@ -142,6 +144,10 @@ void SimWorker::take(const action::Lease& lease) {
   if (Held* held = find(lease.lease)) {
     held->epoch = epoch_;
     return;
+  }
+  if (nature_.memory_bytes > 0 &&
+      4 * coordinator_.package_bytes(lease.job) > nature_.memory_bytes) {
+    coordinator_.fail(absl::StrCat("job ", lease.job, " is too large for ", name_));
   }
   held_.push_back({lease, epoch_, false, {}, 0, -1, -1, false});
   render();
@@ -246,12 +252,17 @@ void SimWorker::send(const input::BandStored& band, LeaseId id) {
   if (!coordinator_.up()) {
     return;
   }
-  coordinator_.put_band(band, [this, id, process = process_](PutOutcome outcome) {
+  const auto reply = [this, id, process = process_](PutOutcome outcome) {
     if (process != process_ || outcome == PutOutcome::kTryAgain || chance_.happens(nature_.loses)) {
       return;
     }
     later(chance_.between(0.001, 0.05), [this, id] { drop(id); });
-  });
+  };
+  if (nature_.browser && !coordinator_.scheduler().is_browser(band.instance)) {
+    reply(PutOutcome::kTryAgain);  // as SchedulerThread::put_band
+  } else {
+    coordinator_.put_band(band, reply);
+  }
 }
 
 void SimWorker::heartbeat() {

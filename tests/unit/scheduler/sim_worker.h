@@ -17,12 +17,14 @@ struct Nature {
   double samples_per_s = 10'000;
   std::uint32_t threads = 1;
   std::uint32_t max_bands = 2;
-  double fails = 0;               ///< share of its bands
-  double hangs = 0;               ///< share of its bands; it hangs until they are revoked
-  double lies = 0;                ///< share of its rows
-  double loses = 0.05;            ///< share of messages about bands, either way
-  JobId dies_of = 0;              ///< the process crashes in the middle of a band of this job
-  std::uint32_t dies_at_row = 0;  ///< if the band has this row; it is restarted
+  double fails = 0;                ///< share of its bands
+  double hangs = 0;                ///< share of its bands; it hangs until they are revoked
+  double lies = 0;                 ///< share of its rows
+  double loses = 0.05;             ///< share of messages about bands, either way
+  bool browser = false;            ///< it is a tab; a new process is the page loaded again
+  std::uint64_t memory_bytes = 0;  ///< of its scenes; 0: no limit
+  JobId dies_of = 0;               ///< the process crashes in the middle of a band of this job
+  std::uint32_t dies_at_row = 0;   ///< if the band has this row; it is restarted
 };
 
 class SimWorker {

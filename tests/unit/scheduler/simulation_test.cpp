@@ -4,15 +4,13 @@
 // each step of the scheduler; at the end every job is done without a hole. A failure prints its
 // seed; BANDSAW_SEED=n repeats that one, BANDSAW_SEEDS=n runs n seeds.
 
-#include <cstdlib>
 #include <optional>
 
 #include "absl/strings/str_join.h"
 #include "farm_driver.h"
+#include "seeds.h"
 #include "sim_coordinator.h"
 #include "sim_worker.h"
-#include "tests/support/environment.h"
-#include "tests/support/sanitized.h"
 
 namespace bandsaw::coordinator::sim {
 namespace {
@@ -362,22 +360,6 @@ std::vector<JobSpec> random_jobs(std::uint64_t seed) {
     }
   }
   return jobs;
-}
-
-/// Calls f for `seeds` seeds from `first` on, or for the seeds that the environment specifies.
-template <class F>
-void for_seeds(std::uint64_t first, std::uint64_t seeds, F f) {
-  if (std::getenv("BANDSAW_SEED") != nullptr) {
-    f(test::number_from("BANDSAW_SEED", 0));
-    return;
-  }
-  for (std::uint64_t seed = first;
-       seed < first + test::number_from("BANDSAW_SEEDS", seeds / test::kSlower); ++seed) {
-    f(seed);
-    if (testing::Test::HasFailure()) {
-      return;
-    }
-  }
 }
 
 TEST(Simulation, EveryJobEndsUnderRandomFailures) {

@@ -1,0 +1,258 @@
+// Forty browser tabs beside a few native workers, in one thread and virtual time: tabs join, are
+// frozen, closed, loaded again and cut off, reconnect with what they hold, fail bands and lie,
+// while the coordinator crashes. A failure prints its seed; BANDSAW_SEED=n repeats that one,
+// BANDSAW_SEEDS=n runs n seeds.
+
+#include <cmath>
+#include <memory>
+
+#include "absl/strings/match.h"
+#include "farm_driver.h"
+#include "seeds.h"
+#include "sim_coordinator.h"
+#include "sim_worker.h"
+
+namespace bandsaw::coordinator::sim {
+namespace {
+
+struct TabOutcome {
+  std::string broken;
+  std::size_t done = 0;
+  std::uint64_t rendered_by_tabs = 0;
+  std::uint64_t reloads = 0;
+  std::set<std::string> quarantined;
+};
+
+struct TabWeather {
+  bool liars = false;  ///< a third of the tabs; then all bands of tabs are audited
+  Browsers browsers = Browsers::kAlso;
+  std::size_t natives = 3;
+};
+
+class TabSimulation {
+ public:
+  TabSimulation(std::uint64_t seed, const TabWeather& weather)
+      : chance_(seed), weather_(weather), coordinator_(agenda_, chance_) {
+    coordinator_.tear_steps = chance_.happens(0.3);
+    coordinator_.browser_audit_share = weather.liars ? 1 : 0.1;
+    coordinator_.browsers = weather.browsers;
+    coordinator_.must_be_right = true;
+  }
+
+  TabOutcome run() {
+    coordinator_.start();
+    for (std::size_t i = 0; i < weather_.natives; ++i) {
+      add_native(i);
+    }
+    for (int i = 0; i < 40; ++i) {
+      add_tab(i);
+    }
+    const std::size_t jobs = chance_.pick(1, 3);
+    for (std::size_t i = 0; i < jobs; ++i) {
+      agenda_.in(chance_.between(1, 10), [this, job = random_job(i)] { submit(job); });
+    }
+    crash_now_and_then();
+    agenda_.at(kStorm, [this] { calm_down(); });
+    while (agenda_.now() < kEnd && !coordinator_.broken) {
+      if (!agenda_.run_next() || (agenda_.now() > kStorm + 25 && over(jobs))) {
+        break;
+      }
+    }
+    return outcome(jobs);
+  }
+
+ private:
+  static constexpr double kStorm = 40;
+  static constexpr double kEnd = 100'000;
+
+  bool over(std::size_t jobs) {
+    return coordinator_.all_final() && coordinator_.scheduler().jobs(agenda_.now()).size() == jobs;
+  }
+
+  JobSpec random_job(std::size_t number) {
+    JobSpec job = test_job(absl::StrCat("request ", number), StopAtSamples{chance_.pick(16, 400)},
+                           static_cast<std::uint32_t>(chance_.pick(8, 48)),
+                           static_cast<std::uint32_t>(chance_.pick(8, 90)));
+    // Each fits into some tab.
+    job.package_bytes = static_cast<std::uint64_t>(chance_.between_log(1e6, 9e8));
+    return job;
+  }
+
+  void submit(const JobSpec& job) {
+    if (coordinator_.up()) {
+      coordinator_.input(input::Submit{job});
+    }
+    agenda_.in(5, [this, job] {
+      if (agenda_.now() < kStorm + 20) {
+        submit(job);
+      }
+    });
+  }
+
+  SimWorker& add(const std::string& name, const Nature& nature) {
+    workers_.push_back(std::make_unique<SimWorker>(agenda_, chance_, coordinator_, name, nature));
+    return *workers_.back();
+  }
+
+  // Lies are found for certain only while a native worker is connected, so these stay if tabs lie.
+  void add_native(std::size_t number) {
+    SimWorker& worker =
+        add(absl::StrCat("native", number), {.samples_per_s = chance_.between_log(3'000, 30'000),
+                                             .threads = 4,
+                                             .loses = chance_.between(0, 0.1)});
+    worker.start();
+    if (!weather_.liars) {
+      live(worker);
+    }
+  }
+
+  void add_tab(int number) {
+    Nature nature;
+    nature.browser = true;
+    nature.samples_per_s = chance_.between_log(200, 3'000);
+    nature.threads = static_cast<std::uint32_t>(chance_.pick(1, 8));
+    nature.max_bands = static_cast<std::uint32_t>(chance_.pick(1, 3));
+    nature.memory_bytes = number == 0 ? std::uint64_t{4'000'000'000}
+                                      : static_cast<std::uint64_t>(chance_.between_log(1e7, 4e9));
+    nature.fails = chance_.happens(0.2) ? 0.2 : 0;
+    nature.hangs = chance_.happens(0.1) ? 0.02 : 0;
+    nature.lies = weather_.liars && number % 3 == 1 ? 0.2 : 0;
+    nature.loses = chance_.between(0, 0.2);
+    SimWorker& tab = add("tab", nature);  // all have the same name
+    tabs_.push_back(&tab);
+    agenda_.in(chance_.between(0, 15), [this, &tab] {
+      tab.start();
+      live(tab);
+    });
+  }
+
+  /// The next thing that happens to a worker.
+  void live(SimWorker& worker) {
+    agenda_.in(chance_.between_log(0.3, 20), [this, &worker] {
+      if (agenda_.now() > kStorm) {
+        return;
+      }
+      switch (chance_.pick(0, 3)) {
+        case 0:
+          worker.freeze(chance_.between(0.1, 15));
+          break;
+        case 1:
+          worker.cut_cable();
+          break;
+        case 2:
+          worker.drain();
+          break;
+        default:
+          worker.kill();
+          agenda_.in(chance_.between_log(0.1, 10), [this, &worker] { reopen(worker); });
+      }
+      live(worker);
+    });
+  }
+
+  void reopen(SimWorker& worker) {
+    if (!worker.running()) {
+      ++reloads_;
+      worker.start();
+    }
+  }
+
+  void crash_now_and_then() {
+    agenda_.in(chance_.between(5, 30), [this] {
+      if (agenda_.now() < kStorm && coordinator_.up()) {
+        coordinator_.crash();
+        agenda_.in(chance_.between(0.1, 5), [this] { coordinator_.start(); });
+      }
+      crash_now_and_then();
+    });
+  }
+
+  /// Half of the tabs are closed for good; the others are loaded again, stay and lie no more.
+  void calm_down() {
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+      SimWorker& worker = *workers_[i];
+      worker.calm_down();
+      if (i >= weather_.natives && i % 2 == 0 && i != weather_.natives) {
+        worker.kill();
+      } else {
+        reopen(worker);
+        worker.cut_cable();  // a draining worker reconnects without draining
+      }
+    }
+  }
+
+  TabOutcome outcome(std::size_t jobs) {
+    TabOutcome out;
+    out.reloads = reloads_;
+    out.quarantined = coordinator_.quarantined;
+    for (const SimWorker* tab : tabs_) {
+      out.rendered_by_tabs += tab->rendered;
+    }
+    if (coordinator_.broken) {
+      out.broken = *coordinator_.broken;
+      return out;
+    }
+    for (const JobView& job : coordinator_.scheduler().jobs(agenda_.now())) {
+      out.done += job.state == JobState::kDone && coordinator_.results.contains(job.id) ? 1 : 0;
+      if (job.state != JobState::kDone) {
+        out.broken = absl::StrCat("job ", job.id, " is not done: ", job.reason);
+      }
+    }
+    if (out.done != jobs && out.broken.empty()) {
+      out.broken = absl::StrCat(out.done, " of ", jobs, " jobs are done");
+    }
+    return out;
+  }
+
+  Agenda agenda_;
+  Chance chance_;
+  TabWeather weather_;
+  SimCoordinator coordinator_;
+  std::vector<std::unique_ptr<SimWorker>> workers_;
+  std::vector<SimWorker*> tabs_;
+  std::uint64_t reloads_ = 0;
+};
+
+TEST(TabSimulation, EveryJobEndsWithTheRightBytes) {
+  std::uint64_t rendered = 0;
+  std::uint64_t reloads = 0;
+  for_seeds(90'001, 20, [&](std::uint64_t seed) {
+    const TabOutcome one = TabSimulation(seed, {}).run();
+    EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
+    EXPECT_TRUE(one.quarantined.empty()) << "again with BANDSAW_SEED=" << seed;
+    rendered += one.rendered_by_tabs;
+    reloads += one.reloads;
+  });
+  EXPECT_GT(rendered, 100u);
+  EXPECT_GT(reloads, 10u);
+}
+
+TEST(TabSimulation, TabsAloneRenderTheRightBytes) {
+  for_seeds(91'001, 10, [&](std::uint64_t seed) {
+    const TabOutcome one = TabSimulation(seed, {.natives = 0}).run();
+    EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
+  });
+}
+
+TEST(TabSimulation, NativeWorkersThatOnlyCompareFindTabsThatLie) {
+  for_seeds(92'001, 10, [&](std::uint64_t seed) {
+    const TabOutcome one = TabSimulation(seed, {.liars = true, .browsers = Browsers::kOnly}).run();
+    EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
+  });
+}
+
+TEST(TabSimulation, TabsThatLieAreFoundAndTheirPixelsRenderedAgain) {
+  std::size_t found = 0;
+  for_seeds(93'001, 20, [&](std::uint64_t seed) {
+    const TabOutcome one = TabSimulation(seed, {.liars = true}).run();
+    EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
+    for (const std::string& name : one.quarantined) {
+      EXPECT_FALSE(absl::StartsWith(name, "native")) << "again with BANDSAW_SEED=" << seed;
+      found += absl::StartsWith(name, "tab@browser") ? 1 : 0;
+    }
+  });
+  EXPECT_GT(found, 0u);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator::sim
