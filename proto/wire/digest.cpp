@@ -1,6 +1,8 @@
 #include "proto/wire/digest.h"
 
+#if !defined(__wasm__)
 #include <openssl/evp.h>
+#endif
 
 #include <algorithm>
 #include <charconv>
@@ -11,8 +13,18 @@
 #include "absl/status/status.h"
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#if defined(__wasm__)
+#include "proto/wire/sha256.h"
+#endif
 
 namespace bandsaw::wire {
+#if defined(__wasm__)
+struct Hasher::Context {
+  Sha256 hash;
+  void update(absl::Span<const std::byte> bytes) { hash.update(bytes); }
+  void finish(Digest& digest) { digest.bytes = hash.finish(); }
+};
+#else
 namespace {
 
 // Hashing memory with a digest that OpenSSL always has cannot fail, short of a broken installation.
@@ -26,27 +38,27 @@ void require(int openssl_result) {
 
 struct Hasher::Context {
   EVP_MD_CTX* md = EVP_MD_CTX_new();
-  Context() = default;
+  Context() { require(EVP_DigestInit_ex(md, EVP_sha256(), nullptr)); }
   ~Context() { EVP_MD_CTX_free(md); }
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
+  void update(absl::Span<const std::byte> bytes) {
+    require(EVP_DigestUpdate(md, bytes.data(), bytes.size()));
+  }
+  void finish(Digest& digest) { require(EVP_DigestFinal_ex(md, digest.bytes.data(), nullptr)); }
 };
+#endif
 
-Hasher::Hasher() : context_(std::make_unique<Context>()) {
-  require(EVP_DigestInit_ex(context_->md, EVP_sha256(), nullptr));
-}
-
+Hasher::Hasher() : context_(std::make_unique<Context>()) {}
 Hasher::~Hasher() = default;
 Hasher::Hasher(Hasher&&) noexcept = default;
 Hasher& Hasher::operator=(Hasher&&) noexcept = default;
 
-void Hasher::update(absl::Span<const std::byte> bytes) {
-  require(EVP_DigestUpdate(context_->md, bytes.data(), bytes.size()));
-}
+void Hasher::update(absl::Span<const std::byte> bytes) { context_->update(bytes); }
 
 Digest Hasher::finish() {
   Digest digest;
-  require(EVP_DigestFinal_ex(context_->md, digest.bytes.data(), nullptr));
+  context_->finish(digest);
   return digest;
 }
 

@@ -26,11 +26,11 @@ struct Vector8 {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
   }
   friend Vector8 cross(const Vector8& a, const Vector8& b) {
-    return {fused_minus(a.y, b.z, a.z * b.y), fused_minus(a.z, b.x, a.x * b.z),
-            fused_minus(a.x, b.y, a.y * b.x)};
+    return {about_fused_minus(a.y, b.z, a.z * b.y), about_fused_minus(a.z, b.x, a.x * b.z),
+            about_fused_minus(a.x, b.y, a.y * b.x)};
   }
   friend Float dot(const Vector8& a, const Vector8& b) {
-    return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
+    return about_fused(a.x, b.x, about_fused(a.y, b.y, a.z * b.z));
   }
 };
 
@@ -65,8 +65,8 @@ template <class Float = Float8>
 
   const Float size(pack.size);
   const Float reach = abs(c.x) + abs(c.y) + abs(c.z) + Float(ray.origin_size) + size;
-  const Float error = fused(Float(kWeightError * ray.direction_size) * reach,
-                            fused(Float(kDoubleError), reach, size), Float(ray.floor));
+  const Float error = about_fused(Float(kWeightError * ray.direction_size) * reach,
+                                  about_fused(Float(kDoubleError), reach, size), Float(ray.floor));
   const Float minus_error = Float(0.0f) - error;
   // If any weight is NaN, so is weight_a; min and max return their second operand then, so `least`
   // and `most` are NaN and reject nothing.
@@ -83,9 +83,9 @@ template <class Float = Float8>
   const Float volume_t = flip_by_sign(dot(n, c), volume);
   const Float positive = abs(volume);
   const Float per_length =
-      Float(kDistanceError) * fused(Float(kDoubleError) * reach, reach, size * size);
-  const Float error_t = fused(per_length, reach, Float(ray.floor));
-  const Float error_volume = fused(per_length, Float(ray.direction_size), Float(ray.floor));
+      Float(kDistanceError) * about_fused(Float(kDoubleError) * reach, reach, size * size);
+  const Float error_t = about_fused(per_length, reach, Float(ray.floor));
+  const Float error_volume = about_fused(per_length, Float(ray.direction_size), Float(ray.floor));
   const Float far = volume_t + error_t;
   const Float near = volume_t - error_t;
   const unsigned beyond =

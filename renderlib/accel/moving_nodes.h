@@ -37,15 +37,16 @@ inline unsigned enter_moving_children(const WideTree& tree, const NodeChanges& c
   const WideNode& node = tree.nodes[index];
   const char* const change = reinterpret_cast<const char*>(&changes[index]);
   const auto plane = [&](std::size_t bytes) {
-    return fused(Float::load(reinterpret_cast<const float*>(change + bytes)), Float(share),
-                 Float::load(node.plane(bytes)));
+    return about_fused(Float::load(reinterpret_cast<const float*>(change + bytes)), Float(share),
+                       Float::load(node.plane(bytes)));
   };
   Float first(0.0f);
   Float last(bound);
   for (std::size_t k = 0; k < 3; ++k) {
     const Float in =
-        fused(plane(ray.near[k]), Float(ray.near_factor[k]), Float(ray.near_offset[k]));
-    const Float out = fused(plane(ray.far[k]), Float(ray.far_factor[k]), Float(ray.far_offset[k]));
+        about_fused(plane(ray.near[k]), Float(ray.near_factor[k]), Float(ray.near_offset[k]));
+    const Float out =
+        about_fused(plane(ray.far[k]), Float(ray.far_factor[k]), Float(ray.far_offset[k]));
     first = max(in, first);
     last = min(out, last);
   }

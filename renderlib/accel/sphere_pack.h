@@ -35,8 +35,9 @@ inline unsigned filter_spheres(const SpherePack& pack, const FloatRay& ray, floa
   const Vector8<Float> off = cross(c, d);
   const Float along = dot(c, d);
   const Float reach = abs(c.x) + abs(c.y) + abs(c.z) + Float(ray.origin_size) + Float(pack.reach);
-  const Float slack = fused(Float(kError * ray.direction_size), reach, Float(0x1p20f * ray.floor));
-  const Float radius = fused(Float::load(pack.radius.data()), Float(length), slack);
+  const Float slack =
+      about_fused(Float(kError * ray.direction_size), reach, Float(0x1p20f * ray.floor));
+  const Float radius = about_fused(Float::load(pack.radius.data()), Float(length), slack);
   const Float square = radius * radius * Float(1 + 0x1p-20f);
   // Hits are confined to a sphere's box, whose corners are sqrt(3) radii from the centre.
   const Float half = Float(1.8f) * radius;

@@ -23,10 +23,10 @@ inline unsigned enter_children(const WideNode& node, const FloatRay& ray, float 
   Float first(0.0f);
   Float last(bound);
   for (std::size_t k = 0; k < 3; ++k) {
-    const Float in = fused(Float::load(node.plane(ray.near[k])), Float(ray.near_factor[k]),
-                           Float(ray.near_offset[k]));
-    const Float out = fused(Float::load(node.plane(ray.far[k])), Float(ray.far_factor[k]),
-                            Float(ray.far_offset[k]));
+    const Float in = about_fused(Float::load(node.plane(ray.near[k])), Float(ray.near_factor[k]),
+                                 Float(ray.near_offset[k]));
+    const Float out = about_fused(Float::load(node.plane(ray.far[k])), Float(ray.far_factor[k]),
+                                  Float(ray.far_offset[k]));
     // A NaN is the first operand, so it is ignored.
     first = max(in, first);
     last = min(out, last);

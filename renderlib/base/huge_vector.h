@@ -1,10 +1,13 @@
 #pragma once
 
 // std::vector for tables of megabytes that are read at random: from 2 MiB on, its memory is on huge
-// pages if the system provides them, so that a read seldom misses the TLB. resize() and similar
-// functions default-initialise new elements, so memory is not written twice.
+// pages if the system provides them (WebAssembly has no pages), so that a read seldom misses the
+// TLB. resize() and similar functions default-initialise new elements, so memory is not written
+// twice.
 
+#if !defined(__wasm__)
 #include <sys/mman.h>
+#endif
 
 #include <cstddef>
 #include <new>
@@ -21,15 +24,23 @@ struct HugePages {
   template <class U>
   explicit HugePages(const HugePages<U>&) {}
 
+#if defined(__wasm__)
+  static std::align_val_t alignment(std::size_t) { return std::align_val_t{64}; }
+  static void use_huge_pages(void*, std::size_t) {}
+#else
   static std::align_val_t alignment(std::size_t bytes) {
     return std::align_val_t{bytes >= kPage ? kPage : std::size_t{64}};
   }
-  T* allocate(std::size_t count) {
-    const std::size_t bytes = count * sizeof(T);
-    void* memory = ::operator new(bytes, alignment(bytes));
+  static void use_huge_pages(void* memory, std::size_t bytes) {
     if (bytes >= kPage) {
       ::madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: if it is refused, pages are small
     }
+  }
+#endif
+  T* allocate(std::size_t count) {
+    const std::size_t bytes = count * sizeof(T);
+    void* memory = ::operator new(bytes, alignment(bytes));
+    use_huge_pages(memory, bytes);
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t count) {

@@ -1,10 +1,13 @@
 #pragma once
 
 // std::mutex with annotations for clang's thread-safety analysis. (Debian's absl::Mutex is not
-// instrumented for ThreadSanitizer, which then reports false races.)
+// instrumented for ThreadSanitizer, which then reports false races.) Programs for WebAssembly have
+// one thread: there a lock does nothing, and there are no condition variables.
 
+#if !defined(__wasm__)
 #include <condition_variable>
 #include <mutex>
+#endif
 
 #include "absl/base/thread_annotations.h"  // also included by gRPC; defines GUARDED_BY
 
@@ -21,6 +24,13 @@
 
 namespace bandsaw {
 
+#if defined(__wasm__)
+class BANDSAW_TSA(capability("mutex")) Mutex {
+ public:
+  void lock() BANDSAW_TSA(acquire_capability()) {}
+  void unlock() BANDSAW_TSA(release_capability()) {}
+};
+#else
 class BANDSAW_TSA(capability("mutex")) Mutex {
  public:
   void lock() BANDSAW_TSA(acquire_capability()) { mutex_.lock(); }
@@ -30,6 +40,7 @@ class BANDSAW_TSA(capability("mutex")) Mutex {
   friend class CondVar;
   std::mutex mutex_;
 };
+#endif
 
 class BANDSAW_TSA(scoped_lockable) MutexLock {
  public:
@@ -44,6 +55,7 @@ class BANDSAW_TSA(scoped_lockable) MutexLock {
   Mutex& mutex_;
 };
 
+#if !defined(__wasm__)
 /// Condition variable. The caller holds the mutex. Wake-ups can be spurious, so wait in a loop over
 /// the condition.
 class CondVar {
@@ -67,5 +79,6 @@ class CondVar {
  private:
   std::condition_variable condition_;
 };
+#endif
 
 }  // namespace bandsaw

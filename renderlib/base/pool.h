@@ -2,7 +2,8 @@
 
 // Thread pool that processes index ranges. Several callers may run ranges at the same time: a free
 // thread takes its next index from the oldest range that has one left, so that the end of one band
-// and the start of the next overlap.
+// and the start of the next overlap. Programs for WebAssembly have one thread, which does the work
+// itself.
 
 #include <cstdint>
 #include <deque>
@@ -14,6 +15,21 @@
 
 namespace bandsaw {
 
+#if defined(__wasm__)
+class Pool {
+ public:
+  explicit Pool(int) {}
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+
+  int threads() const { return 1; }
+  void parallel_for(std::int64_t count, absl::FunctionRef<void(std::int64_t)> body) {
+    for (std::int64_t i = 0; i < count; ++i) {
+      body(i);
+    }
+  }
+};
+#else
 class Pool {
  public:
   /// `threads` (>= 1) is the number of threads of the pool; callers of parallel_for() do no work.
@@ -41,5 +57,6 @@ class Pool {
   bool stopping_ GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;
 };
+#endif
 
 }  // namespace bandsaw

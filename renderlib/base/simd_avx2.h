@@ -51,6 +51,8 @@ class Float8 {
   friend Float8 fused_minus(Float8 a, Float8 b, Float8 c) {
     return Float8(_mm256_fmsub_ps(a.v_, b.v_, c.v_));
   }
+  friend Float8 about_fused(Float8 a, Float8 b, Float8 c) { return fused(a, b, c); }
+  friend Float8 about_fused_minus(Float8 a, Float8 b, Float8 c) { return fused_minus(a, b, c); }
   friend Float8 min(Float8 a, Float8 b) { return Float8(_mm256_min_ps(a.v_, b.v_)); }
   friend Float8 max(Float8 a, Float8 b) { return Float8(_mm256_max_ps(a.v_, b.v_)); }
   friend Float8 swap_halves(Float8 a) { return Float8(_mm256_permute2f128_ps(a.v_, a.v_, 1)); }

@@ -76,6 +76,8 @@ class Float8 {
     return {vfmaq_f32(vnegq_f32(c.low_), a.low_, b.low_),
             vfmaq_f32(vnegq_f32(c.high_), a.high_, b.high_)};
   }
+  friend Float8 about_fused(Float8 a, Float8 b, Float8 c) { return fused(a, b, c); }
+  friend Float8 about_fused_minus(Float8 a, Float8 b, Float8 c) { return fused_minus(a, b, c); }
   /// vminq_f32 and vmaxq_f32 are not used: they return NaN if either operand is NaN, and order the
   /// zeros.
   friend Float8 min(Float8 a, Float8 b) {

@@ -5,13 +5,13 @@
 // bit.
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "renderlib/geometry/interval.h"
 #include "renderlib/geometry/mesh.h"
+#include "renderlib/math/fused.h"
 
 namespace bandsaw {
 
@@ -30,7 +30,7 @@ struct ShutterTime {
   /// them, and constant if they are equal, because a part of the change is added to the nearer end
   /// and the sum is rounded once.
   float between(float at_open, float at_close) const {
-    return std::fma(at_close - at_open, factor, from_close ? at_close : at_open);
+    return fused(at_close - at_open, factor, from_close ? at_close : at_open);
   }
   std::array<float, 3> between(const std::array<float, 3>& at_open,
                                const std::array<float, 3>& at_close) const {

@@ -9,6 +9,7 @@
 #include "renderlib/geometry/box.h"
 #include "renderlib/geometry/shapes.h"
 #include "renderlib/geometry/traced_ray.h"
+#include "renderlib/math/fused.h"
 
 namespace bandsaw {
 
@@ -24,8 +25,8 @@ struct Crossing {
 /// of an edge function is the same for two triangles that share the edge.
 inline double difference_of_products(double a, double b, double c, double d) {
   const double cd = c * d;
-  const double error = std::fma(-c, d, cd);
-  return std::fma(a, b, -cd) + error;
+  const double error = product_error(-c, d, -cd);
+  return fused(a, b, -cd) + error;
 }
 
 /// Returns cross(a, b), each component within 1.5 units in the last place, also if products cancel.

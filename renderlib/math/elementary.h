@@ -1,7 +1,7 @@
 #pragma once
 
 // Elementary functions with the same bits on every CPU and C library: built only from + - * / sqrt
-// and std::fma. (glibc selects variants of its double functions by CPU, which differ in the last
+// and fma. (glibc selects variants of its double functions by CPU, which differ in the last
 // bits.) In double, with an error of at most 2 units in the last place over the stated domain.
 // renderlib never calls the <cmath> functions of the same names.
 

@@ -5,6 +5,7 @@
 
 #include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/fused.h"
 #include "renderlib/math/polynomial.h"
 
 // exp: x = k log 2 + r with |r| <= log(2) / 2, Taylor series of exp(r) - 1.
@@ -38,7 +39,7 @@ TwoDoubles expm1_reduced(double hi, double lo) {
       1.0 / 479001600, 1.0 / 6227020800, 1.0 / 87178291200};
   const double rest = hi * hi * polynomial(hi, kExp);
   const TwoDoubles sum = fast_two_sum(hi, rest);
-  return {sum.hi, sum.lo + std::fma(hi + rest, lo, lo)};
+  return {sum.hi, sum.lo + fused(hi + rest, lo, lo)};
 }
 
 struct ReducedExp {
@@ -62,7 +63,7 @@ double log_rest(double f) {
   const double square = s * s;
   const double half = 0.5 * f * f;
   // log(1 + f) = f - f^2 / 2 + s (f^2 / 2 + s^2 (2/3 + …)).
-  return std::fma(s, std::fma(square, polynomial(square, kLog), half), -half);
+  return fused(s, fused(square, polynomial(square, kLog), half), -half);
 }
 
 struct Normalised {
@@ -91,7 +92,7 @@ Normalised normalise(double x) {
 TwoDoubles log_parts(int k, double f, double extra) {
   const TwoDoubles head = two_sum(k * kLog2.hi, f);
   const TwoDoubles sum = two_sum(head.hi, log_rest(f));
-  return {sum.hi, sum.lo + (head.lo + std::fma(k, kLog2.lo, extra))};
+  return {sum.hi, sum.lo + (head.lo + fused(k, kLog2.lo, extra))};
 }
 
 }  // namespace
@@ -168,8 +169,8 @@ double pow(double x, double y) {
     return product.hi > 0 ? kInfinity : 0;
   }
   const double power = exp(product.hi);
-  const double correction = std::fma(y, l.lo, product.lo);
-  return power == kInfinity ? power : std::fma(power, correction, power);
+  const double correction = fused(y, l.lo, product.lo);
+  return power == kInfinity ? power : fused(power, correction, power);
 }
 
 }  // namespace bandsaw

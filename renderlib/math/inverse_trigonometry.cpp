@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/fused.h"
 #include "renderlib/math/polynomial.h"
 
 // atan(y / x) = atan(t) + atan((y - t x) / (x + t y)), where t is the multiple of 1/8 nearest to y
@@ -38,11 +39,11 @@ double atan_rest(double z) {
 TwoDoubles atan_octant(double y, double x) {
   const double k = std::nearbyint(8 * (y / x));
   const double t = k / 8;
-  const double numerator = std::fma(-t, x, y);
-  const double denominator = std::fma(t, y, x);
+  const double numerator = fused(-t, x, y);
+  const double denominator = fused(t, y, x);
   const double z = numerator / denominator;
   // Rounding error of the division.
-  const double z_rest = std::fma(-z, denominator, numerator) / denominator;
+  const double z_rest = fused(-z, denominator, numerator) / denominator;
   const TwoDoubles& base = kAtanEighths[static_cast<int>(k)];
   const TwoDoubles sum = two_sum(base.hi, z);
   return {sum.hi, sum.lo + (base.lo + (atan_rest(z) + z_rest))};
@@ -51,7 +52,7 @@ TwoDoubles atan_octant(double y, double x) {
 /// Returns quarters * pi / 2 + sign * a, rounded to double.
 double from_quarter(double quarters, double sign, const TwoDoubles& a) {
   const TwoDoubles sum = two_sum(quarters * kHalfPi.hi, sign * a.hi);
-  return sum.hi + (sum.lo + std::fma(quarters, kHalfPi.lo, sign * a.lo));
+  return sum.hi + (sum.lo + fused(quarters, kHalfPi.lo, sign * a.lo));
 }
 
 /// Returns the angle of (x, y) for y >= 0, in [0, pi].
@@ -92,12 +93,12 @@ double atan2(double y, double x) {
 
 double asin(double x) {
   const double c = clamp_to_one(x);
-  return atan2(c, std::sqrt(std::fma(-c, c, 1.0)));
+  return atan2(c, std::sqrt(fused(-c, c, 1.0)));
 }
 
 double acos(double x) {
   const double c = clamp_to_one(x);
-  return atan2(std::sqrt(std::fma(-c, c, 1.0)), c);
+  return atan2(std::sqrt(fused(-c, c, 1.0)), c);
 }
 
 }  // namespace bandsaw

@@ -2,8 +2,9 @@
 
 // Building blocks of the elementary functions.
 
-#include <cmath>
 #include <cstddef>
+
+#include "renderlib/math/fused.h"
 
 namespace bandsaw {
 
@@ -14,33 +15,14 @@ inline double polynomial(double x, const double (&c)[N]) {
   if constexpr (I + 1 == N) {
     return c[I];
   } else {
-    return std::fma(polynomial<I + 1>(x, c), x, c[I]);
+    return fused(polynomial<I + 1>(x, c), x, c[I]);
   }
-}
-
-/// An unevaluated sum: hi is the rounded sum, lo the remainder.
-struct TwoDoubles {
-  double hi;
-  double lo;
-};
-
-/// Returns a + b exactly; requires |a| >= |b| or a == 0 (Dekker 1971).
-inline TwoDoubles fast_two_sum(double a, double b) {
-  const double sum = a + b;
-  return {sum, b - (sum - a)};
-}
-
-/// Returns a + b exactly (Knuth, The Art of Computer Programming 2, section 4.2.2).
-inline TwoDoubles two_sum(double a, double b) {
-  const double sum = a + b;
-  const double b_part = sum - a;
-  return {sum, (a - (sum - b_part)) + (b - b_part)};
 }
 
 /// Returns a b exactly.
 inline TwoDoubles two_product(double a, double b) {
   const double product = a * b;
-  return {product, std::fma(a, b, -product)};
+  return {product, product_error(a, b, product)};
 }
 
 }  // namespace bandsaw

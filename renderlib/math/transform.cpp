@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/fused.h"
 
 namespace bandsaw {
 namespace {
@@ -15,8 +16,8 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 /// place.
 double difference_of_products(double a, double b, double c, double d) {
   const double cd = c * d;
-  const double error = std::fma(-c, d, cd);
-  return std::fma(a, b, -cd) + error;
+  const double error = product_error(-c, d, -cd);
+  return fused(a, b, -cd) + error;
 }
 
 Matrix3 linear_part(const Transform& t) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/fused.h"
 #include "renderlib/math/polynomial.h"
 
 // sin and cos: exact reduction to an eighth of a turn, then Taylor series of an angle in
@@ -18,7 +19,7 @@ constexpr TwoDoubles kDegree = {0x1.1df46a2529d39p-6, 0x1.5c1d8becdd291p-62};
 /// Returns unit * r.
 TwoDoubles scaled(const TwoDoubles& unit, double r) {
   const TwoDoubles product = two_product(unit.hi, r);
-  return {product.hi, std::fma(unit.lo, r, product.lo)};
+  return {product.hi, fused(unit.lo, r, product.lo)};
 }
 
 /// Sine and cosine as unevaluated sums.
@@ -38,12 +39,12 @@ Parts parts_reduced(const TwoDoubles& x) {
   const double square = x.hi * x.hi;
   // sin(hi + lo) = sin(hi) + lo (1 - hi^2 / 2) + …
   const double sin_rest =
-      std::fma(square * x.hi, polynomial(square, kSin), std::fma(-0.5 * square, x.lo, x.lo));
+      fused(square * x.hi, polynomial(square, kSin), fused(-0.5 * square, x.lo, x.lo));
   // cos(hi + lo) = 1 - hi^2 / 2 + (hi^4 (…) - hi lo), the first difference kept exactly.
   const TwoDoubles half_square = two_product(0.5 * x.hi, x.hi);
   const TwoDoubles one_minus = fast_two_sum(1, -half_square.hi);
-  const double cos_rest = std::fma(square * square, polynomial(square, kCos),
-                                   std::fma(-x.hi, x.lo, one_minus.lo - half_square.lo));
+  const double cos_rest = fused(square * square, polynomial(square, kCos),
+                                fused(-x.hi, x.lo, one_minus.lo - half_square.lo));
   return {{x.hi, sin_rest}, {one_minus.hi, cos_rest}};
 }
 
@@ -115,8 +116,7 @@ double tan_degrees(double degrees) {
     top = {-top.hi, -top.lo};
   }
   const double quotient = top.hi / bottom.hi;
-  const double rest =
-      std::fma(-quotient, bottom.hi, top.hi) + std::fma(-quotient, bottom.lo, top.lo);
+  const double rest = fused(-quotient, bottom.hi, top.hi) + fused(-quotient, bottom.lo, top.lo);
   return std::isfinite(quotient) ? quotient + rest / bottom.hi : quotient;
 }
 

@@ -19,6 +19,52 @@ double magnitude(Random& random, double lo, double hi) {
   return std::ldexp(random.uniform(1, 2), static_cast<int>(random.uniform(lo, hi) * 3.32));
 }
 
+/// Float8 whose fused operations round twice, as in WebAssembly (base/simd_wasm.h).
+class TwiceRounded {
+ public:
+  using F = simd_plain::Float8;
+  TwiceRounded() = default;
+  explicit TwiceRounded(float all) : v_(all) {}
+  static TwiceRounded load(const float* from) { return TwiceRounded(F::load(from)); }
+  friend TwiceRounded operator+(const TwiceRounded& a, const TwiceRounded& b) {
+    return TwiceRounded(a.v_ + b.v_);
+  }
+  friend TwiceRounded operator-(const TwiceRounded& a, const TwiceRounded& b) {
+    return TwiceRounded(a.v_ - b.v_);
+  }
+  friend TwiceRounded operator*(const TwiceRounded& a, const TwiceRounded& b) {
+    return TwiceRounded(a.v_ * b.v_);
+  }
+  friend TwiceRounded about_fused(const TwiceRounded& a, const TwiceRounded& b,
+                                  const TwiceRounded& c) {
+    return a * b + c;
+  }
+  friend TwiceRounded about_fused_minus(const TwiceRounded& a, const TwiceRounded& b,
+                                        const TwiceRounded& c) {
+    return a * b - c;
+  }
+  friend TwiceRounded min(const TwiceRounded& a, const TwiceRounded& b) {
+    return TwiceRounded(min(a.v_, b.v_));
+  }
+  friend TwiceRounded max(const TwiceRounded& a, const TwiceRounded& b) {
+    return TwiceRounded(max(a.v_, b.v_));
+  }
+  friend TwiceRounded abs(const TwiceRounded& a) { return TwiceRounded(abs(a.v_)); }
+  friend TwiceRounded flip_by_sign(const TwiceRounded& a, const TwiceRounded& sign) {
+    return TwiceRounded(flip_by_sign(a.v_, sign.v_));
+  }
+  friend simd_plain::Mask8 operator<(const TwiceRounded& a, const TwiceRounded& b) {
+    return a.v_ < b.v_;
+  }
+  friend simd_plain::Mask8 operator<=(const TwiceRounded& a, const TwiceRounded& b) {
+    return a.v_ <= b.v_;
+  }
+
+ private:
+  explicit TwiceRounded(const F& v) : v_(v) {}
+  F v_;
+};
+
 /// A triangle that may be a sliver, distant, or both, and a ray aimed at a corner, an edge, near
 /// them or anywhere.
 struct Pair {
@@ -71,6 +117,7 @@ struct Verdicts {
 };
 
 /// Runs both tests without an end, and with an end just before and just after the hit.
+template <class Float>
 void judge(const FlatPack& pack, const Pair& pair, double reach, Verdicts& verdicts) {
   Crossing crossing;
   const bool hit =
@@ -78,7 +125,7 @@ void judge(const FlatPack& pack, const Pair& pair, double reach, Verdicts& verdi
   const FloatRay floats(pair.ray, static_cast<float>(reach));
   const double t = hit ? crossing.t : 1;
   for (const double end : {kInfinity, t * (1 + 1e-6), t, t * (1 - 1e-6)}) {
-    const FlatLanes lanes = filter_flats(pack, floats, floats.above(end), floats.below(end));
+    const FlatLanes lanes = filter_flats<Float>(pack, floats, floats.above(end), floats.below(end));
     const bool counts = hit && t < end;
     verdicts.hits += counts ? 1 : 0;
     verdicts.sure += lanes.surely != 0 ? 1 : 0;
@@ -98,7 +145,12 @@ FlatPacker::Corners to_float(const std::array<Corner, 3>& corner) {
   return result;
 }
 
-TEST(FlatFilter, NeverRejectsAHitOfTheDoubleTest) {
+template <class Float>
+class Filter : public ::testing::Test {};
+using Kinds = ::testing::Types<Float8, TwiceRounded>;
+TYPED_TEST_SUITE(Filter, Kinds);
+
+TYPED_TEST(Filter, NeverRejectsATriangleThatTheDoubleTestHits) {
   for (const bool in_float : {true, false}) {
     SCOPED_TRACE(in_float ? "float corners" : "double corners");
     Random random(41);
@@ -112,7 +164,7 @@ TEST(FlatFilter, NeverRejectsAHitOfTheDoubleTest) {
       } else {
         packer.add_rounded(to_float(pair.corner), 0);
       }
-      judge(pack, pair, 1e7, verdicts);
+      judge<TypeParam>(pack, pair, 1e7, verdicts);
     }
     EXPECT_EQ(verdicts.false_rejects, 0);
     EXPECT_EQ(verdicts.false_sure, 0);
@@ -121,7 +173,7 @@ TEST(FlatFilter, NeverRejectsAHitOfTheDoubleTest) {
   }
 }
 
-TEST(SphereFilter, NeverRejectsAHitOfTheDoubleTest) {
+TYPED_TEST(Filter, NeverRejectsASphereThatTheDoubleTestHits) {
   Random random(42);
   int hits = 0;
   for (int i = 0; i < 500'000; ++i) {
@@ -140,10 +192,33 @@ TEST(SphereFilter, NeverRejectsAHitOfTheDoubleTest) {
     Crossing crossing;
     if (intersect(ray, sphere, random.below(2) == 0, crossing)) {
       ++hits;
-      ASSERT_NE(filter_spheres(pack, floats, floats.above(crossing.t)), 0u);
+      ASSERT_NE(filter_spheres<TypeParam>(pack, floats, floats.above(crossing.t)), 0u);
     }
   }
   EXPECT_GT(hits, 100'000);
+}
+
+/// A box of one point, a corner of the box or between its corners: the ray of a hit at t enters it
+/// before t.
+TYPED_TEST(Filter, NeverRejectsABoxThatContainsAHit) {
+  Random random(44);
+  for (int i = 0; i < 500'000; ++i) {
+    const Vec3 at = magnitude(random, -3, 5) * random_point(random);
+    const double size = random.below(3) == 0 ? 0 : magnitude(random, -6, 2);
+    const Vec3 hit = at + size * random_point(random);
+    const Vec3 origin = at + magnitude(random, -4, 5) * random_point(random);
+    const TracedRay ray = trace_setup(origin, hit - origin, kInfinity);
+    const FloatRay floats(ray, 1e7f);
+    WideNode node;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double margin = size * random.uniform() * random.below(2);
+      const auto axis = static_cast<int>(k);
+      node.bounds[k].fill(round_down(hit[axis] - margin));
+      node.bounds[k + 3].fill(round_up(hit[axis] + size * random.below(2)));
+    }
+    TypeParam enter;
+    ASSERT_EQ(enter_children<TypeParam>(node, floats, floats.above(1), enter), 0xffu) << i;
+  }
 }
 
 TEST(Filters, AreTheSameForEveryFloat8) {

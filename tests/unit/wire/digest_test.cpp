@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "proto/wire/sha256.h"
+
 namespace bandsaw::wire {
 namespace {
 
@@ -29,6 +31,20 @@ TEST(Digest, DoesNotDependOnTheDivisionIntoPieces) {
       hasher.update(bytes_of(text.substr(at, piece)));
     }
     EXPECT_EQ(hasher.finish(), sha256(text)) << piece;
+  }
+}
+
+TEST(Digest, OfWebAssemblyEqualsThatOfOpenSsl) {
+  std::string text;
+  for (std::size_t size = 0; size < 300; ++size) {
+    Sha256 whole;
+    whole.update(bytes_of(text));
+    EXPECT_EQ(whole.finish(), sha256(text).bytes) << size;
+    Sha256 pieces;
+    pieces.update(bytes_of(text.substr(0, size / 3)));
+    pieces.update(bytes_of(text.substr(size / 3)));
+    EXPECT_EQ(pieces.finish(), sha256(text).bytes) << size;
+    text.push_back(static_cast<char>(size * 7919 % 251));
   }
 }
 
