@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 or 13 that building, testing, packing or the demo need, if any is missing.
-# Usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64
+# Usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64|wasm
 #   browser  what the tests of that label need besides `test`, 400 MB
 #   blender  what the tests of that label need besides `test`, 700 MB
 #   clang    what the presets clang and fuzz need besides `test`
 #   old_cpu  the emulator of that label's test
 #   arm64    the cross compiler, Debian's libraries for ARM64 and an emulator, 800 MB; it adds the architecture to this system,
 #            and updates those of its libraries that must have one version in all architectures
+#   wasm     clang and the C++ library for WebAssembly, and node for the tests, 500 MB
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
@@ -20,6 +21,8 @@ browser=("${test[@]}" chromium chromium-driver)
 blender=("${test[@]}" blender xvfb xdotool imagemagick jupyter-nbconvert python3-ipykernel)
 clang=("${test[@]}" clang libclang-rt-dev)
 old_cpu=("${test[@]}" qemu-user-static)
+wasm=("${test[@]}" clang-19 lld-19 wasi-libc libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32
+  brotli dpkg-dev nodejs)
 arm64=("${test[@]}" g++-aarch64-linux-gnu qemu-user-static)
 for package in "${test[@]}"; do
   case $package in
@@ -39,7 +42,8 @@ case "${1:-}" in
   clang) wanted=("${clang[@]}") ;;
   old_cpu) wanted=("${old_cpu[@]}") ;;
   arm64) wanted=("${arm64[@]}") ;;
-  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64" >&2; exit 2 ;;
+  wasm) wanted=("${wasm[@]}") ;;
+  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64|wasm" >&2; exit 2 ;;
 esac
 
 # installed PACKAGE: a package may be installed for several architectures at once; without a suffix this machine's counts.

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# What a browser's tab runs, as WebAssembly: installs what that needs (deploy/install.sh wasm), unpacks Debian's source packages of
+# Abseil and protobuf into build/wasm/sources, and builds build/wasm/bandsaw.wasm, compressed bandsaw.wasm.br, and the module of the
+# tests of the label wasm. The first two are copied to build/release/share/bandsaw/browser, where the coordinator of that build looks
+# for them, and from which they are installed.
+# Usage: deploy/wasm.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+deploy/install.sh wasm
+# The sources of the release that runs here, without a change of the system's list of package sources.
+sources=$PWD/build/wasm/sources
+get_sources() {
+  local release mirror
+  release=$(. /etc/os-release && echo "$VERSION_CODENAME")
+  mirror=$(apt-cache policy libprotobuf-dev | grep -om1 'https\?://[^ ]*')
+  rm -rf "$sources"
+  mkdir -p "$sources/lists/partial"
+  echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $mirror $release main" >"$sources/apt.list"
+  local apt=(apt-get -qq -o Dir::Etc::sourcelist="$sources/apt.list" -o Dir::Etc::sourceparts=/dev/null -o Dir::State::lists="$sources/lists"
+    -o APT::Sandbox::User=root)
+  "${apt[@]}" update
+  (cd "$sources" && "${apt[@]}" source --download-only abseil protobuf)
+  for package in abseil protobuf; do
+    dpkg-source --require-strong-checksums -x "$sources/${package}"_*.dsc "$sources/$package" >/dev/null
+  done
+  touch "$sources/complete"
+}
+[ -e "$sources/complete" ] || get_sources
+
+cmake --preset wasm -DBANDSAW_WASM_SOURCES="$sources"
+cmake --build --preset wasm
+brotli --force --best build/wasm/bandsaw.wasm
+mkdir -p build/release/share/bandsaw/browser
+cp build/wasm/bandsaw.wasm build/wasm/bandsaw.wasm.br build/release/share/bandsaw/browser/
+ls -l build/wasm/bandsaw.wasm build/wasm/bandsaw.wasm.br

@@ -1,0 +1,11 @@
+// Prints what bandsaw_test.wasm must compute as well: the canary and the hash of fused products.
+
+#include <cstdio>
+
+#include "renderlib/render/canary.h"
+#include "tests/wasm/fused_hash.h"
+
+int main() {
+  std::printf("%016llx %016llx\n", static_cast<unsigned long long>(bandsaw::canary()),
+              static_cast<unsigned long long>(bandsaw::test::fused_hash()));
+}

@@ -1,0 +1,47 @@
+// The native programs, for comparison.
+import {execFileSync} from 'node:child_process';
+import {mkdirSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+
+export async function inTemporaryFolder(body) {
+  const folder = mkdtempSync(join(tmpdir(), 'bandsaw-wasm-'));
+  try {
+    await body(folder);
+  } finally {
+    rmSync(folder, {recursive: true});
+  }
+}
+
+/** Writes the scene's package to a folder in `folder`, and returns its name. */
+export function importScene(bin, scene, folder) {
+  const parts = join(folder, 'package');
+  mkdirSync(parts);
+  execFileSync(join(bin, 'bandsaw-import'), ['scene', scene, parts, '600', '4000000000'], {stdio: ['ignore', 'ignore', 'inherit']});
+  return parts;
+}
+
+/** Renders the first samples of all pixels on one thread; returns settings, sums and seconds. */
+export function renderNatively(bin, scene, folder, {width, height, samples}) {
+  const band = join(folder, 'image.band');
+  execFileSync(join(bin, 'bandsaw'), ['render', scene, '--width', String(width), '--height', String(height),
+    '--samples', String(samples), '--rows', `0:${height}`, '--threads', '1', '--report', 'none', '--quiet', '-o', band], {stdio: ['ignore', 'ignore', 'inherit']});
+  return readBand(band);
+}
+
+/** Returns the settings and the sums of the one record of a file that bandsaw render --rows wrote (renderlib/render/band_file.h). */
+function readBand(path) {
+  const bytes = readFileSync(path);
+  const record = bytes.subarray(bytes.indexOf('BSWBAND3'));
+  const size = Number(record.readBigUInt64LE(8));
+  const after = 16 + 64;
+  const width = record.readUInt32LE(after);
+  const height = record.readUInt32LE(after + 4);
+  const sums = width * height * 3 * 8;
+  if (record.length !== size) {
+    throw new Error(`${path}: more than one record`);
+  }
+  return {settings: {width, height, depth: record.readUInt16LE(after + 8), integrator: record.readUInt16LE(after + 10),
+    seed: record.readBigUInt64LE(after + 12), samples: record.readBigUInt64LE(after + 28)},
+    cpuSeconds: record.readDoubleLE(size - 8 - sums - 16), sums: record.subarray(size - 8 - sums, size - 8)};
+}

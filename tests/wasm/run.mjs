@@ -1,0 +1,63 @@
+// The renderer as WebAssembly gives the bits of the native programs.
+// Usage: node run.mjs bits|gallery MODULE.wasm BIN GALLERY SAME_BITS NATIVE
+//   bits     the canary and the hash of fused products are those of the program NATIVE
+//   gallery  the sums of every scene of the folder GALLERY, at 48 pixels, are those of BIN/bandsaw render, and the twelve hashes
+//            those of the file SAME_BITS
+// Exit status: 0 equal, 1 not, 77 the module or node's WebAssembly is missing.
+import {execFileSync} from 'node:child_process';
+import {existsSync, readFileSync, readdirSync} from 'node:fs';
+import {basename, join} from 'node:path';
+import {importScene, inTemporaryFolder, renderNatively} from './native.mjs';
+import {load} from './module.mjs';
+
+const [part, file, bin, gallery, sameBits, native] = process.argv.slice(2);
+if (!existsSync(file)) {
+  console.log(`SKIPPED: ${file} was not built: run deploy/wasm.sh`);
+  process.exit(77);
+}
+let failures = 0;
+function check(what, found, wanted) {
+  const equal = found === wanted;
+  failures += equal ? 0 : 1;
+  console.log(`${equal ? 'ok   ' : 'WRONG'} ${what}${equal ? '' : `: ${found}, native ${wanted}`}`);
+}
+
+function firstDifference(a, b) {
+  const at = a.findIndex((byte, i) => byte !== b[i]);
+  return a.length !== b.length ? `${a.length} bytes` : at < 0 ? 'equal' : `differs from number ${at >> 3}`;
+}
+
+async function checkBits() {
+  const module = await load(file);
+  const [canary, fused] = execFileSync(native, {encoding: 'utf8'}).trim().split(' ');
+  check('hash of fused products', module.fusedHash(), fused);
+  check('canary', module.canary(), canary);
+}
+
+async function checkScene(scene, folder, hashes) {
+  const name = basename(scene, '.textproto');
+  const {settings, sums} = renderNatively(bin, scene, folder, {width: 48, height: 36, samples: 16});
+  const parts = importScene(bin, scene, folder);
+  const module = await load(file);  // a new memory for each scene
+  module.build(parts);
+  check(scene.slice(gallery.length + 1), firstDifference(module.render(settings), sums), 'equal');
+  if (hashes.has(name)) {
+    module.render({...settings, width: 20, height: 15, seed: 7, samples: 16});
+    check(`${name}, the hash of ${basename(sameBits)}`, module.sumsHash(), hashes.get(name));
+    hashes.delete(name);
+  }
+}
+
+async function checkGallery() {
+  const lines = readFileSync(sameBits, 'utf8').trim().split('\n').slice(1);
+  const hashes = new Map(lines.map((line) => line.split(/\s+/)));
+  const scenes = readdirSync(gallery, {recursive: true}).filter((name) => name.endsWith('.textproto')).sort();
+  check('number of scenes', scenes.length > 70, true);
+  for (const name of scenes) {
+    await inTemporaryFolder((folder) => checkScene(join(gallery, name), folder, hashes));
+  }
+  check('scenes of the twelve hashes that were not found', [...hashes.keys()].join(' '), '');
+}
+
+await (part === 'bits' ? checkBits() : checkGallery());
+process.exit(failures === 0 ? 0 : 1);

@@ -1,0 +1,27 @@
+// Speed of the renderer as WebAssembly in node beside one native core, on the same band.
+// Usage: node speed.mjs MODULE.wasm BIN SCENE.textproto…
+import {basename} from 'node:path';
+import {importScene, inTemporaryFolder, renderNatively} from './native.mjs';
+import {load} from './module.mjs';
+
+const [file, bin, ...scenes] = process.argv.slice(2);
+const times = 5;  // the fastest counts
+
+console.log('scene        native s   wasm s   ratio');
+for (const scene of scenes) {
+  await inTemporaryFolder(async (folder) => {
+    const module = await load(file);
+    module.build(importScene(bin, scene, folder));
+    let native = Infinity;
+    let wasm = Infinity;
+    for (let i = 0; i < times; ++i) {
+      const band = renderNatively(bin, scene, folder, {width: 192, height: 144, samples: 16});
+      native = Math.min(native, band.cpuSeconds);
+      const begin = process.cpuUsage();
+      module.render(band.settings);
+      wasm = Math.min(wasm, process.cpuUsage(begin).user / 1e6);
+    }
+    console.log(basename(scene, '.textproto').padEnd(12), native.toFixed(3).padStart(8), wasm.toFixed(3).padStart(8),
+      (native / wasm).toFixed(2).padStart(7));
+  });
+}
