@@ -57,13 +57,16 @@ absl::Status BandIntake::add(const farm::BandChunk& chunk) {
   } else if (chunk.has_header()) {
     return absl::InvalidArgumentError("header: belongs in the first chunk of a band only");
   }
-  RETURN_IF_ERROR(check_chunk(chunk.data(), received_, header_.size()));
-  const std::uint64_t bytes = received_ + chunk.data().size();
+  return append(chunk.data());
+}
+
+absl::Status BandIntake::append(absl::string_view data) {
+  RETURN_IF_ERROR(check_chunk(data, received_, header_.size()));
+  const std::uint64_t bytes = received_ + data.size();
   pixels_.sums.resize((bytes + sizeof(double) - 1) / sizeof(double));
-  std::memcpy(reinterpret_cast<char*>(pixels_.sums.data()) + received_, chunk.data().data(),
-              chunk.data().size());
-  received_ += chunk.data().size();
-  hasher_.update(std::as_bytes(std::span(chunk.data())));
+  std::memcpy(reinterpret_cast<char*>(pixels_.sums.data()) + received_, data.data(), data.size());
+  received_ += data.size();
+  hasher_.update(std::as_bytes(std::span(data.data(), data.size())));
   return absl::OkStatus();
 }
 
@@ -75,6 +78,25 @@ absl::StatusOr<BandPixels> BandIntake::take() {
     return absl::InvalidArgumentError("data: a pixel's sum is not a finite number >= 0");
   }
   return std::move(pixels_);
+}
+
+void put_band(Engine& engine, const farm::BandHeader& header, BandPixels pixels,
+              std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser) {
+  engine.put_band(header.job(), header.work(), header.instance(), std::move(pixels),
+                  header.counters().render_s(), header.counters().cpu_s(), std::move(done),
+                  browser);
+}
+
+farm::PutBandReply::Outcome to_message(BandOutcome outcome) {
+  switch (outcome) {
+    case BandOutcome::kStored:
+      return farm::PutBandReply::OUTCOME_STORED;
+    case BandOutcome::kDuplicate:
+      return farm::PutBandReply::OUTCOME_DUPLICATE;
+    case BandOutcome::kUnwanted:
+      break;
+  }
+  return farm::PutBandReply::OUTCOME_UNWANTED;
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,8 +1,13 @@
 #pragma once
 
-// Assembles one band from its chunks and checks each chunk against the previous ones.
+// Assembles one band from its chunks, checks each chunk against the previous ones, and hands the
+// band to the engine.
+
+#include <functional>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "coordinator/engine/engine.h"
 #include "proto/farm.pb.h"
 #include "proto/wire/digest.h"
 #include "renderlib/render/band.h"
@@ -13,6 +18,10 @@ class BandIntake {
  public:
   /// Adds a chunk. INVALID_ARGUMENT names the field, the allowed range and the value.
   absl::Status add(const farm::BandChunk& chunk);
+  /// The two parts of add(): begin() takes the header, append() the next bytes.
+  absl::Status begin(const farm::BandHeader& header);
+  absl::Status append(absl::string_view data);
+  bool begun() const { return begun_; }
   /// Returns true if some chunks have arrived, but not all.
   bool cut() const { return begun_ && !whole(); }
   bool whole() const { return begun_ && received_ == header_.size(); }
@@ -24,13 +33,18 @@ class BandIntake {
   absl::StatusOr<BandPixels> take();
 
  private:
-  absl::Status begin(const farm::BandHeader& header);
-
   bool begun_ = false;
   farm::BandHeader header_;
   BandPixels pixels_;
   std::uint64_t received_ = 0;
   wire::Hasher hasher_;
 };
+
+/// Gives a complete band to the engine, which calls `done` with its answer. `browser`: a browser
+/// sent it.
+void put_band(Engine& engine, const farm::BandHeader& header, BandPixels pixels,
+              std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser);
+
+farm::PutBandReply::Outcome to_message(BandOutcome outcome);
 
 }  // namespace bandsaw::coordinator

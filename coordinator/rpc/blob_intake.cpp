@@ -7,7 +7,7 @@
 
 namespace bandsaw::coordinator {
 
-absl::Status check_chunk(const std::string& data, std::uint64_t received, std::uint64_t size) {
+absl::Status check_chunk(absl::string_view data, std::uint64_t received, std::uint64_t size) {
   if (data.size() > wire::kChunkBytes) {
     return absl::InvalidArgumentError(
         absl::StrCat("data: at most ", wire::kChunkBytes, " bytes a chunk, has ", data.size()));

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "absl/status/status.h"
+#include "absl/strings/string_view.h"
 #include "proto/farm.pb.h"
 #include "proto/wire/digest.h"
 
@@ -36,7 +37,7 @@ class BlobIntake {
 };
 
 /// INVALID_ARGUMENT: the chunk is too long, or longer than the rest of the announced size.
-absl::Status check_chunk(const std::string& data, std::uint64_t received, std::uint64_t size);
+absl::Status check_chunk(absl::string_view data, std::uint64_t received, std::uint64_t size);
 absl::Status cut_short(std::uint64_t received, std::uint64_t size);
 
 }  // namespace bandsaw::coordinator

@@ -7,22 +7,6 @@
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
-namespace {
-
-farm::PutBandReply::Outcome to_message(BandOutcome outcome) {
-  switch (outcome) {
-    case BandOutcome::kStored:
-      return farm::PutBandReply::OUTCOME_STORED;
-    case BandOutcome::kDuplicate:
-      return farm::PutBandReply::OUTCOME_DUPLICATE;
-    case BandOutcome::kUnwanted:
-      break;
-  }
-  return farm::PutBandReply::OUTCOME_UNWANTED;
-}
-
-}  // namespace
-
 void PutBandsCall::begin() {
   if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {
     stop(status);
@@ -48,11 +32,12 @@ absl::Status PutBandsCall::take(const farm::BandChunk& chunk) {
   ASSIGN_OR_RETURN(BandPixels pixels, intake_.take());
   const farm::BandHeader header = std::exchange(intake_, {}).header();
   if (hand_over()) {
-    deps_.engine.put_band(header.job(), header.work(), header.instance(), std::move(pixels),
-                          header.counters().render_s(), header.counters().cpu_s(),
-                          [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
-                            self->answer(outcome);
-                          });
+    put_band(
+        deps_.engine, header, std::move(pixels),
+        [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
+          self->answer(outcome);
+        },
+        /*browser=*/false);
   }
   return absl::OkStatus();
 }

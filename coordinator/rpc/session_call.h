@@ -1,56 +1,36 @@
 #pragma once
 
-#include <deque>
-#include <optional>
-
-#include "coordinator/engine/worker_link.h"
 #include "coordinator/rpc/streams.h"
-#include "proto/farm.pb.h"
+#include "coordinator/rpc/worker_session.h"
 
 namespace bandsaw::coordinator {
 
-/// Work.Session: forwards a worker's messages to the engine and the engine's actions to the worker.
-/// The engine receives `lost` exactly once, in OnDone, after which no message of the stream can
-/// arrive.
+/// Work.Session. The engine receives `lost` exactly once, in OnDone, after which no message of the
+/// stream can arrive.
 class SessionCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::FromWorker, farm::ToWorker>, SessionCall>,
-      public WorkerLink,
+      public WorkerSession,
       public LongStream {
  public:
   SessionCall(const ServiceDependencies& deps, std::string peer)
-      : deps_(deps), peer_(std::move(peer)) {}
+      : WorkerSession(deps.engine, std::move(peer), /*browser=*/false), deps_(deps) {}
   void begin();
-  void done();
+  void done() { over(); }
 
   void OnReadDone(bool ok) override;
-  void OnWriteDone(bool ok) override;
+  void OnWriteDone(bool ok) override { sent(ok); }
   void OnCancel() override { stop(absl::CancelledError("the connection broke")); }
 
-  void welcome(const action::Welcome& welcome, const std::string& epoch) override;
-  void refuse(const action::Refuse& refuse) override;
-  void lease(const action::Lease& lease) override;
-  void revoke(const action::Revoke& revoke) override;
-  void close(const std::string& reason) override { stop(absl::AbortedError(reason)); }
-  void stop(const absl::Status& why) override EXCLUDES(mutex_);
+  void stop(const absl::Status& why) override { end_now(why); }
   link::Role role() const override { return link::Role::kWorker; }
 
  private:
-  absl::Status receive(const farm::FromWorker& message);
-  void send(farm::ToWorker message) EXCLUDES(mutex_);
-  /// Ends the call after all messages queued before.
-  void end_with(const absl::Status& status) EXCLUDES(mutex_);
-  void advance() REQUIRES(mutex_);
+  void read_next() override { StartRead(&incoming_); }
+  void write(const farm::ToWorker& message) override { StartWrite(&message); }
+  void finish(const absl::Status& status) override { Finish(link::to_grpc(status)); }
 
   const ServiceDependencies deps_;
-  const std::string peer_;
   farm::FromWorker incoming_;
-  std::optional<SessionId> session_;  ///< accessed by read callbacks, then by done()
-  Mutex mutex_;
-  std::deque<farm::ToWorker> outgoing_
-      GUARDED_BY(mutex_);  ///< the front message is being written while writing_
-  bool writing_ GUARDED_BY(mutex_) = false;
-  bool finished_ GUARDED_BY(mutex_) = false;
-  std::optional<absl::Status> end_ GUARDED_BY(mutex_);
 };
 
 }  // namespace bandsaw::coordinator
