@@ -13,7 +13,7 @@ set -euo pipefail
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
   libabsl-dev libre2-dev libc-ares-dev zlib1g-dev libzstd-dev libssl-dev libassimp-dev libstb-dev libspdlog-dev libsqlite3-dev
   libcli11-dev libtinyexr-dev libboost-dev libdraco-dev libmeshoptimizer-dev libwebp-dev nlohmann-json3-dev libopenvdb-dev
-  libimath-dev libtbb-dev libpugixml-dev)
+  libimath-dev libtbb-dev libpugixml-dev libqrencode-dev)
 demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl python3 python3-numpy ffmpeg)

@@ -83,6 +83,8 @@ constexpr Entry kCommands[] = {
      "bandsaw doctor --farm join    # on a worker's machine"},
     {"secret", "Make a new secret; the old one becomes invalid", add_secret, checked_secret,
      "bandsaw secret rotate worker"},
+    {"link", "Show the link by which browsers join as workers, or take it back", add_link,
+     checked_link, "bandsaw link --for 8h    # a QR code for phones"},
     {"invite", "Install and start workers on other machines by ssh", add_invite, checked_invite,
      "bandsaw invite anna@desk laptop"},
     {"dismiss", "Stop and remove such workers", add_dismiss, checked_dismiss,

@@ -19,6 +19,24 @@ double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+/// Does what the request says. Waits for the disk.
+absl::StatusOr<farm::BrowserLinkReply> browser_link(BrowserAccess& browsers,
+                                                    const farm::BrowserLinkRequest& request) {
+  farm::BrowserLinkReply reply;
+  if (request.revoke()) {
+    RETURN_IF_ERROR(browsers.revoke());
+    return reply;
+  }
+  std::optional<BrowserAccess::Link> link = browsers.present();
+  if (!link || request.seconds() != 0) {
+    ASSIGN_OR_RETURN(link, browsers.make(request.seconds() == 0 ? BrowserAccess::kStandardSeconds
+                                                                : request.seconds()));
+  }
+  reply.set_url(link->url);
+  reply.set_left_s(link->left_s);
+  return reply;
+}
+
 }  // namespace
 
 Unary* FarmService::Logs(grpc::CallbackServerContext* context, const farm::LogsRequest* request,
@@ -86,6 +104,27 @@ Unary* FarmService::RotateSecret(grpc::CallbackServerContext* context,
         deps_.streams.stop_those_of(role, void_secret());
       }
       reactor->Finish(link::to_grpc(file.status()));
+    });
+    return absl::OkStatus();
+  });
+}
+
+Unary* FarmService::BrowserLink(grpc::CallbackServerContext* context,
+                                const farm::BrowserLinkRequest* request,
+                                farm::BrowserLinkReply* reply) {
+  return unary(deps_, *context, link::Role::kFarm, [&](Unary* reactor) -> absl::Status {
+    if (deps_.browsers == nullptr) {
+      return absl::FailedPreconditionError("this coordinator admits no browsers");
+    }
+    if (request->revoke() && request->seconds() != 0) {
+      return absl::InvalidArgumentError("seconds: must be 0 if the link is revoked");
+    }
+    deps_.files.post([this, reactor, reply, wanted = *request] {
+      const absl::StatusOr<farm::BrowserLinkReply> done = browser_link(*deps_.browsers, wanted);
+      if (done.ok()) {
+        *reply = *done;
+      }
+      reactor->Finish(link::to_grpc(done.status()));
     });
     return absl::OkStatus();
   });

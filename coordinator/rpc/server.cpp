@@ -93,13 +93,13 @@ std::shared_ptr<grpc::ServerCredentials> credentials(const link::Identity& ident
 
 class Server::Impl {
  public:
-  Impl(Engine& engine, const link::Identity& identity, RenewSecret renew)
+  Impl(Engine& engine, const link::Identity& identity, RenewSecret renew, BrowserAccess* browsers)
       : identity_(identity),
         gate_(identity, std::move(renew)),
         files_(kFileThreads),
         images_(kImageThreads),
-        farm_({engine, gate_, files_, images_, streams_}),
-        work_({engine, gate_, files_, images_, streams_}) {}
+        farm_({engine, gate_, files_, images_, streams_, browsers}),
+        work_({engine, gate_, files_, images_, streams_, browsers}) {}
 
   absl::Status start(const ServerOptions& options) {
     RETURN_IF_ERROR(check_can_listen(options.listen));
@@ -148,7 +148,7 @@ int Server::port() const { return impl_->port(); }
 absl::StatusOr<std::unique_ptr<Server>> Server::start(Engine& engine,
                                                       const link::Identity& identity,
                                                       const ServerOptions& options) {
-  auto impl = std::make_unique<Impl>(engine, identity, options.renew);
+  auto impl = std::make_unique<Impl>(engine, identity, options.renew, options.browsers);
   RETURN_IF_ERROR(impl->start(options));
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }

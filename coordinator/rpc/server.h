@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "coordinator/engine/engine.h"
+#include "coordinator/rpc/browser_access.h"
 #include "coordinator/rpc/gate.h"
 #include "proto/link/identity.h"
 
@@ -17,6 +18,7 @@ struct ServerOptions {
   bool insecure = false;                ///< plaintext
   bool reflection = false;              ///< lists the services and calls to any client
   RenewSecret renew = nullptr;          ///< implements RotateSecret; nullptr: it is refused
+  BrowserAccess* browsers = nullptr;    ///< implements BrowserLink; outlives the server
 };
 
 class Server {

@@ -69,6 +69,9 @@ class FarmService final : public farm::Farm::CallbackService {
   grpc::ServerUnaryReactor* RotateSecret(grpc::CallbackServerContext* context,
                                          const farm::RotateSecretRequest* request,
                                          farm::RotateSecretReply* reply) override;
+  grpc::ServerUnaryReactor* BrowserLink(grpc::CallbackServerContext* context,
+                                        const farm::BrowserLinkRequest* request,
+                                        farm::BrowserLinkReply* reply) override;
 
  private:
   const ServiceDependencies deps_;

@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "coordinator/engine/engine.h"
+#include "coordinator/rpc/browser_access.h"
 #include "coordinator/rpc/executor.h"
 #include "coordinator/rpc/gate.h"
 #include "proto/link/channel.h"
@@ -51,6 +52,7 @@ struct ServiceDependencies {
   FileExecutor& files;   ///< threads for work that waits for the disk
   FileExecutor& images;  ///< threads that make images, which wait for the film
   LongStreams& streams;
+  BrowserAccess* browsers = nullptr;  ///< nullptr: no browser can join
 };
 
 /// The error of calls whose secret was renewed.

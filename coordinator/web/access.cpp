@@ -64,10 +64,7 @@ absl::Status check_post(const HttpRequest& request) {
   if (!request.has_header(kOurHeader)) {
     return absl::PermissionDeniedError(absl::StrCat("a POST needs the header ", kOurHeader));
   }
-  const std::string origin = request.header("Origin");
-  const std::string host = request.header("Host");
-  if (!origin.empty() && origin != absl::StrCat("http://", host) &&
-      origin != absl::StrCat("https://", host)) {
+  if (request.has_header("Origin") && !is_of_this_site(request)) {
     return absl::PermissionDeniedError("this request comes from another site");
   }
   return absl::OkStatus();
@@ -93,6 +90,18 @@ bool is_own_host(const std::string& host, const std::string& machine) {
   const std::string own = absl::AsciiStrToLower(machine);
   return inet_pton(AF_INET, name.c_str(), &address) == 1 || name == "localhost" ||
          (!own.empty() && (name == own || name == own + ".local"));
+}
+
+bool is_of_this_site(const HttpRequest& request) {
+  const std::string origin = request.header("Origin");
+  const std::string host = request.header("Host");
+  return origin == absl::StrCat("http://", host) || origin == absl::StrCat("https://", host);
+}
+
+std::string bearer_secret(const HttpRequest& request) {
+  constexpr char kScheme[] = "Bearer ";
+  const std::string authorization = request.header("Authorization");
+  return absl::StartsWith(authorization, kScheme) ? authorization.substr(sizeof(kScheme) - 1) : "";
 }
 
 Access::Access(link::Identity identity, bool secure)
@@ -133,11 +142,9 @@ absl::Status Access::check_login(const HttpRequest& request) {
   if (logged_in(request)) {
     return absl::OkStatus();
   }
-  MutexLock lock(mutex_);
-  const std::string authorization = request.header("Authorization");
-  constexpr char kScheme[] = "Bearer ";
-  if (absl::StartsWith(authorization, kScheme)) {
-    return check_secret(authorization.substr(sizeof(kScheme) - 1), request.remote_address);
+  if (const std::string secret = bearer_secret(request); !secret.empty()) {
+    MutexLock lock(mutex_);
+    return check_secret(secret, request.remote_address);
   }
   return absl::UnauthenticatedError("log in first");
 }

@@ -54,6 +54,13 @@ class Access {
   Failures failures_ GUARDED_BY(mutex_);
 };
 
+/// Returns true if the header Origin of a request names the site that it is sent to. Browsers set
+/// it, pages cannot.
+bool is_of_this_site(const HttpRequest& request);
+
+/// Returns the secret of the header "Authorization: Bearer SECRET"; empty: there is none.
+std::string bearer_secret(const HttpRequest& request);
+
 /// Returns true if a Host header has an IP address, localhost or this machine's own name. Requests
 /// of a foreign page whose name resolves to this machine (DNS rebinding) have that foreign name.
 bool is_own_host(const std::string& host, const std::string& machine);

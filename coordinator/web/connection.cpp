@@ -72,13 +72,18 @@ bool Connection::wait(short events) const {
   }
 }
 
-bool Connection::wait_after(int tls_result, short plain_events) const {
+short Connection::events_after(int tls_result, short plain_events) const {
   if (ssl_ == nullptr) {
-    return (errno == EAGAIN || errno == EINTR) && wait(plain_events);
+    return errno == EAGAIN || errno == EINTR ? plain_events : short{0};
   }
-  const int error = SSL_get_error(ssl_.get(), tls_result);
-  return (error == SSL_ERROR_WANT_READ && wait(POLLIN)) ||
-         (error == SSL_ERROR_WANT_WRITE && wait(POLLOUT));
+  switch (SSL_get_error(ssl_.get(), tls_result)) {
+    case SSL_ERROR_WANT_READ:
+      return POLLIN;
+    case SSL_ERROR_WANT_WRITE:
+      return POLLOUT;
+    default:
+      return 0;
+  }
 }
 
 bool Connection::shake_hands() {
@@ -91,7 +96,7 @@ bool Connection::shake_hands() {
     if (result == 1) {
       return true;
     }
-    if (!wait_after(result, POLLIN)) {
+    if (const short events = events_after(result, POLLIN); events == 0 || !wait(events)) {
       return false;
     }
   }
@@ -112,42 +117,52 @@ void Connection::extend(std::size_t bytes) {
   }
 }
 
-std::size_t Connection::read(char* bytes, std::size_t size) {
+Connection::Attempt Connection::try_read(char* bytes, std::size_t size) {
   const std::size_t most = std::min(size, kMaxAtOnce);
-  while (true) {
-    if (Clock::now() >= deadline_) {
-      return 0;
+  ERR_clear_error();
+  const ssize_t got = ssl_ != nullptr ? SSL_read(ssl_.get(), bytes, static_cast<int>(most))
+                                      : recv(socket_, bytes, most, 0);
+  if (got > 0) {
+    return {.bytes = static_cast<std::size_t>(got)};
+  }
+  if (got == 0 && ssl_ == nullptr) {
+    return {};
+  }
+  return {.wait_for = events_after(static_cast<int>(got), POLLIN)};
+}
+
+Connection::Attempt Connection::try_write(const char* bytes, std::size_t size) {
+  const std::size_t most = std::min(size, kMaxAtOnce);
+  ERR_clear_error();
+  const ssize_t sent = ssl_ != nullptr ? SSL_write(ssl_.get(), bytes, static_cast<int>(most))
+                                       : send(socket_, bytes, most, MSG_NOSIGNAL);
+  if (sent > 0) {
+    return {.bytes = static_cast<std::size_t>(sent)};
+  }
+  return {.wait_for = events_after(static_cast<int>(sent), POLLOUT)};
+}
+
+template <class Try>
+std::size_t Connection::repeat(Try attempt) {
+  while (Clock::now() < deadline_) {
+    const Attempt done = attempt();
+    if (done.bytes > 0) {
+      extend(done.bytes);
+      return done.bytes;
     }
-    ERR_clear_error();
-    const ssize_t got = ssl_ != nullptr ? SSL_read(ssl_.get(), bytes, static_cast<int>(most))
-                                        : recv(socket_, bytes, most, 0);
-    if (got > 0) {
-      extend(static_cast<std::size_t>(got));
-      return static_cast<std::size_t>(got);
-    }
-    if ((got == 0 && ssl_ == nullptr) || !wait_after(static_cast<int>(got), POLLIN)) {
+    if (done.wait_for == 0 || !wait(done.wait_for)) {
       return 0;
     }
   }
+  return 0;
+}
+
+std::size_t Connection::read(char* bytes, std::size_t size) {
+  return repeat([&] { return try_read(bytes, size); });
 }
 
 std::size_t Connection::write(const char* bytes, std::size_t size) {
-  const std::size_t most = std::min(size, kMaxAtOnce);
-  while (true) {
-    if (Clock::now() >= deadline_) {
-      return 0;
-    }
-    ERR_clear_error();
-    const ssize_t sent = ssl_ != nullptr ? SSL_write(ssl_.get(), bytes, static_cast<int>(most))
-                                         : send(socket_, bytes, most, MSG_NOSIGNAL);
-    if (sent > 0) {
-      extend(static_cast<std::size_t>(sent));
-      return static_cast<std::size_t>(sent);
-    }
-    if (!wait_after(static_cast<int>(sent), POLLOUT)) {
-      return 0;
-    }
-  }
+  return repeat([&] { return try_write(bytes, size); });
 }
 
 void Connection::finish() {

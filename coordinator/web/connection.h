@@ -41,10 +41,22 @@ class Connection {
   /// Writes at most `size` bytes, which is not 0, as soon as some can be written. Result as of
   /// read.
   std::size_t write(const char* bytes, std::size_t size);
+
+  /// What one attempt to read or write did. Neither `bytes` nor `wait_for`: the connection has
+  /// ended.
+  struct Attempt {
+    std::size_t bytes = 0;
+    short wait_for = 0;  ///< the attempt can be repeated after these events of poll
+  };
+  /// The same as read and write, but they do not wait and know no deadline.
+  Attempt try_read(char* bytes, std::size_t size);
+  Attempt try_write(const char* bytes, std::size_t size);
+
   /// Ends the sending direction and reads what the peer still sends, because closing a socket with
   /// unread bytes would make the system discard the response.
   void finish();
 
+  int socket() const { return socket_; }
   /// Numeric address of the peer; empty: unknown.
   const std::string& remote_address() const { return remote_; }
   /// Returns the port of this end; 0: unknown.
@@ -56,10 +68,14 @@ class Connection {
   };
   using Clock = std::chrono::steady_clock;
 
+  /// Repeats an attempt until it has moved bytes; returns 0 if it failed or the deadline passed.
+  template <class Try>
+  std::size_t repeat(Try attempt);
   /// Waits until the socket is ready for `events` of poll; false: the deadline passed.
   bool wait(short events) const;
-  /// Waits until an unfinished read or write with this result can continue; false: it has failed.
-  bool wait_after(int tls_result, short plain_events) const;
+  /// Returns the events after which an unfinished operation with this result can continue; 0: it
+  /// has failed.
+  short events_after(int tls_result, short plain_events) const;
   /// Returns the time that this many bytes of a body add to the deadline.
   void extend(std::size_t bytes);
 

@@ -1,5 +1,6 @@
 #include "coordinator/web/dashboard.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,8 @@ class Dashboard::Impl {
         scenes_(engine, options.import_scene),
         gallery_(options.gallery),
         workers_(options.workers),
+        browser_program_(options.browser_program),
+        browser_leases_(engine),
         server_(std::move(tls), headers_of_every_answer(),
                 [this](const HttpRequest& request, const HttpBody& body) {
                   const absl::Status status = access_.check(request);
@@ -54,6 +57,12 @@ class Dashboard::Impl {
     add_scenes(router_, scenes_);
     add_scene_files(router_, engine, scenes_);
     add_gallery(router_, engine, scenes_, gallery_);
+    if (options.browsers != nullptr) {
+      browser_sockets_.emplace(engine, *options.browsers, browser_leases_, options.browser_limits);
+      add_browser_link(router_, *options.browsers);
+      add_join(router_, engine, *options.browsers, browser_leases_, *browser_sockets_,
+               browser_program_);
+    }
   }
 
   ~Impl() { scenes_.stop(); }
@@ -81,6 +90,9 @@ class Dashboard::Impl {
   Scenes scenes_;
   const Gallery gallery_;
   const WorkerPrograms workers_;
+  const BrowserProgram browser_program_;
+  BrowserLeases browser_leases_;
+  std::optional<BrowserSockets> browser_sockets_;
   Router router_;
   int port_ = 0;
   HttpServer server_;  // last: its threads use the others

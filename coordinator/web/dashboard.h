@@ -8,6 +8,9 @@
 
 #include "absl/status/statusor.h"
 #include "coordinator/engine/engine.h"
+#include "coordinator/rpc/browser_access.h"
+#include "coordinator/web/browser_program.h"
+#include "coordinator/web/browser_sockets.h"
 #include "coordinator/web/pictures.h"
 #include "coordinator/web/scenes.h"
 #include "coordinator/web/worker_program.h"
@@ -23,6 +26,9 @@ struct DashboardOptions {
   ImportScene import_scene;
   WorkerPrograms workers;  ///< programs for machines that are to join
   MakeReport report;
+  BrowserAccess* browsers = nullptr;  ///< outlives the dashboard; nullptr: no browser can join
+  BrowserProgram browser_program = {};
+  BrowserSocketLimits browser_limits = {};
 };
 
 class Dashboard {

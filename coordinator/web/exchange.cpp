@@ -89,14 +89,18 @@ class Exchange {
     parser_.body_limit(std::numeric_limits<std::uint64_t>::max());
   }
 
-  void run(const HttpHandler& handler) {
+  TakeOver run(const HttpHandler& handler) {
     beast::error_code error;
     http::read_header(stream_, buffer_, parser_, error);
     if (error == http::error::end_of_stream || error == http::error::partial_message) {
-      return;
+      return {};
     }
     const HttpRequest request = error ? HttpRequest() : read_request();
-    write(request, error ? refuse_head(error) : with_range(request, answer(request, handler)));
+    HttpReply reply = error ? refuse_head(error) : answer(request, handler);
+    if (!reply.take_over) {
+      write(request, with_range(request, reply));
+    }
+    return std::move(reply.take_over);
   }
 
  private:
@@ -152,17 +156,30 @@ class Exchange {
                  : absl::string_view();
   }
 
+  bool is_of_every_reply(const std::string& name) const {
+    return std::any_of(headers_.begin(), headers_.end(),
+                       [&](const HttpField& field) { return field.first == name; });
+  }
+
   void write(const HttpRequest& request, const HttpReply& reply) {
     using Bytes = http::span_body<const char>;
     http::response<Bytes> response(static_cast<http::status>(reply.status), 11);
     response.set(http::field::connection, "close");
-    const auto add = [&](const HttpField& field) { response.insert(field.first, field.second); };
-    std::for_each(headers_.begin(), headers_.end(), add);
-    std::for_each(reply.headers.begin(), reply.headers.end(), add);
+    for (const auto& [name, value] : headers_) {
+      response.insert(name, value);
+    }
+    for (const auto& [name, value] : reply.headers) {
+      if (is_of_every_reply(name)) {
+        response.erase(name);
+      }
+      response.insert(name, value);
+    }
     if (!reply.type.empty()) {
       response.set(http::field::content_type, reply.type);
     }
-    response.content_length(reply.bytes.size());
+    if (reply.status != 304) {  // RFC 9110, section 8.6: it would be the length of the response 200
+      response.content_length(reply.bytes.size());
+    }
     response.body() = Bytes::value_type(reply.bytes.data(), reply.bytes.size());
     http::response_serializer<Bytes> serializer(response);
     beast::error_code ignored;  // the client has disconnected
@@ -186,9 +203,9 @@ class Exchange {
 
 }  // namespace
 
-void exchange(Connection& connection, const HttpHandler& handler,
-              const std::vector<HttpField>& headers) {
-  Exchange(connection, headers).run(handler);
+TakeOver exchange(Connection& connection, const HttpHandler& handler,
+                  const std::vector<HttpField>& headers) {
+  return Exchange(connection, headers).run(handler);
 }
 
 }  // namespace bandsaw::coordinator

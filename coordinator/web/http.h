@@ -42,12 +42,19 @@ void parse_target(absl::string_view target, HttpRequest& request);
 /// did not arrive completely in time. The caller limits how much it reads.
 using HttpBody = std::function<absl::StatusOr<absl::string_view>()>;
 
+class Connection;
+/// Takes over a connection whose request asks for another protocol. Closes its socket in the end.
+using TakeOver = std::function<void(std::unique_ptr<Connection>)>;
+
 struct HttpReply {
   int status = 200;
-  std::string type = {};                  ///< Content-Type; empty: no body
-  std::vector<HttpField> headers = {};    ///< without Content-Type, Content-Length and Connection
+  std::string type = {};  ///< Content-Type; empty: no body
+  /// Without Content-Type, Content-Length and Connection. One of the headers of every response
+  /// replaces that one.
+  std::vector<HttpField> headers = {};
   absl::string_view bytes = {};           ///< the body
   std::shared_ptr<const void> held = {};  ///< keeps `bytes` alive; nullptr: they outlive the server
+  TakeOver take_over = {};                ///< set: gets the connection, and no response is written
 };
 
 /// Returns a response 200 that owns this body.

@@ -131,8 +131,9 @@ void HttpServer::run() {
   while (true) {
     const int socket = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
     if (socket >= 0) {
-      serve(socket);
-      close(socket);
+      if (serve(socket)) {
+        close(socket);
+      }
     } else if (!may_accept_again(errno)) {
       return;
     }
@@ -163,17 +164,24 @@ void HttpServer::leave(int socket) {
   open_.erase(socket);
 }
 
-void HttpServer::serve(int socket) {
+bool HttpServer::serve(int socket) {
   switch_on(socket, IPPROTO_TCP, TCP_NODELAY);
-  Connection connection(socket, tls_.get());
-  if (!enter(socket, connection.remote_address())) {
-    return;
+  auto connection = std::make_unique<Connection>(socket, tls_.get());
+  if (!enter(socket, connection->remote_address())) {
+    return true;
   }
-  if (connection.shake_hands()) {
-    exchange(connection, handler_, headers_);
+  TakeOver take_over;
+  if (connection->shake_hands()) {
+    take_over = exchange(*connection, handler_, headers_);
   }
-  connection.finish();
+  if (take_over) {
+    leave(socket);
+    take_over(std::move(connection));
+    return false;
+  }
+  connection->finish();
   leave(socket);
+  return true;
 }
 
 }  // namespace bandsaw::coordinator

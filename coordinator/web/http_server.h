@@ -39,7 +39,8 @@ class HttpServer {
  private:
   /// Runs on each thread: accepts a connection, serves it, closes it.
   void run() EXCLUDES(mutex_);
-  void serve(int socket) EXCLUDES(mutex_);
+  /// Returns false if the connection was taken over, and so is not to be closed.
+  bool serve(int socket) EXCLUDES(mutex_);
   /// Returns false if the server is being stopped, or the address has too many connections.
   bool enter(int socket, const std::string& address) EXCLUDES(mutex_);
   void leave(int socket) EXCLUDES(mutex_);

@@ -1,5 +1,6 @@
 // The page and the login.
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "coordinator/web/page_files.h"
 #include "coordinator/web/reply.h"
@@ -8,12 +9,32 @@
 
 namespace bandsaw::coordinator {
 
+namespace {
+
+/// The policy of the page for browsers that render, and of its scripts, which become workers: the
+/// only ones that may compile WebAssembly and start workers.
+constexpr char kJoinPolicy[] =
+    "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src "
+    "'self'; "
+    "img-src 'self'; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors "
+    "'none'";
+
+std::string path_of(const PageFile& file) {
+  if (file.name == "index.html") {
+    return "/";
+  }
+  return file.name == "join.html" ? "/join" : absl::StrCat("/", file.name);
+}
+
+}  // namespace
+
 void add_page(Router& router) {
   for (const PageFile& file : page_files()) {
-    router.get(file.name == "index.html" ? "/" : absl::StrCat("/", file.name),
-               [&file](const HttpRequest&) {
-                 return HttpReply{.type = std::string(file.type), .bytes = file.bytes};
-               });
+    HttpReply reply{.type = std::string(file.type), .bytes = file.bytes};
+    if (absl::StartsWith(file.name, "join")) {
+      reply.headers.emplace_back("Content-Security-Policy", kJoinPolicy);
+    }
+    router.get(path_of(file), [reply](const HttpRequest&) { return reply; });
   }
 }
 

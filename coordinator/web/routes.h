@@ -3,7 +3,11 @@
 // The handlers of all paths. Access is checked before any of them runs.
 
 #include "coordinator/engine/engine.h"
+#include "coordinator/rpc/browser_access.h"
 #include "coordinator/web/access.h"
+#include "coordinator/web/browser_leases.h"
+#include "coordinator/web/browser_program.h"
+#include "coordinator/web/browser_sockets.h"
 #include "coordinator/web/clean_pictures.h"
 #include "coordinator/web/gallery.h"
 #include "coordinator/web/pictures.h"
@@ -27,6 +31,11 @@ void add_clean_pictures(Router& router, CleanPictures& pictures);
 void add_scenes(Router& router, Scenes& scenes);
 /// Scenes whose files are sent apart, each once.
 void add_scene_files(Router& router, Engine& engine, Scenes& scenes);
+/// The link by which browsers join.
+void add_browser_link(Router& router, BrowserAccess& access);
+/// What browsers request that render.
+void add_join(Router& router, Engine& engine, BrowserAccess& access, BrowserLeases& leases,
+              BrowserSockets& sockets, const BrowserProgram& program);
 void add_gallery(Router& router, Engine& engine, Scenes& scenes, const Gallery& gallery);
 
 /// Returns the job id at the place of "*" in the path. NOT_FOUND: not a job id.

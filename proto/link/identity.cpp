@@ -83,11 +83,11 @@ absl::StatusOr<Identity> make_identity() {
   return identity;
 }
 
-bool equal_in_constant_time(const std::string& a, const std::string& b) {
+}  // namespace
+
+bool is_same_secret(const std::string& a, const std::string& b) {
   return a.size() == b.size() && CRYPTO_memcmp(a.data(), b.data(), a.size()) == 0;
 }
-
-}  // namespace
 
 absl::StatusOr<Identity> load_or_make_identity(const std::string& folder) {
   if (absl::Status status = make_private_folder(folder); !status.ok()) {
@@ -130,8 +130,8 @@ absl::StatusOr<Identity> renew_secret(const std::string& folder, Role role) {
 
 absl::StatusOr<Role> role_of_secret(const Identity& identity, const std::string& secret) {
   // Always compares both, so that the time does not reveal which secret was close.
-  const bool worker = equal_in_constant_time(identity.worker_secret, secret);
-  const bool farm = equal_in_constant_time(identity.farm_secret, secret);
+  const bool worker = is_same_secret(identity.worker_secret, secret);
+  const bool farm = is_same_secret(identity.farm_secret, secret);
   if (worker) {
     return Role::kWorker;
   }

@@ -95,6 +95,36 @@ TEST_F(Administration, TheUsersSecretIsRenewedWithAndWithoutACoordinator) {
   EXPECT_EQ(say({"jobs"}).code, 0);
 }
 
+TEST_F(Administration, ALinkForBrowsersLastsUntilItIsRevokedOrASecretIsRenewed) {
+  const auto secret = [&](std::vector<std::string> more = {}) {
+    more.insert(more.begin(), "link");
+    const std::string url = say(more).out;
+    const std::size_t mark = url.find("/join#");
+    EXPECT_NE(mark, std::string::npos) << url;
+    return url.substr(mark + 6, 22);
+  };
+  std::string before = secret({"--for", "2h"});
+  EXPECT_EQ(secret(), before);
+  farm_.coordinator().signal(SIGKILL);
+  farm_.coordinator().wait();
+  farm_.restart_coordinator();
+  EXPECT_EQ(secret(), before) << "a restart keeps it";
+  EXPECT_EQ(say({"link", "--revoke"}).code, 0);
+  for (const char* role : {"worker", "farm"}) {
+    const std::string next = secret();
+    EXPECT_NE(next, before);
+    before = next;
+    EXPECT_EQ(here({"secret", "rotate", role}).code, 0);
+  }
+  const std::string last = secret();
+  EXPECT_NE(last, before);
+  farm_.coordinator().signal(SIGTERM);
+  farm_.coordinator().wait();
+  EXPECT_EQ(here({"secret", "rotate", "worker"}).code, 0);
+  farm_.restart_coordinator();
+  EXPECT_NE(secret(), last) << "also if no coordinator runs";
+}
+
 // One band of a million samples, so that each worker is killed while it renders this band. The
 // first loss makes the band suspect; five more are needed on a farm that has not stored a band
 // before (coordinator/scheduler/liveness/crash_attribution.h).

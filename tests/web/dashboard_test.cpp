@@ -104,6 +104,39 @@ TEST_F(DashboardTest, RequiresTheJoinString) {
   EXPECT_THAT(browser.console_errors(), IsEmpty());
 }
 
+constexpr char kCard[] = "document.querySelector('.invite:not([hidden])')";
+
+TEST_F(DashboardTest, TheLinkForBrowsersIsShownOpenedAndTakenBack) {
+  Browser browser;
+  enter(browser);
+  browser.run("location.hash = '#/workers'");
+  ASSERT_TRUE(browser.wait("document.querySelector('.joining button')"));
+  browser.click(".joining button");
+  ASSERT_TRUE(browser.wait(kCard));
+  const std::string url = browser.text(std::string(kCard) + ".querySelector('input').value");
+  EXPECT_THAT(url, ::testing::StartsWith(base_ + "/join#"));
+  EXPECT_TRUE(browser.wait("document.querySelector('.code').naturalWidth > 0"));
+  browser.screenshot(shot("link"));
+  EXPECT_THAT(browser.console_errors(), IsEmpty());
+  browser.go(url);
+  // If this build has no renderer for browsers, the page says so.
+  EXPECT_TRUE(
+      browser.wait("document.querySelector('#intro:not([hidden]), #problem:not([hidden])')"));
+  EXPECT_NE(browser.text("document.querySelector('#problem h1').textContent"),
+            "This device cannot join");
+  EXPECT_THAT(browser.console_errors(), IsEmpty());
+  enter(browser);
+  browser.run("location.hash = '#/workers'");
+  ASSERT_TRUE(browser.wait("document.querySelector('.joining button')"));
+  browser.click(".joining button");
+  ASSERT_TRUE(browser.wait(kCard));
+  browser.click(".invite .danger");
+  EXPECT_TRUE(browser.wait("document.querySelector('.invite').hidden"));
+  browser.go(url);
+  EXPECT_TRUE(browser.wait(
+      "document.querySelector('#problem h1').textContent === 'This device cannot join'"));
+}
+
 TEST_F(DashboardTest, ADroppedSceneIsRenderedAndItsImageDownloaded) {
   Browser browser;
   enter(browser);

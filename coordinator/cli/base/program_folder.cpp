@@ -13,4 +13,8 @@ std::string gallery_folder() {
   return std::filesystem::path(program_folder()).parent_path() / "share/bandsaw/gallery";
 }
 
+std::string browser_folder() {
+  return std::filesystem::path(program_folder()).parent_path() / "share/bandsaw/browser";
+}
+
 }  // namespace bandsaw::coordinator

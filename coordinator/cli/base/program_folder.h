@@ -15,4 +15,7 @@ std::string program_folder();
 /// program's bin folder, both installed and in a build folder.
 std::string gallery_folder();
 
+/// Returns the folder of the renderer for browsers: share/bandsaw/browser, found in the same way.
+std::string browser_folder();
+
 }  // namespace bandsaw::coordinator

@@ -247,6 +247,17 @@ absl::StatusOr<std::string> FarmClient::rotate_secret(link::Role role) {
   return reply.join_file();
 }
 
+absl::StatusOr<farm::BrowserLinkReply> FarmClient::browser_link(double seconds, bool revoke) {
+  farm::BrowserLinkRequest request;
+  request.set_seconds(seconds);
+  request.set_revoke(revoke);
+  farm::BrowserLinkReply reply;
+  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+    return control_->BrowserLink(&context, request, &reply);
+  }));
+  return reply;
+}
+
 absl::StatusOr<std::vector<std::string>> FarmClient::why(JobId job) {
   farm::WhyRequest request;
   request.set_job(job);

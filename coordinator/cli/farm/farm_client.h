@@ -103,6 +103,8 @@ class FarmClient {
   absl::StatusOr<farm::AboutReply> about();
   /// Renews a secret and returns the file with the new join string, on the coordinator's machine.
   absl::StatusOr<std::string> rotate_secret(link::Role role);
+  /// Shows, makes or revokes the link for browsers. Arguments as farm.BrowserLinkRequest.
+  absl::StatusOr<farm::BrowserLinkReply> browser_link(double seconds, bool revoke);
   /// Returns the reasons why the job is not done, at least one. NOT_FOUND: no such job.
   absl::StatusOr<std::vector<std::string>> why(JobId job);
 

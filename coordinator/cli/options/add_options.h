@@ -21,6 +21,7 @@ void add_logs(CLI::App& app, RawOptions& raw);
 void add_quarantine(CLI::App& app, RawOptions& raw);
 void add_doctor(CLI::App& app, RawOptions& raw);
 void add_secret(CLI::App& app, RawOptions& raw);
+void add_link(CLI::App& app, RawOptions& raw);
 
 // Commands that make or examine images (image_options.cpp).
 void add_submit(CLI::App& app, RawOptions& raw);

@@ -89,6 +89,18 @@ void add_doctor(CLI::App& app, RawOptions& raw) {
   add_verbosity(app, raw);
 }
 
+void add_link(CLI::App& app, RawOptions& raw) {
+  app.add_option(
+         "--for", raw.time,
+         "The link ends after this time, from now on, as in 90m or 8h [default: as it is; 8h "
+         "for a new one]")
+      ->type_name("TIME");
+  app.add_flag("--revoke", raw.revoke,
+               "The present link is void, and its browsers are disconnected");
+  add_farm(app, raw);
+  add_verbosity(app, raw, false);
+}
+
 void add_secret(CLI::App& app, RawOptions& raw) {
   app.add_option("action", raw.action, "rotate: make a new secret, which invalidates the old one");
   app.add_option("role", raw.role, "Whose secret: worker or farm (users)");

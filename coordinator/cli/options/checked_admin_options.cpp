@@ -74,6 +74,22 @@ absl::StatusOr<Command> checked_doctor(const RawOptions& raw) {
   return options;
 }
 
+absl::StatusOr<Command> checked_link(const RawOptions& raw) {
+  LinkOptions options;
+  options.farm.farm = raw.farm;
+  options.revoke = raw.revoke;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (raw.time) {
+    ASSIGN_OR_RETURN(options.seconds, parse_seconds("--for", *raw.time));
+    if (options.revoke || *options.seconds < 1) {
+      return absl::InvalidArgumentError(options.revoke
+                                            ? "link: --for and --revoke exclude each other"
+                                            : "link: --for needs at least one second");
+    }
+  }
+  return options;
+}
+
 absl::StatusOr<Command> checked_secret(const RawOptions& raw) {
   constexpr char kUse[] = "as in: bandsaw secret rotate worker";
   RotateOptions options;

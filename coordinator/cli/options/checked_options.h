@@ -29,7 +29,7 @@ struct RawOptions {
   std::optional<std::string> web, shell, audit, browser_audit, browsers;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
        quiet = false, json = false, preview = false, every_object = false, reflection = false,
-       compare_clean = false, fixed_seed = false;
+       compare_clean = false, fixed_seed = false, revoke = false;
   std::string denoise;  ///< "regression" or another method; empty: not given
 };
 
@@ -49,6 +49,7 @@ absl::StatusOr<Command> checked_logs(const RawOptions& raw);
 absl::StatusOr<Command> checked_quarantine(const RawOptions& raw);
 absl::StatusOr<Command> checked_doctor(const RawOptions& raw);
 absl::StatusOr<Command> checked_secret(const RawOptions& raw);
+absl::StatusOr<Command> checked_link(const RawOptions& raw);
 absl::StatusOr<Command> checked_render(const RawOptions& raw);
 absl::StatusOr<Command> checked_info(const RawOptions& raw);
 absl::StatusOr<Command> checked_import(const RawOptions& raw);

@@ -31,6 +31,7 @@ ExitCode run(const LogsOptions& options, Process& process);
 ExitCode run(const QuarantineOptions& options, Process& process);
 ExitCode run(const DoctorOptions& options, Process& process);
 ExitCode run(const RotateOptions& options, Process& process);
+ExitCode run(const LinkOptions& options, Process& process);
 ExitCode run(const InviteOptions& options, Process& process);
 ExitCode run(const DismissOptions& options, Process& process);
 ExitCode run(const RenderOptions& options, Process& process);

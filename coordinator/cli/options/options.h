@@ -201,6 +201,13 @@ struct RotateOptions {
   Verbosity verbosity;
 };
 
+struct LinkOptions {
+  std::optional<double> seconds;  ///< the link ends after this time; std::nullopt: as it is
+  bool revoke = false;
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
 struct InviteOptions {
   std::vector<std::string> hosts;  ///< as ssh takes them; at least one
   std::string join;      ///< workers' join string or its file; empty: from the data folder
@@ -289,7 +296,7 @@ using Command =
     std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
                  CancelOptions, PauseOptions, ResumeOptions, PriorityOptions, WhyOptions,
                  MissingOptions, RetryOptions, LogsOptions, QuarantineOptions, DoctorOptions,
-                 RotateOptions, InviteOptions, DismissOptions, RenderOptions, InfoOptions,
-                 ImportOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
+                 RotateOptions, LinkOptions, InviteOptions, DismissOptions, RenderOptions,
+                 InfoOptions, ImportOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

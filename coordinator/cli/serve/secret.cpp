@@ -13,6 +13,7 @@
 #include "coordinator/cli/options/commands.h"
 #include "coordinator/cli/serve/join_files.h"
 #include "coordinator/store/data_folder.h"
+#include "proto/link/browser_link.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
@@ -36,6 +37,7 @@ absl::Status give_to_owner(const std::string& folder, const std::string& file) {
 /// Renews the secret in the folder. FAILED_PRECONDITION: a coordinator is using it.
 absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role role) {
   ASSIGN_OR_RETURN(const DataFolder locked, DataFolder::open(folder));
+  RETURN_IF_ERROR(link::remove_browser_link(folder));
   ASSIGN_OR_RETURN(const RenewedSecret renewed, rotate_secret(folder, role));
   RETURN_IF_ERROR(give_to_owner(folder, identity_file(folder)));
   RETURN_IF_ERROR(renewed.written);

@@ -15,6 +15,7 @@
 #include "coordinator/cli/serve/join_files.h"
 #include "coordinator/cli/serve/serve_dashboard.h"
 #include "coordinator/engine/engine.h"
+#include "coordinator/rpc/browser_access.h"
 #include "coordinator/rpc/server.h"
 #include "proto/link/identity.h"
 #include "renderlib/base/atomic_file.h"
@@ -25,8 +26,9 @@ namespace {
 
 struct Serving {
   std::unique_ptr<Engine> engine;
-  std::unique_ptr<ServedDashboard> web;  // destroyed before the engine
-  std::unique_ptr<Server> server;        // destroyed before `web`, which it notifies
+  std::unique_ptr<BrowserAccess> browsers;  // destroyed after those that use it
+  std::unique_ptr<ServedDashboard> web;     // destroyed before the engine
+  std::unique_ptr<Server> server;           // destroyed before `web`, which it notifies
   std::string folder;
   std::string join;     // workers' join string
   std::string line;     // shell line that fetches and starts a worker; may be empty
@@ -40,9 +42,14 @@ absl::Status make_folder(const std::string& folder) {
                : absl::OkStatus();
 }
 
-/// Renews the role's secret in the identity, the join strings and the dashboard's logins and link.
+/// Revokes the link for browsers, and renews the role's secret in the identity, the join strings
+/// and the dashboard's logins and link.
 absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::Role role,
-                                               const ServedDashboard& web) {
+                                               const ServedDashboard& web,
+                                               BrowserAccess& browsers) {
+  // First: a user who has the old secret can have read the link, and a new secret of the workers is
+  // to exclude every machine that is not given it.
+  RETURN_IF_ERROR(browsers.revoke());
   ASSIGN_OR_RETURN(RenewedSecret renewed, rotate_secret(folder, role));
   if (web.dashboard != nullptr) {
     web.dashboard->renew(renewed.identity);
@@ -83,16 +90,21 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   ASSIGN_OR_RETURN(serving.engine, Engine::start(engine_options));
   ASSIGN_OR_RETURN(const link::Identity identity, link::load_or_make_identity(folder));
   serving.folder = folder;
-  ASSIGN_OR_RETURN(ServedDashboard web, serve_dashboard(options, *serving.engine, identity));
+  ASSIGN_OR_RETURN(serving.browsers, BrowserAccess::load(folder));
+  ASSIGN_OR_RETURN(ServedDashboard web,
+                   serve_dashboard(options, *serving.engine, identity, *serving.browsers));
   serving.web = std::make_unique<ServedDashboard>(std::move(web));
   ASSIGN_OR_RETURN(serving.server,
                    Server::start(*serving.engine, identity,
                                  {.listen = options.listen,
                                   .insecure = options.insecure,
                                   .reflection = options.reflection,
-                                  .renew = [folder, web = serving.web.get()](link::Role role) {
-                                    return renew_everywhere(folder, role, *web);
-                                  }}));
+                                  .renew =
+                                      [folder, web = serving.web.get(),
+                                       browsers = serving.browsers.get()](link::Role role) {
+                                        return renew_everywhere(folder, role, *web, *browsers);
+                                      },
+                                  .browsers = serving.browsers.get()}));
   RETURN_IF_ERROR(unless_full(serving.web->write_link(folder, identity)));
   const std::string host = options.listen.substr(0, options.listen.rfind(':'));
   ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
@@ -138,6 +150,7 @@ ExitCode run(const ServeOptions& options, Process& process) {
   if (!url.empty()) {
     process.console.line(
         absl::StrCat("dashboard: the link in ", dashboard_file(serving->folder), " logs in"));
+    process.console.line("phones and other browsers join by the link of:  bandsaw link");
   }
   if (options.insecure) {
     process.console.complain(

@@ -82,12 +82,27 @@ WorkerPrograms load_workers() {
   return workers;
 }
 
+/// Reads the renderer for browsers. Without it, the page for browsers says how to install it.
+BrowserProgram load_browsers() {
+  auto program = load_browser_program(browser_folder());
+  if (!program.ok()) {
+    spdlog::log(absl::IsNotFound(program.status()) ? spdlog::level::debug : spdlog::level::warn,
+                "no renderer for browsers is handed out: {}",
+                std::string(program.status().message()));
+    return {};
+  }
+  return *std::move(program);
+}
+
 absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, Engine& engine,
                                                  const link::Identity& identity,
-                                                 const WorkerPrograms& workers) {
+                                                 const WorkerPrograms& workers,
+                                                 BrowserAccess& browsers) {
   DashboardOptions wanted;
   wanted.workers = workers;
   wanted.insecure = options.insecure;
+  wanted.browsers = &browsers;
+  wanted.browser_program = load_browsers();
   wanted.gallery = gallery_folder();
   wanted.import_scene = import_and_store(engine);
   wanted.report = [](const JobView& job, const Image& image) {
@@ -165,7 +180,8 @@ absl::StatusOr<std::string> ServedDashboard::worker_line(const ServeOptions& opt
 }
 
 absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Engine& engine,
-                                                const link::Identity& identity) {
+                                                const link::Identity& identity,
+                                                BrowserAccess& browsers) {
   ServedDashboard served;
   if (options.web == "none") {
     return served;
@@ -174,7 +190,7 @@ absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Eng
   for (const WorkerProgram& worker : workers) {
     served.workers.emplace(worker.machine, worker.digest);
   }
-  ASSIGN_OR_RETURN(served.dashboard, start(options, engine, identity, workers));
+  ASSIGN_OR_RETURN(served.dashboard, start(options, engine, identity, workers, browsers));
   if (served.dashboard != nullptr) {
     const std::string host =
         options.web.empty() ? "127.0.0.1" : options.web.substr(0, options.web.rfind(':'));
@@ -182,6 +198,7 @@ absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Eng
     const auto addresses = join_addresses(host, served.dashboard->port(), local);
     served.url =
         absl::StrCat(served.dashboard->secure() ? "https://" : "http://", addresses.front());
+    browsers.set_address(served.url);
   }
   return served;
 }

@@ -10,6 +10,7 @@
 #include "coordinator/cli/machines/worker_line.h"
 #include "coordinator/cli/options/options.h"
 #include "coordinator/engine/engine.h"
+#include "coordinator/rpc/browser_access.h"
 #include "coordinator/web/dashboard.h"
 #include "proto/link/identity.h"
 
@@ -36,8 +37,10 @@ struct ServedDashboard {
 };
 
 /// Starts the dashboard. Its pointer is nullptr for "none", and if no address was given and none
-/// can be used. `engine` MUST outlive it. FAILED_PRECONDITION: the given address cannot be used.
+/// can be used. `engine` and `browsers`, whose address is set, MUST outlive it.
+/// FAILED_PRECONDITION: the given address cannot be used.
 absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Engine& engine,
-                                                const link::Identity& identity);
+                                                const link::Identity& identity,
+                                                BrowserAccess& browsers);
 
 }  // namespace bandsaw::coordinator

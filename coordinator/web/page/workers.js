@@ -2,6 +2,7 @@
 
 import {get} from "./api.js";
 import {duration, el, keyed, percent, rate, text} from "./dom.js";
+import {browserLink} from "./link.js";
 
 function workerCard(first) {
   const state = el("span.state");
@@ -43,9 +44,11 @@ export function workersView() {
   const empty = el("p.empty", {hidden: true}, "No workers yet. ", el("code", {}, "bandsaw serve"),
     " printed the line that lets a machine join.");
   const parts = new Map();
+  const link = browserLink();
   return {
-    element: el("div", {}, el("div.title", {}, el("h1", {}, "Workers")), empty, list),
+    element: el("div", {}, el("div.title", {}, el("h1", {}, "Workers")), link.element, empty, list),
     update(overview) {
+      link.refresh();
       const there = overview.worker.filter((worker) => !["lost", "refused", "quarantined"].includes(worker.state));
       const all = there.reduce((sum, worker) => sum + worker.samples_per_s, 0);
       const shares = overview.worker.map((worker) => ({worker, share: there.includes(worker) && all > 0 ? worker.samples_per_s / all : 0}));

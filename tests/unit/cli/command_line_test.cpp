@@ -232,6 +232,13 @@ TEST(CommandLine, TheOtherCommandsTakeTheirOptions) {
   EXPECT_EQ(parsed<RenderOptions>("render a.glb --rows 3:9").rows, (RowRange{3, 9}));
 }
 
+TEST(CommandLine, ALinkForBrowsersIsShownMadeOrRevoked) {
+  EXPECT_FALSE(parsed<LinkOptions>("link").seconds);
+  EXPECT_FALSE(parsed<LinkOptions>("link").revoke);
+  EXPECT_EQ(*parsed<LinkOptions>("link --for 90m").seconds, 5400);
+  EXPECT_TRUE(parsed<LinkOptions>("link --revoke --json").revoke);
+}
+
 TEST(CommandLine, StandardInputCanBeTheFarm) {
   EXPECT_EQ(parsed<JobsOptions>("jobs --farm -").farm.farm, "-");
 }
@@ -267,6 +274,9 @@ TEST(CommandLine, WrongUseIsOneLineThatNamesTheWord) {
   expect_wrong("doctor --listen 7878", "HOST:PORT");
   expect_wrong("secret", "rotate");
   expect_wrong("secret rotate", "worker or farm");
+  expect_wrong("link --for 0.5s", "at least one second");
+  expect_wrong("link --for 31d", "--for");
+  expect_wrong("link --for 1h --revoke", "exclude each other");
   expect_wrong("secret rotate everybody", "worker or farm");
   expect_wrong("priority 3", "value");
   expect_wrong("priority 3 1001", "1000");

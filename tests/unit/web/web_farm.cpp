@@ -56,7 +56,10 @@ WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity"
   engine_ = *std::move(engine);
   std::filesystem::create_directory(folder_ / "gallery");
   std::ofstream(folder_ / "gallery/box.textproto") << "# A box.\n# With a lamp.\n\n# Walls\n";
-  DashboardOptions options;
+  access_ = *BrowserAccess::load(folder_ / "identity");
+  DashboardOptions& options = options_;
+  options.browsers = access_.get();
+  options.browser_program = {.bytes = "the renderer", .compressed = "smaller", .tag = "0123"};
   options.port = 0;
   options.gallery = folder_ / "gallery";
   const std::string bytes(3 << 20, 'w');
@@ -71,9 +74,15 @@ WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity"
     return bring_box(*engine_, path);
   };
   options.report = [](const JobView& job, const Image&) { return job.spec.name; };
-  auto dashboard = Dashboard::start(*engine_, identity_, options);
+  start_dashboard();
+}
+
+void WebTest::start_dashboard() {
+  dashboard_.reset();
+  auto dashboard = Dashboard::start(*engine_, identity_, options_);
   BANDSAW_CHECK(dashboard.ok(), dashboard.status().ToString().c_str());
   dashboard_ = *std::move(dashboard);
+  access_->set_address(base());
 }
 
 WebTest::~WebTest() {

@@ -48,9 +48,14 @@ class WebTest : public ::testing::Test {
   }
   std::string base() const { return "http://127.0.0.1:" + std::to_string(dashboard_->port()); }
 
+  /// Starts the dashboard with `options_`, instead of the one that runs.
+  void start_dashboard();
+
   test::TempDir folder_;
   link::Identity identity_;
   std::unique_ptr<Engine> engine_;
+  std::unique_ptr<BrowserAccess> access_;
+  DashboardOptions options_;
   std::unique_ptr<Dashboard> dashboard_;
   test::HttpHeaders headers_ = {{"X-Bandsaw", "1"}};
 

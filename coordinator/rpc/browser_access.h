@@ -1,0 +1,70 @@
+#pragma once
+
+// The link by which browsers join as workers: at most one at a time, with a time when it ends.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "coordinator/rpc/failures.h"
+#include "proto/link/browser_link.h"
+#include "renderlib/base/mutex.h"
+
+namespace bandsaw::coordinator {
+
+/// Thread-safe. A change is on disk before it has an effect.
+class BrowserAccess {
+ public:
+  /// Returns seconds since 1970, UTC. The link's end is a time of day, because it holds over
+  /// restarts.
+  using UnixSeconds = std::function<double()>;
+
+  /// Duration of a link for which none is given, and the longest, in seconds.
+  static constexpr double kStandardSeconds = 8 * 60 * 60;
+  static constexpr double kMaxSeconds = 30.0 * 24 * 60 * 60;
+
+  struct Link {
+    std::string url;    ///< with the secret after the #, which browsers do not send
+    double left_s = 0;  ///< seconds until it ends, > 0
+  };
+
+  /// Loads the link of an earlier start from the data folder. Errors as link::load_browser_link.
+  static absl::StatusOr<std::unique_ptr<BrowserAccess>> load(std::string folder,
+                                                             UnixSeconds now = nullptr);
+
+  /// Sets the dashboard's address, for example "https://192.168.1.5:8787". MUST be called before
+  /// other threads use the object. Without it, no link is shown or made.
+  void set_address(std::string address) { address_ = std::move(address); }
+
+  /// Returns the present link; std::nullopt: there is none, or it has ended.
+  std::optional<Link> present() EXCLUDES(mutex_);
+  /// Lets the present link end after `seconds`, or makes one that does. INVALID_ARGUMENT: not in
+  /// [1, kMaxSeconds]. FAILED_PRECONDITION: there is no dashboard. Other errors: the file cannot be
+  /// written; the present link is unchanged. Waits for the disk.
+  absl::StatusOr<Link> make(double seconds) EXCLUDES(mutex_);
+  /// The present link, if there is one, is refused from the moment this returns. Waits for the
+  /// disk.
+  absl::Status revoke() EXCLUDES(mutex_);
+
+  /// Checks the secret of a request from this address. UNAUTHENTICATED: it is not the present
+  /// link's. RESOURCE_EXHAUSTED: the same, but too often from one address.
+  absl::Status check(const std::string& secret, const std::string& address) EXCLUDES(mutex_);
+  /// Returns true if check() would succeed. A wrong secret is not counted.
+  bool holds(const std::string& secret) EXCLUDES(mutex_);
+
+ private:
+  BrowserAccess(std::string folder, UnixSeconds now, std::optional<link::BrowserLink> link);
+  Link shown() REQUIRES(mutex_);
+  bool has_ended() REQUIRES(mutex_);
+
+  const std::string folder_;
+  const UnixSeconds now_;
+  std::string address_;  ///< empty: there is no dashboard
+  Mutex mutex_;
+  std::optional<link::BrowserLink> link_ GUARDED_BY(mutex_);
+  Failures failures_ GUARDED_BY(mutex_);
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,67 @@
+#pragma once
+
+// The leases that browsers were given. They decide what a holder of the link may read and send: the
+// scenes of these leases while their jobs run, and the bands of these leases.
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "coordinator/engine/engine.h"
+#include "proto/farm.pb.h"
+#include "proto/wire/digest.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/mutex.h"
+
+namespace bandsaw::coordinator {
+
+/// Thread-safe. A browser is known by the instance id of its Hello. It is remembered after its
+/// session has ended, because its bands may still arrive, until many others have come.
+class BrowserLeases {
+ public:
+  /// Number of browsers that are remembered, and of leases of each: more than can be in use.
+  static constexpr std::size_t kBrowsers = 1024;
+  static constexpr std::size_t kLeasesOfOne = 2 * wire::kBandsPerWorker;
+
+  /// `engine` outlives the object.
+  explicit BrowserLeases(Engine& engine) : engine_(engine) {}
+
+  void add(const std::string& instance, const action::Lease& lease) EXCLUDES(mutex_);
+
+  /// PERMISSION_DENIED: this browser was given no lease with these samples and rows.
+  absl::Status check(const farm::BandHeader& header) EXCLUDES(mutex_);
+
+  /// Returns a blob of a scene that was leased to a browser and whose job is not over. NOT_FOUND:
+  /// any other digest. Waits for the disk and the engine.
+  absl::StatusOr<std::unique_ptr<BlobBytes>> blob(const wire::Digest& digest) EXCLUDES(mutex_);
+
+ private:
+  struct Lease {
+    std::uint64_t number = 0;  ///< counts the leases of all browsers
+    JobId job = 0;
+    Band band;
+    std::string manifest;  ///< in hexadecimal
+  };
+  using Leases = std::deque<Lease>;     ///< of one browser, at least one, the newest last
+  using Blobs = std::set<std::string>;  ///< digests in hexadecimal
+
+  /// Returns the leases of all browsers, the newest first, one of each job.
+  std::vector<Lease> newest() EXCLUDES(mutex_);
+  bool runs(JobId job);
+  /// Returns the blobs of a manifest and the manifest itself; nullptr: it is not there.
+  std::shared_ptr<const Blobs> blobs_of(const std::string& manifest) EXCLUDES(mutex_);
+
+  Engine& engine_;
+  Mutex mutex_;
+  std::uint64_t leases_ GUARDED_BY(mutex_) = 0;
+  std::map<std::string, Leases> browsers_ GUARDED_BY(mutex_);                      ///< by instance
+  std::map<std::string, std::shared_ptr<const Blobs>> scenes_ GUARDED_BY(mutex_);  ///< by manifest
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,22 @@
+#pragma once
+
+// The renderer for browsers: WebAssembly that the page /join loads.
+
+#include <string>
+
+#include "absl/status/statusor.h"
+
+namespace bandsaw::coordinator {
+
+/// Held in memory, so that the bytes that are handed out have these tags. It contains no secret.
+struct BrowserProgram {
+  std::string bytes;       ///< bandsaw.wasm; empty: it is not installed
+  std::string compressed;  ///< the same by brotli, of bandsaw.wasm.br; empty: not installed
+  std::string tag;         ///< SHA-256 of `bytes` in hexadecimal
+};
+
+/// Reads the files in the folder. NOT_FOUND: there is no bandsaw.wasm. Other errors: it cannot be
+/// read.
+absl::StatusOr<BrowserProgram> load_browser_program(const std::string& folder);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,50 @@
+// The reasons why this device does not render: the user, a hidden page, a low battery.
+
+const lowBattery = 0.2;
+
+export class Pauses {
+  byUser = false;
+  #mayHide = false;
+  #batteryIsLow = false;
+  #changed;
+  #was = "";
+
+  /// `changed`: called with the reason whenever it changes after the constructor; empty: rendering may go on.
+  constructor(changed) {
+    this.#changed = changed;
+    document.addEventListener("visibilitychange", () => this.#update());
+    // Not in every browser, and only over HTTPS or on this machine.
+    navigator.getBattery?.().then((battery) => {
+      const check = () => {
+        this.#batteryIsLow = !battery.charging && battery.level < lowBattery;
+        this.#update();
+      };
+      battery.addEventListener("chargingchange", check);
+      battery.addEventListener("levelchange", check);
+      check();
+    }, () => {});
+  }
+
+  setByUser(paused) {
+    this.byUser = paused;
+    this.#update();
+  }
+  setMayHide(may) {
+    this.#mayHide = may;
+    this.#update();
+  }
+
+  /// Returns a sentence; empty: rendering may go on.
+  reason() {
+    if (this.byUser) return "Paused";
+    if (this.#batteryIsLow) return "Paused: the battery is below 20 % and not charging";
+    if (document.hidden && !this.#mayHide) return "Paused while this page is hidden";
+    return "";
+  }
+
+  #update() {
+    if (this.reason() === this.#was) return;
+    this.#was = this.reason();
+    this.#changed(this.#was);
+  }
+}

@@ -1,0 +1,41 @@
+// The picture of the rows that this device has rendered.
+
+const maxSide = 2048;  // of the canvas; larger pictures are shown with every n-th pixel
+
+export class Picture {
+  #canvas;
+  #context;
+  #note;
+  #of = "";  // job and size of the picture that is shown
+  #step = 1;
+
+  /// `note`: hidden when the first rows are drawn.
+  constructor(canvas, note) {
+    this.#canvas = canvas;
+    this.#context = canvas.getContext("2d");
+    this.#note = note;
+  }
+
+  /// Draws the rows of a state of the engine: {job, width, height, rows: {first, last, rgb}}, with four
+  /// bytes a pixel.
+  draw({job, width, height, rows}) {
+    if (!rows || !width || !height) return;
+    const of = `${job} ${width} ${height}`;
+    if (this.#of !== of) {
+      this.#of = of;
+      this.#step = Math.max(1, Math.ceil(Math.max(width, height) / maxSide));
+      this.#canvas.width = Math.ceil(width / this.#step);
+      this.#canvas.height = Math.ceil(height / this.#step);
+      this.#note.hidden = true;
+    }
+    const step = this.#step;
+    const line = this.#context.createImageData(this.#canvas.width, 1);
+    for (let y = Math.ceil(rows.first / step) * step; y < rows.last; y += step) {
+      for (let x = 0; x < this.#canvas.width; x++) {
+        const at = ((y - rows.first) * width + x * step) * 4;
+        line.data.set(rows.rgb.subarray(at, at + 4), 4 * x);
+      }
+      this.#context.putImageData(line, 0, y / step);
+    }
+  }
+}

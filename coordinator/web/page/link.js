@@ -1,0 +1,41 @@
+// The link by which browsers join as workers, with its QR code.
+
+import {get, post} from "./api.js";
+import {duration, el, text} from "./dom.js";
+import {attempt} from "./notice.js";
+
+/// Returns an element with a button that shows the link, and the link once it is shown.
+export function browserLink() {
+  const code = el("img.code", {alt: "QR code of the link", width: 200, height: 200});
+  const address = el("input", {readonly: "", "aria-label": "Link for browsers"});
+  const note = el("p.soft.small");
+  const panel = el("div.card.invite", {hidden: true}, code,
+    el("div.stack", {}, el("p", {}, "A browser that opens this link renders for the farm. Nothing is installed."), address, note,
+      el("div.row", {},
+        el("button", {type: "button", onclick: () => copy()}, "Copy"),
+        el("button.danger", {type: "button", onclick: () => revoke()}, "Take it back"))));
+  const button = el("button", {type: "button", onclick: () => open()}, "Let browsers join");
+
+  function show(link) {
+    panel.hidden = link.url === "";
+    button.hidden = link.url !== "";
+    if (link.url === "") return;
+    if (address.value !== link.url) {
+      address.value = link.url;
+      code.src = `/api/link.svg?of=${Date.now()}`;
+    }
+    const isLocal = /^http:\/\/(127\.|localhost|\[::1\])/.test(link.url);
+    text(note, isLocal ? "It works on this machine only; for others start: bandsaw serve --web 0.0.0.0:8787"
+      : `It ends in ${duration(link.left_s)}.`);
+  }
+  const open = () => attempt(async () => {
+    const link = await get("/api/link");
+    show(link.url === "" ? await post("/api/link", {}) : link);
+  });
+  const revoke = () => attempt(async () => show(await post("/api/link/revoke", {})));
+  const copy = () => attempt(async () => {
+    address.select();
+    await navigator.clipboard?.writeText(address.value);
+  });
+  return {element: el("div.joining", {}, button, panel), refresh: () => panel.hidden ? null : get("/api/link").then(show, () => {})};
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+// QR codes (ISO/IEC 18004), made by libqrencode.
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace bandsaw::coordinator {
+
+/// A square of modules, without the light margin of four modules that a reader needs around it.
+struct QrCode {
+  static constexpr int kMargin = 4;
+  int side = 0;
+  std::vector<bool> dark;  ///< side x side, rows from the top
+
+  /// Returns false beyond the code, so that a drawing may begin at -kMargin.
+  bool is_dark(int x, int y) const {
+    return x >= 0 && y >= 0 && x < side && y < side && dark[static_cast<std::size_t>(y * side + x)];
+  }
+};
+
+/// Returns the code of a text, with error correction of level M (15 %). INVALID_ARGUMENT: the text
+/// is too long for a code.
+absl::StatusOr<QrCode> qr_code(absl::string_view text);
+
+/// Returns an SVG image with its margin, dark on white.
+std::string qr_svg(const QrCode& code);
+
+}  // namespace bandsaw::coordinator

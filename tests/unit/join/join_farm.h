@@ -1,0 +1,43 @@
+#pragma once
+
+// A coordinator with a link for browsers, and a browser's messages.
+
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/unit/join/socket_client.h"
+#include "tests/unit/web/web_farm.h"
+
+namespace bandsaw::coordinator {
+
+class JoinTest : public WebTest {
+ protected:
+  JoinTest();
+
+  /// Opens a session with the present link.
+  test::SocketClient open() const { return {dashboard_->port(), {.secret = secret_}}; }
+  /// The Hello of a browser that is admitted; each name is an instance of its own.
+  static farm::FromWorker hello(const std::string& name = "tab");
+  /// Opens a session, says Hello, and reads until the first lease.
+  farm::Lease lease_to(test::SocketClient& socket, const std::string& name = "tab") const;
+  /// The body of POST /join/band with all samples of the lease, each pixel's sum being 8.
+  static std::string band(const farm::Lease& lease, const std::string& name = "tab");
+
+  /// Requests with the link's secret.
+  Answer join_get(const std::string& path);
+  Answer join_post(const std::string& path, const std::string& body);
+  /// Returns the workers that are connected, by their names.
+  std::vector<std::string> workers();
+  /// Waits until the condition is true.
+  template <class Condition>
+  static void wait_until(Condition condition) {
+    while (!condition()) {
+      std::this_thread::yield();
+    }
+  }
+
+  std::string secret_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,65 @@
+#pragma once
+
+// The WebSocket of a browser, to a server on loopback.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "proto/farm.pb.h"
+
+namespace bandsaw::test {
+
+struct SocketOffer {
+  std::string secret;
+  std::string protocol = "bandsaw.1";
+  std::string origin = {};  ///< empty: that of the server
+  std::string target = "/join/session";
+};
+
+class SocketClient {
+ public:
+  /// Connects and sends the handshake. `receive_buffer`: of the socket, in bytes; 0: the system's.
+  SocketClient(int port, const SocketOffer& offer, int receive_buffer = 0);
+  ~SocketClient();
+
+  /// Status of the response to the handshake: 101, or that of a refusal; 0: none came.
+  int status() const { return status_; }
+  /// Body of a refusal.
+  const std::string& refusal() const { return refusal_; }
+  /// Protocol that the server chose.
+  const std::string& protocol() const { return protocol_; }
+
+  /// Sends one message. Returns false if the connection has ended.
+  bool send(const farm::FromWorker& message);
+  bool send_bytes(const std::string& bytes, bool binary = true);
+  /// Sends these bytes as they are, not in a frame.
+  void send_raw(const std::string& bytes);
+  /// Returns the next message; std::nullopt: the session has ended.
+  std::optional<farm::ToWorker> read();
+  /// Reads until the session has ended.
+  void read_to_end();
+  /// Code and reason of the server's close frame, after read() has returned std::nullopt; 0: it
+  /// sent none.
+  std::uint16_t close_code() const { return code_; }
+  const std::string& close_reason() const { return reason_; }
+  /// Number of pings that read() has answered. Thread-safe.
+  int pings() const { return pings_; }
+  /// Ends the connection without a close frame.
+  void vanish();
+  /// Ends the session as a browser does.
+  void close();
+
+ private:
+  struct Socket;
+  const std::unique_ptr<Socket> socket_;
+  std::atomic<int> pings_ = 0;
+  int status_ = 0;
+  std::string refusal_, protocol_;
+  std::uint16_t code_ = 0;
+  std::string reason_;
+};
+
+}  // namespace bandsaw::test
