@@ -40,7 +40,7 @@ const moved = (value) => [value?.sums, value?.rgb?.buffer].filter((one) => one);
 function problem(error) {
   if (!(error instanceof WebAssembly.RuntimeError) && !(error instanceof RangeError)) return {error: error.message};
   const used = program ? Math.round(program.memory.buffer.byteLength / 1e6) : 0;
-  return {fatal: true, error: `the renderer ended with ${used} MB in use, probably for want of memory: ${error.message}`};
+  return {fatal: true, error: `the renderer ended with ${used} MB in use, perhaps all that the browser gives: ${error.message}`};
 }
 
 // One at a time, in the order of the messages.

@@ -465,14 +465,9 @@ function leaveIfDrained() {
   old?.close(1000);
 }
 
-/// Notes the number of cores, and the memory of each.
-function share(count) {
+function setCores(count) {
   state.cores = Math.max(1, Math.floor(count));
   state.memoryBytes = Math.floor(Math.min(options.memory / state.cores, options.mostOfAnInstance));
-}
-
-function setCores(count) {
-  share(count);
   while (renderers.length < state.cores) renderers.push(new Renderer(module, state.memoryBytes));
   for (const renderer of renderers.splice(state.cores)) {
     renderer.leaving = true;
@@ -491,11 +486,10 @@ const calls = {
     module = await compile();
     program = await Program.start(module);
     const instance = Array.from(crypto.getRandomValues(new Uint8Array(16)), (one) => one.toString(16).padStart(2, "0")).join("");
-    share(given.cores);
+    setCores(given.cores);  // the renderers start while the session makes its test render
     session = program.run("session_new", instance, given.name, given.build, state.cores, state.memoryBytes) >>> 0;
     program.read(program.run("session_answer", session));
     blobs = new Blobs(given.base, given.secret, sha256);
-    setCores(state.cores);
     look();
     if (!pausedWhy) connect();
   },
