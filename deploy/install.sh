@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 or 13 that building, testing, packing or the demo need, if any is missing.
 # Usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64|wasm
-#   browser  what the tests of that label need besides `test`, 400 MB
+#   browser  what the tests of that label need besides `test`, 700 MB
 #   blender  what the tests of that label need besides `test`, 700 MB
 #   clang    what the presets clang and fuzz need besides `test`
 #   old_cpu  the emulator of that label's test
@@ -17,7 +17,7 @@ build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf
 demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl python3 python3-numpy ffmpeg)
-browser=("${test[@]}" chromium chromium-driver)
+browser=("${test[@]}" chromium chromium-driver firefox-esr)
 blender=("${test[@]}" blender xvfb xdotool imagemagick jupyter-nbconvert python3-ipykernel)
 clang=("${test[@]}" clang libclang-rt-dev)
 old_cpu=("${test[@]}" qemu-user-static)

@@ -42,6 +42,8 @@ class Browser {
   void type(const std::string& selector, const std::string& keys);
   /// Returns a PNG of the window's content.
   void screenshot(const std::string& path);
+  /// The process whose children are all others of this browser.
+  pid_t pid() const { return driver_.pid(); }
   /// Returns the errors on the browser's console since the last call.
   std::vector<std::string> console_errors();
 

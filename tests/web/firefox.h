@@ -1,0 +1,50 @@
+#pragma once
+
+// Firefox without a window, driven by its own protocol, Marionette (JSON over TCP, each message
+// after its length), because Debian has no geckodriver.
+
+#include <google/protobuf/struct.pb.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "tests/support/process.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::test {
+
+/// Path of the program; empty: not installed.
+std::string firefox_program();
+
+/// One Firefox with a profile of its own. A call that fails also fails the test, and returns an
+/// empty value.
+class Firefox {
+ public:
+  Firefox();
+  ~Firefox();
+  Firefox(const Firefox&) = delete;
+  Firefox& operator=(const Firefox&) = delete;
+
+  void go(const std::string& url);
+  /// Runs the body of a JavaScript function and returns its result.
+  google::protobuf::Value run(const std::string& body);
+  /// Returns an expression's value as text.
+  std::string text(const std::string& expression);
+  /// Waits in the page until the expression is true. Returns false after three minutes.
+  bool wait(const std::string& expression);
+  /// The process whose children are all others of this Firefox.
+  pid_t pid() const { return firefox_->pid(); }
+
+ private:
+  class Socket;
+  google::protobuf::Value call(const std::string& command,
+                               const google::protobuf::Struct& parameters);
+
+  TempDir profile_;
+  std::optional<Process> firefox_;
+  std::unique_ptr<Socket> socket_;
+  int last_id_ = 0;
+};
+
+}  // namespace bandsaw::test
