@@ -24,9 +24,10 @@ export function importScene(bin, scene, folder) {
 /** Renders the first samples of all pixels on one thread; returns settings, sums and seconds. */
 export function renderNatively(bin, scene, folder, {width, height, samples}) {
   const band = join(folder, 'image.band');
+  const report = join(folder, 'report.json');
   execFileSync(join(bin, 'bandsaw'), ['render', scene, '--width', String(width), '--height', String(height),
-    '--samples', String(samples), '--rows', `0:${height}`, '--threads', '1', '--report', 'none', '--quiet', '-o', band], {stdio: ['ignore', 'ignore', 'inherit']});
-  return readBand(band);
+    '--samples', String(samples), '--rows', `0:${height}`, '--threads', '1', '--report', report, '--quiet', '-o', band], {stdio: ['ignore', 'ignore', 'inherit']});
+  return {...readBand(band), cpuSeconds: JSON.parse(readFileSync(report)).time.cpu_s};
 }
 
 /** Returns the settings and the sums of the one record of a file that bandsaw render --rows wrote (renderlib/render/band_file.h). */
@@ -43,5 +44,5 @@ function readBand(path) {
   }
   return {settings: {width, height, depth: record.readUInt16LE(after + 8), integrator: record.readUInt16LE(after + 10),
     seed: record.readBigUInt64LE(after + 12), samples: record.readBigUInt64LE(after + 28)},
-    cpuSeconds: record.readDoubleLE(size - 8 - sums - 16), sums: record.subarray(size - 8 - sums, size - 8)};
+    sums: record.subarray(size - 8 - sums, size - 8)};
 }
