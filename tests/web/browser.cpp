@@ -106,6 +106,8 @@ Value Browser::post(const std::string& path, const Struct& body) {
 
 void Browser::go(const std::string& url) { post(session_ + "/url", object("url", url)); }
 
+void Browser::reload() { post(session_ + "/refresh", {}); }
+
 Value Browser::run(const std::string& body, const std::string& argument) {
   Struct call = object("script", body);
   (*call.mutable_fields())["args"].mutable_list_value()->add_values()->set_string_value(argument);

@@ -32,6 +32,8 @@ class Browser {
   Browser& operator=(const Browser&) = delete;
 
   void go(const std::string& url);
+  /// Loads the page again, and returns when it is loaded.
+  void reload();
   /// Runs the body of a JavaScript function and returns its result; `argument` is `arguments[0]`.
   google::protobuf::Value run(const std::string& body, const std::string& argument = "");
   /// The same; returns the result as text.

@@ -134,6 +134,8 @@ void Firefox::go(const std::string& url) {
   call("WebDriver:Navigate", where);
 }
 
+void Firefox::reload() { call("WebDriver:Refresh", {}); }
+
 Value Firefox::run(const std::string& body) {
   Struct script = parsed(R"({"args": []})");
   (*script.mutable_fields())["script"].set_string_value(body);

@@ -27,6 +27,8 @@ class Firefox {
   Firefox& operator=(const Firefox&) = delete;
 
   void go(const std::string& url);
+  /// Loads the page again, and returns when it is loaded.
+  void reload();
   /// Runs the body of a JavaScript function and returns its result.
   google::protobuf::Value run(const std::string& body);
   /// Returns an expression's value as text.

@@ -166,7 +166,7 @@ TYPED_TEST(JoinTest, AJobSurvivesItsTabs) {
   const std::vector<pid_t> processes = family(frozen->pid());
   signal_all(processes, SIGSTOP);
   closed.reset();
-  reloaded->run("location.reload()");
+  reloaded->reload();
   this->start(*reloaded, 1);
   this->expect_same_bytes(client, what);
   signal_all(processes, SIGCONT);
