@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What a browser's tab runs, as WebAssembly: installs what that needs (deploy/install.sh wasm), unpacks Debian's source packages of
+# Builds the renderer for browsers as WebAssembly: installs what that needs (deploy/install.sh wasm), unpacks Debian's source packages of
 # Abseil and protobuf into build/wasm/sources, and builds build/wasm/bandsaw.wasm, compressed bandsaw.wasm.br, and the module of the
 # tests of the label wasm. The first two are copied to build/release/share/bandsaw/browser, where the coordinator of that build looks
 # for them, and from which they are installed.

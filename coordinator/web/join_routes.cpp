@@ -1,4 +1,4 @@
-// What browsers request that render: the renderer, the scenes, the bands.
+// The requests of browsers that render: the renderer, the scenes, the bands.
 
 #include <algorithm>
 #include <atomic>

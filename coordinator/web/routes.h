@@ -33,7 +33,7 @@ void add_scenes(Router& router, Scenes& scenes);
 void add_scene_files(Router& router, Engine& engine, Scenes& scenes);
 /// The link by which browsers join.
 void add_browser_link(Router& router, BrowserAccess& access);
-/// What browsers request that render.
+/// Handles the requests of browsers that render.
 void add_join(Router& router, Engine& engine, BrowserAccess& access, BrowserLeases& leases,
               BrowserSockets& sockets, const BrowserProgram& program);
 void add_gallery(Router& router, Engine& engine, Scenes& scenes, const Gallery& gallery);

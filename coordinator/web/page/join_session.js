@@ -44,7 +44,7 @@ const pieces = [];              // {at, samples} of the last seconds
 const newLines = [];
 const lastLines = [];
 
-/// What the page shows; the meaning of the phases is in README.md of coordinator/web.
+/// The state that the page shows; the meaning of the phases is in README.md of coordinator/web.
 const state = {phase: "starting", text: "Loading the renderer …", rowsDone: 0, bandsDone: 0, samplesPerSecond: 0, job: 0, width: 0,
   height: 0, name: "", cores: 0, memoryBytes: 0};
 

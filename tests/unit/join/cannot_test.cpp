@@ -1,4 +1,4 @@
-// What a holder of the link for browsers cannot do: one test for each line of the table in
+// Limits of a holder of the link for browsers: one test for each line of the table in
 // coordinator/web/README.md.
 
 #include <gmock/gmock.h>
