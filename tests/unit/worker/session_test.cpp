@@ -5,6 +5,7 @@
 
 #include "proto/wire/limits.h"
 #include "proto/wire/versions.h"
+#include "tests/support/session_messages.h"
 #include "worker/executor/backoff.h"
 
 namespace bandsaw::worker {
@@ -13,6 +14,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using test::lease;
+using test::revoke;
 
 WorkerInfo worker_info() {
   return {.instance = std::string(32, 'a'),
@@ -29,27 +32,6 @@ farm::ToWorker welcome(const std::string& epoch) {
   message.mutable_welcome()->set_name("desk-2");
   message.mutable_welcome()->set_heartbeat_ms(500);
   message.mutable_welcome()->set_epoch(epoch);
-  return message;
-}
-
-farm::ToWorker lease(std::uint64_t id, std::uint32_t first_row, std::uint64_t job = 1) {
-  farm::ToWorker message;
-  farm::Lease* l = message.mutable_lease();
-  l->set_lease(id);
-  l->set_job(job);
-  l->set_manifest_sha256(wire::Digest().raw());
-  l->mutable_settings()->set_width(8);
-  l->mutable_settings()->set_height(80);
-  l->mutable_settings()->set_max_depth(4);
-  l->mutable_band()->set_last_sample(16);
-  l->mutable_band()->set_first_row(first_row);
-  l->mutable_band()->set_last_row(first_row + 2);
-  return message;
-}
-
-farm::ToWorker revoke(std::uint64_t id) {
-  farm::ToWorker message;
-  message.mutable_revoke()->add_lease(id);
   return message;
 }
 

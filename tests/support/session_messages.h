@@ -1,0 +1,32 @@
+#pragma once
+
+// Messages of a coordinator to a worker, for tests of sessions.
+
+#include "proto/farm.pb.h"
+#include "proto/wire/digest.h"
+
+namespace bandsaw::test {
+
+/// Leases samples [0, 16) of two rows of an image of 8 x 80 pixels.
+inline farm::ToWorker lease(std::uint64_t id, std::uint32_t first_row, std::uint64_t job = 7) {
+  farm::ToWorker message;
+  farm::Lease* l = message.mutable_lease();
+  l->set_lease(id);
+  l->set_job(job);
+  l->set_manifest_sha256(wire::Digest().raw());
+  l->mutable_settings()->set_width(8);
+  l->mutable_settings()->set_height(80);
+  l->mutable_settings()->set_max_depth(4);
+  l->mutable_band()->set_last_sample(16);
+  l->mutable_band()->set_first_row(first_row);
+  l->mutable_band()->set_last_row(first_row + 2);
+  return message;
+}
+
+inline farm::ToWorker revoke(std::uint64_t id) {
+  farm::ToWorker message;
+  message.mutable_revoke()->add_lease(id);
+  return message;
+}
+
+}  // namespace bandsaw::test
