@@ -23,7 +23,8 @@ struct Keep {
       100'000'000'000;             ///< results and blobs in total; oldest jobs are removed first
   double min_seconds = 60.0 * 60;  ///< minimum age at which `bytes` removes a final job
   std::size_t jobs = 10'000;       ///< number of final jobs; each takes about 4 kB of memory
-  /// Maximum age of a blob of no job, or of a part of one, since it was sent or requested.
+  /// Maximum age of a blob, or of a part of a blob, that no job needs; counted from the time at
+  /// which it was last sent or requested.
   double unused_seconds = 24.0 * 60 * 60;
 };
 

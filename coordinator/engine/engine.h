@@ -155,8 +155,9 @@ class Engine {
   /// journal, or the band is not wanted. RESOURCE_EXHAUSTED: disk full; keep the band and send it
   /// again. INVALID_ARGUMENT: not a band of that job. `work`: hash of the scene and settings that
   /// it was rendered for (renderlib/render/work_hash.h), 0 if unknown; a band of an earlier job
-  /// with the same id is not wanted. `browser`: a browser sent it. FAILED_PRECONDITION: then
-  /// `instance` is not a browser that said Hello; so it cannot pass for a native worker.
+  /// with the same id is not wanted. `browser`: a browser sent it. FAILED_PRECONDITION: a browser
+  /// sent it, and `instance` is not a browser that has sent Hello; so a browser cannot pass for a
+  /// native worker.
   void put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                 double render_s, double cpu_s,
                 std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser = false);

@@ -40,12 +40,13 @@ class BrowserAccess {
 
   /// Returns the present link; std::nullopt: there is none, or it has ended.
   std::optional<Link> present() EXCLUDES(mutex_);
-  /// Lets the present link end after `seconds`, or makes one that does. INVALID_ARGUMENT: not in
-  /// [1, kMaxSeconds]. FAILED_PRECONDITION: there is no dashboard. Other errors: the file cannot be
-  /// written; the present link is unchanged. Waits for the disk.
+  /// Makes a link that ends after `seconds`; if there is a link already, only changes the time when
+  /// it ends. INVALID_ARGUMENT: not in [1, kMaxSeconds]. FAILED_PRECONDITION: there is no
+  /// dashboard. Other errors: the file cannot be written; the present link is unchanged. Waits for
+  /// the disk.
   absl::StatusOr<Link> make(double seconds) EXCLUDES(mutex_);
-  /// The present link, if there is one, is refused from the moment this returns. Waits for the
-  /// disk.
+  /// Ends the present link, if there is one: it is refused from the moment this returns. Waits for
+  /// the disk.
   absl::Status revoke() EXCLUDES(mutex_);
 
   /// Checks the secret of a request from this address. UNAUTHENTICATED: it is not the present

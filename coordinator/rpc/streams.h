@@ -106,8 +106,8 @@ Base* if_admitted(const ServiceDependencies& deps, const grpc::CallbackServerCon
 }
 
 /// Returns the reactor of a stream, made of `deps` and `args`, if the caller has this role's
-/// secret. The secret is checked again when the stream is in the register: if it was renewed in
-/// between, only the streams that were registered then were ended.
+/// secret. The secret is checked again once the stream is in the register, because a renewal of the
+/// secret ends only the streams that are registered at that moment.
 template <class Call, class... Args>
 auto* admitted(const ServiceDependencies& deps, const grpc::CallbackServerContext& context,
                link::Role role, Args&&... args) {

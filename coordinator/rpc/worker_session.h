@@ -2,7 +2,7 @@
 
 // The part of a worker's session that does not depend on its transport (Work.Session by gRPC, or a
 // browser's WebSocket): checks each message and forwards it to the engine, converts the engine's
-// actions to messages, and keeps these until the transport has sent those before.
+// actions to messages, and queues them while the transport sends an earlier message.
 
 #include <deque>
 #include <memory>
@@ -19,7 +19,7 @@ namespace bandsaw::coordinator {
 class WorkerSession : public WorkerLink {
  public:
   /// Maximum number of messages that wait for a worker to read. A worker holds at most
-  /// wire::kBandsPerWorker leases, so one that reads never has so many.
+  /// wire::kBandsPerWorker leases, so a worker that reads its messages never has so many waiting.
   static constexpr std::size_t kMaxQueued = 1024;
 
   /// `peer`: the worker's address, for display. `browser`: the worker renders in a browser.

@@ -50,7 +50,7 @@ class Scheduler {
   void replay(const input::BandStored& band);
   /// `bytes` of a job's band log, > 0, belong to no whole band. They are shown to users (why).
   void replay_damage(JobId job, std::uint64_t bytes);
-  /// Ends the replay; its actions are for jobs that were finishing.
+  /// Ends the replay. The actions of the step continue jobs that were finishing.
   Step replayed(Time now);
 
   /// Returns the rows of a band that the job still wants; empty: all are stored. std::nullopt: the

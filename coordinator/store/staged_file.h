@@ -34,8 +34,8 @@ class StagedFile {
   /// Keeps the first `size` bytes under the temporary name and frees the space reserved beyond
   /// them.
   void leave(std::uint64_t size);
-  /// fsync, rename to `target` (in `folder`), fsync of `folder`. OK: the file is on disk under its
-  /// final name.
+  /// Gives the file its final name `target` in `folder`, durably: fsync, rename, fsync of `folder`.
+  /// OK: the file is on disk under this name.
   absl::Status commit(const std::string& folder, const std::string& target);
 
  private:

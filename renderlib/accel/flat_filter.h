@@ -9,7 +9,7 @@
 
 namespace bandsaw {
 
-/// Bounds of the rounding error, in units of 2^-24: of the corners' weights, and of volume and
+/// Bounds of the relative rounding errors: that of the corners' weights, and that of volume and
 /// distance.
 inline constexpr float kWeightError = 26 * 0x1p-24f;
 inline constexpr float kDistanceError = 24 * 0x1p-24f;

@@ -28,7 +28,7 @@ struct FloatRay {
   float direction_size;            ///< at least |direction|_1
   float length;                    ///< at least |direction|, within 2^-19 of it
   /// Added to every error bound, for underflow. Infinite if the numbers are so large that float may
-  /// overflow: then float decides nothing except boxes.
+  /// overflow: then the float tests of primitives decide nothing.
   float floor;
   double scale;
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// A map whose values are kept for the next round of work. A value that a round does not use is
-// lost.
+// A map that keeps values from one round of work to the next. A value that a round does not use is
+// removed at the end of that round.
 
 #include <map>
 #include <utility>

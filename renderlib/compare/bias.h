@@ -19,8 +19,8 @@ struct BiasTest {
   /// significant.
   double t = 0;
   double relative_bias = 0;  ///< ratio of the sums over pixels; 0 if the reference is black
-  /// Number of blocks whose |t| exceeds a bound. Without a bias, a block of an image exceeds that
-  /// bound in one of a hundred images (Sidak's correction; for normal noise).
+  /// Number of blocks whose |t| exceeds a bound. The bound is such that one in a hundred unbiased
+  /// images has a block that exceeds it (Sidak's correction; for normal noise).
   std::uint32_t suspicious_blocks = 0;
   double worst_t = 0;         ///< t of the block with the largest |t|
   std::uint32_t worst_x = 0;  ///< first pixel of that block

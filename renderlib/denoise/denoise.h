@@ -48,10 +48,10 @@ struct Denoised {
 
 /// `fit` is a kernel's. The result has the same bits for any number of threads and any kernel.
 /// Where the estimated error of the filtered value is not below that of the rendered one, and where
-/// a value is not finite, the pixel stays as it was rendered.
-/// The image is filtered in strips of `strip_rows` rows, an even number; 0: chosen so that the
-/// memory beside input and result stays below 350 bytes for each pixel of a strip of about a
-/// quarter of a megapixel and the rows around it. The bits do not depend on it.
+/// a value is not finite, the pixel stays as it was rendered. The image is filtered in strips of
+/// `strip_rows` rows, an even number; 0: as many as have about a quarter of a megapixel. In
+/// addition to input and result, this needs less than 350 bytes for each pixel of a strip and of
+/// the rows around it. The bits do not depend on `strip_rows`.
 Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int strip_rows = 0);
 
 }  // namespace bandsaw

@@ -11,8 +11,8 @@ namespace bandsaw {
 
 class SplitPlane {
  public:
-  /// Pixels around the image that can be read. To the right and below there are further ones,
-  /// because tiles may reach beyond the image.
+  /// Number of pixels around the image that can be read. To the right and below kBeyond further
+  /// pixels can be read, because tiles may reach beyond the image.
   static constexpr int kMargin = 24;
   static constexpr int kBeyond = 64;
 

@@ -19,14 +19,14 @@ struct Box {
   bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
 };
 
-/// Every primitive test calls this, so that a hit lies where the ray is inside the
-/// primitive's own box. Otherwise, where t is mostly rounding noise (a triangle seen
-/// edge-on), hits could lie outside the boxes of a BVH, and whether they are found would
-/// depend on the tree.
+/// Moves the distance t of a hit into the part of the ray that is inside the box (`lo`, `hi`) of
+/// the primitive. Returns false if the ray misses the box by more than the tolerance, 2^-40 of t,
+/// which is far above the rounding error of the primitive tests and far below the tolerance of a
+/// BVH's boxes.
 ///
-/// Moves t into the box. Returns false if the ray misses the box by more than rounding. The
-/// tolerance, 2^-40 of t, is far above the rounding error of the tests and far below the tolerance
-/// of the BVHs' boxes.
+/// Every primitive test calls this function. Without it, hits whose t is mostly rounding error (on
+/// a triangle seen edge-on) could lie outside the boxes of a BVH, and it would depend on the tree
+/// whether they are found.
 inline bool clip_to_box(const TracedRay& ray, const double (&lo)[3], const double (&hi)[3],
                         double& t) {
   constexpr double kGrow = 1 + 0x1p-40;

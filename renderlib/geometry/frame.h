@@ -1,6 +1,7 @@
 #pragma once
 
-// Animated coordinate frames. What is placed in a frame moves with it; frames can be nested.
+// Animated coordinate frames. Instances that are placed in a frame move with it; frames can be
+// nested.
 //
 // Between two keys, translation and scale are interpolated linearly and the rotation along the
 // shortest arc at constant speed (Shoemake 1985, "Animating Rotation with Quaternion Curves",
@@ -43,7 +44,7 @@ struct Key {
 
 struct Frame {
   FrameId parent = kNoFrame;  ///< an earlier frame, in which this one moves
-  /// Placement of this frame in its parent, applied after its motion; regular.
+  /// Placement of this frame in its parent, applied after its motion; invertible.
   Transform placement;
   std::vector<Key> keys;  ///< at least one; times strictly increase
 };

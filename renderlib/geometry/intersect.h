@@ -55,7 +55,8 @@ template <class Point>
 
 /// Intersects a triangle, from both sides and including its edges: a ray through an edge that
 /// triangles share hits at least one of them (Woop, Benthin, Wald 2013, "Watertight Ray/Triangle
-/// Intersection", JCGT 2(1)). Takes the corners in their space and in the ray's.
+/// Intersection", JCGT 2(1)). `a`, `b` and `c` are the corners in the triangle's space; `at_a`,
+/// `at_b` and `at_c` are the same corners in the ray's space.
 template <class Point>
 [[gnu::always_inline]] inline bool intersect_sheared(const TracedRay& ray, const Point& a,
                                                      const Point& b, const Point& c,

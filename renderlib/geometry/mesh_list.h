@@ -1,7 +1,7 @@
 #pragma once
 
-// The meshes of a geometry. Copies of the list share them, so that the scenes of the frames of a
-// sequence hold a mesh that does not change once.
+// The meshes of a geometry. Copies of the list share the meshes, so that a mesh that is the same in
+// all frames of a sequence is stored only once.
 
 #include <cstddef>
 #include <initializer_list>

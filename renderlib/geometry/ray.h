@@ -29,7 +29,8 @@ struct Ray {
   double time = 0;  ///< moving instances are placed at this time
 };
 
-/// Stride, in floats, of the numbers of a triangle in a pack (Hit::corners).
+/// The BVH stores the triangles of a leaf in packs of eight, interleaved: consecutive numbers of
+/// one triangle are this many floats apart (Hit::corners).
 inline constexpr std::size_t kCornerStride = 8;
 
 /// The closest hit: the lexicographically lowest (t, instance, primitive), independent of the BVH.

@@ -50,9 +50,9 @@ absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const Import
 /// (*.xml), or a single model, which is framed under a default sky unless it has cameras and
 /// lights. Only files below the folder of `path` are read. Returns INVALID_ARGUMENT:
 /// "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1", and NOT_FOUND or
-/// PERMISSION_DENIED with the file's name. With `memory`, the files that an import of another frame
-/// of the same scene has read with it are not read again, and the scenes share what is the same in
-/// them.
+/// PERMISSION_DENIED with the file's name. `memory` is passed to the imports of all frames of one
+/// scene: files that an earlier import has read are not read again, and the imported scenes share
+/// their equal parts.
 absl::StatusOr<ImportedScene> import_scene(const std::string& path,
                                            const ImportChoices& choices = {},
                                            ImportMemory* memory = nullptr);

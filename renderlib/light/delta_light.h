@@ -57,13 +57,15 @@ struct SpotLight {
   double cos_inner = 1;      ///< cosines of the angles to the axis; cos_inner >= cos_outer >= 0
   double cos_outer = 0.70710678118654752440;
   Falloff falloff = Falloff::kSquare;
-  /// An image that multiplies the intensity. Beyond its edges it is what its texture is there.
+  /// An image that multiplies the intensity. Beyond the edges of its rectangle, the texture's value
+  /// there (repeated or clamped) is used.
   std::optional<ProjectedImage> image = std::nullopt;
 };
 
 /// Projects an image from a point. Where its axis and a direction enclose the angle t, the radiant
 /// intensity is image * intensity / cos(t)^3: on a plane perpendicular to the axis at distance 1
-/// the irradiance is image * intensity. None beyond the image's edges and behind the light.
+/// the irradiance is image * intensity. The intensity is 0 beyond the image's edges and behind the
+/// light.
 struct ProjectorLight {
   Vec3 position;
   Vec3 direction{0, 0, -1};  ///< unit, the axis, through the centre of the image

@@ -21,8 +21,8 @@ double importance(const DistantBound& bound, const Receiver& receiver);
 double importance(const DistantBound& bound, const ReceiverSegment& segment);
 
 /// Up to kMaxIndividualLights lights are evaluated individually at every point. If there are more,
-/// the local ones are selected through a light tree, next to which the distant ones are evaluated
-/// individually.
+/// the local lights are selected through a light tree; only the tree as a whole and the distant
+/// lights are evaluated individually.
 class LightChoice {
  public:
   static constexpr std::size_t kMaxIndividualLights = 16;

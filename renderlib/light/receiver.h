@@ -22,8 +22,9 @@ struct ReceiverSegment {
   }
 };
 
-/// A point that receives light: on one side of a surface or, without a normal, in a medium, from
-/// all directions. Also a point through which light is seen (the point in focus of a lens).
+/// A point that receives light. With a normal, it is on a surface and receives light on one side.
+/// Without, it is in a medium and receives light from all directions, or it is the point in focus
+/// of a lens, through which the light beyond is seen.
 struct Receiver {
   Vec3 position;
   /// Unit; light arrives only from directions with a positive cosine to it.

@@ -29,8 +29,8 @@ struct Metal {
   std::optional<TextureId> fuzz_map = std::nullopt;  ///< its luminance multiplies `fuzz`
 };
 
-/// The distribution of the facets of a rough surface, at most one number of roughness along u and
-/// one along v. The numbers are alpha, not its square root.
+/// The distribution of the facets of a rough surface, with one roughness along u and one along v.
+/// These numbers are alpha, not its square root.
 struct Microfacets {
   enum class Distribution : std::uint8_t { kGgx, kBeckmann };
   enum class Masking : std::uint8_t {
@@ -109,7 +109,8 @@ struct Plastic {
   double index_of_refraction = 1.5;  ///< index of the coat, (1, 5]
   Microfacets surface = {};          ///< surface of the coat; isotropic
   Rgb specular{1, 1, 1};             ///< factor of the coat's reflection, [0, 1]
-  /// Colours become more saturated with each reflection inside; false: only their brightness does.
+  /// True: each reflection inside the coat is tinted, so colours become more saturated. False:
+  /// these reflections change the brightness only.
   bool nonlinear = false;
   /// Set by prepare_materials(), without which the material has no BSDF.
   std::shared_ptr<const PlasticCoat> coat = nullptr;
@@ -180,8 +181,8 @@ struct ThinPrincipled {
   Number diff_trans = {};  ///< share of the diffuse light that is transmitted: half of Mitsuba's
 };
 
-/// A mixture: at each point one of two materials is present (material/mixture.h). They precede it
-/// in the scene's list and are no glass with a priority.
+/// A mixture: at each point one of two materials is present (material/mixture.h). Both precede the
+/// mixture in the scene's list, and neither is a glass with a priority.
 struct Mix {
   MaterialId a{};
   MaterialId b{};

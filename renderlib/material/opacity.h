@@ -14,7 +14,7 @@
 
 namespace bandsaw {
 
-/// Boundaries whose relative index of refraction is closer to 1 do not refract.
+/// Boundaries whose relative index of refraction differs from 1 by less than this do not refract.
 inline constexpr double kMinRefraction = 1e-6;
 
 /// Returns true for glass with the same index as its surroundings and for panes that reflect

@@ -10,11 +10,11 @@
 
 namespace bandsaw {
 
-/// Transmittance of the coat's outside by the cosine, and reflectance of its inside, for facets
-/// whose alpha is Plastic::surface's, or any smaller one if that has a map. Nothing is scattered
-/// between facets more than once: light that meets the back of another facet is lost, as in the
-/// coat's reflection. As Mitsuba 3's roughplastic does, the transmittance of a rough coat is
-/// interpolated linearly between 64 cosines; that of a smooth coat is exact.
+/// Tables of the coat's transmittance from the outside, by the cosine, and of its reflectance from
+/// the inside. They are for the alpha of Plastic::surface or, if that has a map, for all alphas up
+/// to it. Scattering is single: light that meets another facet is lost, as in the coat's
+/// reflection. As Mitsuba 3's roughplastic does, the transmittance of a rough coat is interpolated
+/// linearly between 64 cosines; that of a smooth coat is exact.
 class PlasticCoat {
  public:
   PlasticCoat(const Microfacets& surface, double index_of_refraction);

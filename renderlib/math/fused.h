@@ -32,7 +32,7 @@ inline TwoDoubles two_sum(double a, double b) {
 
 namespace emulated {
 
-/// Below this, the error of a product may be no double.
+/// If a product is smaller than this, its rounding error may not be representable as a double.
 inline constexpr double kLeastProduct = 0x1p-900;
 
 /// Returns x as the sum of two numbers of at most 26 bits; a large x becomes infinity and NaN.
@@ -50,7 +50,8 @@ inline double error_of_product(double a, double b, double product) {
   return ((p.hi * q.hi - product) + p.hi * q.lo + p.lo * q.hi) + p.lo * q.lo;
 }
 
-/// The rare cases of fma(): the same parameters, and the numbers that it has computed.
+/// Handles the rare cases of fma(). Takes the parameters of fma() and the numbers that it has
+/// computed.
 [[gnu::noinline]] inline double careful_fma(double a, double b, double c, double product,
                                             double error, double sum) {
   if (a == 0 || b == 0) {
@@ -63,18 +64,19 @@ inline double error_of_product(double a, double b, double product) {
   const TwoDoubles rest = two_sum(head.lo, error);
   auto bits = std::bit_cast<std::uint64_t>(rest.hi);
   if (rest.lo != 0) {
-    // Its last bit is 0. It becomes 1, towards the exact sum: rounding to odd.
+    // Rounds to odd: the last bit, which is 0, becomes 1 by a step towards the exact sum.
     bits += (rest.lo > 0) == (rest.hi > 0) ? std::uint64_t{1} : ~std::uint64_t{0};
   }
   return head.hi + std::bit_cast<double>(bits);
 }
 
-/// Returns a b + c, rounded once. The exact sum is head.hi + (head.lo + error). Either head.lo is
-/// 0, and rounding the sum of head.hi and error is all; or nothing was cancelled, so that the
-/// bracket is below two units in the last place of head.hi. Then the bracket's rounding to `rest`
-/// changes the result only if head.hi + rest lies in the middle between two doubles, so that `rest`
-/// has only a few bits. Rounding it to odd in that case is right (Boldo, Melquiond 2008, "Emulation
-/// of FMA and correctly rounded sums: proved algorithms using rounding to odd").
+/// Returns a b + c, rounded once. The exact sum is head.hi + (head.lo + error), and `rest` is
+/// head.lo + error, rounded. If head.lo is 0, `rest` is exact, and the sum is rounded once.
+/// Otherwise nothing was cancelled, and `rest` is below two units in the last place of head.hi.
+/// Then the rounding of `rest` changes the result only if head.hi + rest lies in the middle between
+/// two doubles, which implies that `rest` has only a few bits. In that case careful_fma() rounds
+/// `rest` to odd, which gives the right result (Boldo, Melquiond 2008, "Emulation of FMA and
+/// correctly rounded sums: proved algorithms using rounding to odd").
 inline double fma(double a, double b, double c) {
   const double product = a * b;
   const double error = error_of_product(a, b, product);

@@ -6,10 +6,10 @@
 // Light has three channels with three extinction coefficients. A distance is drawn for one channel
 // and weighted by the mean of all channels' pdfs (balance heuristic over wavelengths: Wilkie,
 // Nawaz, Droske, Weidlich and Hanika 2014, "Hero Wavelength Spectral Sampling", section 3.1). The
-// channel is selected by how much of its light is scattered in the segment, and scattering versus
-// passing by how much of all light is scattered. Absorption is contained in the weights and ends no
-// path. So the sum of the channels is the same for every outcome and never larger than before, and
-// no channel grows by more than a factor of 3.
+// probability of a channel is proportional to the amount of its light that is scattered in the
+// segment. The probability of scattering, instead of passing, is the scattered share of all light.
+// Absorption is contained in the weights and ends no path. So the sum of the channels is the same
+// for every outcome and never larger than before, and no channel grows by more than a factor of 3.
 
 #include <array>
 

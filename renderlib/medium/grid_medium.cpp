@@ -100,7 +100,8 @@ GridMedium::GridMedium(const Medium& medium, const std::vector<VolumeGrid>& grid
 }
 
 void GridMedium::find_regions(const MediumGrids& uses, const std::vector<VolumeGrid>& grids) {
-  // The first of these grids has regions of its own bricks. The albedo does not affect the bounds.
+  // The first grid for which bounded() is called determines the regions: they are made of its
+  // bricks. It is not called for the albedo, which does not affect the bounds.
   const VolumeGrid* primary = nullptr;
   Box block;
   const auto bounded = [&](const std::optional<GridUse>& use) -> std::optional<Bounded> {

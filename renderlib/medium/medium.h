@@ -1,6 +1,6 @@
 #pragma once
 
-// Participating media: smoke, fog, milk, fire; homogeneous, or varying in space as grids say.
+// Participating media: smoke, fog, milk, fire; homogeneous, or varying in space as given by grids.
 
 #include <cstdint>
 #include <optional>

@@ -198,7 +198,7 @@ Passage pass(const GridMedium& medium, const GridRay& ray, double length, const 
       scattered[c] = weight[c] * here.coefficients.scattering[c] / rate;
       weight[c] *= (rate - here.coefficients.extinction[c]) / rate;
     }
-    // Keeps one of the points, each with the probability of its share in all weights.
+    // Keeps one of the points: each with a probability proportional to its weight.
     const double share = sum(scattered);
     all_scattered += share;
     if (share > 0 && numbers.next() * all_scattered < share) {

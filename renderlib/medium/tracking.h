@@ -5,8 +5,9 @@
 // are real ones.
 //
 // - A flight weighs its three channels as free-flight sampling does (free_flight.h): at a tentative
-//   collision, light is scattered with the probability of its share in the light that is scattered
-//   or passes, over all channels (Kutz, Habel, Li and Novak 2017, "Spectral and Decomposition
+// collision, the probability of scattering is the light that would be scattered divided by the
+// light that would be scattered or would pass, each summed over the channels (Kutz, Habel, Li and
+// Novak 2017, "Spectral and Decomposition
 //   Tracking for Rendering Heterogeneous Volumes", section 4.1, history-aware). Absorption is
 //   contained in the weights. So the sum of the channels is the same for either outcome and never
 //   grows.
@@ -55,8 +56,8 @@ struct ScatteringPoint {
 struct Passage {
   Rgb throughput;  ///< estimate of the weight that passes
   Rgb emitted;     ///< as Flight::emitted
-  /// One point whose weight is an estimate of all that is scattered in the segment, with the
-  /// distribution of what is scattered.
+  /// A random point, distributed as the light that is scattered in the segment. Its weight is an
+  /// estimate of all of that light.
   ScatteringPoint scattered;
 };
 

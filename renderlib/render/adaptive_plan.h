@@ -2,11 +2,12 @@
 
 // Adaptive sampling: more samples for pixels with more noise, without bias.
 //
-// A rule that decides from a pixel's own samples whether it needs more stops where it happened to
-// see little light, and is biased: a pixel lit by one of a hundred samples can converge to 14 % of
-// its value. Here a pixel's own samples never decide how many it gets. All pixels take part in a
-// pilot, the first samples. Then the even pixels of every tile are planned, once, from the pilot of
-// the image's odd pixels alone, and the odd ones from that of the even ones. The Owen scrambles of
+// A rule that decides from a pixel's own samples whether the pixel needs further samples is biased,
+// because it stops pixels that happened to see little light: a pixel lit by one of a hundred
+// samples can converge to 14 % of its value. Here a pixel's own samples never decide how many
+// samples it gets. The first samples of all pixels are a pilot. After the pilot, the number of
+// samples is planned once: for the even pixels of every tile from the pilot of the image's odd
+// pixels alone, and for the odd pixels from the pilot of the even ones. The Owen scrambles of
 // different pixels are independent (sampling/sampler.h), so given the plan, a pixel's value is the
 // mean of all its samples and unbiased.
 //

@@ -14,21 +14,22 @@ namespace {
 /// Added to divisors, so that relative errors of dark pixels do not dominate.
 constexpr double kDivisorOffset = 0.01;
 
-// Let T be the squared error of one image and V its estimate from the nodes. Both are sums over
-// groups of pixels, which are independent (sampling/sampler.h, render/pixel_groups.h). Let the
-// errors within a group be normal and, in the worst case, the same for all its pixels, with
-// variance s. Its contributions to T and V are independent; the first has variance 2 s^2, the
-// second r s^2, where r = 2 for two halves and about 1 with further nodes. So the variance of T - V
-// is (2 + r) s^2, while the expected square of its contribution to V is (1 + r) s^2: the ratio is
-// between 4/3 and 3/2. If the pixels of a group are independent, the margin is too wide, by at most
-// sqrt(10 / 3): little in an image of many pixels, and if one of eight pixels is bright it
-// dominates its group's square either way. Rare bright samples occur in both T and V, which makes
-// the difference smaller.
+// Ratio of the variance of T - V to the sum of the squared contributions of the groups to V. T is
+// the squared error of one image and V its estimate from the nodes. Both are sums over groups of
+// pixels, which are independent (sampling/sampler.h, render/pixel_groups.h). Assume that the errors
+// within a group are normal and, in the worst case, the same for all its pixels, with variance s.
+// Then the group's contributions to T and V are independent, with variances 2 s^2 and r s^2, where
+// r = 2 for two halves and about 1 with further nodes. So the group adds (2 + r) s^2 to the
+// variance of T - V, and on average (1 + r) s^2 to the sum of squares: the ratio is between 4/3 and
+// 3/2. If the pixels of a group are independent, the margin is too wide, by a factor of at most
+// sqrt(10 / 3). That matters little in an image of many pixels; and if one of eight pixels is
+// bright, it dominates its group's square anyway. Rare bright samples occur in both T and V, which
+// makes the difference smaller.
 constexpr double kOfSquares = 1.5;
-// A normal T - V is below 1.64 standard deviations 19 times of 20. The rest covers repeated
-// stopping decisions and small numbers of pixels, whose sums are skewed and whose squares are too
-// small together with V (tests/unit/cli/stop_at_error_test.cpp; NOTES.md lists the alternatives
-// that were tried).
+// Width of the margin in standard deviations of T - V. If T - V were normal, 1.64 would suffice in
+// 19 of 20 cases. The larger value covers repeated stopping decisions, and images of few pixels,
+// whose sums are skewed and whose sum of squares is too small whenever V is
+// (tests/unit/cli/stop_at_error_test.cpp; NOTES.md lists the alternatives that were tried).
 constexpr double kDeviations = 3;
 
 struct Estimated {

@@ -3,15 +3,15 @@
 // Error estimate of an image without a reference, from sums of samples that are independent or
 // stratified.
 //
-// With Owen-scrambled points the variance of single samples is 3 to 54 times too large. The
-// difference of the two halves of a power-of-two number of samples is at least as large as that of
-// independent halves with the same error. So the estimate is right for pure noise and up to about
-// 2.5 times too large where sampling is well stratified.
+// With Owen-scrambled points, an estimate from the variance of single samples would be 3 to 54
+// times too large. So the estimate is made from the difference of the two halves of a power-of-two
+// number of samples, which is at least as large as that of independent halves with the same error.
+// It is right for pure noise and up to about 2.5 times too large where sampling is well stratified.
 //
 // An estimate scatters, and so does the error of one image around that of all seeds. A job that
-// stops as soon as the estimate is small enough stops where it happens to be too small: an image
-// whose noise is in 70 of its pixels is then above its target three times in ten. So the stop rule
-// uses an upper bound: the estimate plus a margin.
+// stops as soon as the estimate is small enough often stops when the estimate happens to be too
+// small: three in ten images whose noise is in only 70 pixels would end above their target. So the
+// stop rule uses an upper bound: the estimate plus a margin.
 
 #include <cstdint>
 #include <optional>

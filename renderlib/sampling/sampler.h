@@ -71,10 +71,11 @@ constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) 
   return 0x80000000u | (bounce & 0x7ffu) << 20 | (passed & 0xfffffu);
 }
 /// Media segment number `segment` (below 2^17) on the ray towards scattering `bounce` (below 2^11).
-/// `which` selects one of three groups. 0: scatter or pass and channel, free-flight distance,
-/// strategy and distance of light sampling. 1: pivots of equiangular sampling (choice, u, v). 2:
-/// light sampling (choice, u, v, low bits of the choice). In media that vary in space: 0: first
-/// collision (choice, distance); 3: the stream of all further numbers.
+/// `which` selects a group. Group 0 has four numbers: the choice between scattering and passing
+/// together with the colour channel, the free-flight distance, the strategy of light sampling, and
+/// its distance. Group 1: pivots of equiangular sampling (choice, u, v). Group 2: light sampling
+/// (choice, u, v, low bits of the choice). In media that vary in space, group 0 is the first
+/// collision (choice, distance), and group 3 is the stream of all further numbers.
 constexpr std::uint32_t group_medium(std::uint32_t bounce, std::uint32_t segment,
                                      std::uint32_t which) {
   return 0x40000000u | (bounce & 0x7ffu) << 19 | (segment & 0x1ffffu) << 2 | which;

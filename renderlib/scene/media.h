@@ -6,8 +6,8 @@
 // shapes that contain the point, the medium with the highest number counts, i.e. the one that the
 // scene names last; outside all shapes the fog; without fog, none.
 //
-// A medium may vary in space as grids say (medium/medium.h). Their numbers are given in the space
-// of the medium, which moves with its boundary: the space of the boundary's frame
+// A medium may vary in space as given by grids (medium/medium.h). Their numbers are given in the
+// space of the medium, which moves with its boundary: the space of the boundary's frame
 // (geometry/frame.h), and the world's for a boundary without a frame. So several boundaries may
 // contain the same medium, each in a place of its own. Where boundaries of the same medium overlap,
 // the one with the highest number counts; loose spheres come before all instances.

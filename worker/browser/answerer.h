@@ -10,7 +10,7 @@
 
 namespace bandsaw::worker {
 
-/// Keeps the bytes of the last answer.
+/// Keeps the bytes of the last answer of an object of exports.h until its next call.
 class Answerer {
  public:
   const BandsawAnswer* bytes(std::string bytes) {

@@ -3,7 +3,8 @@
 // The functions of bandsaw.wasm, in C, for the page's JavaScript
 // (coordinator/web/page/join_wasm.js). Texts and bytes are passed as an address and a length. A tab
 // has one module: one instance of it holds a session, each of the others a renderer. Nothing is
-// thrown; a call that fails says why in its answer. Memory that cannot be had ends the instance.
+// thrown; a call that fails says why in its answer. If memory cannot be allocated, the instance
+// ends.
 
 #include <stddef.h>
 #include <stdint.h>

@@ -15,8 +15,8 @@ struct TerminalSize {
   std::size_t rows = 24;
 };
 
-/// Ignores SIGPIPE, so that writing to a closed pipe no longer ends the process. For commands that
-/// write a file; other commands end with their reader.
+/// Ignores SIGPIPE, so that writing to a closed pipe no longer ends the process. Called by commands
+/// that write a file; other commands may end when their reader ends.
 void outlive_reader();
 
 class Console {

@@ -128,7 +128,8 @@ absl::Status FrameFetcher::fetch_rest() {
   return client_->stopped() ? absl::CancelledError("interrupted") : status;
 }
 
-/// Adds the frames that were done out of order: they are fetched once more.
+/// Adds the frames that the video does not have yet, and ends the video. These frames were done
+/// before an earlier one was, so they are fetched a second time here.
 absl::Status FrameFetcher::feed_video() {
   while (in_video_ < numbers_.size()) {
     const auto image = client_->result(done_.at(numbers_[in_video_]));

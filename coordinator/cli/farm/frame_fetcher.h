@@ -27,7 +27,8 @@ class FrameFetcher {
   /// frames that failed. UNAVAILABLE: call it again when the farm is back; what was not fetched is
   /// fetched then. Other errors: a file could not be written, or an image is lost.
   absl::Status update();
-  /// Waits for the farm, up to a minute, until all that is done is fetched. CANCELLED: stopped.
+  /// Fetches all frames that are done; if the farm cannot be reached, waits for it up to a minute.
+  /// CANCELLED: stopped.
   absl::Status fetch_rest();
   /// Writes the contact sheet and, if all frames are done, the video.
   absl::Status make_collections();

@@ -1,6 +1,7 @@
 #pragma once
 
-// The clean image beside the one as rendered (renderlib/denoise).
+// Removes the noise of an image (renderlib/denoise) and writes the clean image beside the image as
+// rendered.
 
 #include <cstdint>
 #include <functional>

@@ -14,7 +14,8 @@ struct SceneChoices {
   /// Parameters of a Mitsuba scene, each "name=value".
   std::vector<std::string> parameters = {};
   bool strict = false;  ///< a warning of the import is an error
-  /// Folder around that of a Mitsuba scene, below which its files lie. Empty: the scene's own.
+  /// For a Mitsuba scene: a folder that contains the scene's folder and all files of the scene.
+  /// Empty: the scene's folder.
   std::string folder = {};
   /// In a zip file, the name of the scene. Empty: the only one (scene/unpacked_scene.h).
   std::string inside = {};

@@ -14,7 +14,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Encodes packets. Pure functions. The length field has 32 bits; TevViewer stays far below.
+/// Encodes packets. Pure functions. The packets of TevViewer are far smaller than a length field of
+/// 32 bits allows.
 namespace tev {
 
 /// Creates a black image of this size with the channels R, G and B, and shows it at once.

@@ -1,7 +1,8 @@
 #pragma once
 
-// Makes a scene of a .blend file: Blender, where it is installed, runs without a window and writes
-// what it would render as a scene file with its files (deploy/blender).
+// Converts a .blend file to a scene file: runs the installed Blender without a window, with a
+// script that writes what Blender would render as a scene file and the files that it names
+// (deploy/blender).
 
 #include <atomic>
 #include <cstdint>

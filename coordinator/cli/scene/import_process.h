@@ -60,11 +60,11 @@ absl::StatusOr<std::string> import_program(const ImportLimits& limits = {});
 /// A file that a scene or an archive names.
 struct ListedFile {
   std::string name;   ///< relative, below the folder
-  int number = kOld;  ///< name of the file in SceneFiles::folder_path; kOld: it is not there
+  int number = kOld;  ///< the file's name in SceneFiles::folder_path; kOld: not copied there
   static constexpr int kOld = -1;  ///< the file lies below the folder of the foreign scene
 };
 
-/// A foreign scene as a scene file of ours and the files that it names.
+/// A foreign scene that was converted to a Bandsaw scene file, and the files that this names.
 struct SceneFiles {
   std::string text;
   std::vector<std::string> warnings;
@@ -77,8 +77,9 @@ struct SceneFiles {
 /// line and column. INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED: a problem with the file, or
 /// with one that it references. DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED: a limit was exceeded.
 /// DATA_LOSS: the importer crashed. CANCELLED: `stop`, or Ctrl-C. FAILED_PRECONDITION: the program
-/// is missing. Of a zip file, the scene `choices.inside` is imported, or the only one: the
-/// outermost .textproto, else .pbrt or .xml, else model.
+/// is missing. If `scene_path` is a zip file, imports the scene `choices.inside` in it. If that is
+/// empty, imports the only scene in the zip file: the outermost .textproto, if there is none the
+/// outermost .pbrt or .xml, if there is none the outermost model.
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});

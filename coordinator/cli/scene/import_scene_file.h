@@ -29,8 +29,8 @@ absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verb
                                                   Process& process,
                                                   const SceneChoices& choices = {});
 
-/// Imports the frames of one scene, one after the other. The files of a scene are read once; so is
-/// a .blend file, of which one Blender makes a scene for each frame.
+/// Imports the frames of one scene, one after the other. The files of a scene are read only once.
+/// For a .blend file, one Blender process reads the file once and writes a scene for each frame.
 class FrameImporter {
  public:
   /// Reads nothing yet. `choices.frame` is ignored.

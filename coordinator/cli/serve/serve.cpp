@@ -47,8 +47,8 @@ absl::Status make_folder(const std::string& folder) {
 absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::Role role,
                                                const ServedDashboard& web,
                                                BrowserAccess& browsers) {
-  // First: a user who has the old secret can have read the link, and a new secret of the workers is
-  // to exclude every machine that is not given it.
+  // Revokes the link first: a user who has the old secret may have read the link, and a new secret
+  // of the workers must exclude every machine that does not get it.
   RETURN_IF_ERROR(browsers.revoke());
   ASSIGN_OR_RETURN(RenewedSecret renewed, rotate_secret(folder, role));
   if (web.dashboard != nullptr) {

@@ -25,8 +25,8 @@ struct ServedDashboard {
   /// dashboard, removes the file.
   absl::Status write_link(const std::string& data_folder, const link::Identity& identity) const;
 
-  /// Returns the dashboard's place as in the users' join string (proto/link/join.h); empty: there
-  /// is none.
+  /// Returns the dashboard's address in the form of the users' join string (proto/link/join.h);
+  /// empty: there is no dashboard.
   std::string place(const ServeOptions& options) const;
 
   /// Returns the line to paste on a machine without a worker; empty: no program is handed out, or

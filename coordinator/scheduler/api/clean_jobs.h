@@ -20,8 +20,8 @@ absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t sampl
 struct CleanJobs {
   JobSpec albedo;
   JobSpec shape;
-  /// The first half of the image's samples again: for an image of at most one block of samples,
-  /// whose sum has no parts.
+  /// Renders the first half of the image's samples again. Only needed for an image of at most one
+  /// block of samples, whose sum is not kept in parts.
   std::optional<JobSpec> half;
 };
 

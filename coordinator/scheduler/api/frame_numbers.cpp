@@ -98,7 +98,8 @@ std::string frames_text(const std::vector<FrameNumber>& numbers) {
     while (end < numbers.size() && numbers[end] - numbers[end - 1] == step) {
       ++end;
     }
-    // The first number of a range without a step belongs to that: "1,3,5-40", not "1-5x2,6-40".
+    // If the last number of this range also begins a range without a step, it is left to that
+    // range: "1,3,5-40", not "1-5x2,6-40".
     if (step > 1 && end < numbers.size() && numbers[end] - numbers[end - 1] == 1) {
       --end;
     }

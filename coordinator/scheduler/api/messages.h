@@ -18,7 +18,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Ends the names of browsers, so that none can be taken for that of a native worker.
+/// Suffix of the name of every browser, which distinguishes it from the name of a native worker.
 inline constexpr char kBrowserSuffix[] = "@browser";
 
 /// A worker's report when it opens a session.

@@ -59,7 +59,8 @@ class Context {
   Reporter reporter_of(WorkerProcessId process) const;
   /// Returns true if this worker process joined as a browser, in any epoch.
   bool is_browser(const std::string& instance) const;
-  /// MUST be called at least once per heartbeat interval.
+  /// Notes the time if a native worker is connected. MUST be called at least once per heartbeat
+  /// interval.
   void note_natives();
   /// Returns true if no native worker has been connected for kNativesAway_s: then, and only then,
   /// browsers compare each other's pixels.

@@ -55,8 +55,8 @@ struct Worker {
   };
   std::map<JobId, OnJob> on_job;
 
-  /// Returns what identifies its machine. The name of a browser identifies nothing: each tab counts
-  /// as a machine.
+  /// Returns the identifier of its machine: the reported name, or the instance of a browser. A
+  /// browser's name identifies no machine, so each tab counts as a machine of its own.
   const std::string& machine() const { return browser ? instance : reported_name; }
   Reporter reporter() const {
     return {.process = process, .machine = machine(), .browser = browser};

@@ -20,8 +20,8 @@ class AuditLeases {
 
   /// Returns true if the worker's machine has returned no result yet. Native workers audit all
   /// bands; browsers audit those of other browsers, and only if no native worker is there. A
-  /// machine that has one may render the band once more if the audit is disputed and no other
-  /// machine is left.
+  /// machine that has returned a result may render the band once more if the audit is disputed and
+  /// no other machine is left.
   bool may_render(const Worker& worker, const Job& job, const Audit& audit) const;
   /// Returns the first waiting audit that the worker may render; nullptr: none.
   Audit* next_for(const Worker& worker, Job& job) const;
@@ -32,7 +32,7 @@ class AuditLeases {
   /// machine is chosen, or none.
   void give_up(const Lease& lease, const Worker& worker, const std::string& reason);
   /// Returns true if an audit may still find that stored rows are wrong: then the job must not end,
-  /// and no error checkpoint be evaluated. An audit that no machine can render does not count,
+  /// and no error checkpoint may be evaluated. An audit that no machine can render does not count,
   /// unless it is disputed.
   bool block(const Job& job) const;
 

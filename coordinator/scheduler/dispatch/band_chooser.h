@@ -28,10 +28,10 @@ struct Sizing {
 };
 
 /// Returns a part of `free`. A band that is long enough ends at the end of a row of tiles
-/// (render/tile_samples.h), because a scene that shares paths between pixels
-/// (render/pixel_groups.h) traces a tile that is cut by two bands in both. For the same reason, if
-/// the rows of the first tiles take more than two target times, the band gets all of them with
-/// fewer samples; only if a single block of samples is too much work, it gets fewer rows.
+/// (render/tile_samples.h): if the scene shares paths between pixels (render/pixel_groups.h) and a
+/// tile is divided between two bands, both bands trace the whole tile. For the same reason, if the
+/// first row of tiles takes more than two target times, the band gets all of its rows with fewer
+/// samples. Only if a single block of samples is too much work, the band gets fewer rows.
 Band size_band(const Sizing& sizing);
 
 /// Returns the maximum number of rows of a band that fit into a message.

@@ -24,8 +24,8 @@ class Eligibility {
   /// Returns true if its memory is enough and it has not failed too many bands of the job in a row.
   /// Then it may render bands of the job for comparison.
   bool may_audit(const Worker& worker, const Job& job) const;
-  /// Returns true if it may also render bands for the image: SchedulerOptions::browsers, and
-  /// audits_lag.
+  /// Returns true if it may also render bands for the image. For browsers, this also depends on
+  /// SchedulerOptions::browsers and on audits_lag().
   bool may_render(const Worker& worker, const Job& job) const;
   /// Returns true if so many bands wait for their audits that browsers get no more of the job until
   /// native workers have rendered some of them. Otherwise bands would be stored without the audit

@@ -1,8 +1,8 @@
 #pragma once
 
 // Chooses the frame of a sequence from which a worker gets its next band. While there are more
-// frames than workers, each worker renders frames of its own; then those that are free join the
-// others, in bands.
+// frames than workers, each worker renders a frame alone; after that, free workers render bands of
+// the frames of other workers.
 
 #include <cstddef>
 #include <map>

@@ -2,7 +2,7 @@
 
 // Probe bands: a few rows spread over the image that are rendered before the rest, which is
 // rendered from the top. Their times predict the remaining time of the job. They do not change the
-// cost map: bands are sized by bands that are rendered in sequence, each by the one before.
+// cost map, which is learnt from the bands that are rendered in sequence.
 
 #include <cstdint>
 

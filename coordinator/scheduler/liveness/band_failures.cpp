@@ -49,7 +49,8 @@ void BandFailures::add(Job& job, Worker& worker, const Band& band, const std::st
   std::set<std::string> names;
   std::size_t count = 0;
   for (const FailedAttempt& failure : job.failures) {
-    // Whoever has the link could make any job fail with three browsers.
+    // Failures of browsers do not count: otherwise anyone who has the link could make any job fail
+    // with three browsers.
     if (overlap(failure.band, band) && !context_.is_browser(failure.instance)) {
       names.insert(context_.workers.name_of(failure.instance));
       ++count;

@@ -6,10 +6,10 @@
 // that agree are taken to be right, because two wrong results would differ from each other. A
 // machine that renders the band again and contradicts its own first result is wrong for certain.
 //
-// That holds for native workers, which belong to the farm and are wrong by accident only. Who has
-// the link can open several browsers that return the same wrong pixels. So browsers that agree are
-// right only together with a native worker, or if no native worker is there to ask; and a native
-// worker that repeats its result wins against any number of browsers.
+// That holds for native workers, which belong to the farm and are wrong by accident only. Anyone
+// who has the link for browsers can open several browsers that return the same wrong pixels. So a
+// result on which only browsers agree is taken to be right only while no native worker is
+// connected; and a native worker that repeats its result wins against any number of browsers.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
-// std::mutex for libraries, included before each of their files: libc++ for WebAssembly has none,
-// because there is one thread.
+// Defines std::mutex, which libc++ for WebAssembly does not have because its programs have one
+// thread. The build includes this header before each file of the libraries.
 
 #ifdef __cplusplus
 #include <mutex>

@@ -1,7 +1,7 @@
 #pragma once
 
-// The part of pthreads that Abseil names, for programs of one thread: wasi-libc of Debian 12 has
-// the types, and no pthread.h.
+// Declares the part of pthreads that Abseil refers to, for programs of one thread. The wasi-libc of
+// Debian 12 has the types, but no pthread.h.
 
 #include <sys/types.h>
 

@@ -27,7 +27,8 @@ struct Contents {
 /// Maximum number of placements, because each is part of the manifest.
 inline constexpr std::size_t kMaxPlacements = 500'000;
 
-/// Place of an instance: at `to_frame` in a frame of `to`, or in its space.
+/// Place of an instance in a Placements: the transform to the frame `frame` or, if that is
+/// kNoFrame, to the space of the Placements.
 struct Place {
   Transform to_frame;
   FrameId frame = kNoFrame;

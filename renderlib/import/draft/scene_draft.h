@@ -51,9 +51,9 @@ struct SceneDraft {
   std::map<std::string, TextureId> named_textures;  ///< the same
   std::map<std::string, Contents> groups;           ///< the same
   std::map<std::string, MediumId> media;            ///< the same
-  /// Grids of media, keyed by what a scene file says of them.
+  /// Grids of media, keyed by their description in the scene file.
   std::map<std::string, GridId> volumes;
-  /// Meshes of the boundaries of media, keyed by the mesh of the scene that is the same.
+  /// Meshes of the boundaries of media, keyed by the equal mesh of the scene.
   std::map<MeshId, MeshId> boundary_meshes;
   /// Models that have been read, keyed by file, by whether the scene replaces their materials, and
   /// by animation.

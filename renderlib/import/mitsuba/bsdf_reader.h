@@ -26,7 +26,7 @@ class BsdfReader {
   /// Both MUST outlive this object.
   BsdfReader(const TexturedSurface& surface, Conversion& to) : surface_(surface), to_(to) {}
 
-  /// Adds what the bsdf says to `draft`. Warns of what has no counterpart.
+  /// Converts the bsdf and adds it to `draft`. Warns of properties without a counterpart.
   absl::Status read(const Object& bsdf, Draft& draft);
 
  private:
@@ -39,8 +39,8 @@ class BsdfReader {
   absl::Status color_only(const Parameters& from, const std::string& name,
                           const std::function<scene::Color*()>& color);
   absl::Status diffuse(const Parameters& from, Draft& draft);
-  /// Returns the index of the inside over that of the outside; if that is below 1, its inverse.
-  /// Draft::turned says which.
+  /// Returns the ratio of the indices of refraction, inside over outside. If that is below 1,
+  /// returns its inverse and sets Draft::turned.
   absl::StatusOr<double> relative_index(const Parameters& from, const char* inside, Draft& draft);
   absl::StatusOr<scene::Microfacets> microfacets(const Parameters& from, double otherwise);
   absl::Status dielectric(const Parameters& from, Draft& draft);

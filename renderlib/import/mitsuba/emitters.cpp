@@ -158,9 +158,9 @@ void add_rotation(const Transform& turn, google::protobuf::RepeatedPtrField<scen
   rotation.set_degrees(degrees);
 }
 
-/// Returns how many rows stand for one of an environment. The rows lie between those of Mitsuba, so
-/// each look-up interpolates twice, which blurs by 1 / factor of a row. Large images, whose rows
-/// are narrow, get fewer.
+/// Returns the factor by which the number of rows of an environment grows when it is resampled. The
+/// new rows lie between those of Mitsuba, so each look-up interpolates twice, which blurs the image
+/// by 1 / factor of a row. Large images, whose rows are narrow, get a smaller factor.
 std::uint32_t rows_for_one(const Image& image) {
   constexpr std::size_t kTexels = std::size_t{1} << 22;
   return static_cast<std::uint32_t>(

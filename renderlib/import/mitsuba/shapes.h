@@ -25,7 +25,7 @@ class ShapeReader {
   absl::Status add(const Object& shape);
 
  private:
-  /// Where shapes go: the scene, or a group.
+  /// The destination of shapes: the scene, or a group.
   struct Target {
     google::protobuf::RepeatedPtrField<scene::Shape>* shapes;
     google::protobuf::RepeatedPtrField<scene::Model>* models;
@@ -53,7 +53,7 @@ class ShapeReader {
   absl::Status add_instance(const Parameters& from, const Target& target);
   absl::Status add_placed(const scene::Shape& shape, const Transform& to_world,
                           const Target& target);
-  /// Adds a model file, unless nothing of it would be seen.
+  /// Adds a model file, unless no part of it would be visible.
   absl::Status add_model(const Parameters& from, const Surface& surface, const std::string& file,
                          const std::string& material, const Target& target);
   absl::StatusOr<std::string> group_of(const Object& group);

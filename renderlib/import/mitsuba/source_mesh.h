@@ -1,6 +1,6 @@
 #pragma once
 
-// Triangle meshes of Mitsuba's formats, as Mitsuba sees them.
+// Triangle meshes of Mitsuba's formats, with the normals and uvs that Mitsuba gives them.
 
 #include <cstdint>
 #include <string>

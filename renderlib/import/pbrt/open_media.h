@@ -9,9 +9,9 @@
 
 namespace bandsaw::pbrt {
 
-/// Fills the box around the scene with each medium that open surfaces bound, except `of_camera`,
-/// which is the fog, adds the vacuum if the scene needs it, and orders the media: later ones
-/// replace earlier ones where they overlap.
+/// Fills the box around the scene with each medium that is bounded by open surfaces only, except
+/// `of_camera`, which becomes the fog of the scene. Adds the vacuum if the scene needs it. Orders
+/// the media, because where media overlap, the later one replaces the earlier one.
 absl::Status finish_media(const std::string& of_camera, Builder& builder);
 
 }  // namespace bandsaw::pbrt

@@ -210,7 +210,9 @@ absl::StatusOr<FileGrid> convert(const Grid& grid) {
   return result;
 }
 
-/// Returns the grid with the wanted name, its text for errors checked; see read_volume().
+/// Returns the name of the grid to read: `grid`; if that is empty, `otherwise`, or the only grid of
+/// the file. `names`: the grids of the file. INVALID_ARGUMENT: there is no such grid. (See
+/// read_volume().)
 absl::StatusOr<std::string> choose(const std::vector<std::string>& names, const std::string& grid,
                                    const std::string& otherwise) {
   const std::string& wanted = grid.empty() ? otherwise : grid;
