@@ -1,3 +1,5 @@
+// Parses the options, starts the log and the thread for signals, and runs the Daemon.
+
 #include "worker/command.h"
 
 #include <signal.h>

@@ -1,3 +1,6 @@
+// run() connects, talks until the stream ends, waits and connects again. talk() reads messages on
+// the calling thread, while a second thread writes the send queue.
+
 #include "worker/daemon.h"
 
 #include <spdlog/spdlog.h>

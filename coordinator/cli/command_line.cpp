@@ -1,3 +1,7 @@
+// The table of commands: for each, its name, its help, the function that adds its options to the
+// parser (CLI11), and the function that checks them. parse_command_line() finds the entry and runs
+// both.
+
 #include "coordinator/cli/command_line.h"
 
 #include <CLI/CLI.hpp>

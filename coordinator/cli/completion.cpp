@@ -1,3 +1,6 @@
+// Writes a bash function whose cases are made from the commands and options that the parser (CLI11)
+// knows.
+
 #include "coordinator/cli/completion.h"
 
 #include <map>
@@ -10,7 +13,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr char kScriptStart[] = R"(# Completion of bandsaw for bash, made by: bandsaw completion bash
+constexpr char kScriptStart[] =
+    R"(# Completion of bandsaw for bash, made by: bandsaw completion bash
 _bandsaw() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=
   COMPREPLY=()

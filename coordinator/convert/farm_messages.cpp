@@ -1,3 +1,6 @@
+// to_message() makes a message of a value; the functions that end in _of make a value of a message.
+// The enums of both are declared in the same order.
+
 #include "coordinator/convert/farm_messages.h"
 
 #include <cmath>

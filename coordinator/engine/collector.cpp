@@ -1,3 +1,6 @@
+// Sums the sizes of all final jobs and names those that exceed a limit, the oldest first. Then
+// removes the blobs that none of the remaining jobs needs.
+
 #include "coordinator/engine/collector.h"
 
 #include <spdlog/spdlog.h>

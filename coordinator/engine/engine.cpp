@@ -1,3 +1,5 @@
+// Starts the three threads, and turns each call into a message to the thread that answers it.
+
 #include "coordinator/engine/engine.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,5 @@
+// Each event of a job is one line of key=value pairs, which Line assembles.
+
 #include "coordinator/engine/job_log.h"
 
 #include <spdlog/spdlog.h>

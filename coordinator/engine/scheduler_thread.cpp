@@ -1,3 +1,7 @@
+// Each input makes one step of the scheduler. absorb() puts the step's records into the commit
+// queue, and its actions behind them, as effects: perform() runs these once the records are on
+// disk.
+
 #include "coordinator/engine/scheduler_thread.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,5 @@
+// The messages of workers to the scheduler's thread, and the store's answers about their bands.
+
 #include <spdlog/spdlog.h>
 
 #include <utility>

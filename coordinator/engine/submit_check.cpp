@@ -1,3 +1,6 @@
+// Checks the fields of a job, then reads its manifest and checks that every blob that it names is
+// stored.
+
 #include "coordinator/engine/submit_check.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Each function checks every field of one message and returns the value that the scheduler takes.
+
 #include <algorithm>
 
 #include "absl/strings/ascii.h"

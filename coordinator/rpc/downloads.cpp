@@ -1,3 +1,6 @@
+// Both calls work in steps: a task makes the next chunk on an executor, gRPC writes it, and
+// OnWriteDone() starts the next step.
+
 #include "coordinator/rpc/downloads.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The calls that move scenes and images, and the lists. Other calls of the service are in
+// farm_service_admin.cpp, farm_service_frames.cpp and farm_service_jobs.cpp.
+
 #include "absl/strings/str_cat.h"
 #include "coordinator/convert/farm_messages.h"
 #include "coordinator/rpc/checked_messages.h"

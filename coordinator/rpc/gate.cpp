@@ -1,3 +1,6 @@
+// Compares the secret in a call's metadata with those of the identity, and counts wrong secrets per
+// address.
+
 #include "coordinator/rpc/gate.h"
 
 #include <spdlog/spdlog.h>

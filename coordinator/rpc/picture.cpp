@@ -1,3 +1,6 @@
+// Takes a share of the memory budget for an image before the image is read or made, and reduces it
+// to the size that is wanted.
+
 #include "coordinator/rpc/picture.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Builds the gRPC server with both services, the health check and, if wanted, reflection. The
+// destructor ends all streams before it stops the server.
+
 #include "coordinator/rpc/server.h"
 
 #include <grpcpp/ext/proto_server_reflection_plugin.h>

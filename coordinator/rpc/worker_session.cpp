@@ -1,3 +1,6 @@
+// received() checks a message and forwards it to the engine. send() queues a message for the
+// worker, and advance() gives the transport the next one when it is free.
+
 #include "coordinator/rpc/worker_session.h"
 
 #include "absl/strings/str_cat.h"

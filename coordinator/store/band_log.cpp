@@ -1,3 +1,5 @@
+// Appends records and syncs them. Reading finds the next record after a damaged one by its magic.
+
 #include "coordinator/store/band_log.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A blob is written to a staged file and renamed to its digest when it is complete and correct. An
+// upload that is cut leaves its bytes as a partial blob (partial_blobs.h).
+
 #include "coordinator/store/blob_store.h"
 
 #include <fcntl.h>

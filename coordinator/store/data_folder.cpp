@@ -1,3 +1,6 @@
+// The lock is an flock on a file that also holds the process id, for the message to a second
+// coordinator.
+
 #include "coordinator/store/data_folder.h"
 
 #include <sys/file.h>

@@ -1,3 +1,6 @@
+// A partial blob is a file named by its digest. While an upload writes to it, a Claim holds it; a
+// second upload of the same blob gets a file of its own.
+
 #include "coordinator/store/partial_blobs.h"
 
 #include <sys/stat.h>

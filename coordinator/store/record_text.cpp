@@ -1,3 +1,6 @@
+// write and read functions for each kind of record; their order of fields is the format. Longer
+// groups of fields are in the files of record_text_parts.h.
+
 #include "coordinator/store/record_text.h"
 
 #include <array>

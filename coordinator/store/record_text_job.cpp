@@ -1,3 +1,6 @@
+// The fields of job and sequence specifications, tile plans and frame scenes, in the order in which
+// they are written.
+
 #include "coordinator/store/record_text_parts.h"
 
 #include <string>

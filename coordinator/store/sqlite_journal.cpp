@@ -1,3 +1,6 @@
+// One table with a row for each record: its number, kind, fields and a checksum. Every append is
+// one transaction, synced by SQLite before it returns.
+
 #include "coordinator/store/sqlite_journal.h"
 
 #include <sqlite3.h>

@@ -1,3 +1,6 @@
+// Wrappers of OpenSSL's functions: each frees what it allocates, and returns OpenSSL's error as a
+// status.
+
 #include "proto/link/certificate.h"
 
 #include <openssl/bio.h>

@@ -1,3 +1,6 @@
+// connect() fetches the certificate at each address (fetch_certificate.cpp), compares its digest
+// with the join string, and only then opens gRPC channels that accept this certificate alone.
+
 #include "proto/link/channel.h"
 
 #include "absl/strings/match.h"

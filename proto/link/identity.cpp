@@ -1,3 +1,6 @@
+// The identity is one text file with the key, the certificate and both secrets. A renewed secret
+// replaces the whole file.
+
 #include "proto/link/identity.h"
 
 #include <openssl/crypto.h>

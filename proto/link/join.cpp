@@ -1,3 +1,6 @@
+// Parses the string from both ends: version and role from the front, secret and digest, which have
+// fixed lengths, from the back; the addresses are between them.
+
 #include "proto/link/join.h"
 
 #include <algorithm>

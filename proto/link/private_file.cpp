@@ -1,3 +1,5 @@
+// Writes to a temporary file of mode 0600, syncs it, and renames it to the target.
+
 #include "proto/link/private_file.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// Non-blocking calls, with poll() until the deadline.
+
 #include "proto/link/socket.h"
 
 #include <fcntl.h>

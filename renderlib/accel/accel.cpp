@@ -1,3 +1,7 @@
+// Two levels: the BVHs of meshes and groups, and above them one tree of loose shapes and instances
+// that rest, and one of instances that move. A query traces the first tree, then the second if
+// there is one.
+
 #include "renderlib/accel/accel.h"
 
 #include <map>

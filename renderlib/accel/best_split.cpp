@@ -1,3 +1,6 @@
+// Counts items and bounding boxes by bin, then sweeps over the bins of each axis from both sides to
+// find the plane with the lowest cost.
+
 #include "renderlib/accel/best_split.h"
 
 #include <cmath>

@@ -1,3 +1,7 @@
+// Large ranges are partitioned level by level by all threads. As soon as a range is small enough,
+// it becomes a task, whose subtree one thread builds. The subtrees are then joined to the upper
+// tree.
+
 #include "renderlib/accel/binary_tree.h"
 
 #include <algorithm>

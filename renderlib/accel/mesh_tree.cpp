@@ -1,3 +1,6 @@
+// Makes an item for each triangle that can be hit, builds and collapses the binary tree, and copies
+// the corners of each leaf's triangles into a pack.
+
 #include "renderlib/accel/mesh_tree.h"
 
 #include <algorithm>

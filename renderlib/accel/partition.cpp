@@ -1,3 +1,6 @@
+// A range is split at the cheapest plane. If there is none, it is split by the kind of its items,
+// or in halves at the median.
+
 #include "renderlib/accel/partition.h"
 
 #include <algorithm>

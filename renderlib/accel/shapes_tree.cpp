@@ -1,3 +1,6 @@
+// Makes an item for each sphere, triangle and disk, and for each half of a quad. Leaves are packs
+// of one kind of shape.
+
 #include "renderlib/accel/shapes_tree.h"
 
 #include <array>

@@ -1,3 +1,6 @@
+// Writes to a temporary file in the folder of the target, syncs it, renames it, and syncs the
+// folder.
+
 #include "renderlib/base/atomic_file.h"
 
 #include <fcntl.h>

@@ -1,3 +1,6 @@
+// Wrappers of system calls, which return errors as statuses. Opening, reading and writing are
+// repeated if a signal interrupts them.
+
 #include "renderlib/base/file.h"
 
 #include <sys/stat.h>

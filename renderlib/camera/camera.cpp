@@ -1,3 +1,7 @@
+// The constructor of RayGenerator computes, for both ends of the shutter interval, a linear map
+// from image positions to directions (Projection). ray() evaluates it, interpolated in time if the
+// camera moves.
+
 #include "renderlib/camera/camera.h"
 
 #include <algorithm>

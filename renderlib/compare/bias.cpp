@@ -1,3 +1,6 @@
+// Collects the differences of each block's groups of pixels, computes Student's t of their mean,
+// and counts the blocks whose t is too large to be noise.
+
 #include "renderlib/compare/bias.h"
 
 #include <algorithm>

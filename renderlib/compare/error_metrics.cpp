@@ -1,3 +1,5 @@
+// Adds up the errors of all channels in one pass over the pixels.
+
 #include "renderlib/compare/error_metrics.h"
 
 #include <algorithm>

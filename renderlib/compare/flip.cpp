@@ -1,3 +1,6 @@
+// FLIP combines a colour difference and a feature difference (flip_parts.h) for each pixel.
+// HDR-FLIP is the maximum of FLIP over several exposures.
+
 #include "renderlib/compare/flip.h"
 
 #include <algorithm>

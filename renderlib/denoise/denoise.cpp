@@ -1,3 +1,7 @@
+// For each strip of the image: prepares planes, filters them with a narrow and a wide filter
+// (fit.h), estimates the squared error of both and of the rendered value (squared_error.h), and
+// blends the three by these errors (Selection).
+
 #include "renderlib/denoise/denoise.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// TileFit fits a linear function at each centre, eight centres at a time; Evaluation then computes
+// each pixel's value from the functions of the centres around it.
+
 #include "renderlib/denoise/fit.h"
 
 #include <algorithm>

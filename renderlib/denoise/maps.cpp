@@ -1,3 +1,5 @@
+// Box filters of maps, and a smoothing whose weights fall with differences of the guides.
+
 #include "renderlib/denoise/maps.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Splits the samples into two halves, limits single bright pixels, estimates variances, and scales
+// the guides to [0, 1].
+
 #include "renderlib/denoise/prepare.h"
 
 #include <algorithm>
@@ -8,7 +11,7 @@ namespace bandsaw {
 namespace {
 
 constexpr float kMaxDepthValue = 1e15f;  ///< the squares of larger values exceed float
-constexpr int kAround = 2;      ///< radius in which bright pixels are looked for
+constexpr int kAround = 2;               ///< radius in which bright pixels are looked for
 /// Differences below this share of the brightness are no differences, whatever the noise.
 constexpr float kMinNoise = 3e-3f;
 

@@ -1,3 +1,6 @@
+// Writes the scenes as text, one shape after the other, with places from a fixed sequence of random
+// numbers.
+
 #include "renderlib/gallery/book_scenes.h"
 
 #include <cstdint>

@@ -1,3 +1,6 @@
+// The height of a point is a sum of octaves of gradient noise; height, latitude and a map of rain
+// determine its colour.
+
 #include "renderlib/gallery/globe.h"
 
 #include <algorithm>

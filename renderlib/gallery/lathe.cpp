@@ -1,3 +1,6 @@
+// Places rings of vertices at the points of the profile, two at an edge that stays sharp, and joins
+// neighbouring rings by faces.
+
 #include "renderlib/gallery/lathe.h"
 
 #include <algorithm>

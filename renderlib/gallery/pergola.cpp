@@ -1,3 +1,5 @@
+// Writes the glTF as text; its only buffer, a cube, is embedded as base64.
+
 #include "renderlib/gallery/pergola.h"
 
 #include <array>

@@ -1,3 +1,6 @@
+// Computes the colours of the sky from a direction, and draws them into an environment map of one
+// or six images.
+
 #include "renderlib/gallery/sky.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// Samples the instance's box at times between which its motion deviates little from a straight
+// line, enlarges the boxes by a bound of that deviation, and finds a box with linearly moving sides
+// that contains them all.
+
 #include "renderlib/geometry/moving_bounds.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Computes the surface at a hit in the space of the shape, then transforms it to the world (placed)
+// with an offset for rays that leave it.
+
 #include "renderlib/geometry/shape_surface.h"
 
 #include <algorithm>

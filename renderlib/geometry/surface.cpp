@@ -1,3 +1,6 @@
+// Finds the primitive of a hit, computes its surface in its own space (shape_surface.h for loose
+// shapes, here for meshes), and places it in the world.
+
 #include "renderlib/geometry/surface.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The directions in which u and v increase: for triangles from the map between uvs and corners, for
+// other shapes in closed form.
+
 #include <algorithm>
 #include <cmath>
 

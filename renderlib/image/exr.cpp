@@ -1,3 +1,5 @@
+// Copies the channels to planes, converts them to halves if requested, and passes them to tinyexr.
+
 #include "renderlib/image/exr.h"
 
 #include <tinyexr.h>

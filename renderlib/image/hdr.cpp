@@ -1,3 +1,5 @@
+// Converts each row to four bytes a pixel and writes each of the four channels run-length coded.
+
 #include "renderlib/image/hdr.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Encodes the image by the format of its suffix and writes it atomically (base/atomic_file.h).
+
 #include "renderlib/image/write_image.h"
 
 #include <bit>

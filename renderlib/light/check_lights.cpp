@@ -1,3 +1,5 @@
+// Checks the environment and each kind of delta light, field by field.
+
 #include "renderlib/light/check_lights.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// arrival() computes the illumination at a point for each kind of light; falloff and projected
+// images have functions of their own.
+
 #include "renderlib/light/delta_light.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Converts between directions and texels for both kinds of maps, and interpolates between four
+// texels.
+
 #include "renderlib/light/environment.h"
 
 #include <algorithm>

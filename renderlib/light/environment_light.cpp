@@ -1,3 +1,6 @@
+// Builds a table of the texels' luminance above the mean times solid angle. A sample chooses a
+// texel from the table, then a direction from the texel's interpolation kernel.
+
 #include "renderlib/light/environment_light.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Bounds of shapes and delta lights, and their importance: intensity, times the largest cosines at
+// both ends, over the squared distance.
+
 #include "renderlib/light/light_bound.h"
 
 #include <algorithm>

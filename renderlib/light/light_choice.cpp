@@ -1,3 +1,6 @@
+// All candidates are weighted by their importance, and one is chosen in proportion. If it is the
+// light tree, the number is rescaled and passed on to it.
+
 #include "renderlib/light/light_choice.h"
 
 #include <algorithm>

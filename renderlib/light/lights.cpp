@@ -1,3 +1,7 @@
+// The constructor numbers all lights and computes their bounds. sample() chooses a light
+// (light_choice.h), then a point on it by its kind; pdf() does the reverse for a point that was
+// hit.
+
 #include "renderlib/light/lights.h"
 
 #include <algorithm>

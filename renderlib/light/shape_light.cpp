@@ -1,3 +1,5 @@
+// For each kind of shape: area, a sampled point, and the pdf of a direction to a point.
+
 #include "renderlib/light/shape_light.h"
 
 #include <algorithm>

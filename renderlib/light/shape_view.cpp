@@ -1,3 +1,6 @@
+// Transforms a primitive to world space at a time. A sphere whose axes are no longer equal becomes
+// an ellipsoid.
+
 #include <array>
 #include <cmath>
 

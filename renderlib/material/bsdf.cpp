@@ -1,3 +1,6 @@
+// bsdf_at() evaluates the material's parameters at the point. sample() and evaluate() are here for
+// the simple BSDFs, and in files of their own for the others.
+
 #include "renderlib/material/bsdf.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Four lobes: coat, reflection, diffuse light and transmission. sample() chooses one by its
+// estimated contribution; evaluate() adds up all of them, so the pdf is that of the mixture.
+
 #include "renderlib/material/metallic_roughness_bsdf.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Two lobes: the reflection of the coat, smooth or rough, and the diffuse light that passes through
+// the coat twice.
+
 #include "renderlib/material/plastic.h"
 
 #include <algorithm>

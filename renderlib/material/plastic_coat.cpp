@@ -1,3 +1,5 @@
+// Integrates reflection and transmission of facets numerically, for a table of alphas and cosines.
+
 #include "renderlib/material/plastic_coat.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Three groups of lobes: specular (reflection or refraction), diffuse and clear coat. sample()
+// chooses one; evaluate() adds up value and pdf of all.
+
 #include "renderlib/material/principled_bsdf.h"
 
 #include <algorithm>

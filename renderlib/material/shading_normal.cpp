@@ -1,3 +1,6 @@
+// Normal maps are looked up in the frame of the uvs; height maps are differentiated along the uvs.
+// Both return a new shading normal.
+
 #include "renderlib/material/shading_normal.h"
 
 #include <algorithm>

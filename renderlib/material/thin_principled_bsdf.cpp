@@ -1,3 +1,6 @@
+// Four lobes: specular and diffuse, reflected and transmitted. Transmission is computed as a
+// reflection mirrored to the other side.
+
 #include "renderlib/material/thin_principled_bsdf.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The inverse is the transposed cofactor matrix over the determinant, after a scaling by a power of
+// two.
+
 #include "renderlib/math/transform.h"
 
 #include <cmath>

@@ -1,3 +1,6 @@
+// Integrates Planck's spectrum with the colour matching functions; the table holds the colour for
+// each 1/256 of an octave.
+
 #include "renderlib/medium/blackbody.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Each brick is hashed, so that a brick equal to an earlier one is found and stored once.
+
 #include "renderlib/medium/brick_builder.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Bounds of each brick, and of its outer layers, which also count for the neighbouring bricks
+// because values are interpolated across the border.
+
 #include "renderlib/medium/grid_bounds.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The constructor divides the space around the grids into cubes and bounds the density in each.
+// Coefficients at a point come from look-ups in the grids.
+
 #include "renderlib/medium/grid_medium.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// visit_collisions() finds the tentative collisions along a ray; fly(), pass() and
+// estimate_transmittance() differ in what they do at each.
+
 #include "renderlib/medium/tracking.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Checks of a grid, and a reader that finds the brick of a cell and interpolates between cells.
+
 #include "renderlib/medium/volume_grid.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Decoder reads the manifest field by field, fetches the blobs that it names, and checks their
+// sizes. Parts that an earlier package has are taken from DecodedParts.
+
 #include "renderlib/package/package.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Encoder writes each list of the scene as a blob and its reference into the manifest.
+
 #include "renderlib/package/package.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// For each kind of light, one function that encodes it and one that decodes it.
+
 #include "renderlib/package/lights.h"
 
 #include "absl/strings/str_cat.h"

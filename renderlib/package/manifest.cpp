@@ -1,3 +1,6 @@
+// Checks the head of a manifest and the counts that follow from the sizes of its blobs.
+// for_each_blob() visits all blobs in a fixed order.
+
 #include "renderlib/package/manifest.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// For each kind of material, one function that encodes it and one that decodes it.
+
 #include "renderlib/package/materials.h"
 
 #include "renderlib/base/status_macros.h"

@@ -1,3 +1,5 @@
+// Encodes and decodes coefficients and the descriptions of grids.
+
 #include "renderlib/package/media.h"
 
 #include <string>

@@ -1,3 +1,6 @@
+// Pilot holds the errors that the pilot has measured over half of the pixels, and suggests a level
+// for each tile. gain() evaluates the suggestion on the errors of the other half.
+
 #include "renderlib/render/adaptive_plan.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Writer and Reader put and take numbers in the order of the format; a record is checked completely
+// before its sums are read.
+
 #include "renderlib/render/band_file.h"
 
 #include <algorithm>

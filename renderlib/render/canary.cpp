@@ -1,3 +1,6 @@
+// Each function below makes one scene; canary() renders a few pixels of all of them and hashes the
+// sums.
+
 #include "renderlib/render/canary.h"
 
 #include <atomic>

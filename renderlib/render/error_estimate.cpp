@@ -1,3 +1,6 @@
+// ErrorSums adds up variances of pixels and, for the margin, squares of the variances of groups.
+// estimate() divides by the number of pixels and finds quantiles.
+
 #include "renderlib/render/error_estimate.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// FilmStrips divides the image into strips of pixels that always have the same samples: rows or
+// parts of half tiles. Film::Rows holds the nodes of each strip and the samples that each row has
+// covered.
+
 #include "renderlib/render/film.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// add_group() takes the blocks of a group's samples in order, keeps the sums of complete nodes on a
+// stack, and adds two nodes of equal size as soon as both are there. A group is one pixel unless
+// pixels share paths.
+
 #include "renderlib/render/pixel_sums.h"
 
 #include <algorithm>

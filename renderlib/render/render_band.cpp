@@ -1,3 +1,6 @@
+// Units divides the band among threads. Each thread of the pool renders one unit after the other; a
+// row is reported when its last unit is done.
+
 #include <algorithm>
 #include <atomic>
 #include <vector>

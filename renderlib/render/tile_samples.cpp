@@ -1,3 +1,6 @@
+// The samples of half tiles are a list of nodes, row by row of tiles; an empty list stands for
+// uniform sampling.
+
 #include "renderlib/render/tile_samples.h"
 
 #include <algorithm>

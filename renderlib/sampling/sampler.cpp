@@ -1,3 +1,7 @@
+// A group of four dimensions is computed at once: shuffle the sample's index by an Owen scramble,
+// look up the Sobol' point in a table, and scramble each coordinate. All are done on bit-reversed
+// numbers, for which scrambling is cheap.
+
 #include "renderlib/sampling/sampler.h"
 
 #include <bit>

@@ -1,3 +1,6 @@
+// A tent is sampled as one of its two sides. In latitude the density has a factor sin(theta), and
+// its distribution is inverted by Newton's method.
+
 #include "renderlib/sampling/tent.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// The unit shapes of boundaries, and the validation of media, grids and boundaries.
+
 #include "renderlib/scene/media.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// build_with() removes primitives that no ray can hit, removes motion that does not happen, finds
+// the features that the scene uses, and builds BVHs and lights, in this order.
+
 #include "renderlib/scene/scene.h"
 
 #include <algorithm>

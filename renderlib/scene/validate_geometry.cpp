@@ -1,3 +1,5 @@
+// Checks each list of the geometry, and then each entry, with the field's path in errors.
+
 #include <array>
 #include <cmath>
 #include <string>

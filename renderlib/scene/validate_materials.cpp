@@ -1,3 +1,6 @@
+// CheckKind checks the parameters of each kind of material; check_common() those that every kind
+// has.
+
 #include <initializer_list>
 #include <optional>
 #include <string>

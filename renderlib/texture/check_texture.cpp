@@ -1,3 +1,6 @@
+// CheckParts checks the numbers of each kind of texture, and adds up how many textures its
+// evaluation needs.
+
 #include "renderlib/texture/check_texture.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Maps uvs to texels by the wrap mode, then takes the nearest texel or interpolates between four.
+
 #include "renderlib/texture/image_texture.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// One visitor for each question about a texture: its value at a point, its maximum, its mean, and
+// whether it uses positions in object space.
+
 #include "renderlib/texture/texture.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Collects the blobs of a scene that was begun, decodes and builds it, and renders rows of it with
+// the pool of one thread.
+
 #include "worker/browser/browser_renderer.h"
 
 #include <utility>

@@ -1,3 +1,5 @@
+// Parses the bytes of messages for worker::Session and serialises its answers.
+
 #include "worker/browser/browser_session.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Each function converts its arguments, calls a BrowserSession or BrowserRenderer, and keeps the
+// answer, as JSON, text or bytes, until the object's next call.
+
 #include "worker/browser/exports.h"
 
 #include <memory>

@@ -1,3 +1,6 @@
+// A download writes to a partial file under a lock (flock), and renames it to the digest when it is
+// complete. The modification time of a file is the time of its last use.
+
 #include "worker/cache/blob_cache.h"
 
 #include <fcntl.h>

@@ -1,3 +1,6 @@
+// Two threads take tasks in order. Each loads the task's scene and renders its band; the later task
+// waits at each step until the earlier one has got further (wait_for_earlier).
+
 #include "worker/executor/executor.h"
 
 #include <algorithm>

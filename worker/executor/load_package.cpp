@@ -1,3 +1,6 @@
+// FetchingSource returns blobs from the cache and downloads those that are missing. PackageLoader
+// decodes the package and builds its scene, with parts of earlier scenes.
+
 #include "worker/executor/load_package.h"
 
 #include <algorithm>

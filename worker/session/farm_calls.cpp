@@ -1,3 +1,6 @@
+// Each call registers its gRPC context, so that leave() can cancel it. Bands are sent on one stream
+// that is kept open for a minute.
+
 #include "worker/session/farm_calls.h"
 
 #include <algorithm>

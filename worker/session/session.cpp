@@ -1,3 +1,6 @@
+// receive() calls one function for each kind of message. A band is found by its task id or, for
+// messages of the coordinator, by its lease id.
+
 #include "worker/session/session.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Each method locks the session, calls the method of Session, and puts messages into the send queue
+// of the current stream, if there is one.
+
 #include "worker/session/shared_session.h"
 
 namespace bandsaw::worker {

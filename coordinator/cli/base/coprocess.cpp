@@ -1,3 +1,7 @@
+// The child's standard input and output are one end of a socket pair. exchange() writes a line to
+// the other end and reads until a line with the prefix has come, the child has exited, or the time
+// is over.
+
 #include "coordinator/cli/base/coprocess.h"
 
 #include <poll.h>

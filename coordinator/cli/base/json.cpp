@@ -1,3 +1,6 @@
+// Writes each field at once into a string. Text is escaped as JSON requires; bytes that are not
+// UTF-8 become U+FFFD.
+
 #include "coordinator/cli/base/json.h"
 
 #include <array>

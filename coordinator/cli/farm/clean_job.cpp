@@ -1,3 +1,6 @@
+// Removes the noise of a farm's finished job on this machine. The farm renders the guides, as jobs
+// of their own.
+
 #include "coordinator/cli/farm/clean_job.h"
 
 #include <algorithm>

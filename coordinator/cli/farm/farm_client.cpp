@@ -1,3 +1,7 @@
+// Each call is made by call(), which opens a new gRPC context for each attempt and retries while
+// the farm does not answer. Uploads, results and frames are in farm_upload.cpp, farm_result.cpp and
+// farm_frames.cpp.
+
 #include "coordinator/cli/farm/farm_client.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Each list is a table for people, or one JSON object per line for scripts.
+
 #include "coordinator/cli/farm/lists_text.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// The first scene is imported and sent before the sequence is started, so that an error in it is
+// reported at once. A FrameSender sends the other scenes while watch_frames() fetches the images
+// that are done.
+
 #include "coordinator/cli/farm/submit_frames.h"
 
 #include <algorithm>

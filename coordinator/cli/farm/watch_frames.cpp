@@ -1,3 +1,6 @@
+// Follows the sequence with the farm's Watch call; at each change, a FrameFetcher fetches the
+// images of the frames that are done.
+
 #include "coordinator/cli/farm/watch_frames.h"
 
 #include "absl/strings/str_cat.h"

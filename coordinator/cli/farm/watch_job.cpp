@@ -1,3 +1,7 @@
+// Watch follows the job and displays its progress; FollowedImage shows its image meanwhile, from a
+// thread of its own. When the job is done, the image is fetched, cleaned if that is requested, and
+// written with its layers and reports.
+
 #include "coordinator/cli/farm/watch_job.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Cleans images by renderlib/denoise, or by OpenImageDenoise (oidn.h), and writes them beside the
+// images as rendered.
+
 #include "coordinator/cli/image/clean.h"
 
 #include <algorithm>

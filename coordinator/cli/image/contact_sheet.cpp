@@ -1,3 +1,6 @@
+// Chooses a number of columns that gives the sheet the shape of a screen, reduces each frame to its
+// cell, and draws its number below it in digits of 3 x 5 dots.
+
 #include "coordinator/cli/image/contact_sheet.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Loads the library with dlopen and finds its functions by name; versions 1 and 2 have different
+// names for some of them.
+
 #include "coordinator/cli/image/oidn.h"
 
 #include <dlfcn.h>

@@ -1,3 +1,5 @@
+// Builds the report as one JSON object. Each function below makes the object of one of its fields.
+
 #include "coordinator/cli/image/report.h"
 
 #include <optional>

@@ -1,3 +1,6 @@
+// A file counts as a report if its first bytes are kReportBegins. Any other existing file is never
+// replaced by a report.
+
 #include "coordinator/cli/image/report_file.h"
 
 #include <algorithm>

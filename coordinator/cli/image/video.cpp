@@ -1,3 +1,6 @@
+// Starts ffmpeg with the size of the first frame, and writes each frame as raw 8-bit RGB to its
+// standard input. The video has a temporary name until it is complete.
+
 #include "coordinator/cli/image/video.h"
 
 #include <cerrno>

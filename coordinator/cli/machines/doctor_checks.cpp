@@ -1,3 +1,5 @@
+// The checks of this machine, and the pure parts of the checks of a farm (doctor_farm.cpp).
+
 #include "coordinator/cli/machines/doctor_checks.h"
 
 #include <unistd.h>

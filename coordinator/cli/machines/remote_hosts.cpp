@@ -1,3 +1,6 @@
+// Runs ssh for each host. The script comes from ssh's standard input, a file without a name, so
+// that no intermediate shell parses it; the other machine's shell evaluates it.
+
 #include "coordinator/cli/machines/remote_hosts.h"
 
 #include <sys/mman.h>

@@ -1,3 +1,6 @@
+// The two scripts share kCommon, a list of shell functions. Numbers and digests are put into their
+// text; secrets come from standard input.
+
 #include "coordinator/cli/machines/remote_scripts.h"
 
 #include "absl/strings/str_cat.h"

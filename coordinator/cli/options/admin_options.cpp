@@ -1,3 +1,6 @@
+// Declares the options of the commands that control a farm and its machines: names, help and the
+// fields of RawOptions that hold the values.
+
 #include "coordinator/cli/options/add_options.h"
 
 namespace bandsaw::coordinator {

@@ -1,3 +1,6 @@
+// Each checked_X() converts the options of command X, as typed, to its plain values, and returns
+// the first error. The functions before them check options that several commands have.
+
 #include "coordinator/cli/options/checked_options.h"
 
 #include <algorithm>

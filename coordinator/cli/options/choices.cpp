@@ -1,3 +1,6 @@
+// The words of each option come from the names of the values themselves (tones, integrators,
+// kernels, …).
+
 #include "coordinator/cli/options/choices.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Declares the options of the commands that read, render or write images: names, help and the
+// fields of RawOptions that hold the values.
+
 #include <CLI/CLI.hpp>
 
 #include "absl/strings/match.h"

@@ -1,3 +1,6 @@
+// On a terminal, a Painter redraws a few lines in place. In a pipe, lines are written at most once
+// a second. With --json, each call writes one event.
+
 #include "coordinator/cli/progress/progress_display.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Each function makes one kind of line from the state of a render; values that are unknown are left
+// out.
+
 #include "coordinator/cli/progress/progress_text.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Packet assembles one message of the protocol; the image is sent in packets of some rows each.
+
 #include "coordinator/cli/progress/tev.h"
 
 #include <algorithm>

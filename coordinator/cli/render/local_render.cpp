@@ -1,3 +1,6 @@
+// Renders the bands of one pass after the other and adds them to a film. The stop rule (LocalPlan)
+// decides after each pass whether there is another one.
+
 #include "coordinator/cli/render/local_render.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// Runs Blender in the background with the add-on of deploy/blender, which writes the scene file,
+// warnings and errors to a temporary folder. BlendSession keeps one Blender running and asks it for
+// one frame after the other.
+
 #include "coordinator/cli/scene/blend_file.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Runs bandsaw-import as a child with a temporary folder for its output, and reads that output: a
+// package, a converted scene or a picture. A zip file is unpacked first, by the same program.
+
 #include "coordinator/cli/scene/import_process.h"
 
 #include <signal.h>

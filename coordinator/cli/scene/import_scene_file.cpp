@@ -1,3 +1,6 @@
+// A .blend file is first written as a scene file by Blender (blend_file.h); then, as every scene,
+// it is imported by the confined importer (import_process.h).
+
 #include "coordinator/cli/scene/import_scene_file.h"
 
 #include <atomic>

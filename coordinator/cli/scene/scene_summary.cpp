@@ -1,3 +1,5 @@
+// Counts the parts of a scene description by kind.
+
 #include "coordinator/cli/scene/scene_summary.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Starts the dashboard with the functions that it cannot have itself: importing a scene into the
+// engine's store, and the programs of workers and of browsers.
+
 #include "coordinator/cli/serve/serve_dashboard.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,6 @@
+// A Panel draws axes, grid, lines and legend of one diagram as SVG elements; svg_of() arranges the
+// panels.
+
 #include "coordinator/cli/study/log_plot.h"
 
 #include <algorithm>

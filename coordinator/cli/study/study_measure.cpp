@@ -1,3 +1,6 @@
+// Study renders one scene by each method with increasing numbers of samples. Seeds accumulates the
+// results over the seeds, and a power law is fitted to each line of results.
+
 #include "coordinator/cli/study/study_measure.h"
 
 #include <algorithm>

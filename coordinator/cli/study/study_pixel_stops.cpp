@@ -1,3 +1,6 @@
+// Renders one sample per pixel and seed at a time, and keeps for each pixel and tolerance whether
+// it has stopped, and with which value.
+
 #include "coordinator/cli/study/study_pixel_stops.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The curve is interpolated linearly in logarithms. Beyond its last point it repeats the steps of
+// the last octave.
+
 #include "coordinator/scheduler/api/error_curve.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Parses each item between commas as a number or a range, and joins numbers to ranges in the
+// reverse direction.
+
 #include "coordinator/scheduler/api/frame_numbers.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// apply() changes the durable state for each kind of record; the other functions answer questions
+// about that state.
+
 #include "coordinator/scheduler/context/context.h"
 
 #include "coordinator/scheduler/api/worker_process.h"

@@ -1,3 +1,7 @@
+// share() goes through the leases of running jobs, the one that is expected to end last first, and
+// tries for each: to steal it if it is not begun, to move it if it is an audit, or to give a part
+// of its rows to idle workers as well.
+
 #include "coordinator/scheduler/dispatch/backup_tasks.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// choose() finds a free piece that this worker may have, cuts it to the size that size_band()
+// computes, and keeps suspect rows apart from others.
+
 #include "coordinator/scheduler/dispatch/band_chooser.h"
 
 #include <algorithm>

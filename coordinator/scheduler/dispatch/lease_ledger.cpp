@@ -1,3 +1,6 @@
+// Every change of a lease is made in three places here: in the coverage of its pass, in its job,
+// and at its worker.
+
 #include "coordinator/scheduler/dispatch/lease_ledger.h"
 
 #include <algorithm>

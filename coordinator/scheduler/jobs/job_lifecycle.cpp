@@ -1,3 +1,7 @@
+// advance() is called after each change of a job's rows: it evaluates a checkpoint that waits,
+// plans passes of a timed job, and requests the image when all passes are complete. end() is the
+// only way to a final state.
+
 #include "coordinator/scheduler/jobs/job_lifecycle.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Each request is checked first; then it emits records, which change the job.
+
 #include "coordinator/scheduler/jobs/job_requests.h"
 
 #include <variant>

@@ -1,3 +1,7 @@
+// advance() brings each sequence up to date in every step: it tries failed frames again, makes the
+// next frame jobs, and ends the sequence when all frames are done or have failed. The other
+// functions are requests of users.
+
 #include "coordinator/scheduler/jobs/sequences.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// When a worker is lost, the bands that it may have been rendering become suspicions of their jobs.
+// A suspect band is retried in pieces; a further loss at a piece is conclusive, and enough
+// conclusive losses fail the job.
+
 #include "coordinator/scheduler/liveness/crash_attribution.h"
 
 #include <algorithm>

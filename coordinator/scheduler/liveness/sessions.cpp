@@ -1,3 +1,6 @@
+// hello() admits or refuses a worker and reconciles the leases that it still holds with those of
+// the scheduler. disconnect() frees the leases of a worker that has left or fell silent.
+
 #include "coordinator/scheduler/liveness/sessions.h"
 
 #include <algorithm>

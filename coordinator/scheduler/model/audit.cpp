@@ -1,3 +1,6 @@
+// Holds one result for each machine, the stored one first. A verdict needs two machines that agree,
+// or a machine that repeated its result.
+
 #include "coordinator/scheduler/model/audit.h"
 
 #include <algorithm>

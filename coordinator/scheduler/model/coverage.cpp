@@ -1,3 +1,6 @@
+// Each change cuts strips at the first and the last row of a band, changes the cells of the strips
+// in between, merges cells and strips that have become equal, and keeps the counts of samples.
+
 #include "coordinator/scheduler/model/coverage.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Operations that concern several passes of a job, or its failures.
+
 #include "coordinator/scheduler/model/job.h"
 
 #include <algorithm>

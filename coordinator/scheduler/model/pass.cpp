@@ -1,3 +1,6 @@
+// Keeps, for each worker process, the bands that it stored, so that all of them can be taken back
+// if the process was wrong.
+
 #include "coordinator/scheduler/model/pass.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Sums of the rows' costs are kept for groups of 64 rows, so that the cost of a long range is found
+// quickly. Times of rows without a measurement are interpolated between measured ones.
+
 #include "coordinator/scheduler/model/row_costs.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// change() is the only place that changes the state of a frame; it keeps the counts and sets of
+// frames consistent.
+
 #include "coordinator/scheduler/model/sequence.h"
 
 #include <algorithm>

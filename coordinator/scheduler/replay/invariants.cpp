@@ -1,3 +1,5 @@
+// Each broken_X() checks one part of the state and returns the first rule that it breaks.
+
 #include "coordinator/scheduler/replay/invariants.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes the records of each job and sequence in an order in which they can be replayed.
+
 #include "coordinator/scheduler/replay/snapshot.h"
 
 #include <string>

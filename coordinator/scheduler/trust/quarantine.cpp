@@ -1,3 +1,6 @@
+// Quarantining a machine journals a record for each of its worker processes, expels the connected
+// ones, and retracts the rows that they stored in active jobs.
+
 #include "coordinator/scheduler/trust/quarantine.h"
 
 #include <set>

@@ -1,3 +1,7 @@
+// A result is added to each open audit of its rows. If there is none and a row differs from the
+// stored one, an audit is opened for that row. Each audit that has a verdict is closed, and
+// machines that were wrong are quarantined.
+
 #include "coordinator/scheduler/trust/result_comparison.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Sums the states of a sequence's frames, and the progress of the frame jobs that are not final.
+
 #include "coordinator/scheduler/views/sequence_views.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The first half builds the views of jobs and workers. The second half, from idle_reason() on,
+// explains why a job or a worker waits: each function returns the sentence for one cause.
+
 #include "coordinator/scheduler/views/views.h"
 
 #include <algorithm>

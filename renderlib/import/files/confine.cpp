@@ -1,3 +1,6 @@
+// Sets resource limits, restricts files to the two folders by Landlock, and forbids system calls by
+// a seccomp filter, which is a list of instructions for the kernel's packet filter.
+
 #include "renderlib/import/files/confine.h"
 
 #include <fcntl.h>

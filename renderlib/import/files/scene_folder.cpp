@@ -1,3 +1,6 @@
+// Resolves a name to its real path and compares that with the real path of the folder, so that no
+// symbolic link leads outside.
+
 #include "renderlib/import/files/scene_folder.h"
 
 #include <algorithm>

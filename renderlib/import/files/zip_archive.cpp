@@ -1,3 +1,6 @@
+// Finds the directory at the end of the archive, reads its entries with all checks, and inflates an
+// entry on request.
+
 #include "renderlib/import/files/zip_archive.h"
 
 #include <zlib.h>

@@ -1,3 +1,6 @@
+// Decodes the stream with libdraco to quantised integers, and converts these to floats here
+// (Dequantizer).
+
 #include "renderlib/import/gltf/draco_mesh.h"
 
 #include <draco/attributes/attribute_octahedron_transform.h>

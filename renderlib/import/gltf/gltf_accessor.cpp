@@ -1,3 +1,6 @@
+// Checks that the elements lie within their buffer view, reads them one component at a time, and
+// applies sparse replacements.
+
 #include "renderlib/import/gltf/gltf_accessor.h"
 
 #include <algorithm>

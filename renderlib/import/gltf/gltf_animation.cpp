@@ -1,3 +1,6 @@
+// Reads each channel's sampler as a Curve, which moves a node or sets the weights of its morph
+// targets.
+
 #include "renderlib/import/gltf/gltf_animation.h"
 
 #include <algorithm>

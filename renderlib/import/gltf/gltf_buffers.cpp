@@ -1,3 +1,6 @@
+// A buffer is read when it is first used: the binary chunk, a data URI or a file. A compressed
+// buffer view is decoded when it is first used.
+
 #include "renderlib/import/gltf/gltf_buffers.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Limits the size and nesting of the text before it is parsed, because nlohmann's parser and
+// destructors are recursive.
+
 #include "renderlib/import/gltf/gltf_json.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Checks the parameters of the extension, decodes the stream with libmeshoptimizer, and applies the
+// filter (meshopt_filters.h).
+
 #include "renderlib/import/gltf/meshopt_view.h"
 
 #include <meshoptimizer.h>

@@ -1,3 +1,6 @@
+// Rewriter goes through the lists of the JSON, replaces each accessor and image that is used by a
+// plain copy in one new buffer, and leaves everything else as it is.
+
 #include "renderlib/import/gltf/plain_gltf.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Detects the format from the first bytes and calls its decoder: stb_image, libwebp, tinyexr, or
+// the reader of PFM files below.
+
 #include "renderlib/import/image/decode_image.h"
 
 #define STBI_NO_STDIO

@@ -1,3 +1,6 @@
+// Decodes an image, converts its texels as the use requires (factor, normals from heights, index of
+// refraction), and keeps the texture under its image and use.
+
 #include "renderlib/import/image/texture_store.h"
 
 #include <algorithm>

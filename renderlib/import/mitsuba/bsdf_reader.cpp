@@ -1,3 +1,7 @@
+// read_kind() calls one function for each type of bsdf, which sets the fields of a material of
+// ours. Wrappers around a bsdf are in bsdf_wrappers.cpp, principled materials in
+// principled_bsdfs.cpp.
+
 #include "renderlib/import/mitsuba/bsdf_reader.h"
 
 #include <algorithm>

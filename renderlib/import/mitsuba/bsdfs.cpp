@@ -1,3 +1,6 @@
+// Makes a material for each combination of bsdf, emitter and uvs that occurs, and returns the same
+// one when it occurs again.
+
 #include "renderlib/import/mitsuba/bsdfs.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// One function for each type of emitter. Environment maps are resampled, because Mitsuba places
+// their first and last row at the poles.
+
 #include "renderlib/import/mitsuba/emitters.h"
 
 #include <algorithm>

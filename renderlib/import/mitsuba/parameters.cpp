@@ -1,3 +1,5 @@
+// Finds a parameter by its name, checks its type, and remembers that it was read.
+
 #include "renderlib/import/mitsuba/parameters.h"
 
 #include "absl/strings/str_cat.h"

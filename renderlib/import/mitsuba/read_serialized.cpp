@@ -1,3 +1,6 @@
+// Finds the mesh's offset in the table at the end of the file, inflates from there, and reads
+// vertices and triangles.
+
 #include <zlib.h>
 
 #include <array>

@@ -1,3 +1,6 @@
+// Splits a text at commas and spaces, and converts the parts to the numbers that the type of the
+// value requires.
+
 #include "renderlib/import/mitsuba/read_values.h"
 
 #include <cmath>

@@ -1,3 +1,6 @@
+// add_kind() calls one function for each type of shape. Shapes that we do not have, or that are
+// placed in a way that ours cannot be, become meshes.
+
 #include "renderlib/import/mitsuba/shapes.h"
 
 #include <cmath>

@@ -1,3 +1,6 @@
+// Converts spectra to RGB with renderlib/import/spectrum; holds the tables of metals and of indices
+// of refraction.
+
 #include "renderlib/import/mitsuba/spectra.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Reads the film first, because the camera's field of view depends on its aspect ratio; then the
+// camera and the integrator.
+
 #include "renderlib/import/mitsuba/view.h"
 
 #include <algorithm>

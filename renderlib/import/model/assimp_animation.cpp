@@ -1,3 +1,5 @@
+// Converts each channel of Assimp's animation to curves in seconds.
+
 #include "renderlib/import/model/assimp_animation.h"
 
 #include <assimp/anim.h>

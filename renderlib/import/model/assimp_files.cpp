@@ -1,3 +1,6 @@
+// Both classes give Assimp files as bytes in memory. AssimpFiles finds them by SceneFolder, so
+// Assimp cannot open any other file.
+
 #include "renderlib/import/model/assimp_files.h"
 
 #include <assimp/IOStream.hpp>

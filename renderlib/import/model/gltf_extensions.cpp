@@ -1,3 +1,5 @@
+// Reads the extensions of each material that Assimp loads, in Assimp's order (gltf_load_order.h).
+
 #include "renderlib/import/model/gltf_extensions.h"
 
 #include <algorithm>

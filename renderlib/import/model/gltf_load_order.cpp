@@ -1,3 +1,6 @@
+// Repeats the traversal of Assimp's glTF loader on the JSON, and notes what Assimp loads in which
+// order.
+
 #include "renderlib/import/model/gltf_load_order.h"
 
 #include <map>

@@ -1,3 +1,6 @@
+// Reads numbers and colours of an Assimp material, and finds its textures with their transforms,
+// wrap modes and uv sets. For glTF, the JSON's values replace those of Assimp.
+
 #include "renderlib/import/model/material_reader.h"
 
 #include <assimp/GltfMaterial.h>

@@ -1,3 +1,6 @@
+// Reads a file with Assimp (a glTF file as a plain document, gltf/plain_gltf.h), then its
+// materials, meshes and nodes in this order, and turns it upright.
+
 #include "renderlib/import/model/model.h"
 
 #include <assimp/config.h>

@@ -1,3 +1,6 @@
+// Makes the glass of a material, and replaces closed meshes of that material by glass with a medium
+// inside.
+
 #include "renderlib/import/model/model_glass.h"
 
 #include <algorithm>

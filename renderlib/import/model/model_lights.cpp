@@ -1,3 +1,5 @@
+// Converts each kind of Assimp light to a delta light, in the place of its node.
+
 #include "renderlib/import/model/model_lights.h"
 
 #include <assimp/light.h>

@@ -1,3 +1,6 @@
+// MeshReader converts one mesh of Assimp and repairs it. A mesh with a skin or morph targets is
+// posed at both ends of the shutter interval.
+
 #include "renderlib/import/model/model_mesh.h"
 
 #include <assimp/mesh.h>

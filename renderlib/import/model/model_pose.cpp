@@ -1,3 +1,6 @@
+// Adds morph targets to the vertices, then transforms them by the weighted mean of their bones'
+// transforms.
+
 #include "renderlib/import/model/model_pose.h"
 
 #include <assimp/scene.h>

@@ -1,3 +1,5 @@
+// Looks for the image among the embedded ones, then for a file by several spellings of its name.
+
 #include "renderlib/import/model/model_textures.h"
 
 #include <assimp/scene.h>

@@ -1,3 +1,5 @@
+// Colours and spectra of parameters, warnings, and small helpers for all parts of the conversion.
+
 #include "renderlib/import/pbrt/builder.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A stack of states: AttributeBegin and TransformBegin push a copy, their ends restore it.
+
 #include "renderlib/import/pbrt/graphics_state.h"
 
 #include <algorithm>

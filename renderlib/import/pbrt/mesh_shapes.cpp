@@ -1,3 +1,6 @@
+// One function for each kind of shape. Quadrics and curved patches become grids of vertices
+// (add_grid).
+
 #include "renderlib/import/pbrt/mesh_shapes.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Converts the spectra of eta and k to RGB so that the reflectance along the normal is that of the
+// spectra.
+
 #include "renderlib/import/pbrt/metals.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A motion becomes two keys. A motion with shear is a sheared group inside of a group that moves by
+// the keys.
+
 #include "renderlib/import/pbrt/motion.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Looks up a pbrt environment in any direction, in its octahedral or latitude-longitude form, and
+// resamples it.
+
 #include "renderlib/import/pbrt/octahedral.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Reads the type, the name and the values of each parameter. The accessors check the type and mark
+// the parameter as used.
+
 #include "renderlib/import/pbrt/parameters.h"
 
 #include <algorithm>

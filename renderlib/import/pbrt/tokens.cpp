@@ -1,3 +1,6 @@
+// A stack of open files: next() returns the words of the innermost one and goes back to the one
+// around it at its end.
+
 #include "renderlib/import/pbrt/tokens.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Reads film, filter, integrator and camera in this order, because the camera's field of view
+// depends on the film's shape.
+
 #include "renderlib/import/pbrt/view.h"
 
 #include <algorithm>

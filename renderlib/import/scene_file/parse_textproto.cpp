@@ -1,3 +1,6 @@
+// Parses with protobuf's TextFormat, which also returns the place of each field, and explains its
+// first error.
+
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/io/tokenizer.h>
 

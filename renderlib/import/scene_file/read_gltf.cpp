@@ -1,3 +1,6 @@
+// Each function reads the fields of one part of the material: base colour, metallic and roughness,
+// layers, normals, emission, alpha.
+
 #include "renderlib/import/scene_file/read_gltf.h"
 
 #include "absl/strings/str_cat.h"

@@ -1,3 +1,6 @@
+// A group's shapes and models are read once into a Contents; each instance copies its placements,
+// transformed, into the scene or into another group.
+
 #include "renderlib/import/scene_file/read_groups.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// One function for each kind of light. Each checks its fields and returns a DeltaLight.
+
 #include "renderlib/import/scene_file/read_lights.h"
 
 #include <variant>

@@ -1,3 +1,6 @@
+// read_kind() calls one function for each kind of material; then the properties that every kind can
+// have are read: relief, opacity, emission.
+
 #include "renderlib/import/scene_file/read_materials.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Reads the coefficients of each medium, and makes the boundaries that shapes and models ask for.
+
 #include "renderlib/import/scene_file/read_media.h"
 
 #include <utility>

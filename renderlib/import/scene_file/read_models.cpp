@@ -1,3 +1,6 @@
+// Reads each model file once, places its meshes by the entry's matrix or keys, and adds its lights,
+// cameras and the media inside of its meshes.
+
 #include "renderlib/import/scene_file/read_models.h"
 
 #include <memory>

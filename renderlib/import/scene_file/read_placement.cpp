@@ -1,3 +1,6 @@
+// Reads scale, rotations and translation, or a matrix. If two keys rotate about the same axis by
+// more than the shortest rotation between them, further keys are added in between.
+
 #include "renderlib/import/scene_file/read_placement.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Reads the parameters of both principled materials; what both have is read by common templates.
+
 #include "renderlib/import/scene_file/read_principled.h"
 
 #include <algorithm>

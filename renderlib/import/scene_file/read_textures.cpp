@@ -1,3 +1,6 @@
+// read_kind() calls one function for each kind of texture. A texture that is given by name is
+// looked up, others are added to the draft.
+
 #include "renderlib/import/scene_file/read_textures.h"
 
 #include <cmath>

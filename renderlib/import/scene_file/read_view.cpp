@@ -1,3 +1,5 @@
+// One function for each setting of the file that is not a shape, a material, a light or a medium.
+
 #include "renderlib/import/scene_file/read_view.h"
 
 #include <algorithm>

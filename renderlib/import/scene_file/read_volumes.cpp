@@ -1,3 +1,6 @@
+// Reads the grid files of a medium, places each in the space of the medium, and adds it to the
+// scene's grids once.
+
 #include "renderlib/import/scene_file/read_volumes.h"
 
 #include <cmath>

@@ -1,3 +1,6 @@
+// Follows a track's path from message to message by protobuf reflection, evaluates its curve at the
+// time, and sets the field.
+
 #include "renderlib/import/scene_file/tracks.h"
 
 #include <google/protobuf/descriptor.h>

@@ -1,3 +1,5 @@
+// Collects the cameras of models, and finds one by the forms of its name.
+
 #include "renderlib/import/scene_file/use_camera.h"
 
 #include <algorithm>
