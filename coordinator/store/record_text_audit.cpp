@@ -45,6 +45,7 @@ const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r) {
 }
 
 const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r) {
+  out.number("browser", r.browser ? 1 : 0);
   write_process(out, r.process);
   out.text("name", r.name);
   out.text("reason", r.reason);
@@ -67,8 +68,12 @@ std::optional<Record> read_audit(absl::string_view kind, FieldReader& in) {
     return record::ErrorForgotten{.job = in.number("job")};
   }
   if (kind == "worker_quarantined") {
-    return record::WorkerQuarantined{
-        .process = read_process(in), .name = in.text("name"), .reason = in.text("reason")};
+    record::WorkerQuarantined quarantined;
+    quarantined.browser = in.next_is("browser") && in.number("browser", 1) == 1;
+    quarantined.process = read_process(in);
+    quarantined.name = in.text("name");
+    quarantined.reason = in.text("reason");
+    return quarantined;
   }
   if (kind == "quarantine_lifted") {
     return record::QuarantineLifted{.name = in.text("name")};

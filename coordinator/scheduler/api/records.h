@@ -125,6 +125,7 @@ struct WorkerQuarantined {
   WorkerProcessId process = 0;
   std::string name;  ///< the name that the worker reports; empty: unknown
   std::string reason;
+  bool browser = false;
 };
 struct QuarantineLifted {
   std::string name;

@@ -145,6 +145,7 @@ void Context::apply(const record::StateChanged& r) {
 /// No job has bands that browsers rendered. Those that are connected may render more.
 void Context::forget_browsers() {
   std::erase_if(browsers, [&](const auto& entry) { return !joined.contains(entry.second); });
+  quarantine.forget_browsers();
 }
 
 void Context::apply(const record::PriorityChanged& r) {
@@ -238,9 +239,7 @@ void Context::apply(const record::ErrorForgotten& r) {
   }
 }
 
-void Context::apply(const record::WorkerQuarantined& r) {
-  quarantine.add(r.process, r.name, r.reason);
-}
+void Context::apply(const record::WorkerQuarantined& r) { quarantine.add(r); }
 void Context::apply(const record::QuarantineLifted& r) { quarantine.lift(r.name); }
 
 void Context::apply(const record::SequenceAdded& r) {

@@ -7,20 +7,37 @@
 
 namespace bandsaw::coordinator {
 
-void QuarantineList::add(WorkerProcessId process, const std::string& name,
-                         const std::string& reason) {
-  if (entries_.size() >= kMaxEntries) {
-    const auto lifted = std::find_if(entries_.begin(), entries_.end(),
-                                     [](const auto& entry) { return entry.second.lifted; });
-    entries_.erase(lifted == entries_.end() ? entries_.begin() : lifted);
+void QuarantineList::add(const record::WorkerQuarantined& r) {
+  const auto native = [](const auto& entry) { return !entry.second.browser; };
+  const auto natives = std::count_if(entries_.begin(), entries_.end(), native);
+  if (!r.browser && static_cast<std::size_t>(natives) >= kMaxNatives) {
+    const auto lifted = std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) {
+      return native(entry) && entry.second.lifted;
+    });
+    entries_.erase(lifted == entries_.end() ? std::find_if(entries_.begin(), entries_.end(), native)
+                                            : lifted);
   }
-  entries_[process] = {.name = name, .reason = reason, .lifted = false};
+  entries_[r.process] = {.name = r.name, .reason = r.reason, .browser = r.browser, .lifted = false};
 }
 
 void QuarantineList::lift(const std::string& name) {
   for (auto& [process, entry] : entries_) {
     entry.lifted = entry.lifted || entry.name == name;
   }
+}
+
+void QuarantineList::forget_browsers() {
+  const bool all = too_many_browsers();
+  std::erase_if(entries_, [&](const auto& entry) {
+    return entry.second.browser && (all || entry.second.lifted);
+  });
+}
+
+bool QuarantineList::too_many_browsers() const {
+  const auto here = std::count_if(entries_.begin(), entries_.end(), [](const auto& entry) {
+    return entry.second.browser && !entry.second.lifted;
+  });
+  return static_cast<std::size_t>(here) >= kMaxBrowsers;
 }
 
 std::optional<std::string> QuarantineList::reason_against(const std::string& instance,
@@ -43,7 +60,8 @@ std::optional<record::WorkerQuarantined> QuarantineList::missing_name(
   if (own == entries_.end() || !own->second.name.empty()) {
     return std::nullopt;
   }
-  return record::WorkerQuarantined{own->first, worker.reported_name(), own->second.reason};
+  return record::WorkerQuarantined{own->first, worker.reported_name(), own->second.reason,
+                                   own->second.browser};
 }
 
 std::string QuarantineList::describe(const Entry& entry) {
@@ -57,7 +75,7 @@ void QuarantineList::add_records(std::vector<Record>& out) const {
   for (const bool lifted : {true, false}) {
     for (const auto& [process, entry] : entries_) {
       if (entry.lifted == lifted) {
-        out.push_back(record::WorkerQuarantined{process, entry.name, entry.reason});
+        out.push_back(record::WorkerQuarantined{process, entry.name, entry.reason, entry.browser});
       }
     }
     for (const auto& [process, entry] : entries_) {

@@ -21,13 +21,23 @@ class QuarantineList {
     /// since.
     std::string name;
     std::string reason;
+    bool browser = false;
     bool lifted = false;  ///< the machine is admitted again; the process's results stay void
   };
+  /// With so many browsers under quarantine, no browser is admitted. So whoever has the link cannot
+  /// make the list long by loading the page again and again, and no entry has to be forgotten.
+  static constexpr std::size_t kMaxBrowsers = 256;
 
-  /// Adds or replaces an entry. If the list is full, forgets a lifted one, or else any.
-  void add(WorkerProcessId process, const std::string& name, const std::string& reason);
+  /// Adds or replaces an entry. If there are kMaxNatives of native workers, forgets a lifted one of
+  /// them, or else any of them.
+  void add(const record::WorkerQuarantined& r);
   /// Lifts the quarantine of all processes with this name.
   void lift(const std::string& name);
+
+  /// Forgets entries of browsers, which MUST have no bands of active jobs any more: those that are
+  /// lifted, and all if they are too many to admit another one. A page that is loaded again is a
+  /// new process, so they exclude nobody who wants to return.
+  void forget_browsers();
 
   /// Returns true if the process was ever quarantined.
   bool contains(WorkerProcessId process) const { return entries_.contains(process); }
@@ -35,6 +45,8 @@ class QuarantineList {
   /// browser, which is known by its process only.
   std::optional<std::string> reason_against(const std::string& instance,
                                             const std::string& reported_name) const;
+  /// Returns true if kMaxBrowsers browsers are under quarantine.
+  bool too_many_browsers() const;
   /// Returns the record that adds the name of a process that was quarantined before it connected,
   /// as happens after a restart; std::nullopt: nothing is missing.
   std::optional<record::WorkerQuarantined> missing_name(const WorkerHello& worker) const;
@@ -46,7 +58,7 @@ class QuarantineList {
   void add_records(std::vector<Record>& out) const;
 
  private:
-  static constexpr std::size_t kMaxEntries = 1'024;
+  static constexpr std::size_t kMaxNatives = 1'024;
   std::map<WorkerProcessId, Entry> entries_;
 };
 

@@ -53,6 +53,13 @@ void Sessions::hello(const input::Hello& in) {
     refuse(in, "this farm takes no browsers: it was started with --browsers none");
     return;
   }
+  if (in.worker.browser && context_.quarantine.too_many_browsers()) {
+    refuse(in,
+           absl::StrCat("too many browsers returned wrong pixels, ", QuarantineList::kMaxBrowsers,
+                        ": take the link back with bandsaw link --revoke; browsers are admitted "
+                        "again when no job is active"));
+    return;
+  }
   if (const auto named = context_.quarantine.missing_name(in.worker)) {
     context_.emit(*named);
   }
@@ -117,6 +124,7 @@ void Sessions::admit(Worker& worker, const input::Hello& in) {
   worker.credits = std::clamp<std::uint32_t>(in.worker.max_bands, 1, wire::kBandsPerWorker);
   worker.memory_bytes = in.worker.memory_bytes;
   worker.draining = false;
+  worker.quarantined = false;
   worker.doing.clear();
   worker.reason.clear();
   worker.heard_at = context_.clock.timeout_clock();

@@ -29,8 +29,8 @@ void Quarantine::impose(const Reporter& reporter, const std::string& cause) {
   }
   for (const WorkerProcessId process : processes) {
     if (process != 0 && !context_.quarantine.contains(process)) {
-      context_.emit(
-          record::WorkerQuarantined{process, name, clean_text(reason, wire::kReasonBytes)});
+      context_.emit(record::WorkerQuarantined{process, name, clean_text(reason, wire::kReasonBytes),
+                                              reporter.browser});
     }
   }
   for (const WorkerId id : workers) {

@@ -528,6 +528,73 @@ TEST(Browser, LossesOfAnyNumberDoNotBlameABand) {
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
 }
 
+/// Opens tabs, whose instances begin with `prefix`, and quarantines each of them, until one is
+/// refused or there are 2,000. Returns the number of those that were admitted.
+int flood(BrowserFarm& farm, SessionId first, const std::string& prefix) {
+  for (int i = 0; i < 2'000; ++i) {
+    const auto welcomed = in<action::Welcome>(
+        farm.hello_tab(first + static_cast<SessionId>(i), absl::StrCat(prefix, i)));
+    if (welcomed.empty()) {
+      return i;
+    }
+    farm.send(input::Quarantine{welcomed[0].name});
+  }
+  return 2'000;
+}
+
+TEST(Browser, ThoseThatLieDisplaceNobodyFromTheQuarantine) {
+  // The native worker and the tab with the lowest ids: a full list would lose these first.
+  const auto lowest = [](const std::string& prefix) {
+    std::string found = prefix + "0";
+    for (int i = 1; i < 20'000; ++i) {
+      const std::string next = absl::StrCat(prefix, i);
+      found = worker_process_id(next) < worker_process_id(found) ? next : found;
+    }
+    return found;
+  };
+  const std::string native = lowest("n");
+  const std::string tab = lowest("t");
+  BrowserFarm farm;
+  farm.submit(one_row());
+  farm.hello(1, native, 1);
+  farm.send(input::Quarantine{"worker-" + native});
+  farm.hello_tab(2, tab);
+  const action::Lease lease = farm.lease(2);
+  farm.result(lease, tab, 7);
+  farm.send(input::Quarantine{"tab@browser"});
+
+  EXPECT_LT(flood(farm, 10, "u"), 300);
+  EXPECT_EQ(in<action::Refuse>(farm.hello(6, native, 1)).size(), 1u);
+  // A restart does not take the tab's pixels from the disk again.
+  BrowserFarm next;
+  for (const Record& record : farm.scheduler.snapshot()) {
+    next.scheduler.replay(record);
+  }
+  input::BandStored old;
+  old.job = 1;
+  old.band = lease.band;
+  old.row_digests = {honest_digest(lease.band.samples, 0) + 7};
+  old.process = worker_process_id(tab);
+  next.scheduler.replay(old);
+  EXPECT_EQ(next.scheduler.wanted(1, lease.band), std::vector<RowRange>{lease.band.rows});
+  next.take(next.scheduler.replayed(next.now));
+  EXPECT_EQ(in<action::Refuse>(next.hello(7, native, 1)).size(), 1u);
+  const auto refused = in<action::Refuse>(next.hello_tab(8, "w"));
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_TRUE(contains(refused[0].reason, "take the link back")) << refused[0].reason;
+}
+
+TEST(Browser, IsAdmittedAfterAFloodOfLiesWhenNoJobHasThem) {
+  BrowserFarm farm;
+  const JobId job = farm.submit(one_row());
+  flood(farm, 10, "u");
+  EXPECT_EQ(in<action::Refuse>(farm.hello_tab(5, "w")).size(), 1u);
+  farm.send(input::Cancel{job});
+  EXPECT_EQ(in<action::Welcome>(farm.hello_tab(6, "w")).size(), 1u);
+  farm.submit(one_row("r2"));
+  EXPECT_EQ(farm.leases(6), 1u);
+}
+
 TEST(Browser, CannotPredictWhichBandsOfAFrameAreAudited) {
   BrowserFarm farm;
   SequenceSpec spec;

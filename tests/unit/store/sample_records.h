@@ -96,6 +96,8 @@ inline std::vector<Record> sample_records() {
           record::BandLost{.job = 1, .band = {{0, 16}, {0, UINT32_MAX}}, .process = UINT64_MAX},
           record::ErrorForgotten{.job = 1},
           record::WorkerQuarantined{.process = UINT64_MAX, .name = "a desk", .reason = "lied\n"},
+          record::WorkerQuarantined{
+              .process = 6, .name = "tab@browser", .reason = "lied", .browser = true},
           record::QuarantineLifted{.name = "a desk"},
           record::SequenceAdded{.job = 4, .spec = sample_sequence(), .pixel_version = UINT32_MAX},
           record::FrameWaits{.job = 4,
