@@ -9,8 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "farm_driver.h"
 #include "seeds.h"
-#include "sim_coordinator.h"
-#include "sim_worker.h"
+#include "simulated_farm.h"
 
 namespace bandsaw::coordinator::sim {
 namespace {
@@ -42,10 +41,9 @@ struct Weather {
   std::optional<std::uint32_t> deadly_row = std::nullopt;  ///< of job 1: crashes its workers
 };
 
-class Simulation {
+class Simulation : SimulatedFarm {
  public:
-  Simulation(std::uint64_t seed, const Weather& weather)
-      : chance_(seed), weather_(weather), coordinator_(agenda_, chance_) {
+  Simulation(std::uint64_t seed, const Weather& weather) : SimulatedFarm(seed), weather_(weather) {
     coordinator_.tear_steps = chance_.happens(0.3);
     coordinator_.time_skew = chance_.between(-1e6, 1e6);
     coordinator_.audit_share = weather.liars ? 1 : chance_.pick(0, 2) * 0.3;
@@ -75,57 +73,35 @@ class Simulation {
       damage_now_and_then();
     }
     agenda_.at(kStorm, [this] { calm_down(); });
-    while (agenda_.now() < kEnd && !coordinator_.broken) {
-      if (!agenda_.run_next() || (agenda_.now() > kStorm + 1 && over(all))) {
-        break;
-      }
-    }
+    run_until_over(all, 1, kEnd);
     return outcome(all);
   }
 
  private:
-  static constexpr double kStorm = 40;
   // A farm of one slow worker renders two sequences of large frames in days.
   static constexpr double kEnd = 400'000;
 
-  bool over(std::size_t jobs) {
-    return coordinator_.all_final() && coordinator_.scheduler().jobs(agenda_.now()).size() == jobs;
-  }
-
-  void submit(const JobSpec& job) {
-    // Submits again until the job is known, because a crash may have lost it.
-    if (coordinator_.up()) {
-      coordinator_.input(input::Submit{job});
-    }
-    agenda_.in(5, [this, job] {
-      if (agenda_.now() < kStorm + 20) {
-        submit(job);
-      }
-    });
-  }
-
-  /// Submits a sequence again until it is known, and sends the scenes of some of its frames, in the
-  /// end of all.
+  using SimulatedFarm::submit;
+  /// Submits a sequence, and sends the scenes of some of its frames, in the end of all.
   void submit(const SequenceSpec& spec) {
-    if (coordinator_.up()) {
+    keep_sending([this, spec] {
       coordinator_.input(input::SubmitSequence{spec});
       for (const JobView& job : coordinator_.scheduler().jobs(agenda_.now())) {
         if (job.has_frames() && job.spec.request_id == spec.request_id) {
-          std::vector<FrameScene> scenes;
-          for (const FrameNumber frame : spec.frames) {
-            if (agenda_.now() > kStorm || chance_.happens(0.5)) {
-              scenes.push_back({frame, std::string(64, 'a')});
-            }
-          }
-          coordinator_.input(input::AddFrames{job.id, scenes});
+          send_scenes(job.id, spec);
         }
       }
-    }
-    agenda_.in(5, [this, spec] {
-      if (agenda_.now() < kStorm + 20) {
-        submit(spec);
-      }
     });
+  }
+
+  void send_scenes(JobId sequence, const SequenceSpec& spec) {
+    std::vector<FrameScene> scenes;
+    for (const FrameNumber frame : spec.frames) {
+      if (agenda_.now() > kStorm || chance_.happens(0.5)) {
+        scenes.push_back({frame, std::string(64, 'a')});
+      }
+    }
+    coordinator_.input(input::AddFrames{sequence, scenes});
   }
 
   // Repeats until it was sent, because the coordinator may be down.
@@ -334,11 +310,7 @@ class Simulation {
     return out;
   }
 
-  Agenda agenda_;
-  Chance chance_;
   Weather weather_;
-  SimCoordinator coordinator_;
-  std::vector<std::unique_ptr<SimWorker>> workers_;
   std::uint64_t crashes_ = 0;
 };
 

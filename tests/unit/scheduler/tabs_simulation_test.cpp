@@ -4,13 +4,11 @@
 // BANDSAW_SEEDS=n runs n seeds.
 
 #include <cmath>
-#include <memory>
 
 #include "absl/strings/match.h"
 #include "farm_driver.h"
 #include "seeds.h"
-#include "sim_coordinator.h"
-#include "sim_worker.h"
+#include "simulated_farm.h"
 
 namespace bandsaw::coordinator::sim {
 namespace {
@@ -29,10 +27,10 @@ struct TabWeather {
   std::size_t natives = 3;
 };
 
-class TabSimulation {
+class TabSimulation : SimulatedFarm {
  public:
   TabSimulation(std::uint64_t seed, const TabWeather& weather)
-      : chance_(seed), weather_(weather), coordinator_(agenda_, chance_) {
+      : SimulatedFarm(seed), weather_(weather) {
     coordinator_.tear_steps = chance_.happens(0.3);
     coordinator_.browser_audit_share = weather.liars ? 1 : 0.1;
     coordinator_.browsers = weather.browsers;
@@ -53,22 +51,11 @@ class TabSimulation {
     }
     crash_now_and_then();
     agenda_.at(kStorm, [this] { calm_down(); });
-    while (agenda_.now() < kEnd && !coordinator_.broken) {
-      if (!agenda_.run_next() || (agenda_.now() > kStorm + 25 && over(jobs))) {
-        break;
-      }
-    }
+    run_until_over(jobs, 25, 100'000);
     return outcome(jobs);
   }
 
  private:
-  static constexpr double kStorm = 40;
-  static constexpr double kEnd = 100'000;
-
-  bool over(std::size_t jobs) {
-    return coordinator_.all_final() && coordinator_.scheduler().jobs(agenda_.now()).size() == jobs;
-  }
-
   JobSpec random_job(std::size_t number) {
     JobSpec job = test_job(absl::StrCat("request ", number), StopAtSamples{chance_.pick(16, 400)},
                            static_cast<std::uint32_t>(chance_.pick(8, 48)),
@@ -76,17 +63,6 @@ class TabSimulation {
     // Each fits into some tab.
     job.package_bytes = static_cast<std::uint64_t>(chance_.between_log(1e6, 9e8));
     return job;
-  }
-
-  void submit(const JobSpec& job) {
-    if (coordinator_.up()) {
-      coordinator_.input(input::Submit{job});
-    }
-    agenda_.in(5, [this, job] {
-      if (agenda_.now() < kStorm + 20) {
-        submit(job);
-      }
-    });
   }
 
   SimWorker& add(const std::string& name, const Nature& nature) {
@@ -204,11 +180,7 @@ class TabSimulation {
     return out;
   }
 
-  Agenda agenda_;
-  Chance chance_;
   TabWeather weather_;
-  SimCoordinator coordinator_;
-  std::vector<std::unique_ptr<SimWorker>> workers_;
   std::vector<SimWorker*> tabs_;
   std::uint64_t reloads_ = 0;
 };
