@@ -54,7 +54,7 @@ struct Entry {
   const char* name;
   const char* what;
   void (*add)(CLI::App&, RawOptions&);
-  /// Nullptr: completion, generated from this table.
+  /// nullptr for the command `completion`, whose output is generated from this table.
   absl::StatusOr<Command> (*check)(const RawOptions&);
   const char* example;
 };

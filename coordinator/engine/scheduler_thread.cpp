@@ -154,7 +154,8 @@ void SchedulerThread::collect() {
   store_.collect(scheduler_.kept());
 }
 
-/// Only if nothing waits for the journal, because then the scheduler's state equals the journal's.
+/// Rewrites the journal as the smallest list of records if it has become long. Does so only while
+/// nothing waits for the journal, because then the scheduler's state equals the journal's.
 void SchedulerThread::compact() {
   if (!commit_queue_.empty() || journal_.size() <= compact_above_) {
     return;

@@ -56,7 +56,8 @@ void Interrupts::read() {
 void Interrupts::took_signal(int signal) {
   MutexLock lock(mutex_);
   if (seen_ && signal == SIGHUP) {
-    return;  // The shell and the kernel both send it; neither is a user who wants to force the end.
+    // the shell and the kernel may both send SIGHUP; this is no user who wants to force the end
+    return;
   }
   if (seen_ || !first_) {
     _exit(static_cast<int>(ExitCode::kInterrupted));

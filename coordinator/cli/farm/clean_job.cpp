@@ -65,8 +65,9 @@ class FarmRenderer {
                : std::move(job);
   }
 
-  /// `spec` is that of the job. The id of its request is shared by all who need this image, so the
-  /// job may have been cancelled, or have failed, before; then another one is submitted.
+  /// `spec`: the specification of the job. Its request id is the same for all users who need this
+  /// image, so the job may be an earlier one that was cancelled or has failed. Then another job is
+  /// submitted.
   absl::StatusOr<Image> image_of(JobId job, JobSpec spec) {
     ASSIGN_OR_RETURN(Progress last, follow_job(client_, job, display_));
     if (last.job.state != JobState::kDone) {

@@ -166,7 +166,7 @@ ExitCode not_fetched(const absl::Status& status, JobId job, const Console& conso
       absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
 }
 
-/// All pictures of a job that are written.
+/// The pictures of a job that are to be written.
 struct Pictures {
   FarmImage result;
   Layers layers;

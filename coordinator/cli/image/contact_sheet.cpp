@@ -51,7 +51,7 @@ ContactSheet::ContactSheet(const std::vector<std::int64_t>& numbers, std::uint32
   for (const std::int64_t number : spread(numbers, kMaxSheetFrames)) {
     cells_[number] = {};
   }
-  // As many columns as make the sheet about as wide as a screen: 16:10.
+  // The number of columns gives the sheet about the shape of a screen, 16:10.
   const double aspect = static_cast<double>(width) / height;
   const double columns = std::ceil(std::sqrt(static_cast<double>(cells_.size()) * 1.6 / aspect));
   columns_ =

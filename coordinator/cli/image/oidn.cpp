@@ -55,7 +55,7 @@ struct Oidn::Library {
     return find("oidnNewDevice", new_device) && find("oidnCommitDevice", commit_device) &&
            find("oidnReleaseDevice", release_device) && find("oidnGetDeviceError", get_error) &&
            find("oidnNewFilter", new_filter) && find("oidnSetSharedFilterImage", set_image) &&
-           // Version 2, version 1.
+           // The first name is that of version 2, the second that of version 1.
            (find("oidnSetFilterBool", set_bool) || find("oidnSetFilter1b", set_bool)) &&
            find("oidnCommitFilter", commit_filter) && find("oidnExecuteFilter", execute_filter) &&
            find("oidnReleaseFilter", release_filter);

@@ -209,7 +209,7 @@ class LocalRun {
       picture = clean->of(film, views_.most_side());
     }
     const double cleaned_in = steady_seconds() - begin;
-    // An error here is one of rendering. The render itself reports it.
+    // If this fails, rendering has failed too, which the render itself reports.
     views_.show(picture.ok() && *picture ? **picture : film.snapshot().image, picture_);
     show_at_ = steady_seconds() + std::max(kInterval_s, cleaned_in / kMaxShare);
   }

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 constexpr double kBlenderTimeout_s = 600;
 constexpr std::uint64_t kMaxText = 1 << 20;
 constexpr char kAddon[] = "bandsaw_blender.zip";
-/// Begins the line by which the add-on reports that a frame is written.
+/// Prefix of the line with which the add-on reports that a frame is written.
 constexpr char kAnswer[] = "bandsaw: ";
 /// Python reads the add-on from its zip. The arguments follow "--".
 constexpr char kScript[] =

@@ -120,8 +120,8 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   return serving;
 }
 
-/// Each worker has two connections, and each connection is an open file: the soft limit of most
-/// systems, 1,024, is for programs that use select(2).
+/// Raises the limit of open files: each worker has two connections, and each connection is an open
+/// file. The usual soft limit, 1,024, is meant for programs that use select(2).
 void raise_file_limit() {
   constexpr rlim_t kEnough = 65'536;
   rlimit limit{};

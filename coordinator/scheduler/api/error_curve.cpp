@@ -12,8 +12,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Bounds of the exponent: of random samples, and the steepest that is extrapolated. A last octave
-/// that is steeper is not followed by another such one (NOTES.md).
+/// Bounds of the exponent. The lower one is that of random samples. The upper one is the steepest
+/// that is extrapolated: an octave in which the error falls faster is not followed by another such
+/// octave (NOTES.md).
 constexpr double kMinFall = 0.5;
 constexpr double kMaxFall = 0.75;
 

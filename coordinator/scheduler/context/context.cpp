@@ -142,7 +142,8 @@ void Context::apply(const record::StateChanged& r) {
   }
 }
 
-/// No job has bands that browsers rendered. Those that are connected may render more.
+/// Forgets the browsers that have left. Called when no active job has bands that browsers rendered.
+/// Connected browsers are kept, because they may render more bands.
 void Context::forget_browsers() {
   std::erase_if(browsers, [&](const auto& entry) { return !joined.contains(entry.second); });
   quarantine.forget_browsers();
@@ -226,7 +227,8 @@ void Context::apply(const record::BandLost& r) {
   }
 }
 
-// The number of samples of a job with an error target was fixed by the wrong error.
+// A job with an error target decides its number of samples again, because it was decided by the
+// wrong error.
 void Context::apply(const record::ErrorForgotten& r) {
   if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
     job->curve.clear();

@@ -5,7 +5,8 @@
 
 namespace bandsaw::coordinator {
 
-// 24 bits that depend on the epoch, then 2^39 ids; the sign bit is never used.
+// The first id has 24 bits that depend on the epoch, above 39 bits that count the leases; the sign
+// bit is never used.
 Leases::Leases(const std::string& epoch)
     : next_(epoch.empty() ? 1 : ((text_hash(epoch) >> 40) << 39) + 1) {}
 

@@ -15,7 +15,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Lengths of a worker's first band and of the shortest band near the end, over the target.
+/// Time of a worker's first band, and of the shortest band near the end, as fractions of the target
+/// time.
 constexpr double kFirst = 0.2;
 constexpr double kMin = 0.125;
 
@@ -24,8 +25,9 @@ constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(double);
 /// Returns the row after the row of tiles that contains `row`.
 std::uint32_t end_of_tile_row(std::uint32_t row) { return (row / kTileSide + 1) * kTileSide; }
 
-/// Returns the end of a band of about these rows, at most `last`: where a row of tiles ends, if the
-/// band reaches one or if it becomes at most a quarter longer.
+/// Returns the end of a band of about these rows, at most `last`. A band that crosses a border
+/// between two rows of tiles ends at the last border that it crosses. Otherwise it ends at the next
+/// border if it becomes at most a quarter longer by that, or else where it would end anyway.
 std::uint32_t at_edge_of_tiles(const RowRange& rows, std::uint32_t last) {
   if (rows.last == last) {
     return last;
@@ -89,7 +91,7 @@ Band separate_suspects(const Job& job, const Band& free, Band band) {
     }
   }
   const std::uint32_t last = std::min(piece.value_or(band.rows.last), next);
-  // A band with a part of the samples is never longer than its size: its rows are costly.
+  // A band that was cut by samples is never made longer, because its rows are costly.
   band.rows.last = band.samples == free.samples ? last : std::min(band.rows.last, last);
   return band;
 }
@@ -130,7 +132,8 @@ Band size_band(const Sizing& sizing) {
 }
 
 std::optional<Band> BandChooser::choose(Job& job, const Worker& worker) const {
-  // The time of a sequence is predicted from its frames, so that these need no probes.
+  // Frames need no probes, because the time of a sequence is predicted from the frames that are
+  // done.
   const auto probe = job.spec.sequence == 0 ? next_probe(job, worker) : std::nullopt;
   return probe ? cut(job, worker, *probe) : choose_free(job, worker);
 }
@@ -182,7 +185,8 @@ Band BandChooser::sized(const Job& job, const Worker& worker, const Band& free) 
   const double farm =
       std::max(sizing.work_rate,
                work_rate_per_thread(job) * static_cast<double>(context_.available.threads()));
-  // Twice the share of a job with a single worker: then nothing is left for others.
+  // With a share of 2, the band may have all of the work that is left, so nothing is left for other
+  // workers.
   sizing.farm_share = job.alone ? 2 : sizing.work_rate / farm;
   sizing.work_left = std::max(work_left(job, free), job.cost_of(free));
   sizing.target_s = context_.options.band_target_s;

@@ -56,9 +56,10 @@ bool Dispatcher::offer_frames(Worker& worker, const Sequence& sequence) {
   return false;
 }
 
-/// Returns false if the job has nothing for this worker. Otherwise grants it a lease, except of a
-/// suspect band that it cannot be given now: a suspect band is given only to a worker that holds
-/// nothing else, because if that worker is lost as well, the crash is attributed to the band.
+/// Grants the worker a lease of a band of the job. Returns false if the job has no band for this
+/// worker. Returns true without a lease if the band is suspect and the worker holds other leases: a
+/// suspect band is given only to a worker that holds nothing else, so that the crash can be
+/// attributed to the band if that worker is lost as well.
 bool Dispatcher::offer(Worker& worker, Job& job) {
   if (!job.any_free() && !planner_.plan_timed(job) && !job.audit_waits()) {
     context_.jobs.unmark_leasable(job);

@@ -8,7 +8,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Passes of a job with a time limit that may be incomplete at a time.
+/// Maximum number of incomplete passes of a job with a time limit.
 constexpr std::ptrdiff_t kMaxIncompletePasses = 3;
 
 }  // namespace

@@ -73,7 +73,7 @@ void measure(Worker& worker, Job& job, const input::BandStored& in) {
   if (!is_probe(job.spec.settings.height, in.band)) {
     measure_work_rate(worker, job, in);
   }
-  // The samples that the pixels took, as columns over all of the rows.
+  // Number of samples per row: the band's samples as columns that span all of its rows.
   const double columns = static_cast<double>(samples) / in.band.rows.count();
   job.row_times.measure(in.band.rows, in.render_s * worker.threads / columns);
 }
