@@ -67,7 +67,8 @@ Collector::Final Collector::final_job(const KeptJob& kept) const {
   return job;
 }
 
-/// The last change of a job's folder is the removal of its bands when it becomes final.
+/// Adds the sizes of a job's files. The time at which the job became final is that of the last
+/// change of its folder, because its bands are removed then.
 void Collector::add_files_of(JobId id, Final& job) const {
   struct stat found {};
   if (::stat(folder_.job(id).c_str(), &found) == 0) {
@@ -105,7 +106,7 @@ std::vector<JobId> Collector::to_forget(const std::vector<KeptJob>& jobs, double
   });
   std::vector<JobId> forget;
   for (const Final& job : final_jobs) {
-    // Its submitter may be about to fetch it.
+    // The submitter of a job that has just become final may still fetch its result.
     const bool fresh = now - job.at < keep_.min_seconds;
     if (now - job.at <= keep_.seconds && (bytes <= keep_.bytes || fresh) &&
         final_jobs.size() - forget.size() <= keep_.jobs) {

@@ -11,7 +11,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// INVALID_ARGUMENT: not a band of an image with these settings, or not all of its pixels.
+/// Checks a band that a worker sent. INVALID_ARGUMENT: it is not a band of an image with these
+/// settings, or some of its pixels are missing.
 absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings,
                         const TileSamples& tiles) {
   if (absl::Status valid = validate(pixels.band, settings); !valid.ok()) {

@@ -10,7 +10,7 @@ namespace {
 // Finite: infinite planes would give NaN for rays parallel to them.
 constexpr float kFarthest = std::numeric_limits<float>::max();
 
-/// Unused children stay empty.
+/// Returns whether the node has this child: an unused child has empty bounds and keeps them.
 bool used(const WideNode& node, std::size_t child) {
   return node.bounds[0][child] <= node.bounds[3][child];
 }

@@ -15,8 +15,8 @@
 namespace bandsaw {
 namespace {
 
-/// If the luminance above the mean is less than this share of the total, it is rounding or not
-/// worth a shadow ray, and the environment counts as uniform.
+/// If the luminance above the mean is less than this share of the total, the environment counts as
+/// uniform: the difference is a rounding error or too small for a shadow ray to pay.
 constexpr double kMinExcess = 1e-6;
 
 bool is_cube(const Environment& environment) {

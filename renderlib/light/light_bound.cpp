@@ -65,8 +65,8 @@ LightBound bound_of(const PointLight& light) {
 
 LightBound bound_of(const SpotLight& light, const std::vector<Texture>& textures) {
   const Rgb image = light.image ? mean(textures, light.image->texture) : gray(1);
-  // Treated as if its normals covered all directions up to the outer angle: a spot light's
-  // intensity is not a cosine.
+  // The intensity of a spot light is not a cosine. The bound is that of a surface whose normals
+  // cover all directions up to the outer angle, each of which is seen with full intensity.
   return {.ball = {light.position, 0},
           .intensity = brightness(light.intensity * image),
           .axis = light.direction,

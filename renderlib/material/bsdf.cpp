@@ -45,7 +45,7 @@ SidedNormals for_glass(const SidedNormals& normal, const Vec3& wo, double eta) {
 
 std::optional<BsdfSample> sample_diffuse(const DiffuseBsdf& bsdf, double u, double v) {
   const Vec3 local = sample_cosine_hemisphere(u, v);
-  // Constructed in place: a copy would wait for the stores.
+  // The sample is constructed in place, which is faster than to copy it into the optional.
   std::optional<BsdfSample> sample(std::in_place);
   sample->wi = orthonormal_basis(bsdf.normal.shading).to_world(local);
   sample->pdf = cosine_hemisphere_pdf(dot(sample->wi, bsdf.normal.shading));

@@ -51,9 +51,9 @@ Shares shares_of(double cos_theta, double eta, const Facets& facets) {
   return sum;
 }
 
-/// Returns the mean reflectance of a smooth boundary for diffuse light from the denser side. By the
-/// substitution of the cosine beyond the boundary, it is 1 - (1 - that of the other side) / eta^2,
-/// which has no kink at the angle of total reflection.
+/// Returns the mean reflectance r of a smooth boundary for diffuse light from the denser side. It
+/// is computed from the mean reflectance s of the other side, by r = 1 - (1 - s) / index^2: the
+/// integral of s has no kink, while that of r has one at the angle of total reflection.
 double internal_smooth(double index) {
   constexpr int kSteps = 256;
   double outside = 0;

@@ -87,7 +87,8 @@ void add_refraction(const PrincipledBsdf& bsdf, const Vec3& i, BsdfValue& sum) {
   const Rgb& base = bsdf.diffuse.base;
   sum.value +=
       Rgb{std::sqrt(base.r), std::sqrt(base.g), std::sqrt(base.b)} * static_cast<float>(seen);
-  // 1 - reflecting() is refracting (1 - f) outside and 1 - f inside.
+  // The probability of refraction, 1 - reflecting(), is refracting (1 - f) outside and 1 - f
+  // inside. `pdf` has the factor 1 - f already.
   sum.pdf += bsdf.chances[kSpecular] * (bsdf.inside ? 1 : bsdf.refracting) * pdf;
 }
 

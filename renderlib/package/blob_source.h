@@ -1,7 +1,7 @@
 #pragma once
 
-// Interface that returns the bytes of a digest: implemented by a folder, by a worker's cache and by
-// a map in memory. One of the four interfaces with virtual functions.
+// Interface that returns the bytes of a blob, given its digest. It is implemented by a folder, by a
+// worker's cache and by a map in memory.
 
 #include <cstddef>
 #include <map>

@@ -140,8 +140,8 @@ struct Film::Rows {
               const TileSamples& tiles);
   /// Returns true if all pixels have two halves of equal size.
   bool all_have_halves() const;
-  /// Calls f(half tile, group number, pixels) for each group of pixels (render/pixel_groups.h). The
-  /// function adds the pixels of the group to the `ErrorSums` that f returns.
+  /// Calls f(half tile, number of the group, number of its pixels) for each group of pixels
+  /// (render/pixel_groups.h), and adds the pixels of the group to the `ErrorSums` that f returns.
   template <class F>
   void add_errors(F f) const;
   /// Collects in `out` a pixel's contiguous nodes from the first sample on.

@@ -14,8 +14,9 @@ double spread(std::size_t i) {
   return static_cast<std::uint32_t>(i * 2'654'435'769u) / 4'294'967'296.0;
 }
 
-/// Returns the length of the next node after `samples` samples (whole blocks): the longest aligned
-/// one, limited to a quarter of the current octave or to the samples owed, whichever is larger.
+/// Returns the number of samples of the next node after `samples` samples, which are whole blocks.
+/// It is that of the longest node that may begin there, limited to a quarter of the current octave
+/// or to the samples owed, whichever is larger.
 std::uint64_t next_step(std::uint64_t samples, double owed) {
   const std::uint64_t aligned = longest_at(samples / kBlockSamples) * kBlockSamples;
   const std::uint64_t quarter = std::bit_floor(samples) / 4;

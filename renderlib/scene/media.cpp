@@ -24,8 +24,8 @@ absl::Status check_rates(const std::string& field, const Rgb& rates) {
   return absl::OkStatus();
 }
 
-/// Checks the use of a grid. `coefficient` is the largest that is multiplied by its numbers;
-/// `most_of` has the largest number of each grid.
+/// Checks the use of a grid. `coefficient` is the medium's largest coefficient that is multiplied
+/// by the numbers of the grid. `most_of` holds the largest number of each grid.
 absl::Status check_use(const std::string& field, const std::optional<GridUse>& use,
                        const std::vector<float>& most_of, float coefficient) {
   if (!use) {

@@ -91,13 +91,15 @@ std::size_t clean_shapes(Shapes& shapes) {
                        [](const Triangle& t) { return !has_area(t.b - t.a, t.c - t.a); });
 }
 
-/// For meshes of earlier scenes, which are clean: the number of triangles that they lost.
+/// The meshes of earlier scenes, which have been cleaned, and the number of triangles that each
+/// lost by it.
 using CleanMeshes = std::map<const Mesh*, std::size_t>;
 
 /// Removes quads and triangles, including those of meshes, whose area is zero or not finite (e.g.
 /// because a vertex is not finite); the others keep their order. Normals, uvs and colours that are
-/// not finite become zero. Returns the number of removed primitives; those of a mesh or group count
-/// once per instance. Sets the number for each mesh.
+/// not finite become zero. The meshes in `known` are clean already. Returns the number of removed
+/// primitives; those of a mesh or group count once per instance. Appends to `dropped_of_mesh` the
+/// number of triangles that each mesh lost.
 std::size_t clean(Geometry& geometry, const CleanMeshes& known,
                   std::vector<std::size_t>& dropped_of_mesh) {
   std::size_t dropped = clean_shapes(geometry);

@@ -78,7 +78,7 @@ absl::Status BrowserRenderer::build_scene() {
   ASSIGN_OR_RETURN(const PackageInfo info, package_info(begun->text));
   HeldBlobs blobs(begun->blobs);
   ASSIGN_OR_RETURN(SceneDescription description, decode_package(begun->text, blobs, &parts_));
-  begun->blobs.clear();  // what the scene uses of them it keeps
+  begun->blobs.clear();  // the scene holds the blobs that it uses
   std::vector<std::shared_ptr<const Scene>> earlier;
   for (const auto& [digest, loaded] : scenes_) {
     earlier.push_back(loaded.scene);

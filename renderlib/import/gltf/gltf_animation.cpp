@@ -49,8 +49,8 @@ absl::StatusOr<Interpolation> interpolation_of(const Json& sampler, const std::s
       place, absl::StrCat("its interpolation \"", name, "\" is not LINEAR, STEP or CUBICSPLINE"));
 }
 
-/// Reads a sampler. `components`: numbers of a key, 3 or 4; 1 for weights, of which each key has
-/// one for each morph target.
+/// Reads a sampler. `components`: numbers of a key, 3 for vectors, 4 for rotations. For weights it
+/// is 1, although each key has one weight for each morph target.
 absl::StatusOr<Curve> read_sampler(const Json& root, const Json& sampler, const std::string& place,
                                    std::size_t components, Buffers& buffers) {
   ASSIGN_OR_RETURN(const Interpolation interpolation, interpolation_of(sampler, place));

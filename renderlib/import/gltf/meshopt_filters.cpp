@@ -81,7 +81,7 @@ void decode_exponential(std::string& bytes) {
   for (std::size_t at = 0; at < bytes.size(); at += 4) {
     std::uint32_t code = 0;
     std::memcpy(&code, bytes.data() + at, 4);
-    // Both are signed.
+    // Exponent (8 bits) and mantissa (24 bits) are signed, so both are shifted as signed numbers.
     const auto exponent = static_cast<std::int32_t>(code) >> 24;
     const auto mantissa = static_cast<std::int32_t>(code << 8) >> 8;
     const auto value = static_cast<float>(std::ldexp(static_cast<double>(mantissa), exponent));

@@ -249,7 +249,8 @@ absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes) {
   alpha.height = 1;
   std::vector<std::byte> texels{std::byte{255}};
   if (shape.channels == 2 || shape.channels == 4) {
-    // The last of four channels, whatever the file contains.
+    // Decoded to four channels, of which the last is alpha, also if the file has only grey and
+    // alpha.
     Shape found;
     ASSIGN_OR_RETURN(const Pixels<stbi_uc> pixels, decode_pixels(bytes, 4, found));
     alpha.width = static_cast<std::uint32_t>(found.width);

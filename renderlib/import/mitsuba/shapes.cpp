@@ -71,8 +71,9 @@ SourceMesh cube_mesh() {
 
 constexpr int kSegments = 192;  ///< segments of round shapes that become meshes
 
-/// Adds a strip of triangles between two rows of kSegments + 1 vertices, seen from the side to
-/// which the first row is below and the vertices go counter-clockwise.
+/// Adds a strip of triangles between two rows of kSegments + 1 vertices, which start at the indices
+/// `below` and `above`. The vertices of a triangle are counter-clockwise seen from the side from
+/// which the rows run from left to right and `above` is above.
 void add_strip(std::uint32_t below, std::uint32_t above, PlyMesh& mesh) {
   for (std::uint32_t i = 0; i < kSegments; ++i) {
     mesh.triangles.push_back({below + i, below + i + 1, above + i + 1});
@@ -390,7 +391,8 @@ absl::Status ShapeReader::add_sphere(const Parameters& from, const Surface& surf
     return add_made_mesh(from, placed, sphere_mesh(), target);
   }
   const bool uv = needs_uv(surface.bsdf, surface.emitter);
-  // Poles and seam of our spheres, with y up: the same with v = 0 below.
+  // The axes below turn our sphere so that its poles and the seam of its uvs are where Mitsuba's
+  // are. Then only v runs in the other direction.
   const TexturedSurface textured{UvFrame::kFlipped, {}};
   ASSIGN_OR_RETURN(const SurfaceMaterial material,
                    materials_.material_of(surface.bsdf, surface.emitter, textured));

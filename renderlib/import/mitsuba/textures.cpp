@@ -131,10 +131,11 @@ absl::StatusOr<scene::Texture> part_of(const Parameters& from, const char* name,
                              : texture_of(*property, of, surface, to);
 }
 
-/// The first texel row of an image is its top row. An image of one grey value is a PGM.
+/// Returns a PGM file of 2 x 2 grey texels, top row first: white, black; black, white.
 std::string checker_image() { return std::string("P5 2 2 255\n") + "\xff" + '\0' + '\0' + "\xff"; }
 
-/// Mitsuba's cell of (0, 0) is that of color0, and a cell is half a unit.
+/// Converts a checkerboard. In Mitsuba, each cell has a side of half a unit, and the cell at (0, 0)
+/// has color0.
 absl::StatusOr<scene::Texture> checkerboard(const Parameters& from, ColorOf of,
                                             const TexturedSurface& surface, Conversion& to) {
   const bool number = of == ColorOf::kNumber;
@@ -151,7 +152,8 @@ absl::StatusOr<scene::Texture> checkerboard(const Parameters& from, ColorOf of,
   const bool whole = rows == std::floor(rows);
   scene::Texture out;
   if (upright && (surface.frame == UvFrame::kSame || whole)) {
-    // From the other end, an even number of rows begins with the other colour.
+    // Our rows are counted from the other end. If their number is even, the first one has the other
+    // colour.
     const bool swap = surface.frame == UvFrame::kFlipped && std::fmod(rows, 2) == 0;
     *out.mutable_checker()->mutable_even() = swap ? color1 : color0;
     *out.mutable_checker()->mutable_odd() = swap ? color0 : color1;
@@ -159,7 +161,7 @@ absl::StatusOr<scene::Texture> checkerboard(const Parameters& from, ColorOf of,
     out.mutable_checker()->add_size(0.5 / m[1][1]);
     return out;
   }
-  // An image of four texels takes any map.
+  // An image of four texels can be rotated and offset, which our checker texture cannot.
   *out.mutable_mix()->mutable_a() = color1;
   *out.mutable_mix()->mutable_b() = color0;
   scene::ImageTexture& image = *out.mutable_mix()->mutable_amount()->mutable_image();

@@ -164,7 +164,7 @@ absl::Status set_sensor(const Object& sensor, scene::Scene& scene, Conversion& t
     to.warn(from.place(), "a sensor with unequal scale or shear is shown without them");
   }
   if (sensor.type == "orthographic") {
-    // The film is 2 wide before it is scaled.
+    // Without a scale, Mitsuba's orthographic camera shows a width of 2 scene units.
     camera.mutable_orthographic()->set_height(2 * frame.scale.x / film.aspect());
     set_window(film, 0, 0, camera);
   } else if (sensor.type == "perspective" || sensor.type == "thinlens") {
@@ -215,7 +215,8 @@ absl::Status set_integrator(const Object& integrator, scene::Scene& scene, Conve
                                          "direct light, stands in its place"));
     }
     to.passages_are_free = type == "volpath" || type == "volpathmis";
-    // Mitsuba counts the segments of a path, we the vertices between them.
+    // Mitsuba limits the number of segments of a path, our max_depth that of the vertices between
+    // them.
     out.set_max_depth(static_cast<std::uint32_t>(
         depth < 0 ? kMaxDepth : std::clamp<std::int64_t>(depth - 1, 1, kMaxDepth)));
   }

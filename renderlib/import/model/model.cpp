@@ -96,9 +96,10 @@ ModelKind kind_of(const std::string& path) {
                                                   : ModelKind::kOther;
 }
 
-// Returns the rotation of an FBX file to +y up, +z front and +x right: the file names its axes.
-// Assimp 5.2 does not rotate the scene; Assimp 5.4 does it in the root, with a scale by the file's
-// unit, which is undone here, so that every version gives the same scene.
+// Returns the rotation that turns the scene of an FBX file to +y up, +z front and +x right; the
+// file's metadata name its axes. Assimp 5.2 does not rotate the scene. Assimp 5.4 rotates it and
+// scales it by the file's unit in the root node; this is undone here, so that all versions give the
+// same scene.
 Transform upright(const aiScene& scene) {
   struct Axis {
     const char* name;

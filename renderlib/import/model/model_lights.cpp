@@ -28,7 +28,8 @@ Rgb brightness_of(const aiLight& from) {
 }
 
 /// Returns the intensity at distance 1 of a light with the falloff c + l r + q r^2, q > 0. Other
-/// falloffs, which few formats have and which are not physical, are evaluated at distance 1 too.
+/// falloffs, which few formats have and which are not physical, are replaced by the falloff with
+/// the same intensity at distance 1.
 Rgb intensity_of(const aiLight& from, ModelFile& file) {
   const float square = from.mAttenuationQuadratic;
   const bool is_square =

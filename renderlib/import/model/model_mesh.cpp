@@ -83,7 +83,8 @@ std::vector<std::array<float, 2>> uvs(const aiMesh& from, unsigned uv_set) {
   if (uv_set >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !from.HasTextureCoords(uv_set)) {
     return {};
   }
-  // In Assimp, v = 0 is the bottom row of an image for every format, as here.
+  // Assimp converts the uvs of all formats so that v = 0 is the bottom row of an image, as in our
+  // renderer.
   std::vector<std::array<float, 2>> to(from.mNumVertices);
   for (unsigned i = 0; i < from.mNumVertices; ++i) {
     const aiVector3D& uv = from.mTextureCoords[uv_set][i];

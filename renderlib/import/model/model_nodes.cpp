@@ -101,7 +101,10 @@ std::vector<Key> keys_of(const NodeMotion& motion, const Shutter& shutter) {
   return keys;
 }
 
-// Traverses the tree with an explicit stack, because its depth is determined by the file.
+// Visits all nodes of the file's tree and collects instances, cameras and lights in `model`.
+// `flattened` counts the instances that a transform without an inverse has made flat; they are left
+// out. The traversal uses an explicit stack, because the depth of the tree is determined by the
+// file.
 class Walk {
  public:
   Walk(ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {

@@ -264,7 +264,8 @@ class Interpreter {
     if (read.first.empty() || type.empty()) {
       return error_at(place, "MakeNamedMedium needs a name and \"string type\"");
     }
-    // pbrt-v4 refuses a second one of the name; so old scenes are converted nevertheless.
+    // A second medium of the same name replaces the first, as old scenes need it. (pbrt-v4 refuses
+    // it.)
     builder_.media[read.first] = {type, std::move(read.second), state().color_space,
                                   state().transforms[0]};
     return absl::OkStatus();

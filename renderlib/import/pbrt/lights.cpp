@@ -33,14 +33,15 @@ struct LightSource {
     }
     return rgb;
   }
-  /// Returns the factor by which the light is scaled to have the parameter `wanted` ("power",
-  /// "illuminance"); 1 if that is absent. `own`: the power or illuminance of light of luminance 1.
+  /// Returns the factor by which the light must be scaled so that its power or illuminance is the
+  /// one that the scene states in the parameter `wanted` ("power" or "illuminance"); 1 if the scene
+  /// states none. `own`: power or illuminance that the light would have with luminance 1.
   absl::StatusOr<double> factor_for(const std::string& wanted, double own) const {
     ASSIGN_OR_RETURN(const double value, parameters.number(wanted, -1));
     if (!(value > 0)) {
       return 1;
     }
-    // An RGB light of another luminance than 1 is scaled as a whole.
+    // The power or illuminance of an RGB light is proportional to the luminance of its colour.
     const Parameter* rgb =
         parameters.find("I") != nullptr ? parameters.find("I") : parameters.find("L");
     if (rgb != nullptr && rgb->type == "rgb" && rgb->numbers.size() == 3) {

@@ -25,8 +25,8 @@ struct Edge {
 
 struct Topology {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edges;
-  /// Vertices around each vertex in order, and whether the ring is open: then from one end of the
-  /// boundary to the other.
+  /// The neighbours of each vertex, in order around it. The ring of a vertex on the boundary is
+  /// open: it runs from one neighbour on the boundary to the other.
   std::vector<std::vector<std::uint32_t>> rings;
   std::vector<bool> is_boundary;
 };
@@ -35,8 +35,9 @@ std::pair<std::uint32_t, std::uint32_t> key_of(std::uint32_t a, std::uint32_t b)
   return {std::min(a, b), std::max(a, b)};
 }
 
-/// Walks around a vertex along `next` (of a triangle with the vertex: the corner after it -> the
-/// corner before it).
+/// Lists the neighbours of a vertex in order around it. For each triangle of the vertex, `next`
+/// maps the corner after the vertex to the corner before it. Returns false if the triangles do not
+/// form a single ring.
 bool walk_ring(const std::map<std::uint32_t, std::uint32_t>& next, std::vector<std::uint32_t>& ring,
                bool& is_open) {
   std::map<std::uint32_t, bool> has_predecessor;

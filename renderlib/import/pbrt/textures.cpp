@@ -287,7 +287,7 @@ std::optional<double> constant_of(const scene::Texture& texture) {
   }
   const auto& rgb = texture.color().rgb();
   if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) {
-    return rgb[0];  // the weights of the channels do not add up to 1 in all digits
+    return rgb[0];  // luminance() would round: its weights do not add up to exactly 1
   }
   return spectrum::luminance({rgb[0], rgb[1], rgb[2]});
 }

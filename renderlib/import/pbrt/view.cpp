@@ -108,7 +108,8 @@ absl::Status read_integrator(const ViewSource& view, Builder& builder) {
       out.set_occlusion_distance(*distance);
     }
   }
-  // All other integrators compute the same image in other ways.
+  // The parameters of all other integrators are ignored, because these integrators compute the same
+  // image in other ways.
   for (const Parameter& parameter : in.list) {
     parameter.is_used = true;
   }

@@ -126,8 +126,8 @@ std::optional<Turn> only_turn(const Written& pose, const Written& other) {
   return rests ? std::optional(Turn{other.turns[0].axis, 0}) : std::nullopt;
 }
 
-/// Returns keys after a up to b: more than one if both rotate about one axis by more than the
-/// shortest rotation.
+/// Appends the keys after a, up to and including b. If both rotate about the same axis and the
+/// rotation between them exceeds kMaxTurn, further keys are added in between.
 void add_keys(const WrittenKey& a, const WrittenKey& b, std::vector<Key>& keys) {
   const std::optional<Turn> from = only_turn(a.pose, b.pose);
   const std::optional<Turn> to = only_turn(b.pose, a.pose);
