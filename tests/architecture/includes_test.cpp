@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A folder may include itself and everything that the folders named here may include.
+// For each folder: the other folders whose headers it may include. It may include itself too, and
+// whatever the named folders may include.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"proto/wire", {}},
     {"proto/link", {"proto/wire"}},
@@ -235,8 +236,8 @@ std::map<std::string, std::set<std::string>> types_of_headers() {
   return found;
 }
 
-// Two types of one name in headers that no file includes together are one type to the linker, which
-// would mix their inline members without an error.
+// If two headers define types of the same name and no file includes both, no compiler reports it.
+// The linker takes the two for one type and mixes their inline members.
 TEST(Architecture, ATypeIsDefinedInOneHeader) {
   const auto found = types_of_headers();
   EXPECT_GT(found.size(), 300u);

@@ -186,7 +186,8 @@ class NullWorker {
     header.set_instance(instance_);
     header.set_size(black.size());
     header.set_sha256(wire::sha256(black).raw());
-    // Reports a speed for which a band is one row, so that bands are measured and not bytes.
+    // Reports so low a speed that the scheduler leases bands of one row: the costs of a band are to
+    // be measured, not those of its bytes.
     header.mutable_counters()->set_render_s(2.0 * (band.last_row() - band.first_row()));
     chunk.set_data(black);
     farm::PutBandReply reply;

@@ -74,7 +74,8 @@ TEST_F(CleanImages, AreTheSameAfterTheCoordinatorWasKilled) {
   EXPECT_TRUE(file_bytes(farm_.path("there.raw.png")) == file_bytes(farm_.path("here.raw.png")));
 }
 
-// A single block of samples has no parts: half of them are rendered again.
+// The denoiser needs an image of the first half of the samples. If all samples are one block, they
+// cannot be separated, and half of them are rendered again.
 TEST_F(CleanImages, AreTheSameWithFewSamples) {
   const std::string expected = here("spheres", "5", "here.pfm");
   farm_.add_worker("one", 2);
@@ -82,7 +83,8 @@ TEST_F(CleanImages, AreTheSameWithFewSamples) {
   EXPECT_TRUE(file_bytes(farm_.path("there.pfm")) == expected);
 }
 
-// A stand-in for the library is found as the system finds libraries.
+// The library is a stand-in, which the program finds in the way in which it finds an installed
+// library.
 TEST_F(CleanImages, AreMadeByAnInstalledLibrary) {
   std::vector<std::string> command = image("render", "spheres", "20", farm_.path("oidn.exr"));
   command.insert(command.begin(), BANDSAW_BIN);

@@ -21,7 +21,8 @@ bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
 
 class Sender {
  public:
-  /// Three bytes of the input: the kind of message, and a number.
+  /// Sends the next message. `what` and `number` come from three bytes of the input; the bits of
+  /// `what` select the kind of message.
   void step(std::uint8_t what, std::uint32_t number) {
     farm::BandChunk chunk;
     if ((what & 1) != 0) {

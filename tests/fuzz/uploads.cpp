@@ -31,7 +31,8 @@ class Sender {
  public:
   explicit Sender(const std::string& folder) : folder_(folder), store_(*BlobStore::open(folder)) {}
 
-  /// Three bytes of the input: the kind of event, and a number.
+  /// Does the next thing. `what` and `number` come from three bytes of the input; `what` selects
+  /// the kind of event.
   void step(std::uint8_t what, std::uint32_t number) {
     switch (what % 6) {
       case 0:

@@ -144,7 +144,7 @@ double boxes_met(const BinaryTree& tree, const std::vector<Ray>& rays) {
   return met / static_cast<double>(rays.size());
 }
 
-// Two triangles a million times as wide as the mesh on them.
+// The ground is two triangles, a million times as wide as the mesh that stands on it.
 TEST(Tree, B6_AFineObjectOnAVastGroundKeepsItsTree) {
   const Mesh fine = test::icosphere(4);
   Mesh vast = fine;

@@ -128,7 +128,8 @@ TEST(Triangle, T6_AHugeOneJustBelowTheCamera) {
         ++missed;
         continue;
       }
-      // In units of the coordinates: the camera itself is rounded to u |o|.
+      // The error is measured in scene units and relative to the rounding of the coordinates,
+      // because the ray's origin itself is rounded.
       const double off = std::abs(static_cast<double>(crossing.t - plane_distance(ray, t)));
       error.see(off);
       over_last_bits.see(off / worth_of_last_bits(ray, t));

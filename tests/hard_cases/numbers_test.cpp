@@ -103,8 +103,8 @@ TEST(Sampler, C7_PixelsOfTheLargestImageHaveStreamsOfTheirOwn) {
                 static_cast<double>(pixels.size() - seen.size()), 0);
 }
 
-// If a pixel's sample were its neighbour's next one, means over 2 x 2 pixels would vary by more
-// than the expected quarter.
+// Expects that the mean over 2 x 2 pixels has a quarter of the variance of one pixel. If
+// neighbouring pixels shared samples, it would have more.
 TEST(Sampler, R3_NeighboursShareNoSamples) {
   constexpr std::uint32_t kSide = 512;
   test::Moments pixel;

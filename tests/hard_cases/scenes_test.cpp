@@ -22,7 +22,8 @@ std::shared_ptr<const Scene> white_ball(int slices, int stacks, bool smooth) {
   }
   test::SceneMaker maker;
   maker.instance(std::move(mesh), {}, maker.diffuse(1));
-  // From the side and a little from behind: its terminator and its silhouette are visible.
+  // The light comes from the side and a little from behind, so the camera sees the border of light
+  // and shade.
   maker.scene.lights = {DirectionalLight{normalize(Vec3{-1, -0.2, 0.1}), gray(1)}};
   return maker.build();
 }
@@ -93,8 +94,9 @@ TEST(Pane, O6_TransmitsTheSameShareAtAnyThickness) {
   }
 }
 
-/// A slab of water from 2 down to 1 - overlap on a slab of glass from 1 to 0, seen at 45 degrees:
-/// light from the only emitter, a strip at the point where a correctly refracted ray leaves.
+/// Measures the light along a ray that goes down at 45 degrees through two slabs: glass at heights
+/// from 0 to 1, water from 1 - overlap to 2. The only emitter is a narrow strip at the point at
+/// which a correctly refracted ray leaves the glass.
 test::Moments through_water_and_glass(double overlap) {
   constexpr double kFar = 100;
   test::SceneMaker maker;

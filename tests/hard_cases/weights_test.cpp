@@ -25,8 +25,9 @@ int bin_of(double ratio) {
   return std::clamp(static_cast<int>(at * kBins), 0, kBins - 1);
 }
 
-/// Integrals of the irradiance f of a square light of radiance 1 / pi below its middle, binned by
-/// the ratio p / q of the pdfs of cosine-weighted and light sampling.
+/// Second moments of two sampling techniques. They estimate the irradiance at a point below the
+/// middle of a square light of radiance 1 / pi; f is its integrand, p the pdf of cosine-weighted
+/// sampling, q that of light sampling. Each integral is split into bins of the ratio p / q.
 struct Seen {
   std::vector<double> cosine_sampling = std::vector<double>(kBins);  ///< integral of f^2 / p
   std::vector<double> light_sampling = std::vector<double>(kBins);   ///< integral of f^2 / q
@@ -125,9 +126,9 @@ std::vector<double> best_weights(const std::vector<Place>& places) {
 }
 
 TEST(Weights, Q5_NoWeightsByThePdfRatioAreCloseToTheBetterTechnique) {
-  // The larger of two ratios is at least any mean of them, so the minimal mean is a bound for the
-  // minimal larger one (duality: the variances are convex). The shares were found by a search; any
-  // shares give a bound.
+  // Let r and s be the ratios of variance for the two places. The weights are to make the larger of
+  // r and s small. It is at least any mean, share r + (1 - share) s, so the smallest possible mean
+  // is a lower bound of it. Any shares give a bound; those below were found by a search.
   constexpr double kShareNear = 0.96;
   std::vector<Place> places;
   for (const auto& [height, share] :

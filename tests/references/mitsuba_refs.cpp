@@ -49,11 +49,12 @@ struct Options {
   int seeds = 16;
 };
 
-/// Sums over seeds of each channel's mean.
+/// The result of rendering with several seeds. The vectors have a number for each channel of each
+/// pixel, unless stated otherwise.
 struct Rendered {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::uint64_t samples = 0;  ///< a pixel, of all seeds
+  std::uint64_t samples = 0;  ///< samples of a pixel, all seeds together
   std::vector<double> mean;
   std::vector<double> variance;  ///< of the mean
   std::vector<double> whole;     ///< mean of the image, of each seed
@@ -118,7 +119,7 @@ float channel_of(const Image& image, std::size_t i) {
 }
 
 struct Comparison {
-  double failing = 0;  ///< share of the channels
+  double failing = 0;  ///< share of the channels that fail the test
   double strictly =
       0;  ///< the same with the variance of the reference alone, as in Mitsuba's tests
   double relative = 0;  ///< difference of the means of both images, over that of the reference

@@ -359,7 +359,7 @@ TEST(DeltaLight, AllKindsAreaLightsAndAnEnvironmentAddUp) {
       const double distance = length(at);
       expected += 9 * at.y / (distance * distance * distance) / kPi;
     }
-    // At the horizon it occludes almost nothing: 1e-4 of the sky, below the tolerance.
+    // This lamp is near the horizon. It hides 1e-4 of the sky, which is below the tolerance.
     maker.sphere({-30, 3, 0}, 0.2, maker.lamp(2000));
     const Vec3 lamp{-30, 3, 0};
     expected += 2000 * 0.04 * lamp.y / std::pow(length(lamp), 3);

@@ -134,9 +134,9 @@ TEST(Techniques, AllTechniquesHaveTheSameMean) {
 }
 
 TEST(Techniques, Q5_NearALightMisIsCloseToTheBetterTechnique) {
-  // From close to the plane of a 2 x 2 light, where BSDF sampling is nearly exact, to far from it,
-  // where light sampling is. Sampling by area would have more noise than the mean by a factor of 32
-  // at the nearest point.
+  // The points are below a 2 x 2 light: close to it, BSDF sampling has hardly any noise; far from
+  // it, light sampling. (If lights were sampled by area, the standard deviation at the nearest
+  // point would be 32 times the mean.)
   for (const double h : {0.02, 0.3, 3.0}) {
     SceneMaker maker;
     maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));

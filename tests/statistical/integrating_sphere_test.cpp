@@ -99,8 +99,8 @@ TEST(IntegratingSphere, OfAnyTextureHasTheIrradianceOfItsMeanAlbedo) {
   }
 }
 
-// Most of the pixels see one corner of the texture, two the other side: the balance-heuristic
-// weights of the shared vertices are unequal.
+// Most of the pixels see one corner of the texture, and two see the other side, so that the
+// balance-heuristic weights of the vertices that they share are unequal.
 TEST(IntegratingSphere, HasTheSameIrradianceWithPathReuse) {
   const std::vector<float> values = albedos();
   const LitSphere lit = lit_sphere(values);

@@ -138,7 +138,7 @@ TEST(Moving, S11_ABallIsHitAtItsPlaceAtTheRaysTime) {
     const Vec3 way = speed * Vec3{1, 0.3, -0.2};
     g.groups.resize(1);
     g.groups[0].spheres.push_back({center, 0.5, {}});
-    // Two balls, so that there is a node with moving sides.
+    // With two balls, the tree has an inner node, whose box moves.
     for (const Vec3& v : {way, -way}) {
       Instance moving;
       moving.group = GroupId{0};

@@ -25,11 +25,11 @@ namespace {
 
 using google::protobuf::Struct;
 using google::protobuf::Value;
+using test::lease;
+using test::revoke;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using test::lease;
-using test::revoke;
 
 constexpr double kMemory = 3e9;
 
@@ -208,7 +208,7 @@ TEST_F(BrowserSessionTest, StopsABandThatIsRevoked) {
   const Struct orders = receive(revoke(10));
   ASSERT_EQ(field(orders, "stop").list_value().values_size(), 1);
   EXPECT_EQ(field(orders, "stop").list_value().values(0).number_value(), task);
-  render(task, 1, {});  // rows that were under way
+  render(task, 1, {});  // these rows had been begun before the order to stop
   EXPECT_EQ(good(bandsaw_session_finished(session_, task)), "false");
   EXPECT_EQ(failed(task, "why", ""), "");
 }

@@ -46,7 +46,7 @@ double density(Kind kind, double x, double y) {
   return 0;
 }
 
-/// False alarms: 1 % for the three together.
+/// The probability of a false alarm is 1 % for the three filters together.
 TEST(PixelFilter, SamplesFollowTheDensity) {
   constexpr int kCells = 16;
   constexpr int kFine = 32;

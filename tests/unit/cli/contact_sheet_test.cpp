@@ -29,7 +29,8 @@ TEST(ContactSheet, ShowsEachFrameOnceAndCrossesOutMissingOnes) {
   EXPECT_EQ(picture.pixels.size(), std::size_t{picture.width} * picture.height);
   EXPECT_EQ(count(picture, red), 40u * 30);
   EXPECT_EQ(count(picture, green), 40u * 30);
-  // The digit 1 has eight dots, the minus three, each of 2 x 2 pixels; 2 has eleven, 0 twelve.
+  // The labels have dots of 2 x 2 pixels: the digit 1 has eight dots, 2 eleven, 0 twelve, and the
+  // minus three.
   const Rgb ink{0.6f, 0.6f, 0.6f};
   const std::size_t cross = 2 * 30;
   EXPECT_NEAR(static_cast<double>(count(picture, ink)), 4 * (3 + 8 + 11 + 8 + 12) + cross, 4);

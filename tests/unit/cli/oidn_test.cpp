@@ -37,7 +37,7 @@ TEST(Oidn, AMissingLibraryIsAnErrorWithACure) {
   const absl::Status missing = Oidn::load("/nowhere/libOpenImageDenoise.so.2").status();
   EXPECT_TRUE(absl::IsUnavailable(missing));
   EXPECT_THAT(std::string(missing.message()), HasSubstr("install it, or use --denoise"));
-  // A library that is another one.
+  // This library exists, but is another one.
   EXPECT_THAT(std::string(Oidn::load("libm.so.6").status().message()),
               HasSubstr("lacks functions"));
 }

@@ -161,7 +161,8 @@ TEST(StudyText, ThePlotIsSvgOfAllLines) {
   EXPECT_THAT(svg, HasSubstr("all techniques · n^-0.50"));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
   EXPECT_EQ(std::count(svg.begin(), svg.end(), '<'), std::count(svg.begin(), svg.end(), '>'));
-  // 1 to 4 s and 5 to 10 % are within 1 to 10 s and 1 to 10 %.
+  // The axes run from 1 to 10 s and from 1 to 10 %. The first point, 1 s and 10 %, is in the top
+  // left corner.
   EXPECT_THAT(svg, HasSubstr("<polyline points=\"62.0,34.0 "));
 }
 

@@ -13,7 +13,7 @@ std::string bytes(const char (&text)[n]) {
 
 TEST(Tev, AnImageIsMadeByItsNameSizeAndChannels) {
   EXPECT_EQ(tev::create_image("box", 258, 2),
-            bytes("\x1c\0\0\0"  // 28 bytes in all
+            bytes("\x1c\0\0\0"  // number of bytes of the packet, 28
                   "\x04"        // create
                   "\x01"        // grab the focus
                   "box\0"
@@ -26,7 +26,7 @@ TEST(Tev, AnImageIsMadeByItsNameSizeAndChannels) {
 TEST(Tev, RowsAreSentAsTheyLieInMemory) {
   const Image image{.width = 1, .height = 3, .pixels = {{9, 9, 9}, {1, 0, 0.5F}, {0, -2, 0}}};
   EXPECT_EQ(tev::update_rows("b", image, 1, 3),
-            bytes("\x6a\0\0\0"  // 106 bytes in all
+            bytes("\x6a\0\0\0"  // number of bytes of the packet, 106
                   "\x06"        // update, third version
                   "\0"          // leave the focus
                   "b\0"

@@ -53,7 +53,7 @@ TEST(Bias, OneBadBlockIsFound) {
   EXPECT_GT(test.worst_t, 5);
 }
 
-// The false-alarm rate that the header states: once in a hundred images of independent noise.
+// The header states the rate of false alarms: one in a hundred images of independent noise.
 TEST(Bias, FalseAlarmsAreAsRareAsStated) {
   int alarms = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {

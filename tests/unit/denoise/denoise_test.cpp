@@ -103,8 +103,9 @@ TEST(Denoise, FlatImageLosesItsNoise) {
   const DenoiseInput input = noisy(flat, 0.05f, 2);
   const Denoised clean = denoised(input);
   const Image truth = image_of(flat);
-  // A window has 225 pixels and the regression nine terms; what the weights take is less than the
-  // rest up to a factor of six.
+  // With equal weights, the error would fall by sqrt(225 / 9) = 5: a window has 225 pixels, and the
+  // regression has nine terms. Each pixel takes the mean of several windows, so the factor is
+  // above 6.
   EXPECT_LT(rmse(clean.image, truth), rmse(input.mean, truth) / 6);
 }
 
@@ -181,7 +182,7 @@ TEST(Denoise, OneBrightPathIsNotSpread) {
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
     ASSERT_LT(std::abs(clean.image.pixels[i].g - truth.pixels[i].g), 0.2f) << "pixel " << i;
   }
-  // The report does not hide it.
+  // The reported error includes that of the outlier.
   EXPECT_GT(clean.total.rmse_raw, 1);
 }
 
@@ -220,7 +221,8 @@ TEST(Denoise, PartsMayDifferInSize) {
   const Denoised clean = denoised(input);
   const Image truth = image_of([](auto, auto) { return gray(0.5f); });
   EXPECT_NEAR(clean.total.rmse_raw / rmse(input.mean, truth), 1, 0.1);
-  // Less than elsewhere: grey noise is the same in all channels, so patches are compared less well.
+  // The factor is smaller than in other tests: grey noise is equal in all channels, so the patches
+  // of two pixels are compared less precisely.
   EXPECT_LT(rmse(clean.image, truth), rmse(input.mean, truth) / 3);
 }
 

@@ -41,8 +41,9 @@ TEST(GuidingCones, PdfIntegratesToOne) {
   EXPECT_NEAR(sum * 4 * kPi / (kRows * kColumns), 1, 1e-3);
 }
 
-// Directions are counted by the set of balls that they hit: its probability is the integral of the
-// pdf over it, which uniform directions estimate.
+// Each direction belongs to one of eight classes, according to which of the three balls it hits.
+// The share of samples in a class must equal the integral of the pdf over the class, which is
+// estimated from uniform directions.
 TEST(GuidingCones, SamplesHaveThePdf) {
   const GuidingCell cell = three_balls();
   const GuidingCones cones({.paths = &cell}, {}, kUp);
@@ -95,14 +96,14 @@ TEST(GuidingShares, PhotonsGetTheShareOfTheirLight) {
     return shares_of({&paths, &photons}).photons;
   };
   EXPECT_EQ(share_of_photons(0), 0);
-  EXPECT_EQ(share_of_photons(1e-4f), 0);  // adds 1e-6 to the second moment
+  EXPECT_EQ(share_of_photons(1e-4f), 0);  // too little guidance to be worth a technique
   EXPECT_EQ(share_of_photons(0.1f), 0.125);
   EXPECT_NEAR(share_of_photons(1.0f / 3), 0.25, 1e-6);
   EXPECT_EQ(share_of_photons(100), 0.5);
   EXPECT_EQ(shares_of({&paths, &photons}).paths, 0.25);
 }
 
-/// Records of light from a disk around (0, 0, 5) on a surface around `middle`.
+/// Returns records of light that a surface receives from a disk around (0, 0, 5).
 std::vector<GuidingRecord> light_of_disk(GuidingRecord::Kind kind, double radius, int count) {
   std::vector<GuidingRecord> records;
   const PixelSampler sampler(4, 5, 6);
@@ -167,7 +168,7 @@ TEST(FitCell, NeedsSomeRecordsWithLight) {
     record.weight = 0;
   }
   EXPECT_EQ(fit_cell(dark).count, 0u);
-  // One record that outshines all others counts as one record.
+  // If one record outshines all others, the cell has in effect a single record, which is too few.
   dark[0].weight = 1;
   for (std::size_t i = 1; i < dark.size(); ++i) {
     dark[i].weight = 1e-4f;

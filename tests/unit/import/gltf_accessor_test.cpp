@@ -105,7 +105,8 @@ TEST_F(GltfAccessors, NormalsMayBeQuantised) {
               ElementsAre(ElementsAre(0, 0, 1), ElementsAre(0, 1, 0), ElementsAre(-1, 0, 0)));
 }
 
-// 33 x 17 vertices whose coordinates are exact in 8 bits: nothing may change.
+// The coordinates of the 33 x 17 vertices can be represented in 8 bits without an error, so the
+// quantised file must give the same mesh as the plain one.
 TEST_F(GltfAccessors, AnExactQuantisationChangesNoBit) {
   GltfWriter plain;
   GltfWriter quantised;

@@ -236,7 +236,7 @@ TEST_F(Sequence, MeshesAndImagesThatDoNotChangeAreShared) {
   const auto second = import_scene(path, frame(5), &memory);
   ASSERT_TRUE(second.ok()) << second.status();
   EXPECT_EQ(first->scene.geometry.meshes.shared(0), second->scene.geometry.meshes.shared(0));
-  // Neither are they hashed again.
+  // The blobs of shared meshes are not hashed again either.
   BlobMap of_first;
   encode_package(first->scene, first->info, of_first, &memory.encoded);
   EXPECT_THAT(of_first.all(), SizeIs(2));  // positions and indices

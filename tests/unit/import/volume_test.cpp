@@ -319,8 +319,8 @@ instance { of: "g" scale: [2, 2, 2] }
   EXPECT_EQ(fire.grids.temperature_offset, 300);
   EXPECT_EQ(fire.grids.blackbody, BlackbodyScale::kPeak);
   EXPECT_EQ(media.grids[index_of(fire.grids.albedo->grid)].filter, VolumeGrid::Filter::kNearest);
-  // The loose sphere; of the boxes, each has a frame, from which the medium's space is that of the
-  // scene file.
+  // The boundaries are the loose sphere and four boxes. Each box has a frame, and the space of its
+  // medium is that of the scene file.
   const Geometry& boundaries = media.boundaries;
   EXPECT_EQ(boundaries.spheres.size(), 1u);
   ASSERT_EQ(boundaries.instances.size(), 4u);

@@ -63,7 +63,8 @@ TEST(ErrorCurve, FindsTheExponentOfTheFall) {
   EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t) { return 1.0; })), 0.5);
 }
 
-// Nets of 2^k points have such a curve: each whole net lowers the error by a step.
+// Error after a number of samples, as Sobol' sequences have it: whenever 2^k samples complete a
+// net, the error falls by a step.
 double error_in_steps(double samples) {
   return std::pow(samples, -0.5) * std::exp2(-0.2 * std::floor(std::log2(samples)));
 }

@@ -50,7 +50,8 @@ FarmDriver restarted(const FarmDriver& farm, const std::vector<input::BandStored
   return next;
 }
 
-// Its bands would be of two versions, and the version defines the half tiles.
+// A job of an earlier pixel version cannot be continued: its old and new bands would be of
+// different versions.
 TEST(Restart, FailsJobsOfAnotherPixelVersionButNotFinalOnes) {
   FarmDriver farm;
   const JobId running = farm.submit(test_job("r1", StopAtSamples{16}));
@@ -369,7 +370,8 @@ TEST(Restart, RetractsAWrongMachineOnceAllBandsAreReplayed) {
   for (const Record& record : farm.records) {
     next.scheduler.replay(record);
   }
-  // Two others contradict the first; each also has a row of its own.
+  // Processes 2 and 3 contradict process 1. Each of the bands has a row that the others do not
+  // have.
   next.scheduler.replay(on_disk({0, 2}, 1, 99));
   next.scheduler.replay(on_disk({0, 3}, 2));
   next.scheduler.replay(on_disk({0, 4}, 3));

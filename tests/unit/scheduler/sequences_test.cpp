@@ -166,7 +166,7 @@ TEST(Sequences, AFrameThatFailsIsTriedAgainAndThenSaid) {
   farm.fails = {first};
   farm.join(1);
   farm.work_all();
-  // The second try succeeds.
+  // The frame that failed was rendered again by another job, which succeeded.
   EXPECT_EQ(farm.job(id).state, JobState::kDone);
   EXPECT_NE(farm.job_of(id, 3), first);
   EXPECT_EQ(farm.results.size(), 5u);

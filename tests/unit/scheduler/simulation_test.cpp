@@ -237,7 +237,8 @@ class Simulation : SimulatedFarm {
     }
   }
 
-  /// Their memory was replaced; more machines may be found wrong by bands they rendered before.
+  /// The user replaces the memory of the wrong machines and lifts their quarantine. Repeated,
+  /// because bands that were rendered before may show that further machines were wrong.
   void lift_quarantines() {
     if (coordinator_.up()) {
       for (const std::string& name : coordinator_.quarantined) {
@@ -478,8 +479,9 @@ Outcome run_storm(std::uint64_t seed) {
       .run(job_with_error_target(seed));
 }
 
-// A farm that loses its workers by chance: three, or four of a new farm, were once enough to blame
-// the band.
+// At these seeds, workers that were lost by chance made an earlier version blame the band that they
+// had held, although it was sound: that version blamed a band after three losses, or after four on
+// a new farm.
 TEST(Simulation, SeedsAtWhichAHealthyJobOnceFailed) {
   EXPECT_EQ(run_with_liars(69'113, 2).broken, "");
   EXPECT_EQ(run_storm(20'771).broken, "");
