@@ -1,3 +1,6 @@
+// Connects executor, uploader and session: a task is rendered, its band is sent until the
+// coordinator has answered, and each event is reported to the session and in the log.
+
 #include "worker/band_pipeline.h"
 
 #include <spdlog/spdlog.h>

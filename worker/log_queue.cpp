@@ -1,3 +1,6 @@
+// A sink of spdlog that keeps lines until they are sent. again() puts those back that were sent to
+// a coordinator that has been lost.
+
 #include "worker/log_queue.h"
 
 #include <algorithm>

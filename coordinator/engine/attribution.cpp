@@ -1,3 +1,6 @@
+// Keeps for each job which worker process rendered which rows last, as pieces that do not overlap.
+// add() cuts the pieces that the new rows overlap.
+
 #include "coordinator/engine/attribution.h"
 
 #include <iterator>

@@ -1,3 +1,6 @@
+// Holds the connections of workers, each with the name and address for the log, and passes the
+// scheduler's actions to them.
+
 #include "coordinator/engine/links.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,6 @@
+// A thread takes all tasks that wait as one batch, runs them in order, and then calls
+// after_batch(). It does so also after each period without tasks.
+
 #include "coordinator/engine/mailbox.h"
 
 #include <utility>

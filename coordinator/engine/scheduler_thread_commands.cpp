@@ -1,3 +1,6 @@
+// Commands of users. Each is given to the scheduler at once; the user is answered when the records
+// of its step are in the journal.
+
 #include <algorithm>
 #include <utility>
 #include <variant>

@@ -1,3 +1,6 @@
+// restore() replays the journal, then the band log of each job that is not final. A band that is
+// still wanted goes to the scheduler and to the film of its job.
+
 #include <spdlog/spdlog.h>
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Sends each watched job's state to its watchers: at most ten times a second if something has
+// changed, otherwise about once a second.
+
 #include "coordinator/engine/watchers.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Keeps the last lines of each worker's log. If all logs together become too large, the log of the
+// worker that has been silent for the longest time is dropped.
+
 #include "coordinator/engine/worker_logs.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Checks the chunks of a blob: sizes, order, and that they end at the announced size. The bytes are
+// not kept here.
+
 #include "coordinator/rpc/blob_intake.h"
 
 #include "absl/strings/str_cat.h"

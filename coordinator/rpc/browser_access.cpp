@@ -1,3 +1,6 @@
+// The link for browsers: one secret with an end. make() sets a new end, with the same secret if the
+// link still holds. Wrong secrets are counted for each address.
+
 #include "coordinator/rpc/browser_access.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,5 @@
+// Threads take tasks from one queue in order. The destructor lets them finish the tasks that wait.
+
 #include "coordinator/rpc/executor.h"
 
 namespace bandsaw::coordinator {

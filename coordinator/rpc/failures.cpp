@@ -1,3 +1,5 @@
+// Counts wrong secrets of each address within a minute from the first one.
+
 #include "coordinator/rpc/failures.h"
 
 namespace bandsaw::coordinator {

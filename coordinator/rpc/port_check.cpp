@@ -1,3 +1,5 @@
+// check_can_listen() resolves the host and tries to listen on the port, as gRPC will do.
+
 #include "coordinator/rpc/port_check.h"
 
 #include <netdb.h>

@@ -1,3 +1,6 @@
+// A register of the streams that may last long, so that they can be ended when the server stops or
+// a secret is renewed. It does not keep them alive.
+
 #include "coordinator/rpc/streams.h"
 
 #include "proto/wire/limits.h"

@@ -1,3 +1,6 @@
+// At most one state of the job waits to be sent: a newer one replaces it while an older one is
+// being sent.
+
 #include "coordinator/rpc/watch_call.h"
 
 #include "coordinator/convert/farm_messages.h"

@@ -1,3 +1,6 @@
+// Writes and reads which worker rendered which rows, as text fields: the number of pieces, then
+// first row, last row and worker of each.
+
 #include "coordinator/store/attribution_file.h"
 
 #include <span>

@@ -1,3 +1,6 @@
+// Fields are lines of a name and a value, in a fixed order. The reader stops at the first field
+// that is not the expected one, and reports it at the end.
+
 #include "coordinator/store/fields.h"
 
 #include <array>

@@ -1,3 +1,6 @@
+// Text of records about audits, damaged bands and quarantine: for each kind a function that writes
+// the fields, and one that reads them in the same order.
+
 #include "coordinator/store/record_text_parts.h"
 
 #include <cstdint>

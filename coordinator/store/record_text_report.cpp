@@ -1,3 +1,6 @@
+// Text of records about measured errors and the shares of workers: for each kind a function that
+// writes the fields, and one that reads them in the same order.
+
 #include "coordinator/store/record_text_parts.h"
 
 namespace bandsaw::coordinator {

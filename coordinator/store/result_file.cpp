@@ -1,3 +1,6 @@
+// A result is a header with size and SHA-256, followed by the pixels. It is written to a staged
+// file, which gets its name when it is complete.
+
 #include "coordinator/store/result_file.h"
 
 #include <bit>

@@ -1,3 +1,6 @@
+// A file that gets its name when it is complete. Disk space is reserved before anything is written;
+// a file that is given up is removed, unless leave() keeps its bytes.
+
 #include "coordinator/store/staged_file.h"
 
 #include <fcntl.h>

@@ -1,3 +1,6 @@
+// Copies fields between the messages of farm.proto and the values of renderlib. Nothing is checked
+// here.
+
 #include "proto/convert/render_values.h"
 
 namespace bandsaw {

@@ -1,3 +1,6 @@
+// The link for browsers is kept in the file `browsers` of the data folder, which only its owner can
+// read: a heading, the secret and the time of its end.
+
 #include "proto/link/browser_link.h"
 
 #include <unistd.h>

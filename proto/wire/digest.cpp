@@ -1,3 +1,5 @@
+// SHA-256 by OpenSSL, or by our own code in WebAssembly; conversion of digests to and from text.
+
 #include "proto/wire/digest.h"
 
 #if !defined(__wasm__)

@@ -1,3 +1,6 @@
+// Replaces the bounds of all children by boxes that every ray enters, so that a traversal visits
+// every node. Tests and `study --every-object` use such trees.
+
 #include "renderlib/accel/disable_culling.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Fills a pack with triangles and keeps `size`, the bound of the edges' lengths on which the error
+// bound of the float filter depends.
+
 #include "renderlib/accel/flat_pack.h"
 
 #include <algorithm>

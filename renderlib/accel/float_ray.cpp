@@ -1,3 +1,7 @@
+// Converts a ray to float for the tests of boxes and triangles. The direction is scaled by a power
+// of two; the planes of boxes are moved outwards by the rounding errors. Where float could
+// overflow, the box test lets everything pass.
+
 #include "renderlib/accel/float_ray.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Sets the bounds of a tree for both ends of the shutter interval, leaves first. Between the ends
+// the bounds are interpolated, so they have a margin for the rounding of that.
+
 #include "renderlib/accel/moving_nodes.h"
 
 #include <algorithm>

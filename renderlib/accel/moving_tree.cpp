@@ -1,3 +1,6 @@
+// Builds the tree of the instances that move. It is built by the boxes in the middle of the motion;
+// then its nodes get moving bounds.
+
 #include "renderlib/accel/moving_tree.h"
 
 #include <utility>

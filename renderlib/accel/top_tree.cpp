@@ -1,3 +1,5 @@
+// Builds the tree over the loose shapes and the static instances of a scene.
+
 #include "renderlib/accel/top_tree.h"
 
 #include "renderlib/accel/capacity.h"

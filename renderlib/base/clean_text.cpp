@@ -1,3 +1,5 @@
+// Copies characters of well-formed UTF-8 and replaces all others, and control characters, by "?".
+
 #include "renderlib/base/clean_text.h"
 
 #include <cstdint>

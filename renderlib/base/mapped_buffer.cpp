@@ -1,3 +1,6 @@
+// Maps zeroed memory: anonymous memory, or a file without a name whose disk space is reserved at
+// once.
+
 #include "renderlib/base/mapped_buffer.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// Maps a whole file for reading; an empty file has no mapping.
+
 #include "renderlib/base/mapped_file.h"
 
 #include <sys/mman.h>

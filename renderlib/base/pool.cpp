@@ -1,3 +1,6 @@
+// parallel_for() puts a range of indices into a list. Threads take one index after the other from
+// the oldest range; the caller waits until the last index is done.
+
 #include "renderlib/base/pool.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Checks by CPUID whether the processor has all instructions of x86-64-v3, for which the AVX2
+// kernel is compiled.
+
 #include "renderlib/base/x86_64_v3.h"
 
 #if defined(__x86_64__)

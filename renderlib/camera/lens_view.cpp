@@ -1,3 +1,7 @@
+// A lens, seen from a point in focus. The directions under which the lens is seen lie within a
+// cone, because the lens fits into a sphere of its radius. The pdf is that of directions to a
+// uniformly chosen point of the lens.
+
 #include "renderlib/camera/lens_view.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Samples a place in a pixel with the density of the filter: box, tent, or truncated Gaussian.
+
 #include "renderlib/camera/pixel_filter.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Maps errors in [0, 1] to colours from black by purple and orange to yellow.
+
 #include "renderlib/compare/false_color.h"
 
 #include <algorithm>

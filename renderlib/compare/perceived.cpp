@@ -1,3 +1,6 @@
+// Conversions between linear RGB, XYZ relative to white, the opponent colour space of FLIP, and CIE
+// L*a*b*.
+
 #include "renderlib/compare/perceived.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Separable filters: rows first, then columns. Beyond the border the outermost value is repeated.
+
 #include "renderlib/compare/plane.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// SSIM after Wang et al. 2004, on grey values, with Gaussian windows.
+
 #include "renderlib/compare/ssim.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Estimates the error of a denoised image from denoised images of its two parts, for filters of
+// which nothing else is known (OpenImageDenoise).
+
 #include "renderlib/denoise/halves.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Weighted least squares for eight pixels at a time: add() adds a sample to the normal equations,
+// solve() solves them by the factorisation L D L^T. A ridge keeps them regular.
+
 #include "renderlib/denoise/fit_parts.h"
 
 namespace bandsaw {

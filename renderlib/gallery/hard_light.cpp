@@ -1,3 +1,5 @@
+// Makes the meshes of the scenes in gallery/hard_light: a ring, and the waves of a pool.
+
 #include "renderlib/gallery/hard_light.h"
 
 #include <array>

@@ -1,3 +1,5 @@
+// Makes the meshes that are profiles turned around an axis: vase, pawn, foot and shade of a lamp.
+
 #include "renderlib/gallery/turned.h"
 
 #include <array>

@@ -1,3 +1,6 @@
+// Makes the grids of the scene campfire: densities of smoke and temperatures of flames, by
+// formulas.
+
 #include "renderlib/gallery/volumes.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Counts the edges of a mesh that are open: each edge must be passed equally often in both
+// directions. Vertices at the same position count as one.
+
 #include "renderlib/geometry/closed.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Intersects the plane of the disk and checks the distance from its centre. The hit is then moved
+// into the disk's box, in which the BVH looks for it.
+
 #include "renderlib/geometry/disk.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A frame has keys with placements. Between two keys, translation, rotation and scale are
+// interpolated separately; decompose() finds them, and refuses placements with shear.
+
 #include "renderlib/geometry/frame.h"
 
 #include <algorithm>

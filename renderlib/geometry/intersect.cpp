@@ -1,3 +1,6 @@
+// Exact intersection tests in double. A quad is two triangles that share the diagonal. The formulas
+// for spheres avoid cancellation.
+
 #include "renderlib/geometry/intersect.h"
 
 #include <array>

@@ -1,3 +1,5 @@
+// Exposure, and the filmic tone curve: a rational function of each channel.
+
 #include "renderlib/image/display.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// PNG by stb_image_write, which is compiled here and nowhere else.
+
 #include "renderlib/image/png.h"
 
 #include "absl/strings/str_cat.h"

@@ -1,3 +1,5 @@
+// Each pixel of the smaller image is the mean of the pixels that it covers.
+
 #include "renderlib/image/shrink.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The transfer function of sRGB, by the elementary functions of renderlib/math, so that the bits
+// are equal on all machines.
+
 #include "renderlib/image/srgb.h"
 
 #include <cmath>

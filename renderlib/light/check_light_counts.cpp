@@ -1,3 +1,6 @@
+// Counts the primitives that Lights would number: all loose shapes and instances, and all
+// primitives of instances that emit light.
+
 #include "renderlib/light/check_light_counts.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A sphere that an affine map has stretched is sampled uniformly on the unit sphere; the pdf by
+// area is divided by the local area scale of the map.
+
 #include "renderlib/light/ellipsoid_light.h"
 
 #include <cmath>

@@ -1,3 +1,7 @@
+// choose() descends from the root and selects a child with a probability proportional to its
+// importance; the random number is rescaled at each step. probability() multiplies the same
+// probabilities from the root to a given light.
+
 #include "renderlib/light/light_tree.h"
 
 #include <algorithm>

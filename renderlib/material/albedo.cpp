@@ -1,3 +1,6 @@
+// For each kind of material, its colour as a denoiser or a user expects to see it; not the exact
+// share of reflected light.
+
 #include "renderlib/material/albedo.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A metal with microfacets: a visible facet is sampled and reflects the direction; the Fresnel term
+// is that of eta and k.
+
 #include "renderlib/material/conductor.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A table of the directional albedo of GGX over cosine and roughness, computed by quadrature when
+// it is first used. `white` is for a Fresnel term of 1, `rim` for Schlick's (1 - cos)^5.
+
 #include "renderlib/material/ggx_albedo.h"
 
 #include <algorithm>

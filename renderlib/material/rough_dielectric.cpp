@@ -1,3 +1,6 @@
+// Glass with microfacets: a visible facet is sampled, and then reflection or refraction at it is
+// chosen by the Fresnel term.
+
 #include "renderlib/material/rough_dielectric.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Two thin sheets: a smooth pane, which reflects or passes light without deflection, and a sheet
+// that reflects and transmits diffusely.
+
 #include "renderlib/material/thin.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Quaternions for rotations. An interpolation follows the shorter way, and angles are computed
+// without cancellation.
+
 #include "renderlib/math/quaternion.h"
 
 #include <algorithm>

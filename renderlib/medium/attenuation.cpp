@@ -1,3 +1,6 @@
+// Closed forms of transmittance and emission along a length, exact also for tiny and infinite
+// optical depths.
+
 #include "renderlib/medium/attenuation.h"
 
 #include "renderlib/math/elementary.h"

@@ -1,3 +1,6 @@
+// Distances along a ray are sampled with a density proportional to 1 / distance^2 from the pivot,
+// that is, uniformly in the angle under which the pivot sees the ray.
+
 #include "renderlib/medium/equiangular.h"
 
 #include <algorithm>

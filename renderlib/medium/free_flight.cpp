@@ -1,3 +1,6 @@
+// The constructor computes, for each channel, the light that is scattered within the length and the
+// light that passes. All probabilities are ratios of their sums over the channels.
+
 #include "renderlib/medium/free_flight.h"
 
 #include <algorithm>

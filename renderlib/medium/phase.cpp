@@ -1,3 +1,6 @@
+// Henyey and Greenstein's phase function and its sampling, in forms that are exact at g = 0 and
+// near the peak.
+
 #include "renderlib/medium/phase.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Maps a blob's file into memory and checks its digest.
+
 #include "renderlib/package/blob_folder.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// Blobs in memory by digest.
+
 #include "renderlib/package/blob_source.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Decodes camera, filter, local shading and background. Only the form is checked here; validate()
+// checks the values.
+
 #include "renderlib/package/decode_surface.h"
 
 #include "absl/strings/str_cat.h"

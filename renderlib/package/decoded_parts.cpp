@@ -1,3 +1,6 @@
+// Weak references to parts that earlier packages have decoded: a part can be found as long as a
+// scene holds it.
+
 #include "renderlib/package/decoded_parts.h"
 
 namespace bandsaw {

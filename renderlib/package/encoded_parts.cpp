@@ -1,3 +1,6 @@
+// Remembers the encoded messages of meshes and the digests of bytes until a package no longer uses
+// them.
+
 #include "renderlib/package/encoded_parts.h"
 
 #include <utility>

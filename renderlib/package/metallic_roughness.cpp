@@ -1,3 +1,5 @@
+// Copies the fields of glTF's material to the manifest and back.
+
 #include "renderlib/package/metallic_roughness.h"
 
 #include "renderlib/base/status_macros.h"

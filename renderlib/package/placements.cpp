@@ -1,3 +1,5 @@
+// Encodes frames and instances, with transforms as lists of 12 numbers, and decodes them.
+
 #include "renderlib/package/placements.h"
 
 #include "absl/status/statusor.h"

@@ -1,3 +1,5 @@
+// Copies the fields of the principled materials to the manifest and back.
+
 #include "renderlib/package/principled.h"
 
 #include "renderlib/package/material_parts.h"

@@ -1,3 +1,5 @@
+// settings_of() fills in the settings that the caller did not state with those of the package.
+
 #include "renderlib/package/settings_of.h"
 
 #include <algorithm>

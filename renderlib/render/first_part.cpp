@@ -1,3 +1,6 @@
+// Computes from the number of samples alone how many belong to the first part of a complete film
+// (Film::first_part).
+
 #include "renderlib/render/first_part.h"
 
 #include <algorithm>

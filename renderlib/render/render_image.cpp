@@ -1,3 +1,6 @@
+// Renders an image band by band. Passes are the nodes of the summation tree, split so that small
+// ones come first.
+
 #include "renderlib/render/render_image.h"
 
 #include <algorithm>

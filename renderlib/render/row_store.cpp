@@ -1,3 +1,5 @@
+// Memory for rows of sums, taken in slabs of 8 MiB. Rows that are given back are used again.
+
 #include "renderlib/render/row_store.h"
 
 #include <algorithm>

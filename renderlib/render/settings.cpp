@@ -1,3 +1,5 @@
+// Checks the ranges of render settings.
+
 #include "renderlib/render/settings.h"
 
 #include "absl/strings/str_cat.h"

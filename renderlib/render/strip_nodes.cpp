@@ -1,3 +1,6 @@
+// A strip keeps the nodes of the summation tree that have arrived. Two nodes that are siblings in
+// the tree are merged, except the two halves that the error estimate needs.
+
 #include "renderlib/render/strip_nodes.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The pattern states for each pixel of a tile the number of its group. Tiles use it mirrored at
+// random, by a hash of their position.
+
 #include "renderlib/render/tile_pattern.h"
 
 #include <array>

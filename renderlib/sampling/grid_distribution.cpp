@@ -1,3 +1,6 @@
+// Cumulative sums of rows, and of the columns in each row. Sampling searches the row, then the
+// column.
+
 #include "renderlib/sampling/grid_distribution.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A sphere is sampled from outside by the cone that it subtends, and from inside or very near by
+// area.
+
 #include "renderlib/sampling/sphere_light.h"
 
 #include <cmath>

@@ -1,3 +1,6 @@
+// Samples a rectangle uniformly in solid angle (Ureña, Fajardo and King 2013), with formulas that
+// do not cancel for small rectangles.
+
 #include "renderlib/sampling/spherical_rectangle.h"
 
 #include <algorithm>

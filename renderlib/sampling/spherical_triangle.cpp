@@ -1,3 +1,5 @@
+// Samples a triangle uniformly in solid angle (Arvo 1995).
+
 #include "renderlib/sampling/spherical_triangle.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Maps from the unit square to disk, hemisphere, sphere, ball and cone. Where the quadrant is
+// random, branches are avoided, because they would be mispredicted.
+
 #include "renderlib/sampling/warp.h"
 
 #include <bit>

@@ -1,3 +1,5 @@
+// Checks numbers of shapes, instances, triangles and positions against the limits of a BVH.
+
 #include "renderlib/scene/check_counts.h"
 
 #include "absl/strings/str_cat.h"

@@ -1,3 +1,7 @@
+// Stores the frame of each boundary before static boundaries lose their frames
+// (static_instances.h). For a boundary that has lost its frame the map is computed once, for others
+// at each time.
+
 #include "renderlib/scene/medium_spaces.h"
 
 #include "renderlib/geometry/frame.h"

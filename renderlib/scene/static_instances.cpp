@@ -1,3 +1,6 @@
+// An instance is static if all frames above it have the same transform throughout the shutter
+// interval. It then gets the placement of that time, and no frame.
+
 #include "renderlib/scene/static_instances.h"
 
 #include <algorithm>

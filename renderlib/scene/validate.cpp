@@ -1,3 +1,5 @@
+// Checks a description part by part; geometry, surfaces, lights and media have files of their own.
+
 #include "renderlib/scene/validate.h"
 
 #include <cmath>

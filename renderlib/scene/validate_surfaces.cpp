@@ -1,3 +1,5 @@
+// Checks textures: sizes, number of texels, and values.
+
 #include <cmath>
 #include <cstring>
 #include <string>

@@ -1,3 +1,6 @@
+// Perlin's gradient noise: the gradient of a lattice point is selected by a hash of its
+// coordinates.
+
 #include "renderlib/texture/noise.h"
 
 #include <array>

@@ -1,3 +1,5 @@
+// Evaluates checker, noise, turbulence, marble and ramp.
+
 #include "renderlib/texture/procedural.h"
 
 #include <algorithm>

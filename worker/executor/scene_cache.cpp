@@ -1,3 +1,5 @@
+// The last two scenes, the latest first. The older one is dropped before another scene is loaded.
+
 #include "worker/executor/scene_cache.h"
 
 #include "renderlib/base/status_macros.h"

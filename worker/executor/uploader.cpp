@@ -1,3 +1,6 @@
+// A thread sends the first band until it is acknowledged or refused for good, then the next one.
+// After a failure it waits, longer each time; retry_now() ends the wait.
+
 #include "worker/executor/uploader.h"
 
 namespace bandsaw::worker {

@@ -1,3 +1,5 @@
+// next() waits for a message or until the next heartbeat is due; messages come first.
+
 #include "worker/session/send_queue.h"
 
 namespace bandsaw::worker {

@@ -1,3 +1,7 @@
+// run_child() starts a program with its output in a pipe, and looks every 20 ms whether the program
+// has ended, the time is over or the user has stopped it. A program that is still running then is
+// killed.
+
 #include "coordinator/cli/base/child_process.h"
 
 #include <fcntl.h>

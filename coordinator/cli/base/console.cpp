@@ -1,3 +1,6 @@
+// Console writes to standard output and standard error. Colours are used only on a terminal, and
+// not if NO_COLOR is set.
+
 #include "coordinator/cli/base/console.h"
 
 #include <sys/ioctl.h>

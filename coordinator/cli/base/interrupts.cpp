@@ -1,3 +1,7 @@
+// SIGINT, SIGTERM and SIGHUP are blocked in all threads, and one thread reads them from a signalfd.
+// The first signal calls the function of the present Listener. Without a Listener, and at a second
+// signal, the program ends at once.
+
 #include "coordinator/cli/base/interrupts.h"
 
 #include <poll.h>

@@ -1,3 +1,6 @@
+// The child's standard input is a pipe, to which write() writes. Its standard error is a file in
+// memory, whose last line becomes the message if the child fails.
+
 #include "coordinator/cli/base/piped_child.h"
 
 #include <fcntl.h>

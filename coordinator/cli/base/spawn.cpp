@@ -1,3 +1,6 @@
+// spawn() starts a program by posix_spawnp. The signals that this program blocks or ignores have
+// their normal effect in the child.
+
 #include "coordinator/cli/base/spawn.h"
 
 #include <fcntl.h>

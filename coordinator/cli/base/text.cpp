@@ -1,3 +1,6 @@
+// Formats numbers, times and lists for users. Lengths of texts are counted in characters of UTF-8,
+// so that columns of a table are aligned; characters that could control a terminal are replaced.
+
 #include "coordinator/cli/base/text.h"
 
 #include <algorithm>

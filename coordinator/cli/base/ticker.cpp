@@ -1,3 +1,5 @@
+// A thread calls tick() at once and then after each interval, until the destructor ends it.
+
 #include "coordinator/cli/base/ticker.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// run_after() runs the command of --then by a shell, once the job is over. The job's number, state
+// and files are in the command's environment; the list of all files is in a temporary file.
+
 #include "coordinator/cli/farm/after_job.h"
 
 #include <sys/wait.h>

@@ -1,3 +1,6 @@
+// Connects to the farm that the options name, and maps the status of a call to the program's exit
+// code.
+
 #include "coordinator/cli/farm/farm_errors.h"
 
 #include "coordinator/cli/farm/find_farm.h"

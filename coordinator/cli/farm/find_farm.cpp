@@ -1,3 +1,6 @@
+// find_farm() takes the join string from --farm, from BANDSAW_FARM, or from the file of a farm on
+// this machine, in this order.
+
 #include "coordinator/cli/farm/find_farm.h"
 
 #include <cstdlib>

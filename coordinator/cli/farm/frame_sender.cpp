@@ -1,3 +1,6 @@
+// A thread imports one frame after the other, uploads its package and adds the frame to the
+// sequence. It uses a connection of its own, so that stop() can end its calls.
+
 #include "coordinator/cli/farm/frame_sender.h"
 
 #include <span>

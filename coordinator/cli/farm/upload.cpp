@@ -1,3 +1,6 @@
+// upload() asks the farm which blobs it lacks and sends these, each from the byte at which an
+// earlier upload was interrupted; the manifest comes last.
+
 #include "coordinator/cli/farm/upload.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// compare_images() computes all error metrics; the other functions write them as text and as JSON.
+
 #include "coordinator/cli/image/comparison.h"
 
 #include "absl/strings/str_cat.h"

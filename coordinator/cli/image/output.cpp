@@ -1,3 +1,6 @@
+// Checks and writes all output files of one image. A file that fails does not prevent the others
+// from being written.
+
 #include "coordinator/cli/image/output.h"
 
 #include <algorithm>

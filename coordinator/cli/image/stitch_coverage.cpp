@@ -1,3 +1,6 @@
+// Keeps for each row the ranges of samples that the parts have, in ascending order. Parts fit
+// together if no ranges overlap and all rows have the samples from 0 to the same number.
+
 #include "coordinator/cli/image/stitch_coverage.h"
 
 #include <algorithm>

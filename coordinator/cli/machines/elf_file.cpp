@@ -1,3 +1,6 @@
+// elf_machine() reads the architecture from the header of an ELF program, and checks that the file
+// is as long as its headers say, because a copy may have been interrupted.
+
 #include "coordinator/cli/machines/elf_file.h"
 
 #include <elf.h>

@@ -1,3 +1,5 @@
+// Options of `bandsaw invite` and `bandsaw dismiss`, and their checks.
+
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/options/add_options.h"
 #include "coordinator/cli/options/quantities.h"

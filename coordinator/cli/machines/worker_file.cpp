@@ -1,3 +1,6 @@
+// A file is accepted as the worker for an architecture if its ELF header names this architecture,
+// and the mark in its bytes (proto/wire/worker_mark.h) has this farm's protocol and pixel version.
+
 #include "coordinator/cli/machines/worker_file.h"
 
 #include <elf.h>

@@ -1,3 +1,6 @@
+// worker_line() builds the shell command that a user pastes on another machine: it downloads the
+// worker with curl, checks its SHA-256 and starts it.
+
 #include "coordinator/cli/machines/worker_line.h"
 
 #include "absl/strings/escaping.h"

@@ -1,3 +1,6 @@
+// did_you_mean() returns the known word with the smallest edit distance, if that is at most a third
+// of the length of the word, and at least one edit is allowed.
+
 #include "coordinator/cli/options/did_you_mean.h"
 
 #include <algorithm>

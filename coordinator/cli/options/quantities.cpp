@@ -1,3 +1,5 @@
+// Each parser accepts only plain decimal digits and the units that its error message names.
+
 #include "coordinator/cli/options/quantities.h"
 
 #include <cmath>

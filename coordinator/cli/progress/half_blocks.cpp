@@ -1,3 +1,7 @@
+// A character cell shows two pixels, one above the other: the upper half block in the colour of the
+// upper pixel, on a background of the lower pixel's colour. Each shown pixel is the mean of the
+// pixels of the image that it covers.
+
 #include "coordinator/cli/progress/half_blocks.h"
 
 #include <algorithm>

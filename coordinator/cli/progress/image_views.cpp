@@ -1,3 +1,6 @@
+// Shows the image while it forms: in the terminal, reduced to the size that a terminal can show,
+// and in the viewer tev. If the viewer is lost, a note says so once.
+
 #include "coordinator/cli/progress/image_views.h"
 
 #include <algorithm>

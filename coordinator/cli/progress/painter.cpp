@@ -1,3 +1,6 @@
+// frame() returns the text that moves the cursor back over the lines that were drawn before, and
+// draws the new ones over them.
+
 #include "coordinator/cli/progress/painter.h"
 
 #include <algorithm>

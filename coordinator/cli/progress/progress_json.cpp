@@ -1,3 +1,5 @@
+// Writes progress as the JSON objects of --json (coordinator/README.md, "Progress for programs").
+
 #include "coordinator/cli/progress/progress_json.h"
 
 #include "coordinator/scheduler/api/job_spec.h"

@@ -1,3 +1,6 @@
+// of() reduces the image to the size of the preview and denoises it. The guides are rendered at the
+// first call and reduced in the same way.
+
 #include "coordinator/cli/render/clean_preview.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Collects what the rendering threads report, and computes the progress of a local render from it,
+// as the scheduler does for a job of a farm.
+
 #include "coordinator/cli/render/local_meter.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes the summary of a scene that `bandsaw info` prints, as lines of text and as JSON.
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "coordinator/cli/base/json.h"
@@ -45,10 +47,11 @@ std::vector<std::string> summary_text(const SceneSummary& summary) {
                                          " (--camera NAME)")),
       line("shapes",
            absl::StrCat(text(summary.shapes), "; ", summary.triangles, " triangles as placed")),
-      line("bounds", summary.bounds.empty()
-                         ? "none"
-                         : absl::StrCat(triple(summary.bounds.lo), " to ", triple(summary.bounds.hi),
-                                        ", size ", triple(summary.bounds.hi - summary.bounds.lo))),
+      line("bounds",
+           summary.bounds.empty()
+               ? "none"
+               : absl::StrCat(triple(summary.bounds.lo), " to ", triple(summary.bounds.hi),
+                              ", size ", triple(summary.bounds.hi - summary.bounds.lo))),
       line("materials", text(summary.materials)),
       line("textures",
            absl::StrCat(text(summary.textures), "; ", bytes(summary.texture_bytes), " of texels")),

@@ -1,3 +1,7 @@
+// join_addresses() returns the addresses for the join string. A coordinator that listens on all
+// addresses lists those of this machine: real interfaces first, then virtual ones, then loopback;
+// IPv4 before IPv6.
+
 #include "coordinator/cli/serve/join_addresses.h"
 
 #include <arpa/inet.h>

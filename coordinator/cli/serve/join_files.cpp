@@ -1,3 +1,5 @@
+// Writes the join strings to the files of the data folder, and renews the secret of one role.
+
 #include "coordinator/cli/serve/join_files.h"
 
 #include <span>

@@ -1,3 +1,6 @@
+// render_adaptively() renders a pilot pass uniformly, plans the tiles from its errors, and then
+// takes passes until the mean number of samples per pixel is as large as requested.
+
 #include "coordinator/cli/study/study_adaptive.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// clean_table() writes the measurements of `bandsaw study --denoise` as a table, and then the
+// geometric means and the worst scene for each number of samples.
+
 #include "coordinator/cli/study/study_clean.h"
 
 #include <algorithm>

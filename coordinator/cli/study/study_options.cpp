@@ -1,3 +1,5 @@
+// Options of `bandsaw study`, and their checks.
+
 #include <limits>
 
 #include "coordinator/cli/options/add_options.h"

@@ -1,3 +1,5 @@
+// Checks and writes the files of a study: figures as CSV, the plot as SVG.
+
 #include "coordinator/cli/study/study_outputs.h"
 
 #include <span>

@@ -1,3 +1,5 @@
+// Writes a study as Markdown tables, as CSV, and as a plot.
+
 #include "coordinator/cli/study/study_text.h"
 
 #include "absl/strings/str_cat.h"

@@ -1,3 +1,7 @@
+// clean_jobs() returns the jobs whose images the denoiser needs beside the image itself. Their
+// request ids are hashes of what they render, so that jobs of several users with the same work are
+// one job.
+
 #include "coordinator/scheduler/api/clean_jobs.h"
 
 #include <algorithm>

@@ -40,14 +40,14 @@ struct SamplesFixed {
   JobId job = 0;
   std::uint64_t samples = 0;
 };
-/// Also of a sequence, as the four records of the same kind: PriorityChanged, HoldChanged,
-/// TimeSpent and JobForgotten.
+/// The state of a job or of a sequence. (`job` may be a sequence also in PriorityChanged,
+/// HoldChanged, TimeSpent and JobForgotten.)
 struct StateChanged {
   JobId job = 0;
   JobState state = JobState::kRunning;
   std::string reason;
 };
-/// Absent for a job that always had priority 0.
+/// A job that always had priority 0 has no such record.
 struct PriorityChanged {
   JobId job = 0;
   std::int32_t priority = 0;

@@ -1,3 +1,6 @@
+// Jobs by id and by request id, the active ones, and those that have something to lease, ordered by
+// rank.
+
 #include "coordinator/scheduler/context/job_table.h"
 
 namespace bandsaw::coordinator {

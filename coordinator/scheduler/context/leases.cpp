@@ -1,3 +1,5 @@
+// The leases of this epoch by id.
+
 #include "coordinator/scheduler/context/leases.h"
 
 #include "coordinator/scheduler/api/worker_process.h"

@@ -1,3 +1,7 @@
+// Quarantined worker processes. A native worker is refused by its process and by the name that it
+// reports, a browser by its process only. The lists of native workers and browsers are limited
+// separately.
+
 #include "coordinator/scheduler/context/quarantine_list.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// While the barrier is active, nothing is leased. It begins after a restart, and when the first of
+// the workers that fell silent together reconnects; it ends when all of them have reconnected or
+// the grace time is over.
+
 #include "coordinator/scheduler/context/reconnect_barrier.h"
 
 #include <utility>

@@ -1,3 +1,5 @@
+// Sequences by id and by request id, and those that are active.
+
 #include "coordinator/scheduler/context/sequence_table.h"
 
 namespace bandsaw::coordinator {

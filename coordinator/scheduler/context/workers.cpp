@@ -1,3 +1,6 @@
+// Workers by id, session, instance and name. A name that is taken gets a number. Workers that have
+// left are kept up to a limit, the latest ones.
+
 #include "coordinator/scheduler/context/workers.h"
 
 #include <algorithm>

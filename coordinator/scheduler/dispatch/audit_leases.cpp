@@ -1,3 +1,6 @@
+// Chooses an open audit for a worker and leases it. A worker whose result is one of those compared
+// renders it again only if the results differ and no other worker can decide.
+
 #include "coordinator/scheduler/dispatch/audit_leases.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// assign() gives free rows to workers, one lease for each worker in turn, and then backup tasks,
+// until no worker can take more.
+
 #include "coordinator/scheduler/dispatch/dispatcher.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// Passes of a job with a fixed number of samples are planned at once, those of a job with an error
+// target up to the next checkpoint, and those of a job with a time limit when there is nothing else
+// to lease.
+
 #include "coordinator/scheduler/dispatch/pass_planner.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A stored band tells how fast its worker is and how costly its rows are. measure() corrects the
+// costs of the rows and the rates of the worker and of the job.
+
 #include "coordinator/scheduler/dispatch/work_rate.h"
 
 #include <algorithm>

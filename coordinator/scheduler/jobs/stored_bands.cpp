@@ -1,3 +1,6 @@
+// store() counts the rows of a band that are new as stored; free_damaged() makes the rows of a
+// damaged band free again.
+
 #include "coordinator/scheduler/jobs/stored_bands.h"
 
 #include <vector>

@@ -1,3 +1,7 @@
+// Passes are aligned ranges of blocks whose lengths are powers of two, so that they are nodes of
+// the summation tree. Checkpoints of an error target grow by an eighth to a quarter, or to the
+// number of samples at which the target is expected.
+
 #include "coordinator/scheduler/model/pass_plan.h"
 
 #include <algorithm>

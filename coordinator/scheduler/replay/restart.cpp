@@ -1,3 +1,6 @@
+// The bands on disk are added one by one. finish() compares those that were rendered twice, and
+// continues each job that is not final.
+
 #include "coordinator/scheduler/replay/restart.h"
 
 #include <string>

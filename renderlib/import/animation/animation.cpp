@@ -1,3 +1,6 @@
+// The motion of a node is three curves (translation, rotation, scale); a component without a curve
+// keeps its value at rest.
+
 #include "renderlib/import/animation/animation.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Names the files that a converter makes. Equal contents get one name; a hash finds candidates,
+// which are then compared.
+
 #include "renderlib/import/convert/made_files.h"
 
 #include <functional>

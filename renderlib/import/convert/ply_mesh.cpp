@@ -1,3 +1,5 @@
+// Writes a mesh as a binary PLY file, in the form that Assimp reads without errors.
+
 #include "renderlib/import/convert/ply_mesh.h"
 
 #include <bit>

@@ -1,3 +1,5 @@
+// Writes a scene message as text. A message that fits on one line is written on one line.
+
 #include "renderlib/import/convert/scene_text.h"
 
 #include <google/protobuf/message.h>

@@ -1,3 +1,6 @@
+// Makes the boundary of a medium from a mesh: the mesh must be closed, and it is turned over if its
+// triangles face inwards. Each mesh is converted once.
+
 #include "renderlib/import/draft/boundaries.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Decodes an environment map and repairs its values: infinite or too large ones become the largest
+// good value, all other bad ones 0.
+
 #include "renderlib/import/draft/environment_image.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Finds a file that a scene names: among those that a converter made, otherwise in the scene's
+// folder.
+
 #include "renderlib/import/draft/named_file.h"
 
 #include "absl/strings/str_cat.h"

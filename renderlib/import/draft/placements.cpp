@@ -1,3 +1,6 @@
+// place() copies frames and instances to another place: what has no frame of its own is placed
+// directly or gets the frame of the place; indices of frames are shifted.
+
 #include "renderlib/import/draft/placements.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Decompresses by zlib, piece by piece, up to a limit. A gzip file may consist of several members,
+// one after the other.
+
 #include "renderlib/import/files/inflate.h"
 
 #include <zlib.h>

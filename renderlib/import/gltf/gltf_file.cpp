@@ -1,3 +1,5 @@
+// Reads a .gltf or .glb file: its JSON, and the binary chunk if it has one.
+
 #include "renderlib/import/gltf/gltf_file.h"
 
 #include <cstdint>

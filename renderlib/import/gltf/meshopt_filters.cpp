@@ -1,3 +1,6 @@
+// Decodes the filters of EXT_meshopt_compression: octahedral normals, quaternions without their
+// largest component, and numbers with a separate exponent.
+
 #include "renderlib/import/gltf/meshopt_filters.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Collects the arrays of the rewritten document in one buffer, and their accessors and buffer views
+// in JSON.
+
 #include "renderlib/import/gltf/plain_buffer.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// Checks the size of an EXR image in its header, then decodes it by tinyexr to three floats for
+// each pixel.
+
 #include "renderlib/import/image/decode_exr.h"
 
 #include <tinyexr.h>

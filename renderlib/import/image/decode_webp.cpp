@@ -1,3 +1,5 @@
+// Decodes WebP images by libwebp.
+
 #include "renderlib/import/image/decode_webp.h"
 
 #include <webp/decode.h>

@@ -1,3 +1,5 @@
+// Collects warnings, each once. Parameters that nothing has read are reported.
+
 #include "renderlib/import/mitsuba/conversion.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Converts the objects of the scene in this order: sensor, integrator, shapes, emitters. Materials,
+// textures and media are converted where they are used.
+
 #include "renderlib/import/mitsuba/convert_mitsuba.h"
 
 #include <utility>

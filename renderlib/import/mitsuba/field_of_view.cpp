@@ -1,3 +1,6 @@
+// Converts the field of view along the axis that the file names, or a focal length, to half the
+// height of the image plane at distance 1.
+
 #include "renderlib/import/mitsuba/field_of_view.h"
 
 #include <cmath>

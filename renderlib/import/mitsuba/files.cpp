@@ -1,3 +1,6 @@
+// Searches files in the scene's folder and in those of its <path> elements, the last one first.
+// Nothing outside the import's folder is found.
+
 #include "renderlib/import/mitsuba/files.h"
 
 #include <filesystem>

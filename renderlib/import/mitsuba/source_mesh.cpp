@@ -1,3 +1,6 @@
+// Normals and orientation of meshes as Mitsuba computes them: normals weighted by angles, and
+// triangles that face the side of their normals.
+
 #include "renderlib/import/mitsuba/source_mesh.h"
 
 #include <utility>

@@ -1,3 +1,6 @@
+// frame() places a camera so that it sees all vertices from the front, a little from the right and
+// from above, as near as possible.
+
 #include "renderlib/import/model/framing.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Chooses how a material is read: unlit, metallic-roughness, or older kinds. Textures without a
+// counterpart are reported.
+
 #include "renderlib/import/model/model_material.h"
 
 #include "absl/strings/str_cat.h"

@@ -1,3 +1,6 @@
+// Reads parameters that several materials of pbrt have: roughness, which may be remapped to alpha,
+// and the index of refraction.
+
 #include "renderlib/import/pbrt/material_source.h"
 
 #include <algorithm>

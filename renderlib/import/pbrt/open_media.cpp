@@ -1,3 +1,7 @@
+// pbrt bounds media by single surfaces, which need not be closed. Here a medium with open surfaces
+// fills the box around the scene. Media are ordered so that closed ones replace it where they
+// overlap.
+
 #include "renderlib/import/pbrt/open_media.h"
 
 #include <algorithm>

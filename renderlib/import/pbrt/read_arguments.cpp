@@ -1,3 +1,6 @@
+// Reads the arguments of directives from the tokens: quoted names, lists of numbers, and
+// transforms.
+
 #include "renderlib/import/pbrt/read_arguments.h"
 
 #include <optional>

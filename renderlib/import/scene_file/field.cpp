@@ -1,3 +1,6 @@
+// A Field is a message with its path and its place in the file. Paths and places are computed only
+// for error messages and for child messages.
+
 #include "renderlib/import/scene_file/field.h"
 
 #include "absl/strings/str_cat.h"

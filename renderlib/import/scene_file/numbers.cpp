@@ -1,3 +1,5 @@
+// Reads vectors, colours and numbers with their ranges; errors name the field.
+
 #include "renderlib/import/scene_file/numbers.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Parses JSON by protobuf, and finds line and column of a syntax error.
+
 #include <google/protobuf/util/json_util.h>
 
 #include <algorithm>

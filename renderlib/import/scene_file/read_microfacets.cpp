@@ -1,3 +1,5 @@
+// Reads conductors, plastic and other materials with microfacets.
+
 #include "renderlib/import/scene_file/read_microfacets.h"
 
 #include "absl/strings/str_cat.h"

@@ -1,3 +1,6 @@
+// did_you_mean() returns the known name with the smallest edit distance from a name, ignoring case,
+// as the end of an error message.
+
 #include "renderlib/import/scene_file/suggest.h"
 
 #include <algorithm>

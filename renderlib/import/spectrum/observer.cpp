@@ -1,3 +1,5 @@
+// The tables of observer.h, with linear interpolation.
+
 #include "renderlib/import/spectrum/observer.h"
 
 namespace bandsaw::spectrum {

@@ -1,3 +1,5 @@
+// Chooses the reader of a volume file by its suffix. A *.vol file has a single grid without a name.
+
 #include "renderlib/import/volume/volume_file.h"
 
 #include "absl/strings/match.h"
