@@ -14,8 +14,8 @@ class Journal {
  public:
   virtual ~Journal() = default;
   /// Appends all of the records or none. OK: they are on disk, after all records appended before.
-  /// RESOURCE_EXHAUSTED, INTERNAL, …: none of them is in the journal; the same append may be
-  /// retried.
+  /// Any other status, such as RESOURCE_EXHAUSTED: none of them is in the journal; the same append
+  /// may be retried.
   virtual absl::Status append(absl::Span<const Record> records) = 0;
   /// Calls `each` with every record in the order written. DATA_LOSS names a record that is damaged
   /// or of an unknown kind.

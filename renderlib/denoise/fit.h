@@ -41,7 +41,7 @@ struct FitInput {
   std::array<std::array<SplitPlane, 3>, 2> halves;  ///< radiance of the two halves, in [0, 1e15]
   std::array<SplitPlane, 2> variance;               ///< variance of a half: sum over channels, > 0
   std::array<SplitPlane, kGuides> guides;           ///< each in [0, 1]
-  SplitPlane valid;  ///< 1 for pixels whose values may be used, otherwise 0; 0 in the margin
+  SplitPlane valid;  ///< 1 for pixels whose values may be used, otherwise 0, as in the margin
 };
 
 struct FitSettings {

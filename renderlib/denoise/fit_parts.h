@@ -34,9 +34,11 @@ class PatchDistances {
 
   /// Computes the distances of the tile whose first centre is pixel (x, y); both are even.
   void compute(int x, int y);
-  /// Returns the distances of eight centres, from `column` of `row` in the tile on, to the pixels
-  /// at (dx, dy) from them: the mean over the patch of (difference^2 - variance) / variance, where
-  /// the variance is that of the difference. It is 0 on average for patches of the same radiance.
+  /// Returns eight distances: those of the patches around eight centres, which begin at `column` of
+  /// `row` in the tile, from the patches around the pixels at (dx, dy) from these centres. The
+  /// distance of two patches is the mean over their pixels of (d^2 - v) / v, where d is the
+  /// difference of the pixels and v the variance of d. It is 0 on average for patches of the same
+  /// radiance.
   const float* to(int dx, int dy, int row, int column) const {
     const int offset = (dy + kFitRadius) * kFitSide + dx + kFitRadius;
     return &all_[static_cast<std::size_t>((offset * kTileRows + row) * kTileColumns + column)];

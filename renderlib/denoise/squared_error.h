@@ -16,9 +16,9 @@ T squared_error(T a, T b, T first, T second, T share) {
   return share * of_a + (1 - share) * of_b - share * (1 - share) * ((a - b) * (a - b));
 }
 
-/// Returns the larger of an estimated squared error and the variance in it, which is share (1 -
-/// share) (a - b)^2: two parts of one Sobol' sequence differ more than independent ones, so the
-/// estimate may be far too small, even negative.
+/// Returns the larger of an estimated squared error and its part that is variance, share (1 -
+/// share) (a - b)^2. The estimate alone may be far too small, even negative, because two parts of
+/// one Sobol' sequence differ more than independent ones.
 template <class T>
 T at_least_variance(T squared_error, T variance) {
   return squared_error > variance ? squared_error : variance;

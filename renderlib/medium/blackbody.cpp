@@ -81,9 +81,11 @@ Rgb scaled(const Color& c, double by) {
           static_cast<float>(c[2] * by)};
 }
 
-/// Distance of the table's temperatures: a power of 2 has 256.
+/// The table has 2^8 temperatures for each octave: those doubles of which only the exponent and the
+/// first 8 bits of the fraction are used.
 constexpr int kFractionBits = 8;
-/// Bits of the first temperature of the table, 64 K; the last is 131,072 K.
+/// Exponent and these 8 bits of the first temperature of the table, 64 K, and of the last, 131,072
+/// K.
 constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(64.0) >> (52 - kFractionBits);
 constexpr std::uint64_t kLast = std::bit_cast<std::uint64_t>(131072.0) >> (52 - kFractionBits);
 

@@ -52,7 +52,8 @@ Transform inverse_of(const Transform& regular) { return inverse(regular).value_o
 /// A grid seen from the space of the regions.
 struct Bounded {
   GridBounds bounds;
-  std::optional<Transform> to_cells;  ///< from the regions' space; none if it is the same
+  std::optional<Transform>
+      to_cells;  ///< from the space of the regions; std::nullopt if both spaces are equal
 
   ValueBounds over(const Box& region) const {
     const Box in_cells = to_cells ? image_of(region, *to_cells) : region;

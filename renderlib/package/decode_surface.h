@@ -9,8 +9,8 @@
 
 namespace bandsaw {
 
-/// Return INVALID_ARGUMENT if the part is missing or a list has a wrong length. `field` names the
-/// camera in messages.
+/// Decodes a camera. `field` names it in messages. This function and those below return
+/// INVALID_ARGUMENT if the part is missing or a list has a wrong length.
 absl::StatusOr<Camera> decode_camera(const package::Camera& from, const std::string& field);
 /// Returns the default filter if the manifest has none.
 absl::StatusOr<PixelFilter> decode_filter(const package::Manifest& manifest);

@@ -146,9 +146,9 @@ class Pilot {
   TileError mean_;
 };
 
-/// Returns the factor by which the error falls below that of uniform sampling with as many samples;
-/// the smaller factor of the two errors. Each of the two parts of the pixels is planned from the
-/// other.
+/// Returns the predicted gain of the plan: the error of uniform sampling over the error with the
+/// plan, at the same number of samples. There are two errors (absolute and relative); the smaller
+/// gain is returned. Each of the two parts of the pixels is planned from the other.
 double gain(const std::array<Pilot, 2>& parts) {
   double samples = 0;
   Mean evenly;

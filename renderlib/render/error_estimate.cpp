@@ -30,9 +30,10 @@ constexpr double kDivisorOffset = 0.01;
 // makes the difference smaller.
 constexpr double kOfSquares = 1.5;
 // Width of the margin in standard deviations of T - V. If T - V were normal, 1.64 would suffice in
-// 19 of 20 cases. The larger value covers repeated stopping decisions, and images of few pixels,
-// whose sums are skewed and whose sum of squares is too small whenever V is
-// (tests/unit/cli/stop_at_error_test.cpp; NOTES.md lists the alternatives that were tried).
+// 19 of 20 cases. The larger value covers repeated stopping decisions. It also covers images of few
+// pixels: their sums are skewed, and when V happens to be too small, so is the sum of squares from
+// which the margin is computed (tests/unit/cli/stop_at_error_test.cpp; NOTES.md lists the
+// alternatives that were tried).
 constexpr double kDeviations = 3;
 
 struct Estimated {

@@ -30,13 +30,13 @@ using EarlierScenes = absl::Span<const std::shared_ptr<const Scene>>;
 class Scene {
  public:
   /// Validates the description (scene/validate.h), removes and counts primitives that no ray can
-  /// hit, and builds the BVHs and lights. Returns INVALID_ARGUMENT:
-  /// "spheres[3].radius: must be > 0, is -1". `forced`: features to enable in addition to those
-  /// that the scene uses; this costs time and changes no pixel; for tests. `traversal`: how rays
-  /// find their primitives; changes no pixel. `kernel`: the code that builds the scene and renders
-  /// its bands, one of kernels() (renderlib/render/kernel.h); changes no pixel. nullptr selects the
-  /// first of them. `earlier`: other scenes, such as those of other frames; what was made of the
-  /// meshes that the description shares with them is shared as well. This changes no pixel.
+  /// hit, and builds the BVHs and lights. Returns INVALID_ARGUMENT: "spheres[3].radius: must be >
+  /// 0, is -1". `forced`: features to enable in addition to those that the scene uses; this costs
+  /// time and changes no pixel; for tests. `traversal`: how rays find their primitives; changes no
+  /// pixel. `kernel`: the code that builds the scene and renders its bands, one of kernels()
+  /// (renderlib/render/kernel.h); changes no pixel. nullptr selects the first of them. `earlier`:
+  /// other scenes, such as those of other frames. Where the description has the same mesh as one of
+  /// them, its BVH is used again. This changes no pixel.
   static absl::StatusOr<std::shared_ptr<const Scene>> build(SceneDescription description,
                                                             Pool& pool,
                                                             const SceneFeatures& forced = {},

@@ -128,10 +128,11 @@ double scattered_once(const Medium& fog, double ahead, double aside, double inte
   });
 }
 
-/// A ray that passes a small light at distance `aside`, `ahead` of its origin, in endless fog.
+/// Compares the radiance along a ray in endless fog with quadrature. A small light is at the
+/// distance `ahead` along the ray and `aside` from it.
 void expect_single_scattering(const Medium& fog, double ahead, double aside, double error,
                               std::uint64_t samples = 1024) {
-  constexpr double kRadius = 1e-6;  // less than the standard error of any length
+  constexpr double kRadius = 1e-6;  // so small that the light is practically a point
   constexpr float kRadiance = 1e12f;
   SceneMaker maker;
   maker.sphere({ahead, aside, 0}, kRadius, maker.lamp(kRadiance));

@@ -34,9 +34,10 @@ struct LocalJob {
 /// LocalJob::stop; RESOURCE_EXHAUSTED: out of memory.
 absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop);
 
-/// Renders samples [0, samples) of some rows. Returns bands of as many rows as a band may contain,
-/// for each of the nodes maximal_nodes(samples) (render/band.h); the first node is split into its
-/// two halves.
+/// Renders samples [0, samples) of some rows. The samples are divided into the largest nodes of the
+/// summation tree that fit (maximal_nodes in render/band.h), and the first of these into its two
+/// halves, because the error estimate needs them. Returns bands for each of these ranges of
+/// samples, with as many rows as a band may have.
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
                                                     std::uint64_t samples);
 

@@ -34,9 +34,9 @@ class QuarantineList {
   /// Lifts the quarantine of all processes with this name.
   void lift(const std::string& name);
 
-  /// Forgets entries of browsers, which MUST have no bands of active jobs any more: those that are
-  /// lifted, and all if they are too many to admit another one. A page that is loaded again is a
-  /// new process, so they exclude nobody who wants to return.
+  /// Forgets the lifted entries of browsers, or all entries of browsers if they are so many that no
+  /// other browser is admitted. No active job may have bands that browsers rendered. The entries
+  /// are not needed then: a page that is loaded again is a new process, which they do not exclude.
   void forget_browsers();
 
   /// Returns true if the process was ever quarantined.

@@ -10,8 +10,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Work rate per thread before anything is measured. Too low rather than too high: a first band
-/// that is too small costs little, one that is too large delays the first rows.
+/// Work rate per thread before anything is measured. It is rather too low than too high, because a
+/// first band that is too small costs little, and one that is too large delays the first rows.
 constexpr double kGuessedRate = 100'000;
 /// Minimum weight of a new measurement. A worker's rate changes less from band to band than the
 /// cost of the rows.

@@ -39,12 +39,12 @@ std::size_t CrashRate::required(std::size_t min_crashes, std::size_t own) const 
                     std::max(min_crashes, kMaxRequired));
 }
 
-// A worker may be rendering its first lease or its second, since the first may be finished and not
-// stored yet. Not counted: a worker that said that it leaves; backup tasks, because the original's
-// worker is at the same rows and a network failure would take both at once; audits, because another
-// worker has rendered these rows; browsers, which are closed at any time and cannot be told from
-// each other; and leases that were granted when the worker was silent already, because it never
-// began them.
+// Returns the bands at which the worker may have been when it was lost: its first lease, and its
+// second, since the first may be finished and not stored yet. Some losses do not count. A worker
+// that said that it leaves did not crash. Browsers are closed at any time, and cannot be told from
+// each other. A backup task has the rows at which another worker is too, and a network failure
+// would take both at once. The rows of an audit have been rendered by another worker already. And
+// leases that were granted when the worker was silent already were never begun.
 std::vector<HeldBand> CrashAttribution::held_bands(const Worker& worker) const {
   std::vector<HeldBand> held;
   if (worker.draining || worker.quarantined || worker.browser) {

@@ -1,6 +1,8 @@
 // Passes are aligned ranges of blocks whose lengths are powers of two, so that they are nodes of
-// the summation tree. Checkpoints of an error target grow by an eighth to a quarter, or to the
-// number of samples at which the target is expected.
+// the summation tree. A checkpoint of a job with an error target has a quarter more samples than
+// the last one, or only an eighth more if the target is expected earlier (error ~ samples^-1/2). It
+// has more than that if the target cannot be reached before, even if the error falls as 1 /
+// samples.
 
 #include "coordinator/scheduler/model/pass_plan.h"
 
@@ -50,6 +52,7 @@ std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target
   if (!(error >= 0)) {
     next = 2 * now;
   } else if (error > target) {
+    // Samples at which the target is reached if the error falls as samples^(-1 / power).
     const auto reached = [&](double power) {
       return static_cast<std::uint64_t>(
           std::min(std::ceil(static_cast<double>(now) * std::pow(error / target, power)),

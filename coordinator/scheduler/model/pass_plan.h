@@ -36,9 +36,9 @@ std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target
 std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
                                           std::uint64_t planned, std::uint64_t max_samples);
 
-/// Returns true if the tiles of an adaptive job are to be planned at a checkpoint with this error:
-/// once it is so near to the target that the pilot has at least about a sixteenth of the samples
-/// that random sampling would need.
+/// Returns true if the tiles of an adaptive job are to be planned at a checkpoint with this error,
+/// because it is at most four times the target. Then the pilot has at least about a sixteenth of
+/// the samples that random sampling would need to reach the target.
 bool time_to_plan_tiles(double error, double target);
 
 /// Returns the error that the next checkpoint waits for: the target, or the error at which tiles

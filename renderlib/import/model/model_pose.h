@@ -29,10 +29,11 @@ NodePlaces node_places(const aiScene& scene, const Animation* animation, double 
 
 /// The values that a mesh's vertices depend on.
 struct MeshPose {
-  std::vector<double> weights = {};  ///< of the morph targets; empty: those of the file
+  std::vector<double> weights =
+      {};  ///< weights of the morph targets; empty: the weights in the file are used
   /// Transforms of the mesh's bones to the model's space, in their order; std::nullopt: no skin.
   std::optional<std::vector<Transform>> bones = std::nullopt;
-  Transform place = {};  ///< of the skin's vertices without a bone
+  Transform place = {};  ///< transform of the skin's vertices that have no bone
   friend bool operator==(const MeshPose&, const MeshPose&) = default;
 };
 

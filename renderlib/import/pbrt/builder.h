@@ -145,8 +145,8 @@ struct ShapeLook {
 std::string material_name(const Surface& surface, const ShapeLook& look, const Place& place,
                           Builder& builder);
 
-/// Returns the name of the medium in our scene; `to_shape` maps world space to that of the shape
-/// whose interior it is. Empty after a warning: it has no counterpart.
+/// Returns the name that the medium has in our scene. `to_shape` maps the world to the space of the
+/// shape that the medium fills. Returns an empty name after a warning if it has no counterpart.
 absl::StatusOr<std::string> medium_name(const std::string& name, const Place& place,
                                         const Transform& to_shape, Builder& builder);
 

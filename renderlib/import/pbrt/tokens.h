@@ -32,8 +32,9 @@ class Tokens {
   explicit Tokens(const SceneFolder& folder) : folder_(folder) {}
 
   /// Continues with the first word of the file `name`, relative to the scene's folder. `place` is
-  /// the place of the directive that includes it. NOT_FOUND, PERMISSION_DENIED: the file;
-  /// INVALID_ARGUMENT: it includes itself; RESOURCE_EXHAUSTED: a bound.
+  /// the place of the directive that includes it. NOT_FOUND, PERMISSION_DENIED: the file cannot be
+  /// read. INVALID_ARGUMENT: it includes itself. RESOURCE_EXHAUSTED: files include each other too
+  /// deeply, or all files together are too large.
   absl::Status include(const std::string& name, const Place& place);
 
   /// Returns the next word; std::nullopt after the last. INVALID_ARGUMENT: a string without end.

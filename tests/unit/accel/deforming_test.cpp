@@ -200,7 +200,8 @@ TEST(Deforming, DoesNotLeakAtAnyTime) {
   EXPECT_EQ(lost(turned, {}, 1, 100'000), 0);
 }
 
-// The mesh of two halves that are two meshes: their common border has the same positions.
+// Two meshes have the triangles of one mesh in turn. Their common edges have the same positions, so
+// no ray gets through between them.
 TEST(Deforming, TwoMeshesWithOneBorderDoNotLeak) {
   Pool pool(1);
   Random random(5);
@@ -271,7 +272,8 @@ TEST(Deforming, BoxesAndSizesHoldAtEveryTime) {
   EXPECT_GT(checked, 1'000'000);
 }
 
-// The vertices' change is the largest float; that of a box with its margin is more.
+// The vertices move by about the largest float, so the movement of a box with its margin is no
+// float any more.
 TEST(Deforming, BoxesHoldIfTheirChangeOverflows) {
   for (const auto& [open, close] :
        {std::pair(-0x1.8459fep127f, 0x1.ee98p125f), std::pair(-0x1.cd5030p126f, 0x1.1957e6p127f)}) {
