@@ -36,8 +36,8 @@ class FilmThread {
   /// Adds these rows of a band. OK: they are in the film. Otherwise they wait in memory for retry,
   /// and SchedulerInbox::storage_failed is called.
   absl::Status add(JobId job, IncomingBand incoming, std::vector<RowRange> rows);
-  /// The same for a band that is in the job's log while the film cannot take any: it is read from
-  /// the log at the next retry.
+  /// Adds these rows of a band at the next retry, when the band is read from the job's log: for a
+  /// band that is in the log while the film cannot take any.
   void add_later(JobId job, const IncomingBand& incoming, const std::vector<RowRange>& rows);
   /// Sends the image of samples [0, samples) to the store as soon as the film has them.
   void request_image(JobId job, std::uint64_t samples);

@@ -35,8 +35,8 @@ struct FloatRay {
   /// `reach` is the largest absolute coordinate of the geometry to be tested.
   FloatRay(const TracedRay& ray, float reach);
 
-  /// Return t in this ray's units, rounded down and up by more than the rounding error of box
-  /// distances.
+  /// below() and above() return t in this ray's units, rounded down or up by more than the rounding
+  /// error of box distances.
   float below(double t) const { return static_cast<float>(t * scale * (1 - 0x1p-20)); }
   float above(double t) const { return static_cast<float>(t * scale * (1 + 0x1p-20)); }
 

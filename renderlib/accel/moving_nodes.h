@@ -28,8 +28,9 @@ Box middle(const MovingBox& box);
 /// contain those of its leaves at all times (README.md, "Moving boxes").
 NodeChanges set_moving_bounds(absl::FunctionRef<MovingBox(ChildRef leaf)> leaf_box, WideTree& tree);
 
-/// The same as enter_children() (accel/traverse.h) for node `index` at `share` of the interval, in
-/// [0, 1].
+/// Does what enter_children() (accel/traverse.h) does: sets `enter` to the distances at which the
+/// ray enters the boxes of the children, and returns a bit for each box that it hits. The node is
+/// `index`, and the time is `share` of the interval, in [0, 1].
 template <class Float = Float8>
 inline unsigned enter_moving_children(const WideTree& tree, const NodeChanges& changes,
                                       std::uint32_t index, float share, const FloatRay& ray,

@@ -136,7 +136,8 @@ class TraversalStack {
   return nearest;
 }
 
-/// The same as nearest_child without an order, for any-hit traversal.
+/// Returns any of the children hit and pushes the others: for any-hit traversal, which needs no
+/// order.
 inline ChildRef some_child(const WideNode& node, unsigned hits, TraversalStack& stack) {
   auto i = static_cast<std::size_t>(std::countr_zero(hits));
   for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
@@ -177,7 +178,7 @@ template <bool kSorted, class Enter, class Leaf>
   }
 }
 
-/// The same for a tree without motion.
+/// Traverses a tree without motion in the same way.
 template <bool kSorted, class Leaf>
 [[gnu::always_inline]] inline bool traverse(const WideTree& tree, const FloatRay& ray,
                                             const float& bound, Leaf&& leaf) {

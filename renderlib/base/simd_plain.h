@@ -81,22 +81,22 @@ class Float8 {
   friend Float8 operator/(const Float8& a, const Float8& b) {
     return lanes([&](std::size_t i) { return a.v_[i] / b.v_[i]; });
   }
-  /// Return a b + c and a b - c, rounded once.
+  /// fused() returns a b + c and fused_minus() a b - c, both rounded once.
   friend Float8 fused(const Float8& a, const Float8& b, const Float8& c) {
     return lanes([&](std::size_t i) { return simd_plain::fused(a.v_[i], b.v_[i], c.v_[i]); });
   }
   friend Float8 fused_minus(const Float8& a, const Float8& b, const Float8& c) {
     return lanes([&](std::size_t i) { return simd_plain::fused(a.v_[i], b.v_[i], -c.v_[i]); });
   }
-  /// Return a b + c and a b - c, rounded once or twice, whichever is faster: only for numbers that
-  /// change no bit of a result.
+  /// about_fused() returns a b + c and about_fused_minus() a b - c, rounded once or twice,
+  /// whichever is faster: only for numbers that change no bit of a result.
   friend Float8 about_fused(const Float8& a, const Float8& b, const Float8& c) {
     return fused(a, b, c);
   }
   friend Float8 about_fused_minus(const Float8& a, const Float8& b, const Float8& c) {
     return fused_minus(a, b, c);
   }
-  /// Return b in lanes where either is NaN.
+  /// min() and max() return b in lanes where a or b is NaN.
   friend Float8 min(const Float8& a, const Float8& b) {
     return lanes([&](std::size_t i) { return a.v_[i] < b.v_[i] ? a.v_[i] : b.v_[i]; });
   }

@@ -18,8 +18,8 @@ Rgb evening_sky(const Vec3& unit);
 /// a high bright cloud, which is a soft light from the side.
 Rgb dusk_sky(const Vec3& unit);
 
-/// Return the skies as equirectangular images of 2 * rows x rows texels; each texel is the mean of
-/// 8 x 8 directions.
+/// These functions return the skies as equirectangular images of 2 * rows x rows texels; each texel
+/// is the mean of 8 x 8 directions.
 Image evening_sky_map(std::uint32_t rows);
 Image dusk_sky_map(std::uint32_t rows);
 

@@ -96,9 +96,9 @@ inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point
                            crossing);
 }
 
-/// Return the boxes to which hits are confined (clip_to_box) and which the boxes of a BVH must
-/// contain. The box of a sphere is larger than the sphere by more than the rounding of center and
-/// radius.
+/// These functions return the box to which hits are confined (clip_to_box), and which the boxes of
+/// a BVH must contain. The box of a sphere is larger than the sphere by more than the rounding of
+/// center and radius.
 Box bounds(const Sphere& sphere);
 Box bounds(const Quad& quad);
 Box bounds(const Triangle& triangle);

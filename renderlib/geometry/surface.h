@@ -58,7 +58,8 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
 /// have no area.
 void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point);
 
-/// Sets the same to dp/du and dp/dv in world space, with their lengths; of spheres too.
+/// Sets along_u and along_v, or those of the second uv set, to dp/du and dp/dv in world space, with
+/// their lengths; of spheres too.
 void add_uv_derivatives(const Geometry& geometry, bool second, SurfacePoint& point);
 
 /// Returns the distance along `ray`, whose direction is a unit vector, to the surface that it hit.

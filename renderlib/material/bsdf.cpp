@@ -33,7 +33,9 @@ SidedNormals for_mirror(const SidedNormals& normal, const Vec3& wo) {
   return {normal.geometric, usable ? normal.shading : normal.geometric};
 }
 
-/// The same for refraction, where the refracted direction must be beyond the surface as well.
+/// Returns the normals for specular reflection and refraction: those of for_mirror(), but also with
+/// the geometric normal in place of the shading normal where the latter would put the refracted
+/// direction on wo's side of the surface.
 SidedNormals for_glass(const SidedNormals& normal, const Vec3& wo, double eta) {
   const SidedNormals sided = for_mirror(normal, wo);
   const std::optional<double> cos_t = refracted_cos(dot(wo, sided.shading), eta);

@@ -61,7 +61,8 @@ inline double opacity(const Material& material, absl::Span<const Texture> textur
   return value;
 }
 
-/// Returns the same for material `id`, which may be a mixture: the mean over its parts.
+/// Returns the opacity of material `id`, which may be a mixture: then the mean over its parts,
+/// weighted by the amount.
 inline double opacity(absl::Span<const Material> materials, MaterialId id,
                       absl::Span<const Texture> textures, const SurfacePoint& point) {
   const Material& material = materials[index_of(id)];

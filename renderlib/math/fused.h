@@ -109,7 +109,7 @@ inline float fused(float a, float b, float c) { return simd_plain::fused(a, b, c
 #else
 /// Returns a b - product, rounded once, where product is a b rounded: exact unless that underflows.
 inline double product_error(double a, double b, double product) { return std::fma(a, b, -product); }
-/// Return a b + c, rounded once.
+/// These functions return a b + c, rounded once.
 inline double fused(double a, double b, double c) { return std::fma(a, b, c); }
 inline float fused(float a, float b, float c) { return std::fma(a, b, c); }
 #endif

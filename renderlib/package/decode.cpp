@@ -181,7 +181,7 @@ class Decoder {
     return SharedBytes(std::move(held), bytes);
   }
 
-  // Returns the same as an array of T.
+  // Returns the whole blob as an array of T.
   template <class T>
   absl::StatusOr<std::vector<T>> array(const package::Blob& blob, const std::string& field) {
     if (blob.size() % sizeof(T) != 0) {
@@ -192,7 +192,7 @@ class Decoder {
     return from_bytes<T>(whole.span());
   }
 
-  // Returns the same; there must be one entry for each of `count` shapes.
+  // Returns the whole blob as an array of T, which must have one entry for each of `count` shapes.
   template <class T>
   absl::StatusOr<std::vector<T>> array_of(std::size_t count, const package::Blob& blob,
                                           const std::string& field) {

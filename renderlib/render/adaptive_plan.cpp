@@ -131,7 +131,7 @@ class Pilot {
     const TileError value = mean.value();
     return value.pixels > 0 ? value : mean_;
   }
-  /// Returns the same blended with the tile's own error.
+  /// Returns the error of the tile i blended with around(i).
   TileError here(std::size_t i) const {
     const TileError others = around(i);
     const TileError& own = tiles_[i];

@@ -12,7 +12,7 @@ namespace bandsaw::coordinator {
 /// FAILED_PRECONDITION: neither variable is set.
 absl::StatusOr<std::string> default_data_folder();
 
-/// Return the files with the join strings of workers and of users.
+/// These functions return the paths of the files with the join strings of workers and of users.
 std::string worker_join_file(const std::string& data_folder);
 std::string farm_join_file(const std::string& data_folder);
 /// Returns the file with the link to the dashboard, which contains the users' secret.

@@ -21,8 +21,8 @@ struct CleanPoint {
   std::vector<double> error_ratios = {};
 
   double gain() const { return clean_mse > 0 ? raw_mse / clean_mse : 0; }
-  /// The same for an image as rendered in the time of the clean one: its squared error falls as 1 /
-  /// time.
+  /// Returns by how much the clean image's squared error is smaller than that of an image as
+  /// rendered in the clean one's time; without the filter, the squared error falls as 1 / time.
   double gain_in_equal_time() const {
     return clean_cpu_s > 0 ? gain() * raw_cpu_s / clean_cpu_s : 0;
   }

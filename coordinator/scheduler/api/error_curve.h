@@ -44,8 +44,8 @@ double error_at(const ErrorCurve& curve, double samples);
 /// curve has no point or is of a black image, or more than kMaxSamples would be needed.
 std::optional<double> samples_until(const ErrorCurve& curve, double target);
 
-/// Returns the same in CPU seconds, which are proportional to the samples. std::nullopt also if the
-/// CPU time is unknown.
+/// Returns the CPU seconds until error_at is at most `target`; they are proportional to the
+/// samples. std::nullopt: samples_until returns it, or the CPU time is unknown.
 std::optional<double> cpu_s_until(const ErrorCurve& curve, double target);
 
 }  // namespace bandsaw::coordinator

@@ -135,7 +135,8 @@ class AvailableWorkers {
 
   bool contains(const Place& place) const { return places_.contains(place); }
   std::size_t size() const { return places_.size(); }
-  /// Return the number of eligible workers, with or without spare credits, and of their threads.
+  /// eligible() and threads() return the number of eligible workers, with or without spare credits,
+  /// and of their threads.
   std::size_t eligible() const { return known_.size(); }
   std::uint64_t threads() const { return threads_; }
   /// Returns the number of eligible workers that are not browsers.

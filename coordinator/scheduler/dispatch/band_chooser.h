@@ -45,7 +45,8 @@ class BandChooser {
   /// Returns the next probe, or else the first free band that is not left to others; std::nullopt:
   /// there is none for this worker. Counts the probe.
   std::optional<Band> choose(Job& job, const Worker& worker) const;
-  /// Returns the same without probes.
+  /// Returns the first free band that is not left to others, never a probe. std::nullopt: there is
+  /// none for this worker.
   std::optional<Band> choose_free(const Job& job, const Worker& worker) const;
   /// Returns the part of a free piece that is a band for this worker now.
   Band sized(const Job& job, const Worker& worker, const Band& free) const;

@@ -14,18 +14,19 @@ class Eligibility {
  public:
   /// A worker that failed this many bands of a job in a row gets no more of it.
   static constexpr std::uint32_t kMaxFailuresPerWorker = 3;
-  /// Bytes of memory that a loaded scene takes, per byte of its package, at most: a mesh takes 18
-  /// bytes per triangle in its package (12 of indices, 6 of vertices), and its acceleration
-  /// structure 54 more (renderlib/accel/README.md). Textures take what they take in the package.
+  /// Bytes of memory that a loaded scene takes, per byte of its package, at most. For a mesh: its
+  /// package has 18 bytes per triangle (12 of indices, 6 of vertices), and its acceleration
+  /// structure takes 54 more (renderlib/accel/README.md). Textures take as many bytes in memory as
+  /// in the package.
   static constexpr std::uint64_t kMemoryPerPackageByte = 4;
 
   explicit Eligibility(const Context& context) : context_(context) {}
 
-  /// Returns true if its memory is enough and it has not failed too many bands of the job in a row.
-  /// Then it may render bands of the job for comparison.
+  /// Returns true if the worker may render bands of the job for comparison: its memory is enough
+  /// and it has not failed too many bands of the job in a row.
   bool may_audit(const Worker& worker, const Job& job) const;
-  /// Returns true if it may also render bands for the image. For browsers, this also depends on
-  /// SchedulerOptions::browsers and on audits_lag().
+  /// Returns true if the worker may also render bands for the image. For browsers, this also
+  /// depends on SchedulerOptions::browsers and on audits_lag().
   bool may_render(const Worker& worker, const Job& job) const;
   /// Returns true if so many bands wait for their audits that browsers get no more of the job until
   /// native workers have rendered some of them. Otherwise bands would be stored without the audit
@@ -40,12 +41,14 @@ class Eligibility {
   bool someone_may_render(const Job& job) const;
   /// Returns true if some eligible worker may render the job and has not failed the band.
   bool someone_else(const Job& job, const Band& band) const;
-  /// Returns the same for workers whose machine was not lost at the band either.
+  /// Returns true if some eligible worker may render the job, has not failed the band, and runs on
+  /// a machine that was not lost at the band.
   bool another_machine(const Job& job, const Band& band) const;
 
-  /// Returns the bands of the job that are left to others than this worker.
+  /// Returns the bands of the job that this worker must leave to others: those that it failed or at
+  /// which its machine was lost, if there is another worker for them.
   std::vector<Band> left_to_others(const Job& job, const Worker& worker) const;
-  /// Returns true if `band` overlaps one of them.
+  /// Returns true if `band` overlaps a band that this worker must leave to others.
   bool left_to_others(const Job& job, const Worker& worker, const Band& band) const;
 
  private:

@@ -8,9 +8,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the mean work rate of the job's workers per thread; a guess until one is measured.
+/// Returns the mean work rate of the job's workers per thread; a guess until a rate is measured.
 double work_rate_per_thread(const Job& job);
-/// Returns the worker's own work rate on the job; if it has none yet, that of its thread count.
+/// Returns the worker's work rate on the job. If none is measured yet, this is the job's rate per
+/// thread times the worker's number of threads.
 double work_rate(const Worker& worker, const Job& job);
 /// Returns true if the worker's rate on this job, or on an earlier frame of its sequence, was
 /// measured.

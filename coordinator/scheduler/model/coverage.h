@@ -61,7 +61,8 @@ class Coverage {
 
   bool complete() const { return stored_ == total_; }
   bool any_free() const { return !with_free_.empty(); }
-  /// Return the number of free or stored samples of a pixel column, summed over the rows.
+  /// free_samples() and stored_samples() return the number of free or stored samples of one column
+  /// of pixels, summed over the rows.
   std::uint64_t free_samples() const { return free_; }
   std::uint64_t stored_samples() const { return stored_; }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// The single buffer of a plain glTF document (plain_gltf.h) under construction.
+// Builds the single buffer of a plain glTF document (plain_gltf.h): the bytes of its arrays, and
+// the accessors and buffer views that say where each array is and of what type.
 
 #include <cstdint>
 #include <string>
@@ -13,12 +14,12 @@ namespace bandsaw::gltf {
 
 class PlainBuffer {
  public:
-  /// Return the number of a new accessor with a copy of the values. `components` is 1 to 4, or 16
-  /// for a matrix.
+  /// These functions append a copy of the values and return the number of a new accessor for it.
+  /// `components` is 1 to 4, or 16 for a matrix.
   std::size_t add(absl::Span<const float> values, std::size_t components);
   std::size_t add(absl::Span<const std::uint16_t> values, std::size_t components);
   std::size_t add(absl::Span<const std::uint32_t> values);
-  /// Returns the number of a new buffer view with a copy of the bytes.
+  /// Appends a copy of the bytes and returns the number of a new buffer view for it.
   std::size_t add_bytes(absl::string_view bytes);
 
   /// Adds accessors, buffer views and the buffer with the name `uri` to `root`, and returns the

@@ -23,8 +23,8 @@ class Parameters {
   const Property* find(const std::string& name) const;
   bool has(const std::string& name) const { return find(name) != nullptr; }
 
-  /// Return the value, or `otherwise` if there is none. INVALID_ARGUMENT with the place if it is of
-  /// another type.
+  /// These functions return the value of the parameter, or `otherwise` if there is none.
+  /// INVALID_ARGUMENT with the parameter's place: it is of another type.
   absl::StatusOr<double> number(const std::string& name, double otherwise) const;
   absl::StatusOr<std::int64_t> integer(const std::string& name, std::int64_t otherwise) const;
   absl::StatusOr<bool> boolean(const std::string& name, bool otherwise) const;

@@ -39,8 +39,8 @@ absl::StatusOr<Affine> to_uv_of(const Parameters& from) {
                  {whole.m[1][0], whole.m[1][1], whole.m[1][3]}}};
 }
 
-/// Returns the same map for coordinates of ours on both sides: v = 0 is the bottom row of the
-/// texture. `frame` states the direction of the surface's v.
+/// Returns the map `m` rewritten from our uv to our texture coordinates, in which v = 0 is the
+/// bottom row of the texture. `frame` states the direction of the surface's v.
 Affine in_our_frame(const Affine& m, UvFrame frame) {
   Affine to = {{m[0], {-m[1][0], -m[1][1], 1 - m[1][2]}}};
   if (frame == UvFrame::kFlipped) {
