@@ -1,6 +1,7 @@
 #pragma once
 
-// The connected workers, by session.
+// The connected workers, by session. perform() carries out an action of the scheduler: it sends the
+// message to the worker of that session.
 
 #include <map>
 #include <memory>

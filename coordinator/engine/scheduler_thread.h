@@ -31,8 +31,8 @@ class StoreThread;
 /// Used by one thread at a time.
 class SchedulerThread {
  public:
-  /// `reserve` is released when the journal has no space, and held again when it has. All
-  /// references MUST outlive it.
+  /// `reserve`: a file that keeps disk space for the journal. It is removed when the disk is full,
+  /// and made again when there is space. All references MUST outlive the object.
   SchedulerThread(SchedulerOptions options, Journal& journal, Reserve reserve, const Clock& clock,
                   StoreInbox& store, FilmInbox& film);
 

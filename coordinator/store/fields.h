@@ -1,7 +1,6 @@
 #pragma once
 
-// Named values as lines of text: "name value
-// ", values escaped as in C, in a fixed order.
+// Named values as text: a line "name value" for each, in a fixed order. Values are escaped as in C.
 
 #include <charconv>
 #include <cstdint>

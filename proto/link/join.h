@@ -4,7 +4,7 @@
 //
 //   bsw1-w-192.168.1.5:7878,10.0.0.5:7878-<43>-<22>
 //   format version, role (w worker, f farm user), addresses,
-//   base64url of the certificate's SHA-256, base64url of the secret (128 bits)
+//   base64url of the certificate's SHA-256 (43 characters), of the secret (128 bits, 22 characters)
 //
 // An IPv6 address is written in brackets. A coordinator without TLS (--insecure) writes "plain"
 // instead of the digest. The users' string also has the dashboard's place after the addresses, for

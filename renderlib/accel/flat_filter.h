@@ -9,7 +9,8 @@
 
 namespace bandsaw {
 
-/// Bounds of the relative rounding errors: that of the corners' weights, and that of volume and
+/// Bounds of the relative rounding errors: the first for the weights of the corners (barycentric
+/// coordinates times the volume), the second for the volume (normal times direction) and for the
 /// distance.
 inline constexpr float kWeightError = 26 * 0x1p-24f;
 inline constexpr float kDistanceError = 24 * 0x1p-24f;

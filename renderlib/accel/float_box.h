@@ -50,7 +50,8 @@ struct FloatBox {
   }
 };
 
-/// Returns the nearest float that is not above (below) x.
+/// round_down() returns the largest float that is not above x, round_up() the smallest that is not
+/// below x.
 inline float round_down(double x) {
   const auto f = static_cast<float>(x);
   return double{f} > x ? std::nextafter(f, -FloatBox::kInf) : f;

@@ -29,7 +29,7 @@ struct MeshTree {
   }
 };
 
-/// Returns a pack at a time. The mesh MUST deform.
+/// Returns the pack number `pack` with its corners at the time `now`. The mesh MUST deform.
 FlatPack pack_at(const MeshTree& mesh, std::uint32_t pack, const ShutterTime& now);
 
 /// Builds the tree. Omits triangles with a corner that is not finite or does not exist, and

@@ -177,7 +177,7 @@ template <class Query>
   });
 }
 
-/// Traces a mesh or group. `ray` is `world` in its own space.
+/// Traces a mesh or group. `ray` is the ray `world` in the space of the mesh or group.
 template <class Query>
 inline bool trace_prototype(const Prototype& prototype, const Interval& shutter,
                             const TracedRay& ray, std::uint32_t instance, const Ray& world,

@@ -96,7 +96,8 @@ absl::Status validate_motion(const Camera& at_open, const Camera& at_close);
 
 /// A camera prepared for an image of a given size: a ray costs a few multiplications. If the camera
 /// moves, its position, its focus and the size of a pixel change linearly from the opening of the
-/// shutter to its closing, and the view direction turns from the first to the second one.
+/// shutter to its closing, and the view direction turns from that at the opening to that at the
+/// closing.
 class RayGenerator {
  public:
   /// `camera` MUST be valid, and `at_close` too (validate_motion); sizes are in pixels, >= 1.

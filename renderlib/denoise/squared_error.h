@@ -3,11 +3,11 @@
 namespace bandsaw {
 
 /// Estimates the squared error of the mean of two values, each of which was computed from one part
-/// of the samples (`a` from the first). `first` and `second` are the parts' own values. With the
-/// variance v of a part's value, E (a - second)^2 = error^2(a) + v(second), because the parts are
-/// independent, and v(second) = share (first - second)^2 on average. The same holds with the parts
-/// exchanged. The mean's squared error is that of `a` and `b` on average, minus share (1 - share)
-/// (a - b)^2.
+/// of the samples: `a` from the first, `b` from the second. `first` and `second` are the unfiltered
+/// means of the parts, and `share` is the share of the first part. With the variance v of a part's
+/// value, E (a - second)^2 = error^2(a) + v(second), because the parts are independent, and
+/// v(second) = share (first - second)^2 on average. The same holds with the parts exchanged. The
+/// mean's squared error is that of `a` and `b` on average, minus share (1 - share) (a - b)^2.
 template <class T>
 T squared_error(T a, T b, T first, T second, T share) {
   const T apart = (first - second) * (first - second);

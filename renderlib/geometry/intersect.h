@@ -42,7 +42,7 @@ struct Sheared {
   double z;
 };
 
-/// `Point` is an array of three numbers, float or double.
+/// Returns the point `p` in the ray's space. `Point` is an array of three numbers, float or double.
 template <class Point>
 [[gnu::always_inline]] inline Sheared sheared(const TracedRay& ray, const Point& p) {
   const auto kx = static_cast<std::size_t>(ray.kx);

@@ -52,8 +52,8 @@ struct DisneyDiffuse {
   Rgb sheen;  ///< the weight of the sheen times its colour
 };
 
-/// Returns its value with the cosine, with the weight `diffuse` of the diffuse part. o and i are
-/// above the surface, h is their half vector.
+/// Returns the value of the diffuse light, cosine included; `diffuse` is the weight of everything
+/// except the sheen. o and i are above the surface, h is their half vector.
 inline Rgb disney_diffuse(const DisneyDiffuse& d, double diffuse, const Vec3& o, const Vec3& i,
                           const Vec3& h) {
   const double rim_o = schlick_rim(o.z);

@@ -59,8 +59,8 @@ inline double conductor_fresnel(double cos_i, double eta, double k) {
 }
 
 /// Returns the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h): the pdf of wi
-/// by refraction at a facet, divided by its pdf over the cosine (facet_pdf_over_cos) and by 1 - F.
-/// i_h is negative.
+/// by refraction at a facet, divided by facet_pdf_over_cos() of that facet and by its transmittance
+/// 1 - F. i_h is negative.
 inline double refraction_jacobian(double o_h, double i_h, double eta) {
   const double along_half = o_h + eta * i_h;
   return eta * eta * std::abs(i_h) * o_h / (along_half * along_half);

@@ -24,7 +24,8 @@ inline double ggx_distribution(const Vec3& h, double alpha) {
   return 1 / (kPi * alpha * alpha * t * t);
 }
 
-/// Returns z scaled by masking: G1 = 2 z / (z + ggx_stretched(w)).
+/// Returns the length of w with x and y multiplied by alpha. With this length s, G1 = 2 z / (z +
+/// s).
 inline double ggx_stretched(const Vec3& w, double alpha) {
   return std::sqrt(alpha * alpha * (w.x * w.x + w.y * w.y) + w.z * w.z);
 }

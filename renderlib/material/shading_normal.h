@@ -18,7 +18,8 @@ namespace bandsaw {
 Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
                    const UvTransform& placed = {}, UvSet set = UvSet::kFirst);
 
-/// The same with the map's texel at the point, as the map is placed on its own set of uvs.
+/// Returns the unit shading normal bent by the texel of `map` at the point, where the map's own
+/// transform and set of uvs place it.
 Vec3 mapped_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
                    double scale);
 

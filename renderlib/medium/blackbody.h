@@ -23,8 +23,8 @@ inline constexpr double kDarkKelvin = 100;
 /// is pure red; above 100,000 K it is that of 100,000 K.
 Rgb blackbody(double kelvin, BlackbodyScale scale);
 
-/// The same, precomputed. Between its temperatures, 1/256 of a power of 2 apart, it is
-/// interpolated: the relative error is at most 0.2 % from 1000 K to 100,000 K.
+/// A table of blackbody(). Its temperatures are 1/256 of a power of 2 apart, and it is interpolated
+/// between them: the relative error is at most 0.2 % from 1000 K to 100,000 K.
 class BlackbodyTable {
  public:
   explicit BlackbodyTable(BlackbodyScale scale);

@@ -20,7 +20,7 @@ class DecodedParts {
   /// Returns the mesh whose message in a manifest (package::Mesh) has these bytes; nullptr: none is
   /// in use.
   std::shared_ptr<const Mesh> mesh(const std::string& message) const;
-  /// Returns the same for a blob.
+  /// Returns the blob with this digest; nullptr: it is not in use.
   std::shared_ptr<const BlobBytes> blob(const wire::Digest& digest) const;
 
   void add(const std::string& message, const std::shared_ptr<const Mesh>& mesh);

@@ -23,7 +23,8 @@ class EncodedParts {
   /// Returns the message of a mesh of the last package (package::Mesh), which becomes part of this
   /// one; nullptr: it was not in it.
   const std::string* message_of(const Mesh& mesh);
-  /// Returns the same for bytes with the same address.
+  /// Returns the digest of bytes of the last package with the same address, which become part of
+  /// this one; nullptr: they were not in it.
   const wire::Digest* digest_of(const SharedBytes& bytes);
 
   void add(std::shared_ptr<const Mesh> mesh, std::string message);

@@ -12,8 +12,8 @@ namespace bandsaw {
 /// Encodes everything except the shapes of the boundaries and the blobs of grids.
 void encode_media(const Media& media, package::Manifest& manifest);
 
-/// Decodes the same. Checks only the form; returns INVALID_ARGUMENT for a list of a wrong length
-/// or an enum out of range.
+/// Decodes what encode_media() encodes. Checks only the form; returns INVALID_ARGUMENT for a list
+/// of a wrong length or an enum out of range.
 absl::StatusOr<Media> decode_media(const package::Manifest& manifest);
 
 }  // namespace bandsaw

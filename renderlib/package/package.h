@@ -48,8 +48,8 @@ absl::StatusOr<PackageInfo> package_info(const std::string& manifest);
 /// manifest is broken or exceeds a limit.
 absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest);
 
-/// Returns those of them that decode_package reads if it is called with `parts` now, in the same
-/// order. Errors as above.
+/// Returns those blobs of a manifest that decode_package reads if it is called with `parts` now, in
+/// the order of package_blobs. Errors as package_blobs.
 absl::StatusOr<std::vector<BlobRef>> missing_blobs(const std::string& manifest,
                                                    const DecodedParts& parts);
 

@@ -15,6 +15,8 @@ struct RaySets {
   std::vector<Ray> shadow;   ///< from these hits to points of a light; t in (0, 1)
 };
 
+/// Returns rays for a camera that looks at the middle of the mesh and a light above it; both are
+/// inside the mesh's bounding box if `from_within`, as in a room, otherwise outside of it.
 RaySets make_rays(const Mesh& mesh, const Accel& accel, bool from_within);
 
 }  // namespace bandsaw::bench

@@ -1,6 +1,7 @@
-// Chunks of a blob: any message; then a sender that begins, continues, skips, sends wrong bytes and
-// is interrupted as the input selects, and a disk that is damaged in between. A stored blob always
-// has its digest.
+// Uploads of a blob in chunks. First the whole input is parsed as one chunk. Then each three bytes
+// of the input select what happens next: a sender begins, continues, skips bytes, sends wrong bytes
+// or is interrupted, or the disk is damaged. A blob that is stored must have its digest after every
+// step.
 
 #include <algorithm>
 #include <cstring>

@@ -32,7 +32,7 @@ class Console {
 
   bool is_terminal() const { return is_terminal_; }
   bool colour() const { return colour_; }
-  /// Queried at each call, because windows are resized.
+  /// Returns the terminal's present size: windows are resized.
   TerminalSize size() const;
 
   /// Writes the text unchanged and unbuffered.

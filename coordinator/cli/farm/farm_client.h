@@ -62,8 +62,8 @@ class FarmClient {
     std::string epoch;
     std::vector<FrameView> frames;
   };
-  /// Returns the frames that changed after `after` in the same epoch; 0: all.
-  /// FAILED_PRECONDITION: the job is a single image.
+  /// Returns the frames whose FrameView::changed is above `after`, a number of the same epoch (run
+  /// of the coordinator); 0: all. FAILED_PRECONDITION: the job is a single image.
   absl::StatusOr<Frames> frames(JobId sequence, std::uint64_t after = 0);
 
   /// Calls `changed` with each status. Returns OK after a final state. UNAVAILABLE: the connection

@@ -6,7 +6,8 @@
 namespace bandsaw::coordinator {
 
 /// bandsaw submit --frames: starts a sequence, or continues one, sends the scenes of its frames and
-/// fetches their images. `outputs`: with a place for the number of a frame.
+/// fetches their images. `outputs`: names of image files, with a place for the number of a frame
+/// ("walk.####.png").
 ExitCode submit_frames(FarmClient& client, const SubmitOptions& options,
                        const std::vector<std::string>& outputs, Process& process);
 

@@ -1,7 +1,8 @@
 #pragma once
 
 // Removes the noise of an image (renderlib/denoise) and writes the clean image beside the image as
-// rendered.
+// rendered. The filter needs guides: images of the albedo and of the shape of the surfaces, which
+// have little noise.
 
 #include <cstdint>
 #include <functional>

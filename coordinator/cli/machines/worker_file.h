@@ -11,8 +11,8 @@
 namespace bandsaw::coordinator {
 
 /// Returns the path of the program for `machine`: beside this program if it has the same
-/// architecture, otherwise ../lib/bandsaw/bandsaw-worker-MACHINE relative to it; in a build folder
-/// as installed.
+/// architecture, otherwise ../lib/bandsaw/bandsaw-worker-MACHINE relative to it. Build folders have
+/// the same layout as installed programs.
 std::string worker_program_path(Machine machine);
 
 /// Checks that `bytes`, a whole file, are a worker for `machine` that is compatible with this

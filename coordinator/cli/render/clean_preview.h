@@ -1,6 +1,7 @@
 #pragma once
 
-// Clean previews of an image that is being rendered: reduced, with guides of few samples.
+// Clean previews of an image that is being rendered: reduced in size. The denoiser's guides (images
+// of albedo and shape) have only few samples.
 
 #include <atomic>
 #include <cstdint>

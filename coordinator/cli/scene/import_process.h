@@ -95,9 +95,9 @@ class ImportSession {
   ImportSession(const ImportSession&) = delete;
   ImportSession& operator=(const ImportSession&) = delete;
 
-  /// Imports the scene at a frame. The package before is not valid any more. The seconds of the
-  /// limits are for each frame. Setting `stop` ends the process. Errors as import_in_process; the
-  /// session is over then.
+  /// Imports the scene at a frame. The package of the frame before is not valid any more. The
+  /// seconds of the limits are for each frame. Setting `stop` ends the process. Errors as
+  /// import_in_process; the session is over then.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, const std::atomic<bool>* stop);
 
  private:

@@ -37,11 +37,12 @@ class FrameImporter {
   FrameImporter(std::string scene, SceneChoices choices)
       : scene_(std::move(scene)), choices_(std::move(choices)) {}
 
-  /// Imports a frame; the package before is not valid any more. Errors as import_any_scene; no
-  /// other frame can be imported then.
+  /// Imports a frame; the package of the frame before is not valid any more. Errors as
+  /// import_any_scene; no other frame can be imported then.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, const std::atomic<bool>& stop,
                                          std::vector<std::string>& warnings);
-  /// The same, and reports progress and warnings to the user as import_scene_file does.
+  /// Imports a frame in the same way, and reports progress and warnings to the user as
+  /// import_scene_file does.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, Verbosity verbosity, Process& process);
 
  private:

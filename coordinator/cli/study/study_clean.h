@@ -14,7 +14,7 @@ struct CleanPoint {
   double raw_mse = 0;    ///< relMSE (compare/error_metrics.h) of the image as rendered
   double clean_mse = 0;  ///< relMSE of the clean image
   double raw_cpu_s = 0;
-  double clean_cpu_s = 0;  ///< CPU time of the image, its guides and the filter
+  double clean_cpu_s = 0;  ///< CPU time of the image, of the filter's guides and of the filter
   double raw_flip = 0;     ///< mean FLIP, or HDR-FLIP if the reference exceeds a screen
   double clean_flip = 0;
   /// For each seed, the estimated RMSE of the clean image divided by the true one.

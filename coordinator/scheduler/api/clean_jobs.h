@@ -1,6 +1,8 @@
 #pragma once
 
-// The jobs whose images are needed to remove the noise of a job's image (renderlib/denoise).
+// The jobs whose images are needed to remove the noise of a job's image (renderlib/denoise): the
+// guides, which are images of the albedo and of the shape of the surfaces, and sometimes one half
+// of the samples.
 
 #include <cstdint>
 #include <optional>

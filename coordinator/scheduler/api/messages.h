@@ -29,7 +29,7 @@ struct WorkerHello {
   std::string build;
   std::uint32_t protocol = 0;
   std::uint32_t pixel_version = 0;
-  std::uint64_t canary = 0;
+  std::uint64_t canary = 0;  ///< hash of a small render (renderlib/render/canary.h)
   std::uint32_t threads = 1;
   std::uint32_t max_bands = 2;
   bool browser = false;  ///< it renders in a browser; the connection says so, not the worker

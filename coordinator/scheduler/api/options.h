@@ -10,7 +10,7 @@ namespace bandsaw::coordinator {
 struct Compatibility {
   std::uint32_t protocol = 0;
   std::uint32_t pixel_version = 0;
-  std::uint64_t canary = 0;
+  std::uint64_t canary = 0;  ///< hash of a small render (renderlib/render/canary.h)
 };
 
 /// Which workers may be browsers.
@@ -33,9 +33,9 @@ struct SchedulerOptions {
   /// Minimum number of machines that must be lost at a suspect band before its job fails. More are
   /// required on farms that lose many workers, or of which little is known (CrashRate).
   std::size_t min_crashes_per_band = 3;
-  /// [0, 1], of the bands of native workers: rendered by two machines (model/audit.h)
+  /// share of the bands of native workers that two machines render, [0, 1] (model/audit.h)
   double audit_share = 0;
-  double browser_audit_share = 0;  ///< [0, 1], the same of the bands of browsers
+  double browser_audit_share = 0;  ///< the same for the bands of browsers
   Browsers browsers = Browsers::kAlso;
   std::string epoch;  ///< names this run of the coordinator; a held lease is named with it
 };

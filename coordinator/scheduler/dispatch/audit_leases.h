@@ -1,6 +1,8 @@
 #pragma once
 
-// Leases of audits: which machine renders a stored band again.
+// Leases of audits: which machine renders a stored band again, so that both results can be
+// compared. An audit is disputed if machines have returned different results and none is known to
+// be right.
 
 #include <cstdint>
 #include <string>
@@ -32,8 +34,8 @@ class AuditLeases {
   /// machine is chosen, or none.
   void give_up(const Lease& lease, const Worker& worker, const std::string& reason);
   /// Returns true if an audit may still find that stored rows are wrong: then the job must not end,
-  /// and no error checkpoint may be evaluated. An audit that no machine can render does not count,
-  /// unless it is disputed.
+  /// and it must not be decided by its error whether it goes on. An audit that no machine can
+  /// render does not count, unless it is disputed.
   bool block(const Job& job) const;
 
  private:

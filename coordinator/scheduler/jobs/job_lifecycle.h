@@ -1,7 +1,8 @@
 #pragma once
 
 // The course of a job from its first pass to its end: error checkpoints, completion, failure, and
-// pauses because of a full disk.
+// pauses because of a full disk. An error checkpoint is a number of samples at which the error of
+// the image is compared with the target of the stop rule.
 
 #include <cstdint>
 #include <string>

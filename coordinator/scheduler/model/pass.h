@@ -55,7 +55,8 @@ struct Pass {
   SampleRange samples;
   Coverage coverage;
   TileSamples tiles;  ///< samples of all half tiles of the image
-  /// For each tile row, the samples that its pixels take over those of uniform sampling; empty: 1.
+  /// For each tile row, the number of samples that its pixels take, divided by that of uniform
+  /// sampling; empty: 1.
   std::vector<float> tile_row_shares;
   Totals stored;
   RowDigests digests;

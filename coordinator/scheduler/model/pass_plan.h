@@ -17,9 +17,10 @@ namespace bandsaw::coordinator {
 /// `to`. `from`: 0 or a multiple of 16; to > from.
 std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to);
 
-/// Returns the next error checkpoint in samples per pixel, at most max_samples. Passes up to a
-/// checkpoint run without a barrier between them. `samples`: the last checkpoint, 0: none yet;
-/// `error`: measured there, negative or NaN if unknown.
+/// Returns the next error checkpoint: the number of samples per pixel, at most max_samples, at
+/// which the error is compared with `target` again. Passes up to a checkpoint run without a barrier
+/// between them. `samples`: the last checkpoint, 0: none yet; `error`: measured there, negative or
+/// NaN if unknown.
 ///
 /// The error of an image falls between n^-1/2 (random samples) and n^-1 (well stratified samples).
 /// Let `first` be the number of samples at which an error that falls as n^-1 reaches the target:

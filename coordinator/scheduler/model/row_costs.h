@@ -21,8 +21,8 @@ class CostMap {
   explicit CostMap(std::uint32_t height);
 
   /// Returns the cost of one sample of one pixel column, summed over the rows. `tile_row_shares`:
-  /// for each tile row of the image, the samples that its pixels take over those of uniform
-  /// sampling; empty: 1.
+  /// for each tile row of the image, the number of samples that its pixels take, divided by that of
+  /// uniform sampling; empty: 1.
   double of(const RowRange& rows, absl::Span<const float> tile_row_shares = {}) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
   /// Returns how many rows, counted from the first of `rows`, cost at most `max_cost`; at least 1.

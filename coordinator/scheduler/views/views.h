@@ -37,10 +37,11 @@ class Views {
 
  private:
   JobView view(const Job& job, Time now) const;
-  /// Returns machines that are under quarantine and have not connected in this epoch.
+  /// Returns the reason why no worker may render the job.
   std::string nobody_reason(const Job& job) const;
   std::string idle_reason(const Worker& worker) const;
   std::string refusal(const Worker& worker, const Job& job) const;
+  /// Returns machines that are under quarantine and have not connected in this epoch.
   std::vector<WorkerView> absent_quarantined() const;
   /// Returns the reason why a job without leases waits, or the notice of a job with leases; may be
   /// empty.

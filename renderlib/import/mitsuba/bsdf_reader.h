@@ -17,7 +17,7 @@ namespace bandsaw::mitsuba {
 struct Draft {
   scene::Material material;
   bool two_sided = false;
-  bool turned = false;
+  bool turned = false;     ///< as in SurfaceMaterial
   bool transmits = false;  ///< has no black side
 };
 

@@ -32,7 +32,7 @@ struct ModelMaterial {
 /// the material.
 absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned index);
 
-/// Implement read_model_material() for the two kinds.
+/// These functions implement read_model_material() for the two kinds.
 absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader);
 absl::StatusOr<ModelMaterial> read_classic(MaterialReader& reader);
 

@@ -7,6 +7,7 @@
 
 namespace bandsaw::pbrt {
 
+/// Converts a metal.
 absl::Status conductor(const MaterialSource& from, Surface& to);
 
 /// Converts a metal under a clear coat to glTF's metal with a clear coat.

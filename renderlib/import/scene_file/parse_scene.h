@@ -18,11 +18,11 @@ struct ParsedScene {
   std::unique_ptr<google::protobuf::TextFormat::ParseInfoTree> locations;
 };
 
-/// `file` is the name in errors. Returns INVALID_ARGUMENT: "cornell.textproto:12:3: <cause>;
-/// <cure>", for the first error.
+/// Parses a scene in protobuf's text format. `file` is the name in errors. Returns
+/// INVALID_ARGUMENT: "cornell.textproto:12:3: <cause>; <cure>", for the first error.
 absl::StatusOr<ParsedScene> parse_textproto(const std::string& text, const std::string& file);
-/// Returns INVALID_ARGUMENT with the field's path, or with line and column if the JSON itself is
-/// broken.
+/// Parses a scene in JSON. Returns INVALID_ARGUMENT with the field's path, or with line and column
+/// if the JSON itself is broken.
 absl::StatusOr<ParsedScene> parse_json(const std::string& text, const std::string& file);
 
 }  // namespace bandsaw

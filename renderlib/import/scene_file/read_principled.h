@@ -9,8 +9,8 @@
 
 namespace bandsaw {
 
-/// Read the material of kind `principled` or `thin_principled` of `in`. INVALID_ARGUMENT with the
-/// field's name.
+/// These functions read the material of kind `principled` or `thin_principled` of `in`.
+/// INVALID_ARGUMENT with the field's name.
 absl::StatusOr<Material> read_principled(const Field& in, const scene::Principled& from,
                                          SceneDraft& draft);
 absl::StatusOr<Material> read_thin_principled(const Field& in, const scene::ThinPrincipled& from,

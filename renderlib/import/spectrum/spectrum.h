@@ -37,7 +37,7 @@ Sampled blackbody(double kelvin);
 /// Returns the colour of a light: the integral with the colour matching functions, scaled so that
 /// an equal-energy spectrum of value 1 has luminance 1.
 Rgb3 light_rgb(const Sampled& light);
-/// Returns the same scaled to luminance 1; [1, 1, 1] for a dark spectrum.
+/// Returns light_rgb() scaled to luminance 1; [1, 1, 1] for a dark spectrum.
 Rgb3 light_rgb_of_luminance_1(const Sampled& light);
 /// Returns the luminance of linear RGB.
 double luminance(const Rgb3& rgb);

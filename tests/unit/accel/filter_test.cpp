@@ -1,5 +1,6 @@
-// Compares the float filters with the double tests, and their arithmetic on every Float8 with plain
-// C++.
+// Tests the float filters of the BVH, which reject packs of eight triangles, spheres or boxes
+// before the exact test in double. A filter must never reject what the test in double hits, and
+// must give the same lanes with every implementation of Float8.
 
 #include <cmath>
 
@@ -198,8 +199,8 @@ TYPED_TEST(Filter, NeverRejectsASphereThatTheDoubleTestHits) {
   EXPECT_GT(hits, 100'000);
 }
 
-/// A box of one point, a corner of the box or between its corners: the ray of a hit at t enters it
-/// before t.
+/// The ray hits a point at t = 1. Each box contains the point: inside, on a face or at a corner,
+/// and some boxes are the point alone. The ray must enter all of them.
 TYPED_TEST(Filter, NeverRejectsABoxThatContainsAHit) {
   Random random(44);
   for (int i = 0; i < 500'000; ++i) {

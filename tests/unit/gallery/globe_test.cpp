@@ -57,8 +57,8 @@ TEST(Globe, HasIceAtThePolesAndSeaAndLandBetween) {
   EXPECT_LT(sea, 240);
 }
 
-// The mean of four texels of the larger map is one of the smaller, except for details that only the
-// larger map has.
+// Four texels of the larger map cover one texel of the smaller map. Their mean is close to it;
+// details that only the larger map has make a small difference.
 TEST(Globe, IsTheSamePlanetAtEverySize) {
   constexpr std::uint32_t kRows = 128;
   const Codes small = map_of(kRows);

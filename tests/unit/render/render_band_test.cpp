@@ -148,7 +148,8 @@ TEST(RenderBand, AllTechniquesHaveTheSameMean) {
   EXPECT_NE(both.sums, lights.sums);
   EXPECT_NE(both.sums, guided.sums);
   EXPECT_LT(scattering.counters.rays, both.counters.rays);
-  // In the box, pixels reuse paths, and light sampling alone finds less.
+  // In the box, pixels share paths, and with light sampling alone fewer connections between them
+  // carry light, so there are fewer rays.
   EXPECT_LE(lights.counters.rays, both.counters.rays);
   EXPECT_NEAR(total(lights) / total(both), 1, 0.02);
   EXPECT_NEAR(total(guided) / total(both), 1, 0.02);
