@@ -1,5 +1,6 @@
-// Counts items and bounding boxes by bin, then sweeps over the bins of each axis from both sides to
-// find the plane with the lowest cost.
+// Sorts the centres of a range of items (boxes with a number) into 16 bins on each axis, and counts
+// the items and their bounding boxes by bin. Then sweeps over the bins of each axis from both sides
+// to find the plane between two bins with the lowest cost.
 
 #include "renderlib/accel/best_split.h"
 

@@ -1,5 +1,6 @@
-// First computes for each subtree, from the leaves up, the least cost of giving it 1 to 8 slots of
-// a wide node; then builds the wide nodes from the root down by these costs.
+// A wide node has eight slots, each for a child. First computes for each subtree of the binary
+// tree, from the leaves up, the least cost of giving it 1 to 8 slots of a wide node; then builds
+// the wide nodes from the root down by these costs.
 
 #include "renderlib/accel/collapse.h"
 

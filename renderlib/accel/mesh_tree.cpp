@@ -1,5 +1,6 @@
-// Makes an item for each triangle that can be hit, builds and collapses the binary tree, and copies
-// the corners of each leaf's triangles into a pack.
+// Makes an item (a box with the triangle's number) for each triangle that can be hit, builds a
+// binary tree of the items and collapses it to a tree with eight children per node, and copies the
+// corners of each leaf's triangles, at most eight, into a pack.
 
 #include "renderlib/accel/mesh_tree.h"
 

@@ -1,5 +1,5 @@
-// A range is split at the cheapest plane. If there is none, it is split by the kind of its items,
-// or in halves at the median.
+// A range of items (boxes with the number and kind of what they contain) is split at the cheapest
+// plane. If there is none, it is split by the kind of its items, or in halves at the median.
 
 #include "renderlib/accel/partition.h"
 

@@ -1,5 +1,6 @@
-// Makes an item for each sphere, triangle and disk, and for each half of a quad. Leaves are packs
-// of one kind of shape.
+// A BVH is built from items: boxes with a number. Makes an item for each sphere, triangle and disk,
+// and for each half of a quad. Each leaf is a pack: up to eight shapes of one kind, stored side by
+// side as floats.
 
 #include "renderlib/accel/shapes_tree.h"
 

@@ -1,4 +1,5 @@
-// Maps errors in [0, 1] to colours from black by purple and orange to yellow.
+// Maps values in [0, 1] to colours from black over violet, red and yellow to white, by
+// interpolation between six colours.
 
 #include "renderlib/compare/false_color.h"
 

@@ -1,5 +1,6 @@
-// TileFit fits a linear function at each centre, eight centres at a time; Evaluation then computes
-// each pixel's value from the functions of the centres around it.
+// Every second pixel of every second row is a centre. TileFit fits a linear function of the
+// position and the guides at each centre, eight centres at a time; Evaluation then computes each
+// pixel's value from the functions of the centres around it.
 
 #include "renderlib/denoise/fit.h"
 

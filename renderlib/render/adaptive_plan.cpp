@@ -1,5 +1,6 @@
-// Pilot holds the errors that the pilot has measured over half of the pixels, and suggests a level
-// for each tile. gain() evaluates the suggestion on the errors of the other half.
+// The pilot is the first samples of all pixels. Pilot holds the errors that it has measured over
+// half of the pixels, and suggests a level for each tile, which stands for a factor on its number
+// of samples. gain() evaluates the suggestion on the errors of the other half.
 
 #include "renderlib/render/adaptive_plan.h"
 

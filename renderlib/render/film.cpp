@@ -1,6 +1,7 @@
-// FilmStrips divides the image into strips of pixels that always have the same samples: rows or
-// parts of half tiles. Film::Rows holds the nodes of each strip and the samples that each row has
-// covered.
+// FilmStrips divides the image into strips of pixels that always have the same samples: rows, or
+// parts of half tiles (the units of adaptive sampling). A strip holds nodes: sums over ranges of
+// samples, which are merged in pairs as in a binary tree. Film::Rows holds the nodes of each strip
+// and the samples that each row has covered.
 
 #include "renderlib/render/film.h"
 

@@ -1,5 +1,5 @@
-// Renders an image band by band. Passes are the nodes of the summation tree, split so that small
-// ones come first.
+// Renders an image band by band. A pass is an aligned range of samples whose length is a power of
+// two (a node of the tree by which samples are added up); small passes come first.
 
 #include "renderlib/render/render_image.h"
 

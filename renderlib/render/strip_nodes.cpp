@@ -1,5 +1,6 @@
-// A strip keeps the nodes of the summation tree that have arrived. Two nodes that are siblings in
-// the tree are merged, except the two halves that the error estimate needs.
+// A strip is a run of pixels of a film. It keeps the nodes that have arrived: sums over aligned
+// ranges of samples, which form a binary tree. Two nodes that are siblings in the tree are merged,
+// except the two halves that the error estimate needs.
 
 #include "renderlib/render/strip_nodes.h"
 

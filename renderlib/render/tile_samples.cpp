@@ -1,5 +1,5 @@
-// The samples of half tiles are a list of nodes, row by row of tiles; an empty list stands for
-// uniform sampling.
+// The samples that half tiles (the units of adaptive sampling) take in a pass are a list with a
+// range of samples for each, row by row of tiles; an empty list stands for uniform sampling.
 
 #include "renderlib/render/tile_samples.h"
 

@@ -1,5 +1,6 @@
-// Decides in each pass which half tiles take their next node: those that owe samples according to
-// the plan. So that not all take one in the same pass, each half tile has a threshold of its own.
+// Decides in each pass which half tiles (the units of adaptive sampling) take their next node of
+// samples: those that owe samples according to the plan. So that not all take one in the same pass,
+// each half tile has a threshold of its own.
 
 #include "renderlib/render/tile_schedule.h"
 

@@ -1,5 +1,6 @@
-// of() reduces the image to the size of the preview and denoises it. The guides are rendered at the
-// first call and reduced in the same way.
+// of() reduces the image to the size of the preview and denoises it. The denoiser's guides (images
+// of the albedo and the shape of the surfaces) are rendered at the first call and reduced in the
+// same way.
 
 #include "coordinator/cli/render/clean_preview.h"
 

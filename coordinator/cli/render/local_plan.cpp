@@ -1,5 +1,5 @@
-// next() returns the next pass of a local render: all passes up to the next checkpoint are planned
-// at once, and the stop rule is checked when they are done.
+// next() returns the next pass of a local render: all passes up to the next checkpoint (a number of
+// samples) are planned at once, and the stop rule is checked when they are done.
 
 #include "coordinator/cli/render/local_plan.h"
 

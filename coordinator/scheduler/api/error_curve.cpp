@@ -1,5 +1,6 @@
-// The curve is interpolated linearly in logarithms. Beyond its last point it repeats the steps of
-// the last octave.
+// An error curve has a point (samples, error) for each pass of a job. It is interpolated linearly
+// in logarithms. Beyond its last point it repeats the steps of the last octave, that is, of the
+// last doubling of the samples.
 
 #include "coordinator/scheduler/api/error_curve.h"
 

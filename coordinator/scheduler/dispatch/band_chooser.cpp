@@ -1,5 +1,8 @@
-// choose() finds a free piece that this worker may have, cuts it to the size that size_band()
-// computes, and keeps suspect rows apart from others.
+// choose() finds a free piece of the job (rows and samples that are neither leased nor stored) that
+// this worker may have, and cuts a band from its first rows, of the size that size_band() computes.
+// Two kinds of rows are treated differently. Probes are a few rows spread over the image that are
+// rendered first. Suspect rows are those that a worker held when it was lost, so that they may have
+// crashed it: they are never in a band with other rows.
 
 #include "coordinator/scheduler/dispatch/band_chooser.h"
 

@@ -1,8 +1,8 @@
 // Passes are aligned ranges of blocks whose lengths are powers of two, so that they are nodes of
-// the summation tree. A checkpoint of a job with an error target has a quarter more samples than
-// the last one, or only an eighth more if the target is expected earlier (error ~ samples^-1/2). It
-// has more than that if the target cannot be reached before, even if the error falls as 1 /
-// samples.
+// the summation tree. A checkpoint is a number of samples at which the error is compared with the
+// target. It has a quarter more samples than the last one, or only an eighth more if the target is
+// expected earlier (error ~ samples^-1/2). It has more than that if the target cannot be reached
+// before, even if the error falls as 1 / samples.
 
 #include "coordinator/scheduler/model/pass_plan.h"
 
