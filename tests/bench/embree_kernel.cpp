@@ -1,3 +1,5 @@
+// Intel's Embree 3 as a kernel of the benchmark; a build without Embree has only stubs.
+
 #include "tests/bench/embree_kernel.h"
 
 #ifdef BANDSAW_EMBREE

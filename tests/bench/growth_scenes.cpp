@@ -1,3 +1,6 @@
+// Families of scenes for growth_bench: in each, one quantity grows (triangles, spheres, instances,
+// lights, texels or pixels) and the rest stays alike.
+
 #include "tests/bench/growth_scenes.h"
 
 #include <algorithm>

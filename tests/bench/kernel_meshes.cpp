@@ -1,3 +1,5 @@
+// The meshes of kernel_bench, selected by name, or read from a file with Assimp.
+
 #include "tests/bench/kernel_meshes.h"
 
 #include <assimp/postprocess.h>

@@ -1,3 +1,6 @@
+// The rays of kernel_bench: camera rays in tiles of 8 x 8 pixels, and from the surfaces that they
+// hit a ray in a random direction and a shadow ray to a light.
+
 #include "tests/bench/kernel_rays.h"
 
 #include <cmath>

@@ -1,3 +1,6 @@
+// Measures in a child process, so that the peak memory of one measurement does not include that of
+// the others. The child returns its figures through a pipe.
+
 #include "tests/bench/measured_apart.h"
 
 #include <sys/resource.h>

@@ -1,3 +1,5 @@
+// The tables of the phone study, with the name of the image of each row and its published time.
+
 #include "tests/bench/phone_study.h"
 
 #include <algorithm>

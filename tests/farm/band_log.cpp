@@ -1,3 +1,5 @@
+// Reads the bands out of a worker's log with a regular expression.
+
 #include "tests/farm/band_log.h"
 
 #include <regex>

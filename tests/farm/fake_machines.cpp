@@ -1,3 +1,6 @@
+// Scripts that stand in for `ssh` and `systemctl`: each simulated machine is a home folder, and its
+// commands run on this machine.
+
 #include "tests/farm/fake_machines.h"
 
 #include <filesystem>

@@ -1,3 +1,6 @@
+// Starts, stops and kills the processes of a farm for one test: a coordinator, its workers, and
+// commands.
+
 #include "tests/farm/farm_processes.h"
 
 #include <gtest/gtest.h>

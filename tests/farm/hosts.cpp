@@ -1,3 +1,6 @@
+// Simulated machines: network namespaces, whose virtual cables lead to one switch. Cables are
+// pulled, delayed and made lossy with the command `ip` and its companion `tc`.
+
 #include "tests/farm/hosts.h"
 
 #include <unistd.h>

@@ -1,3 +1,6 @@
+// Copies the built programs into the folders of an installation: the programs to `bin`, workers of
+// other architectures to `lib/bandsaw`.
+
 #include "tests/farm/installed.h"
 
 #include <filesystem>

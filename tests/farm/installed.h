@@ -1,5 +1,8 @@
 #pragma once
 
+// An installation of Bandsaw in a temporary folder, without workers of other architectures at
+// first.
+
 #include <string>
 
 #include "tests/support/temp_dir.h"

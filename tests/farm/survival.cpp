@@ -1,3 +1,6 @@
+// Runs one job on a farm while a test harms the farm. At the end it checks the image's bytes
+// against a local render, and that no finished band was rendered again.
+
 #include "tests/farm/survival.h"
 
 #include <gtest/gtest.h>

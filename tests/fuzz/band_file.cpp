@@ -1,3 +1,5 @@
+// The records of a band log, as the coordinator reads them from disk.
+
 #include "renderlib/render/band_file.h"
 
 #include <cstring>

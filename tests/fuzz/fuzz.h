@@ -1,8 +1,9 @@
 #pragma once
 
-// A fuzz target is one file with fuzz(). It takes any bytes without a crash or a leak, and accepted
-// input reads back unchanged. libFuzzer calls it through libfuzzer.cpp, CTest with the corpus
-// through replay.cpp.
+// A fuzz target is one .cpp file that defines run(), which gives any bytes to one reader of
+// Bandsaw. The reader must take them without a crash or a leak, and what it accepts must read back
+// unchanged after it is written. libFuzzer calls run() through libfuzzer.cpp, and CTest calls it
+// with the stored inputs (the corpus) through replay.cpp.
 
 #include <algorithm>
 #include <cstddef>
@@ -13,7 +14,7 @@
 
 namespace bandsaw::fuzz {
 
-/// Ends the program if the condition does not hold.
+/// Tries the target with one input; ends the program if the reader does something wrong.
 void run(absl::Span<const std::uint8_t> input);
 
 /// Calls step(what, number) for every three bytes, at most `most` times: a sequence of events.

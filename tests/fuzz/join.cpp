@@ -1,3 +1,5 @@
+// Join strings, which contain the addresses, the certificate's digest and the secret of a farm.
+
 #include "proto/link/join.h"
 
 #include "renderlib/base/check.h"

@@ -1,3 +1,5 @@
+// The entry point that libFuzzer calls with each input.
+
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,3 +1,5 @@
+// Intersects a ray with every primitive in turn, without a BVH.
+
 #include "tests/support/brute_force.h"
 
 #include <bit>

@@ -1,3 +1,6 @@
+// Tests samplers of directions: counts the samples in cells of equal solid angle and compares the
+// counts with the integral of the pdf over each cell, by the chi-squared test.
+
 #include "tests/support/direction_test.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Images of one float channel whose texels a function gives, mostly for environment maps.
+
 #include "tests/support/environments.h"
 
 #include <cstring>

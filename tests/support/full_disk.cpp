@@ -1,3 +1,5 @@
+// Simulates a full disk by the process's limit on the size of files (RLIMIT_FSIZE).
+
 #include "tests/support/full_disk.h"
 
 #include <sys/resource.h>

@@ -1,3 +1,6 @@
+// Prints the measured figure of a hard case (tests/hard_cases/README.md) on a line that
+// tests/hard_cases/run.sh collects.
+
 #include "tests/support/hard_case.h"
 
 #include <gtest/gtest.h>

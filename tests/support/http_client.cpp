@@ -1,3 +1,5 @@
+// A blocking HTTP client for tests, with Boost.Beast.
+
 #include "tests/support/http_client.h"
 
 #include <boost/asio/buffer.hpp>

@@ -1,3 +1,5 @@
+// Meshes for tests: spheres, grids, random triangles.
+
 #include "tests/support/meshes.h"
 
 #include <cmath>

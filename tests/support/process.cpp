@@ -1,3 +1,5 @@
+// Starts a child process, and collects its standard output and standard error on two threads.
+
 #include "tests/support/process.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// A second, simple BVH that computes in double. Accel must find the same hits.
+
 #include "tests/support/reference_accel.h"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Whether this build has a sanitizer, which makes every test several times slower.
+
 namespace bandsaw::test {
 
 /// True if built with AddressSanitizer or ThreadSanitizer.

@@ -1,3 +1,6 @@
+// Builds scenes for tests: the Cornell box, and SceneMaker with its short calls for each kind of
+// shape and material.
+
 #include "tests/support/scenes.h"
 
 #include <utility>

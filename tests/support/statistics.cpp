@@ -1,3 +1,5 @@
+// Mean and variance, the chi-squared test, and Sidak's correction for several tests.
+
 #include "tests/support/statistics.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A folder that is removed with the object.
+
 #include "tests/support/temp_dir.h"
 
 #include <cstdlib>

@@ -1,3 +1,6 @@
+// Makes files that look like a worker program: an ELF header, and the mark by which the command
+// identifies a worker of its version.
+
 #include "tests/support/worker_file.h"
 
 #include <elf.h>

@@ -1,5 +1,7 @@
 #pragma once
 
+// Files that the command takes for a worker program, although they cannot be run.
+
 #include <cstdint>
 #include <string>
 

@@ -1,3 +1,5 @@
+// The functions that bandsaw_test.wasm exports: load a package, render a band, hash the result.
+
 #include "tests/wasm/entry.h"
 
 #include <atomic>

@@ -1,3 +1,5 @@
+// The smallest use of Accel: the nearest of two shapes is hit.
+
 #include "renderlib/accel/accel.h"
 
 #include <gtest/gtest.h>

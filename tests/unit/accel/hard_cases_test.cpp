@@ -1,3 +1,6 @@
+// Hard cases of BVHs (tests/hard_cases/cases.txt): nothing to hit, many equal triangles, and sizes
+// that halve a hundred times.
+
 #include <cmath>
 #include <limits>
 

@@ -1,3 +1,6 @@
+// Instances: mirrored, stretched, at every scale, coincident, and with a placement that has no
+// inverse.
+
 #include <gtest/gtest.h>
 
 #include <cmath>

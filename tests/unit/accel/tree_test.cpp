@@ -1,3 +1,6 @@
+// The structure of a BVH: every item is in one leaf, boxes contain their items, the depth is
+// bounded, and the tree does not depend on the number of threads.
+
 #include "renderlib/accel/wide_tree.h"
 
 #include <gtest/gtest.h>

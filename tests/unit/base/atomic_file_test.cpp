@@ -1,3 +1,5 @@
+// Files that are written completely or not at all, and the errors when they cannot be.
+
 #include "renderlib/base/atomic_file.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Opening files for reading: pipes and folders are refused, links only followed if that is allowed.
+
 #include "renderlib/base/file.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// A cache that forgets, at the end of a round, the values which the round did not use.
+
 #include "renderlib/base/kept_values.h"
 
 #include <gtest/gtest.h>

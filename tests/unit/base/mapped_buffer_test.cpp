@@ -1,3 +1,5 @@
+// Large buffers: memory, or a file without a name that is mapped into memory.
+
 #include "renderlib/base/mapped_buffer.h"
 
 #include <gtest/gtest.h>

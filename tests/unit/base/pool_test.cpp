@@ -1,3 +1,5 @@
+// The thread pool: parallel_for() calls each index once, also for several callers at once.
+
 #include "renderlib/base/pool.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,6 @@
+// The eight-lane vectors: each operation gives the same bits as its plain implementation without
+// SIMD instructions.
+
 #include "renderlib/base/simd.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,6 @@
+// Camera rays: directions, depth of field, times within the shutter, and the errors for cameras
+// that are out of range.
+
 #include "renderlib/camera/camera.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,6 @@
+// A point of the scene, seen through the lens: the directions that reach the lens, and their
+// density. It is used to sample lights that are out of focus.
+
 #include "renderlib/camera/lens_view.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Pixel filters: the position of a sample within or around its pixel.
+
 #include "renderlib/camera/pixel_filter.h"
 
 #include <gtest/gtest.h>

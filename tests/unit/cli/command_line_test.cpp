@@ -1,3 +1,5 @@
+// Parsing of the command line: options, defaults, help, and the error for each wrong use.
+
 #include "coordinator/cli/command_line.h"
 
 #include <gmock/gmock.h>

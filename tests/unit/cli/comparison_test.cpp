@@ -1,3 +1,5 @@
+// The text and the numbers of `bandsaw compare`, which compares two images.
+
 #include "coordinator/cli/image/comparison.h"
 
 #include <gmock/gmock.h>

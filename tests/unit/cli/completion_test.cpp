@@ -1,3 +1,5 @@
+// Completion of commands and options in a real bash.
+
 #include "coordinator/cli/completion.h"
 
 #include <gmock/gmock.h>

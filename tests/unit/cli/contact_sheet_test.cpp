@@ -1,3 +1,5 @@
+// The contact sheet of a sequence: one picture with a small image of each frame and its number.
+
 #include "coordinator/cli/image/contact_sheet.h"
 
 #include <gtest/gtest.h>

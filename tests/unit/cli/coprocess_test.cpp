@@ -49,7 +49,7 @@ TEST(Coprocess, IsKilledIfItDoesNotAnswer) {
   EXPECT_EQ(end_of(stopped->exchange("1", 60, &stop)).end, ChildOutcome::End::kStopped);
 }
 
-/// It neither answers nor exits, and nobody can wait for its output.
+/// The child closes its streams and does not exit, so waiting for its output would never end.
 TEST(Coprocess, IsKilledIfItClosesItsStreamsAndStays) {
   const auto child = shell("exec </dev/null >/dev/null; while :; do sleep 1; done");
   const ChildOutcome outcome = end_of(child->exchange("1", 0.3, nullptr));

@@ -1,3 +1,6 @@
+// The checks of `bandsaw doctor`: certificate, clocks, versions, disk, and the connection to a
+// farm.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,3 +1,6 @@
+// Images in a terminal: each character cell shows two pixels, one above the other, by the character
+// U+2580 with two colours.
+
 #include "coordinator/cli/progress/half_blocks.h"
 
 #include <gmock/gmock.h>

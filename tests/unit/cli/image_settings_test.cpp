@@ -1,3 +1,5 @@
+// The size, seed, integrator and output file of an image, from the command line or from the scene.
+
 #include "coordinator/cli/scene/image_settings.h"
 
 #include <gtest/gtest.h>

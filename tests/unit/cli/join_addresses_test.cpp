@@ -1,3 +1,5 @@
+// The addresses of this machine that a join string lists.
+
 #include "coordinator/cli/serve/join_addresses.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// The layers that `render --layers` adds to an EXR file (albedo, normal, depth, and so on).
+
 #include "coordinator/cli/image/layers.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// The tables of `bandsaw jobs` and `bandsaw workers`, and the texts of errors and stop rules.
+
 #include "coordinator/cli/farm/lists_text.h"
 
 #include <gmock/gmock.h>

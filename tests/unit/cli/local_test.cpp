@@ -1,3 +1,6 @@
+// A local render without a coordinator: the ranges of samples that it takes one after the other
+// until its stop rule holds, and its progress.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

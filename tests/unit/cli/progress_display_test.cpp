@@ -1,3 +1,6 @@
+// The display of a job's progress: lines in a pipe, a line that is redrawn in a terminal, JSON, and
+// a small picture.
+
 #include "coordinator/cli/progress/progress_display.h"
 
 #include <gmock/gmock.h>

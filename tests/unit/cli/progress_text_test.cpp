@@ -1,3 +1,5 @@
+// The text of the progress line: bar, percentage, remaining time, workers, error.
+
 #include "coordinator/cli/progress/progress_text.h"
 
 #include <gmock/gmock.h>
@@ -54,7 +56,8 @@ TEST(ProgressText, HalfCellsOfTheBarAreShown) {
 TEST(ProgressText, ANarrowWindowHasAShorterBar) {
   const std::string line = bar_line(some_progress(), 63);
   EXPECT_EQ(line, " 62 % ━━━━━╸    error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
-  EXPECT_EQ(bar_line(some_progress(), 10), " 62 %  error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
+  EXPECT_EQ(bar_line(some_progress(), 10),
+            " 62 %  error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
 }
 
 TEST(ProgressText, UnknownValuesAreNotShown) {
@@ -107,7 +110,8 @@ TEST(ProgressText, TheLastLineShowsTheCost) {
 }
 
 TEST(ProgressText, TheLastLineNamesTheReports) {
-  EXPECT_THAT(final_line(some_progress(), "a.png", "a.json"), testing::EndsWith(" · report a.json"));
+  EXPECT_THAT(final_line(some_progress(), "a.png", "a.json"),
+              testing::EndsWith(" · report a.json"));
 }
 
 TEST(ProgressText, TheCostIsShownWithThePartsOfTheError) {

@@ -1,3 +1,5 @@
+// A QR code in the characters of a terminal.
+
 #include "coordinator/cli/machines/qr_text.h"
 
 #include <gtest/gtest.h>

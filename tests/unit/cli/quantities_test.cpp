@@ -1,3 +1,5 @@
+// Parsing of times, percentages and ranges of rows.
+
 #include "coordinator/cli/options/quantities.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// The JSON report beside an image, and the rule that it never replaces another file.
+
 #include "coordinator/cli/image/report.h"
 
 #include <gmock/gmock.h>

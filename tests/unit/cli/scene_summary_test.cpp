@@ -1,3 +1,5 @@
+// The summary of a scene that `bandsaw info` prints.
+
 #include "coordinator/cli/scene/scene_summary.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,6 @@
+// `bandsaw stitch`, which combines part files (some rows or some samples of an image) into the
+// image.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,3 +1,6 @@
+// `bandsaw study`, which renders scenes with different techniques and compares their errors at
+// equal cost, as text, CSV and SVG.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,3 +1,5 @@
+// The packets that show an image in the viewer tev.
+
 #include "coordinator/cli/progress/tev.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// Texts for people: numbers, times, percentages, and the width of a text in a terminal.
+
 #include "coordinator/cli/base/text.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,6 @@
+// The test for bias between two images with independent noise: what it finds, and how often it
+// raises a false alarm.
+
 #include "renderlib/compare/bias.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,6 @@
+// Error metrics between two images: RMSE, PSNR, and the metrics without the worst thousandth of the
+// pixels.
+
 #include "renderlib/compare/error_metrics.h"
 
 #include <gtest/gtest.h>

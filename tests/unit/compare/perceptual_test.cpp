@@ -1,3 +1,5 @@
+// Perceptual metrics, FLIP and SSIM, against closed forms.
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,6 @@
+// The conversion between the coordinator's types and protobuf messages loses nothing in either
+// direction.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

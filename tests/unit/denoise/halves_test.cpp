@@ -1,3 +1,5 @@
+// The error and the bias of a filter, estimated from two independent halves of the samples.
+
 #include "renderlib/denoise/halves.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Which worker rendered which rows of an image.
+
 #include "coordinator/engine/attribution.h"
 
 #include <gmock/gmock.h>

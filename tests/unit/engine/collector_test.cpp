@@ -1,3 +1,6 @@
+// The collector, which forgets jobs that are over by age, bytes and number, and then removes the
+// blobs that no known job needs.
+
 #include "coordinator/engine/collector.h"
 
 #include <fcntl.h>

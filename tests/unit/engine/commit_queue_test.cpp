@@ -1,3 +1,6 @@
+// Effects of the scheduler, such as an answer to a user, wait until their journal records are
+// durable.
+
 #include "coordinator/engine/commit_queue.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,6 @@
+// The whole engine with fake workers in threads: images have the bytes of a local render, and
+// invalid requests and bands are refused.
+
 #include "coordinator/engine/engine.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,6 @@
+// A worker in a thread that renders its leases with the real renderer, and may be stopped at any
+// time.
+
 #include "tests/unit/engine/fake_worker.h"
 
 #include <algorithm>

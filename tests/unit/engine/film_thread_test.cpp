@@ -1,3 +1,6 @@
+// The film's thread, which adds stored bands to the images of jobs and makes previews, error
+// estimates and results.
+
 #include "coordinator/engine/film_thread.h"
 
 #include <gtest/gtest.h>

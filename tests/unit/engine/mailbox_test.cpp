@@ -1,3 +1,6 @@
+// The queue of tasks for one thread, answers that are given exactly once, and the memory budget for
+// images.
+
 #include "coordinator/engine/mailbox.h"
 
 #include <gtest/gtest.h>

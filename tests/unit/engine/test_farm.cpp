@@ -1,3 +1,5 @@
+// An engine on a temporary folder with fake workers, and short calls for tests.
+
 #include "tests/unit/engine/test_farm.h"
 
 #include <spdlog/spdlog.h>

@@ -1,3 +1,6 @@
+// Delivery of a job's states to those who watch it: at most ten a second, at least one a second,
+// and always the final one.
+
 #include "coordinator/engine/watchers.h"
 
 #include <gtest/gtest.h>

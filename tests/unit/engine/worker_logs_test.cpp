@@ -1,3 +1,5 @@
+// The last lines of each worker's log, kept within a limit of bytes.
+
 #include "coordinator/engine/worker_logs.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,6 @@
+// The generated map of a planet: no seam, ice and sea where they belong, and the same planet at
+// every size.
+
 #include "renderlib/gallery/globe.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// The check whether a mesh is closed, which boundaries of media need.
+
 #include "renderlib/geometry/closed.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Disks: their axes, boxes, intersections and surface points.
+
 #include "renderlib/geometry/disk.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// The conversion of linear light for display: exposure and tone curve.
+
 #include "renderlib/image/display.h"
 
 #include <gtest/gtest.h>

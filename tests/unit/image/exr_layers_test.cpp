@@ -1,3 +1,5 @@
+// Layers of an EXR file beside its image.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tinyexr.h>

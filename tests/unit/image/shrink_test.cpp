@@ -1,3 +1,5 @@
+// Reduction of an image by whole factors: each pixel is the mean of a cell.
+
 #include "renderlib/image/shrink.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Image files: the sRGB encoding and the bytes of PFM, PPM and PNG.
+
 #include "renderlib/image/write_image.h"
 
 #include <gmock/gmock.h>

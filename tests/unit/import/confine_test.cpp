@@ -1,3 +1,6 @@
+// The confinement of the process that reads foreign files: no network, no other programs, limited
+// memory and time, and only two folders.
+
 #include "renderlib/import/files/confine.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// Image files that are read: textures, environments, and images that Bandsaw wrote.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

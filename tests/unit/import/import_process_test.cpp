@@ -1,3 +1,6 @@
+// The import in a confined process of its own: the same bytes as the library gives, and one clear
+// error for whatever goes wrong.
+
 #include "coordinator/cli/scene/import_process.h"
 
 #include <gmock/gmock.h>

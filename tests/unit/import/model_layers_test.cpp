@@ -1,5 +1,5 @@
 // A textured model seen head-on with one pixel per texel: its albedo layer equals the image to the
-// code, its normal layer the normal map.
+// 8-bit code, its normal layer equals the normal map.
 
 #include <gtest/gtest.h>
 

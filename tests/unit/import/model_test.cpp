@@ -1,3 +1,5 @@
+// Models that Assimp reads: meshes, placements, cameras, materials, textures, and broken files.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

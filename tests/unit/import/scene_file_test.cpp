@@ -1,3 +1,6 @@
+// Scene files as text or JSON: every field is read, and each error names the place, the field and
+// the range.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

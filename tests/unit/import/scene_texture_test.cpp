@@ -1,3 +1,5 @@
+// Textures in scene files: checkers, noise, images, and the error for each wrong one.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

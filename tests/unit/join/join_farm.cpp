@@ -1,3 +1,6 @@
+// A coordinator whose dashboard lets browsers join, and the messages that a browser's tab would
+// send.
+
 #include "tests/unit/join/join_farm.h"
 
 #include <cstring>

@@ -1,3 +1,5 @@
+// A WebSocket client with Boost.Beast that takes the place of a browser's tab.
+
 #include "tests/unit/join/socket_client.h"
 
 #include <boost/asio/buffer.hpp>

@@ -1,3 +1,5 @@
+// Environment maps as lights: their orientation, seams, samples and pdfs.
+
 #include "renderlib/light/environment.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// The light tree, which selects one of many lights with a probability near its contribution.
+
 #include "renderlib/light/light_tree.h"
 
 #include <gtest/gtest.h>

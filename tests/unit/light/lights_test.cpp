@@ -1,3 +1,5 @@
+// Samples of lights of every kind, with their pdfs, radiances and visibility.
+
 #include "renderlib/light/lights.h"
 
 #include <gtest/gtest.h>

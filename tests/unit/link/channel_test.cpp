@@ -1,3 +1,6 @@
+// Connections by a join string: the server's certificate is checked before any secret is sent, and
+// addresses are tried in turn.
+
 #include "proto/link/channel.h"
 
 #include <gmock/gmock.h>

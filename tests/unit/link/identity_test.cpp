@@ -1,3 +1,5 @@
+// The identity file of a farm: its key, certificate and secrets, readable by its owner only.
+
 #include "proto/link/identity.h"
 
 #include <gmock/gmock.h>

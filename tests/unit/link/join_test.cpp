@@ -1,3 +1,5 @@
+// Join strings: written and read again, with errors that do not repeat the secret.
+
 #include "proto/link/join.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,6 @@
+// BSDFs of diffuse surfaces, metal and glass: samples follow their density, and no light is created
+// or lost.
+
 #include "renderlib/material/bsdf.h"
 
 #include <gtest/gtest.h>

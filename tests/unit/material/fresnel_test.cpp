@@ -1,3 +1,5 @@
+// Fresnel reflectance and refraction against tables and closed forms.
+
 #include "renderlib/material/fresnel.h"
 
 #include <gtest/gtest.h>

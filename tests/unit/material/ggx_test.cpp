@@ -1,3 +1,5 @@
+// The GGX distribution of microfacets: its samples, weights and table of albedos.
+
 #include "renderlib/material/ggx.h"
 
 #include <gtest/gtest.h>

@@ -209,7 +209,8 @@ TEST(Surfaces, AreReciprocal) {
       const Vec3 a = random_direction(random);
       const Vec3 b = random_direction(random);
       const bool crosses = a.z * b.z < 0;
-      // Mitsuba's thin sheet drops some directions of its specular transmission on one way only.
+      // Mitsuba's thin sheet drops some directions of its specular transmission, and only for light
+      // that goes one way.
       const bool one_way = crosses && named.name == "thin principled";
       if (std::abs(a.z) < 1e-3 || std::abs(b.z) < 1e-3 || (a.z < 0 && !named.glass) || one_way) {
         continue;

@@ -1,3 +1,5 @@
+// Affine transforms: composition, rotation, inverse, normals.
+
 #include "renderlib/math/transform.h"
 
 #include <gtest/gtest.h>

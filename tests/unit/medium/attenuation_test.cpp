@@ -1,3 +1,5 @@
+// Transmittance and emission of homogeneous media, for very thin and very dense ones too.
+
 #include "renderlib/medium/attenuation.h"
 
 #include <gtest/gtest.h>

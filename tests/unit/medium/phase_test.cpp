@@ -1,3 +1,5 @@
+// The Henyey-Greenstein phase function: samples, pdf and mean cosine.
+
 #include "renderlib/medium/phase.h"
 
 #include <gtest/gtest.h>

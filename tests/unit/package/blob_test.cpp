@@ -1,3 +1,5 @@
+// Sources of blobs (byte arrays named by their SHA-256), and the cleaning of foreign text.
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

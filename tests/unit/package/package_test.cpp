@@ -1,3 +1,6 @@
+// Packages, which are scenes as a manifest and blobs: they read back bit for bit, and damaged ones
+// are refused.
+
 #include "renderlib/package/package.h"
 
 #include <gmock/gmock.h>

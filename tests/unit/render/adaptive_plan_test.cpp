@@ -1,3 +1,6 @@
+// The plan of adaptive sampling: how many samples each half tile gets from the measured noise, and
+// that the result is not biased.
+
 #include "renderlib/render/adaptive_plan.h"
 
 #include <gtest/gtest.h>

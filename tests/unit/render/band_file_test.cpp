@@ -1,3 +1,5 @@
+// Band records as bytes: they read back, and every damage is detected.
+
 #include "renderlib/render/band_file.h"
 
 #include <gmock/gmock.h>

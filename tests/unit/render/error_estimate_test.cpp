@@ -1,3 +1,5 @@
+// The estimate of an image's error from two halves of its samples, and its margin.
+
 #include "renderlib/render/error_estimate.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,6 @@
+// The film, which adds bands to an image: the same bits in any order, and its estimate of the
+// error.
+
 #include "renderlib/render/film.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// The image of about the first half of the samples, which the denoiser needs beside the whole.
+
 #include "renderlib/render/first_part.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// The samples that each half tile takes in one pass of an adaptive image.
+
 #include "renderlib/render/tile_samples.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,6 @@
+// The order in which half tiles take the samples that the plan gives them, in whole nodes of the
+// summation tree.
+
 #include "renderlib/render/tile_schedule.h"
 
 #include <gtest/gtest.h>

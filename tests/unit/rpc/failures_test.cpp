@@ -1,3 +1,5 @@
+// The limit on wrong secrets: failures are counted by address and minute.
+
 #include "coordinator/rpc/failures.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// A coordinator with a gRPC server on a free port, and short calls for tests.
+
 #include "tests/unit/rpc/farm.h"
 
 #include "coordinator/engine/blocking_call.h"

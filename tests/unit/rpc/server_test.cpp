@@ -1,3 +1,6 @@
+// The gRPC server and a real worker beside it: submission, rendering, a restart, and a worker that
+// cannot connect.
+
 #include "coordinator/rpc/server.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// Selection of a cell of a grid with a probability proportional to its weight.
+
 #include "renderlib/sampling/grid_distribution.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Sampling of rectangles and spheres uniformly in solid angle.
+
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,3 +1,6 @@
+// The sampler, scrambled Sobol' points that are a pure function of seed, pixel, sample and
+// dimension: stratification, independence, and recorded bits.
+
 #include "renderlib/sampling/sampler.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Sampling of triangles uniformly in solid angle.
+
 #include "renderlib/sampling/spherical_triangle.h"
 
 #include <gtest/gtest.h>

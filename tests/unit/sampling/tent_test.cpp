@@ -1,3 +1,5 @@
+// Sampling of linearly interpolated rows of texels, as environment maps need it.
+
 #include "renderlib/sampling/tent.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Maps from the unit square to disks, hemispheres, spheres, cones and balls.
+
 #include "renderlib/sampling/warp.h"
 
 #include <gtest/gtest.h>

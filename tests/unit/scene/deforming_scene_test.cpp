@@ -97,7 +97,8 @@ TEST(DeformingScene, PixelsAreTheSameForKernelsBandsAndTraversals) {
   EXPECT_EQ(rendered(next, {.earlier = earlier}), expected);
 }
 
-/// The same with ordinary meshes, as they are at a share of the interval.
+/// Returns the scene with ordinary meshes instead of deforming ones, as these are after the given
+/// share of the exposure.
 SceneDescription frozen(SceneDescription scene, double share) {
   const ShutterTime now({0, 1}, share);
   for (MeshList* meshes : {&scene.geometry.meshes, &scene.media.boundaries.meshes}) {

@@ -1,3 +1,6 @@
+// Scenes: validation, counts, the features that a scene uses, and meshes that are shared with an
+// earlier scene.
+
 #include "renderlib/scene/scene.h"
 
 #include <gmock/gmock.h>

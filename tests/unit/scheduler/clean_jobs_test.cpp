@@ -1,3 +1,6 @@
+// The additional jobs that a denoised image needs: its guides (albedo and normal), and half of its
+// samples if they are one block.
+
 #include "coordinator/scheduler/api/clean_jobs.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// The curve of a job's error over its samples, and the prediction when it reaches its target.
+
 #include "coordinator/scheduler/api/error_curve.h"
 
 #include <gtest/gtest.h>

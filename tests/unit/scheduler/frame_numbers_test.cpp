@@ -1,3 +1,5 @@
+// Lists of frames as people write them, such as "1-10,20".
+
 #include "coordinator/scheduler/api/frame_numbers.h"
 
 #include <gmock/gmock.h>

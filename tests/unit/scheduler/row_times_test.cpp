@@ -1,3 +1,5 @@
+// The estimated cost of each row of an image, from measured bands.
+
 #include "coordinator/scheduler/model/row_costs.h"
 
 #include "gtest/gtest.h"

@@ -1,3 +1,6 @@
+// Drives the scheduler in virtual time: workers ask, "render" for the time of their cost map, and
+// answer.
+
 #include "sim_bench.h"
 
 #include <algorithm>

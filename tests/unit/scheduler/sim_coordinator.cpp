@@ -1,3 +1,6 @@
+// Carries out the scheduler's actions on a simulated journal, disk and film, each with random
+// delays and failures.
+
 #include "sim_coordinator.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// A worker in virtual time: it holds leases, renders them after some time, and suffers what the
+// simulation does to it.
+
 #include "sim_worker.h"
 
 #include <algorithm>

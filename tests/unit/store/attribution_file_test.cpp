@@ -1,3 +1,5 @@
+// The file that names the worker of each row of an image.
+
 #include "coordinator/store/attribution_file.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// The log of a job's bands on disk: truncation and damage lose only the records that they hit.
+
 #include "coordinator/store/band_log.h"
 
 #include <gtest/gtest.h>

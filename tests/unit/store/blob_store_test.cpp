@@ -1,3 +1,5 @@
+// The blobs on the coordinator's disk: uploads, interrupted ones, damage, and a full disk.
+
 #include "coordinator/store/blob_store.h"
 
 #include <gmock/gmock.h>

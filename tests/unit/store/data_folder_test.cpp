@@ -1,3 +1,6 @@
+// The coordinator's data folder: its permissions, lock and format, and the reserve, a file that
+// keeps disk space free for the journal.
+
 #include "coordinator/store/data_folder.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// Journal records as text: every kind reads back, also from older versions.
+
 #include "coordinator/store/record_text.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// The finished image on disk, and the detection of any damage.
+
 #include "coordinator/store/result_file.h"
 
 #include <gtest/gtest.h>

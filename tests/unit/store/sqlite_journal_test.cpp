@@ -1,3 +1,5 @@
+// The journal in SQLite: order, damage, older schemas, a full disk, and a kill in the middle.
+
 #include "coordinator/store/sqlite_journal.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// The environment variables of child processes of tests.
+
 #include "tests/support/process.h"
 
 #include <gtest/gtest.h>
@@ -9,15 +11,15 @@ namespace {
 
 TEST(Process, AGivenEntryReplacesTheInheritedOne) {
   ASSERT_EQ(setenv("BANDSAW_TEST_ENTRY", "inherited", 1), 0);
-  const Finished finished = run({"/bin/bash", "-c", "echo $BANDSAW_TEST_ENTRY"},
-                                {"BANDSAW_TEST_ENTRY=given"});
+  const Finished finished =
+      run({"/bin/bash", "-c", "echo $BANDSAW_TEST_ENTRY"}, {"BANDSAW_TEST_ENTRY=given"});
   EXPECT_EQ(finished.out, "given\n");
 }
 
 TEST(Process, EntriesOfOtherNamesAreInherited) {
   ASSERT_EQ(setenv("BANDSAW_TEST_ENTRY_2", "inherited", 1), 0);
-  const Finished finished = run({"/bin/bash", "-c", "echo $BANDSAW_TEST_ENTRY_2"},
-                                {"BANDSAW_TEST_ENTRY=given"});
+  const Finished finished =
+      run({"/bin/bash", "-c", "echo $BANDSAW_TEST_ENTRY_2"}, {"BANDSAW_TEST_ENTRY=given"});
   EXPECT_EQ(finished.out, "inherited\n");
 }
 

@@ -1,3 +1,5 @@
+// Textures by formula: checkers, gradient noise, ramps and mixtures.
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Image textures: orientation, wrapping, filtering and encodings.
+
 #include "renderlib/texture/texture.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SHA-256 against the examples of its standard, and its written forms.
+
 #include "proto/wire/digest.h"
 
 #include <gtest/gtest.h>

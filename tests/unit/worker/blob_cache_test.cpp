@@ -1,3 +1,5 @@
+// The blobs on a worker's disk, which several workers of one machine share.
+
 #include "worker/cache/blob_cache.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// The executor, which loads scenes and renders a worker's bands.
+
 #include "worker/executor/executor.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// A worker fetches a package from the coordinator: each byte once, also after lost connections.
+
 #include "worker/executor/load_package.h"
 
 #include <gtest/gtest.h>

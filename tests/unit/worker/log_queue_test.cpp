@@ -1,3 +1,5 @@
+// The lines of a worker's log that wait to be sent to the coordinator.
+
 #include "worker/log_queue.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,6 @@
+// A worker's side of its session with the coordinator, as a pure state machine: leases, heartbeats,
+// reconnection, draining.
+
 #include "worker/session/session.h"
 
 #include <gmock/gmock.h>
@@ -11,11 +14,11 @@
 namespace bandsaw::worker {
 namespace {
 
+using test::lease;
+using test::revoke;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using test::lease;
-using test::revoke;
 
 WorkerInfo worker_info() {
   return {.instance = std::string(32, 'a'),

@@ -1,3 +1,5 @@
+// The upload of finished bands, which are kept until the coordinator acknowledges them.
+
 #include "worker/executor/uploader.h"
 
 #include <gtest/gtest.h>
