@@ -1,3 +1,6 @@
+// The command `bandsaw`: parses the arguments, hides secrets among them from other users of the
+// machine, and runs the command.
+
 #include <string>
 #include <variant>
 #include <vector>

@@ -1,3 +1,5 @@
+// Passes each message of a worker to the engine and reads the next one.
+
 #include "coordinator/rpc/session_call.h"
 
 namespace bandsaw::coordinator {

@@ -1,3 +1,5 @@
+// Starts the object that serves each call of a worker, after the worker's secret is checked.
+
 #include "coordinator/rpc/downloads.h"
 #include "coordinator/rpc/gate.h"
 #include "coordinator/rpc/put_bands_call.h"

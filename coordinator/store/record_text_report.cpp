@@ -1,5 +1,6 @@
 // Text of records about measured errors and the shares of workers: for each kind a function that
-// writes the fields, and one that reads them in the same order.
+// writes the fields, and one that reads them in the same order. Journals of older versions call the
+// field `process` "renderer".
 
 #include "coordinator/store/record_text_parts.h"
 

@@ -1,3 +1,6 @@
+// The reserve is a file of kBytes bytes that is removed when the disk is full, so that the journal
+// has space.
+
 #include "coordinator/store/reserve.h"
 
 #include <unistd.h>

@@ -1,3 +1,5 @@
+// Takes random bytes from the kernel (getentropy).
+
 #include "proto/link/random.h"
 
 #include <sys/random.h>

@@ -25,7 +25,8 @@ bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometr
   const Instance& instance = geometry.instances[moving.instance - 1];
   const Transform to_world = to_world_at(geometry, instance, ray.time);
   if (moving.slides) {
-    // The same as the result of inverse(), to the bit.
+    // The instance is only translated, so the linear part of its inverse is known. This gives the
+    // bits of inverse().
     Transform to_object = moving.to_object;
     const Vec3 back = -to_object.direction({to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]});
     to_object.m[0][3] = back.x;

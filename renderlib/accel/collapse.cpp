@@ -1,6 +1,7 @@
-// A wide node has eight slots, each for a child. First computes for each subtree of the binary
-// tree, from the leaves up, the least cost of giving it 1 to 8 slots of a wide node; then builds
-// the wide nodes from the root down by these costs.
+// A wide node has eight slots, each for a child: another wide node, or a leaf, whose shapes are
+// stored as a pack of up to eight. First computes for each subtree of the binary tree, from the
+// leaves up, the least cost of giving it 1 to 8 slots of a wide node; then builds the wide nodes
+// from the root down by these costs.
 
 #include "renderlib/accel/collapse.h"
 
@@ -13,12 +14,13 @@ namespace bandsaw {
 namespace {
 
 constexpr std::size_t kSlots = WideNode::kChildren;
-/// Relative costs of visiting a node and a pack, measured (NOTES.md).
+/// Relative times to visit a wide node and a pack, measured (NOTES.md).
 constexpr float kNodeCost = 1.0f;
 constexpr float kPackCost = 1.5f;
 
-/// Minimum costs of a subtree with 1 to 8 slots of its parent; the eighth is also the cost of its
-/// own node's children.
+/// Minimum costs of a subtree. Element i: the subtree has i + 1 slots of its parent's wide node, to
+/// which that many of its parts are attached. Element 7 is also the cost of the eight children if
+/// the subtree gets a wide node.
 struct Costs {
   std::array<float, kSlots> slots;
 };

@@ -1,3 +1,5 @@
+// Reads the line "model name" of /proc/cpuinfo.
+
 #include "renderlib/base/cpu_name.h"
 
 #include <fstream>

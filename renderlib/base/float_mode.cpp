@@ -1,3 +1,5 @@
+// Reads the control register of the floating-point unit: MXCSR on x86-64, FPCR on ARM64.
+
 #include "renderlib/base/float_mode.h"
 
 #include <cstdint>

@@ -1,3 +1,5 @@
+// The formulas of sphere_uv.h, with rounding at the seam and the poles kept inside [0, 1].
+
 #include "renderlib/geometry/sphere_uv.h"
 
 #include <algorithm>

@@ -39,7 +39,8 @@ struct ImportChoices {
   bool strict = false;                                 ///< a warning is an error
   std::optional<FrameChoice> frame = {};  ///< absent: the scene at time 0, models without animation
   std::string animation = {};             ///< name of its models' animation
-  /// Folder around that of a Mitsuba scene, below which files are read; empty: the scene's own.
+  /// A folder that contains the folder of a Mitsuba scene: files below it may be read. Empty: only
+  /// files below the scene's own folder.
   std::string folder = {};
 };
 

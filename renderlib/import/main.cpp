@@ -6,14 +6,15 @@
 //
 // leaves FOLDER/manifest and FOLDER/<digest> for each blob. The choices (import.h, ImportChoices)
 // are environment=FILE, camera=NAME, strict, define:NAME=VALUE (a parameter of a Mitsuba scene),
-// folder=FOLDER (around that of a Mitsuba scene), frame=N, fps=F, shutter=SHARE (these two with a
-// frame) and animation=NAME;
+// folder=FOLDER (of a Mitsuba scene: read files anywhere below this folder, which contains that of
+// the scene), frame=N, fps=F, shutter=SHARE (fps and shutter only after frame) and animation=NAME;
 //
 //   bandsaw-import frames FILE FOLDER SECONDS BYTES frame=N [CHOICE ...]
 //
 // does the same for one frame after the other: it reads their numbers from standard input, one a
 // line, and answers each with the line "done". FOLDER then has the package of that frame alone. The
-// files of the scene are read once. SECONDS are those of all frames. N is not used;
+// files of the scene are read once. SECONDS is the CPU time for all frames together. The choice
+// frame=N must be given, but its N is not used;
 //
 //   bandsaw-import text FILE FOLDER SECONDS BYTES [CHOICE ...]
 //

@@ -1,3 +1,6 @@
+// The background's radiance: the environment map, or an interpolation between two colours by the
+// direction's height.
+
 #include "renderlib/light/background.h"
 
 namespace bandsaw {

@@ -15,8 +15,7 @@ constexpr double kMaxCondition = 1e12;
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-/// Returns a b - c d with one rounding of each product's error (Kahan): 1.5 units in the last
-/// place.
+/// Returns a b - c d with an error of at most 1.5 units in the last place (Kahan).
 double difference_of_products(double a, double b, double c, double d) {
   const double cd = c * d;
   const double error = product_error(-c, d, -cd);

@@ -1,5 +1,5 @@
-// Each function below makes one scene; canary() renders a few pixels of all of them and hashes the
-// sums.
+// The canary is a small render whose hash tells whether two machines render the same pixels. Each
+// function below makes one scene; canary() renders a few pixels of all of them and hashes the sums.
 
 #include "renderlib/render/canary.h"
 

@@ -1,3 +1,6 @@
+// Adds 200 values of each elementary function to a hash, so that programs whose functions differ in
+// one bit have different hashes.
+
 #include "renderlib/math/elementary.h"
 #include "renderlib/render/kernel_code.h"
 

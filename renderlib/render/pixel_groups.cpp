@@ -1,3 +1,6 @@
+// Collects the pixels of a half tile (one colour of the tile's checkerboard) and sorts them by the
+// number of their group, which a fixed table gives for each place in a tile.
+
 #include "renderlib/render/pixel_groups.h"
 
 #include <algorithm>

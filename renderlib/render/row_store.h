@@ -17,7 +17,8 @@ class RowStore {
  public:
   using Slot = std::uint32_t;
 
-  /// `length` (>= 1) is the number of doubles in a row; `folder` is that of MappedBuffer::create.
+  /// `length` (>= 1) is the number of doubles in a row; The slabs are files without a name in
+  /// `folder`; "" keeps them in memory.
   RowStore(std::size_t length, std::string folder);
 
   /// Ensures that the next `rows` calls of take() succeed. Returns the errors of

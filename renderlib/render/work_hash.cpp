@@ -1,3 +1,6 @@
+// A hash of everything that determines an image except the samples. Bands may be added together
+// only if their hashes are equal.
+
 #include "renderlib/render/work_hash.h"
 
 #include <algorithm>

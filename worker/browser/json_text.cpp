@@ -1,3 +1,5 @@
+// Escapes quotation marks, backslashes and control characters.
+
 #include "worker/browser/json_text.h"
 
 namespace bandsaw::worker {

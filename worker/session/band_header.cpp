@@ -1,3 +1,5 @@
+// Collects the fields of the message that precedes the bytes of a band.
+
 #include "worker/session/band_header.h"
 
 #include "proto/convert/render_values.h"

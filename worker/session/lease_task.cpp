@@ -1,3 +1,5 @@
+// Converts the fields of a lease message, and checks their ranges.
+
 #include "worker/session/lease_task.h"
 
 #include "proto/convert/render_values.h"

@@ -1,3 +1,5 @@
+// Finds the coordinator's data folder by the XDG convention, and names the files in it.
+
 #include "coordinator/cli/base/data_folder.h"
 
 #include <cstdlib>

@@ -1,3 +1,5 @@
+// Finds the installation from the path of the running program: PREFIX/bin/bandsaw.
+
 #include "coordinator/cli/base/program_folder.h"
 
 #include <filesystem>

@@ -1,3 +1,5 @@
+// Each character shows two modules (squares of the code), one above the other.
+
 #include "coordinator/cli/machines/qr_text.h"
 
 #include "absl/strings/str_cat.h"

@@ -1,3 +1,5 @@
+// The scene's settings, replaced by the options that the user has given.
+
 #include "coordinator/cli/scene/image_settings.h"
 
 #include "renderlib/base/status_macros.h"

@@ -1,3 +1,5 @@
+// Replaces each "%" with two hexadecimal digits by the byte that they give.
+
 #include "renderlib/import/files/percent.h"
 
 #include <charconv>

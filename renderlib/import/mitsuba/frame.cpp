@@ -1,3 +1,6 @@
+// Splits a matrix into position, axes and scale, and notes what these cannot express: mirroring and
+// skew.
+
 #include "renderlib/import/mitsuba/frame.h"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Multiplies the rotations of the list, each about its axis by its angle in degrees.
+
 #include "renderlib/import/scene_file/read_rotation.h"
 
 #include <cmath>
