@@ -28,8 +28,9 @@ struct TexturedSurface {
   std::map<std::string, std::string> attributes = {};
 };
 
-/// The use of a colour. Lights and surfaces are converted to RGB under different spectra. As a
-/// number, Mitsuba's checkerboard has its two values exchanged.
+/// What a value is used for. It decides how a spectrum becomes RGB: as the reflectance of a surface
+/// or as the radiance of a light. kNumber is a texture of numbers, such as roughness: for these
+/// Mitsuba exchanges the two values of a checkerboard, so they are exchanged here too.
 enum class ColorOf { kSurface, kLight, kNumber };
 
 /// A number that may vary over a surface: the texture's luminance, if there is one.

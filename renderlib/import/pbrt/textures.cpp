@@ -1,4 +1,6 @@
-// Textures.
+// Converts each kind of pbrt texture to the nearest texture of our scene files, with a warning
+// where something is lost. Textures that are more than one colour get a name, and are referred to
+// by it.
 
 #include <algorithm>
 #include <cmath>
