@@ -17,8 +17,8 @@ struct ThinDielectricBsdf {
   Vec3 wo;
   Rgb reflected;  ///< reflected share of the light times the colour
   Rgb transmitted;
-  double reflection = 0;  ///< probability with which the reflection is sampled
-  bool free_passage = false;
+  double reflection = 0;      ///< probability with which the reflection is sampled
+  bool free_passage = false;  ///< light that passes does not count towards max_depth
 };
 /// Returns the BSDF; `normal` is on the side of wo. sample() is that of material/bsdf.h.
 ThinDielectricBsdf thin_dielectric(const ThinDielectric& pane, const SidedNormals& normal,

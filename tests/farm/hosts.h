@@ -1,7 +1,8 @@
 #pragma once
 
-// Simulated machines of one test: network namespaces, each connected to a switch of its own,
-// created and removed by the test. Addresses are 10.77.0.1, .2, … in the order of the names.
+// Simulated machines of one test: network namespaces that are connected by one switch, another
+// namespace. The test creates and removes them. Addresses are 10.77.0.1, .2, … in the order of the
+// names.
 
 #include <memory>
 #include <string>

@@ -1,4 +1,4 @@
-// A *.vol file.
+// Files of volumes, *.vol, as Mitsuba writes them: a grid of numbers in a box.
 
 #include <span>
 

@@ -45,9 +45,9 @@ bool is_model_file(const std::string& path);
 /// texture is read, and the materials of the placements are unspecified. Omitted and repaired parts
 /// are warnings of the draft. Messages begin with the file's name. Returns INVALID_ARGUMENT if the
 /// model is broken or has no triangles, and NOT_FOUND or PERMISSION_DENIED for a file that it
-/// needs.
-/// `animation` chooses one of its animations, which is evaluated over the draft's shutter interval:
-/// nodes move during the interval, skins and morph targets have their pose in its middle.
+/// needs. `animation` chooses one of its animations, which is evaluated over the draft's shutter
+/// interval: nodes move during the interval, and vertices of skins and morph targets have one
+/// position at its begin and one at its end.
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft,
                                  const AnimationChoice& animation = {});
 

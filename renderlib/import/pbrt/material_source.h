@@ -27,6 +27,7 @@ struct Roughness {
   double alpha[2] = {0, 0};
   std::optional<scene::Texture> texture;  ///< texture of alpha, if alpha varies
   bool is_smooth() const;
+  /// Returns the mean alpha of both directions; 1 if alpha is a texture.
   double mean() const { return texture ? 1 : (alpha[0] + alpha[1]) / 2; }
 };
 
