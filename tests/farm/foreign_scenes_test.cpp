@@ -148,7 +148,7 @@ class ForeignScenes : public testing::Test {
     job.wait_until_stored("victim", 2);
     farm_.worker("victim").signal(SIGKILL);
     job.expect_the_same_bytes(client);
-    job.expect_nothing_rendered_again();
+    job.expect_nothing_rendered_again("victim");
   }
   /// Returns the bytes of a small rendering of the scene.
   std::string rendered(const std::string& scene, const std::string& output) {

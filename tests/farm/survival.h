@@ -29,8 +29,8 @@ class Survival {
 
   /// Returns the number of bands that one worker had stored and another rendered as well, except
   /// backup tasks and stolen work, and of bands that one worker rendered twice. Bands that the
-  /// worker `cut_off` rendered in vain do not count, because it could not know what the other
-  /// workers did meanwhile.
+  /// worker `cut_off` rendered in vain do not count: it could not know what the other workers did
+  /// meanwhile, or was killed before it could send them.
   int rendered_again(const std::string& cut_off = "");
 
   /// Expects rendered_again() to be 0; otherwise prints every log.

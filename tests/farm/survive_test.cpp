@@ -25,7 +25,7 @@ TEST_F(Survive, AKilledWorker) {
   job_.wait_until_stored("victim", 3);
   farm_.worker("victim").signal(SIGKILL);
   job_.expect_the_same_bytes(client);
-  job_.expect_nothing_rendered_again();
+  job_.expect_nothing_rendered_again("victim");
 }
 
 TEST_F(Survive, AFrozenWorker) {
@@ -35,7 +35,7 @@ TEST_F(Survive, AFrozenWorker) {
   job_.wait_until_stored("victim", 2);
   farm_.worker("victim").signal(SIGSTOP);
   job_.expect_the_same_bytes(client);
-  job_.expect_nothing_rendered_again();
+  job_.expect_nothing_rendered_again("victim");
   farm_.worker("victim").signal(SIGCONT);
   job_.wait_until_joined("victim", 2);
 }
