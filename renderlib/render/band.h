@@ -2,7 +2,7 @@
 
 // Blocks, sample ranges and bands: the fixed binary summation tree of every pixel.
 //
-// A block is 16 consecutive, aligned samples of a pixel, added in order. A node is an aligned
+// A block is 8 consecutive, aligned samples of a pixel, added in order. A node is an aligned
 // power-of-two number of blocks: the sum of its two halves. A total over N samples adds its maximal
 // aligned nodes from left to right. The last block of a job may be truncated at the job's last
 // sample. So any node can be rendered anywhere, and stopping, resuming and merging in any order
@@ -16,9 +16,9 @@
 
 namespace bandsaw {
 
-inline constexpr std::uint64_t kBlockSamples = 16;
+inline constexpr std::uint64_t kBlockSamples = 8;
 
-/// The samples [first, last) of a node. `first` is a multiple of 16. In blocks, counting a
+/// The samples [first, last) of a node. `first` is a multiple of 8. In blocks, counting a
 /// truncated last block as whole, the range is aligned and its length is a power of two.
 struct SampleRange {
   std::uint64_t first = 0;

@@ -1,4 +1,4 @@
-// The samples of a pixel are added in blocks of 16, and the sums of blocks as in a binary tree,
+// The samples of a pixel are added in blocks of 8, and the sums of blocks as in a binary tree,
 // whose nodes are aligned ranges of samples. add_group() takes the blocks of a group of pixels in
 // order, keeps the sums of complete nodes on a stack, and adds two nodes of equal size as soon as
 // both are there. A group is one pixel unless pixels share paths.

@@ -57,12 +57,11 @@ class AdaptiveRender {
 absl::StatusOr<AdaptiveImage> render_adaptively(const Scene& scene, const RenderSettings& settings,
                                                 std::uint64_t samples, Pool& pool,
                                                 const std::atomic<bool>& stop) {
-  constexpr std::uint64_t kMinPilot = 2 * kBlockSamples;
   const TileGrid grid{settings.width, settings.height};
   ASSIGN_OR_RETURN(Film film, Film::create(grid.width, grid.height, "", Film::Grain::kHalfTiles));
   AdaptiveRender render(scene, settings, pool, stop, std::move(film));
-  const std::uint64_t pilot = std::min(
-      samples, std::max(kMinPilot, samples / kBlockSamples / kBlockSamples * kBlockSamples));
+  const std::uint64_t sixteenth = samples / 16 / kBlockSamples * kBlockSamples;
+  const std::uint64_t pilot = std::min(samples, std::max(kMinCheckpoint, sixteenth));
   for (const SampleRange& pass : passes_between(0, pilot)) {
     RETURN_IF_ERROR(render.take(pass, {}));
   }

@@ -26,7 +26,7 @@ enum class Method {
   kNoLights,     ///< BSDF sampling only: no next-event estimation
   kAdaptive,     ///< samples distributed by noise, with about the same total
   kIndependent,  ///< independent random numbers instead of Owen-scrambled nets
-  /// Independent random numbers; each pixel stops at the first multiple of 16 samples at which 1.96
+  /// Independent random numbers; each pixel stops at the first multiple of 8 samples at which 1.96
   /// standard errors of its mean are within a tolerance of it, as in many ray tracers. The result
   /// is biased, because the samples determine their own number; the method is included to show the
   /// amount of bias.

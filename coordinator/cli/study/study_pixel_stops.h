@@ -51,7 +51,7 @@ struct StoppedImages {
   double rays = 0;
 };
 
-/// Stops each pixel at the first multiple of 16 samples that satisfies the tolerance, or at `most`.
+/// Stops each pixel at the first multiple of 8 samples that satisfies the tolerance, or at `most`.
 /// This is the rule of Berkeley's CS184 course and of many ray tracers that follow it; it is
 /// applied to the mean of the channels. CANCELLED: `stop` was set.
 absl::StatusOr<StoppedImages> stop_by_pixels(const Scene& scene, const RenderSettings& settings,

@@ -17,6 +17,13 @@ std::uint64_t blocks_of(std::uint64_t samples) {
   return (samples + kBlockSamples - 1) / kBlockSamples;
 }
 
+/// Error checkpoints before the last sample are multiples of this number of samples.
+constexpr std::uint64_t kCheckpointStep = 16;
+
+std::uint64_t steps_of(std::uint64_t samples) {
+  return (samples + kCheckpointStep - 1) / kCheckpointStep;
+}
+
 /// Returns the length in blocks of the longest pass that may begin at a block; 1 at block 0.
 std::uint64_t alignment(std::uint64_t block) { return block == 0 ? 1 : longest_at(block); }
 
@@ -46,7 +53,7 @@ std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to) {
 
 std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target,
                               std::uint64_t max_samples) {
-  const std::uint64_t now = blocks_of(samples);
+  const std::uint64_t now = steps_of(samples);
   const auto more = [now](std::uint64_t part) { return now + std::max<std::uint64_t>(1, part); };
   std::uint64_t next = more(now / 4);
   if (!(error >= 0)) {
@@ -56,11 +63,11 @@ std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target
     const auto reached = [&](double power) {
       return static_cast<std::uint64_t>(
           std::min(std::ceil(static_cast<double>(now) * std::pow(error / target, power)),
-                   static_cast<double>(blocks_of(max_samples))));
+                   static_cast<double>(steps_of(max_samples))));
     };
     next = std::max(std::clamp(reached(2), more(now / 8), more(now / 4)), reached(1));
   }
-  return std::min(eighths(std::max<std::uint64_t>(2, next)) * kBlockSamples, max_samples);
+  return std::min(std::max(kMinCheckpoint, eighths(next) * kCheckpointStep), max_samples);
 }
 
 std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,

@@ -14,13 +14,16 @@ namespace bandsaw::coordinator {
 
 /// Returns consecutive passes that cover samples [from, to). Each is a node. The first passes are
 /// small, so that a first image appears soon; then their sizes double, up to about a quarter of
-/// `to`. `from`: 0 or a multiple of 16; to > from.
+/// `to`. `from`: 0 or a multiple of 8; to > from.
 std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to);
 
-/// Returns the next error checkpoint: the number of samples per pixel, at most max_samples, at
-/// which the error is compared with `target` again. Passes up to a checkpoint run without a barrier
-/// between them. `samples`: the last checkpoint, 0: none yet; `error`: measured there, negative or
-/// NaN if unknown.
+/// The fewest samples per pixel of which the error is estimated.
+inline constexpr std::uint64_t kMinCheckpoint = 32;
+
+/// Returns the next error checkpoint: the number of samples per pixel, at most max_samples and,
+/// unless that is less, at least kMinCheckpoint, at which the error is compared with `target`
+/// again. Passes up to a checkpoint run without a barrier between them. `samples`: the last
+/// checkpoint, 0: none yet; `error`: measured there, negative or NaN if unknown.
 ///
 /// The error of an image falls between n^-1/2 (random samples) and n^-1 (well stratified samples).
 /// Let `first` be the number of samples at which an error that falls as n^-1 reaches the target:

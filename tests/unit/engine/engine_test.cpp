@@ -89,12 +89,12 @@ TEST_F(EngineTest, ATimeRuleEndsAtACompletePass) {
 }
 
 TEST_F(EngineTest, TheSameRequestIsTheSameJob) {
-  const JobSpec spec = farm_.spec(StopAtSamples{.samples = 16});
+  const JobSpec spec = farm_.spec(StopAtSamples{.samples = 8});
   EXPECT_EQ(*farm_.submit(spec), *farm_.submit(spec));
 }
 
 TEST_F(EngineTest, AMissingBlobIsNamedBeforeAnythingIsRendered) {
-  JobSpec spec = farm_.spec(StopAtSamples{.samples = 16});
+  JobSpec spec = farm_.spec(StopAtSamples{.samples = 8});
   spec.manifest = std::string(64, '7');
   const absl::Status status = farm_.submit(spec).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
@@ -102,7 +102,7 @@ TEST_F(EngineTest, AMissingBlobIsNamedBeforeAnythingIsRendered) {
 }
 
 TEST_F(EngineTest, SettingsOutOfRangeAreRefused) {
-  const JobSpec good = farm_.spec(StopAtSamples{.samples = 16});
+  const JobSpec good = farm_.spec(StopAtSamples{.samples = 8});
   JobSpec bad = good;
   bad.settings.width = 0;
   EXPECT_EQ(farm_.submit(bad).status().code(), absl::StatusCode::kInvalidArgument);
@@ -119,55 +119,54 @@ TEST_F(EngineTest, SettingsOutOfRangeAreRefused) {
 }
 
 TEST_F(EngineTest, ABrowserSendsNoBandOfAWorkerThatIsNoBrowser) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
-  const BandPixels top = rendered({.samples = {0, 16}, .rows = {0, 8}});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
+  const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 8}});
   EXPECT_EQ(farm_.put(job, top, 0, true).status().code(), absl::StatusCode::kFailedPrecondition)
       << "nobody has joined";
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);
 }
 
 TEST_F(EngineTest, ABandIsStoredOnceThenADuplicateAndUnwantedWhenTheJobIsOver) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
-  const BandPixels top = rendered({.samples = {0, 16}, .rows = {0, 7}});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
+  const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 7}});
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kDuplicate);
-  const BandPixels more = rendered({.samples = {0, 16}, .rows = {5, 10}});
+  const BandPixels more = rendered({.samples = {0, 8}, .rows = {5, 10}});
   EXPECT_EQ(*farm_.put(job, more), BandOutcome::kStored) << "some of its rows are new";
-  EXPECT_EQ(*farm_.put(job, rendered({.samples = {0, 16}, .rows = {10, 14}})),
-            BandOutcome::kStored);
-  expect_done(job, 16);
+  EXPECT_EQ(*farm_.put(job, rendered({.samples = {0, 8}, .rows = {10, 14}})), BandOutcome::kStored);
+  expect_done(job, 8);
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kUnwanted);
   EXPECT_EQ(*farm_.put(job + 1, top), BandOutcome::kUnwanted) << "no such job";
 }
 
 TEST_F(EngineTest, ABandOfAnEarlierJobWithTheSameIdIsUnwanted) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
-  const BandPixels top = rendered({.samples = {0, 16}, .rows = {0, 7}});
-  JobSpec spec = farm_.spec(StopAtSamples{.samples = 16});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
+  const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 7}});
+  JobSpec spec = farm_.spec(StopAtSamples{.samples = 8});
   EXPECT_EQ(*farm_.put(job, top, work_hash(spec.manifest, spec.settings) + 1),
             BandOutcome::kUnwanted);
   EXPECT_EQ(*farm_.put(job, top, work_hash(spec.manifest, spec.settings)), BandOutcome::kStored);
 }
 
 TEST_F(EngineTest, ABandThatIsNotOfTheJobIsRefused) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
-  BandPixels band = rendered({.samples = {0, 16}, .rows = {0, 2}});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
+  BandPixels band = rendered({.samples = {0, 8}, .rows = {0, 2}});
   band.sums.pop_back();
   EXPECT_EQ(farm_.put(job, band).status().code(), absl::StatusCode::kInvalidArgument);
-  band = rendered({.samples = {0, 16}, .rows = {0, 2}});
+  band = rendered({.samples = {0, 8}, .rows = {0, 2}});
   band.band.rows = {13, 15};
   EXPECT_EQ(farm_.put(job, band).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
 TEST_F(EngineTest, AResultIsGivenOnlyOfADoneJob) {
   EXPECT_EQ(farm_.result(99).status().code(), absl::StatusCode::kNotFound);
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   EXPECT_EQ(farm_.result(job).status().code(), absl::StatusCode::kFailedPrecondition);
 }
 
 TEST_F(EngineTest, ACancelledJobIsFinalAndItsBandsAreGone) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
-  ASSERT_TRUE(farm_.put(job, rendered({.samples = {0, 16}, .rows = {0, 7}})).ok());
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
+  ASSERT_TRUE(farm_.put(job, rendered({.samples = {0, 8}, .rows = {0, 7}})).ok());
   const std::string bands = farm_.folder() + "/jobs/" + std::to_string(job) + "/bands";
   EXPECT_TRUE(std::filesystem::exists(bands));
   const auto box = std::make_shared<Box<absl::StatusOr<JobView>>>();

@@ -29,7 +29,7 @@ class FullDiskTest : public testing::Test {
   BandPixels rendered(std::uint32_t first, std::uint32_t last) {
     Pool pool(1);
     const std::atomic<bool> stop{false};
-    const Band band{.samples = {0, 16}, .rows = {first, last}};
+    const Band band{.samples = {0, 8}, .rows = {first, last}};
     return *render_band(*farm_.scene(), farm_.settings(), band, pool, stop, [](std::uint32_t) {});
   }
   /// Advances the time until the job is in the state.
@@ -42,8 +42,8 @@ class FullDiskTest : public testing::Test {
     }
   }
   void expect_local_image(JobId job) {
-    EXPECT_EQ(wait_for(job, JobState::kDone).samples_per_pixel, 16u);
-    EXPECT_EQ(farm_.result(job)->image.pixels, farm_.local(16).pixels);
+    EXPECT_EQ(wait_for(job, JobState::kDone).samples_per_pixel, 8u);
+    EXPECT_EQ(farm_.result(job)->image.pixels, farm_.local(8).pixels);
   }
 
   std::shared_ptr<FakeTime> time_ = std::make_shared<FakeTime>();
@@ -52,7 +52,7 @@ class FullDiskTest : public testing::Test {
 };
 
 TEST_F(FullDiskTest, ABandThatDoesNotFitIsKeptByItsWorkerAndTheJobWaits) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
   {
     const test::FullDisk full(0);
@@ -66,7 +66,7 @@ TEST_F(FullDiskTest, ABandThatDoesNotFitIsKeptByItsWorkerAndTheJobWaits) {
 }
 
 TEST_F(FullDiskTest, ARetryEndsTheJobWhenThereIsRoom) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   auto full = std::make_unique<test::FullDisk>(0);
   FakeWorker worker(farm_.scene(), "one");
   worker.join(farm_.engine());
@@ -76,7 +76,7 @@ TEST_F(FullDiskTest, ARetryEndsTheJobWhenThereIsRoom) {
 }
 
 TEST_F(FullDiskTest, AResultThatCannotBeWrittenIsWrittenLater) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const std::string in_the_way =
       farm_.folder() + "/jobs/" + std::to_string(job) + "/result.incoming";
   ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
@@ -88,7 +88,7 @@ TEST_F(FullDiskTest, AResultThatCannotBeWrittenIsWrittenLater) {
 }
 
 TEST_F(FullDiskTest, ASubmitThatCannotBeJournalledFailsAndDoesNotBeginLater) {
-  const JobSpec spec = farm_.spec(StopAtSamples{.samples = 16});
+  const JobSpec spec = farm_.spec(StopAtSamples{.samples = 8});
   disk_->break_it();
   const absl::Status refused = farm_.submit(spec).status();
   EXPECT_EQ(refused.code(), absl::StatusCode::kResourceExhausted);
@@ -104,10 +104,10 @@ TEST_F(FullDiskTest, ASubmitThatCannotBeJournalledFailsAndDoesNotBeginLater) {
 }
 
 TEST_F(FullDiskTest, ASecondSubmitThatCannotBeJournalledLeavesTheJobUnchanged) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   ASSERT_TRUE(farm_.put(job, rendered(0, 14)).ok());
   wait_for(job, JobState::kDone);
-  JobSpec same = farm_.spec(StopAtSamples{.samples = 16});
+  JobSpec same = farm_.spec(StopAtSamples{.samples = 8});
   disk_->break_it();
   // It is journalled together with the next records.
   JobSpec other = same;
@@ -121,7 +121,7 @@ TEST_F(FullDiskTest, ASecondSubmitThatCannotBeJournalledLeavesTheJobUnchanged) {
 }
 
 TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalIs) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
   disk_->break_it();
   EXPECT_FALSE(farm_.put(job, rendered(7, 14)).ok());
@@ -135,7 +135,7 @@ TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalIs) {
 }
 
 TEST_F(FullDiskTest, NothingIsAcknowledgedThatTheJournalDoesNotHold) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   disk_->break_it();
   // This is the last band: the job's state kFinishing must be journalled before the answer.
   EXPECT_EQ(farm_.put(job, rendered(0, 14)).status().code(), absl::StatusCode::kResourceExhausted);
@@ -147,7 +147,7 @@ TEST_F(FullDiskTest, NothingIsAcknowledgedThatTheJournalDoesNotHold) {
 TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
   TestFarm farm;
   ASSERT_TRUE(farm.start().ok());
-  JobSpec spec = farm.spec(StopAtSamples{.samples = 16});
+  JobSpec spec = farm.spec(StopAtSamples{.samples = 8});
   const JobId done = *farm.submit(spec);
   {
     FakeWorker worker(farm.scene(), "one");
@@ -166,7 +166,7 @@ TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
   auto full = std::make_unique<test::FullDisk>(0);
   const absl::Status started = farm.start();
   ASSERT_TRUE(started.ok()) << started;
-  EXPECT_EQ(farm.result(done)->image.pixels, farm.local(16).pixels);
+  EXPECT_EQ(farm.result(done)->image.pixels, farm.local(8).pixels);
   EXPECT_THAT(
       farm.wait_until(job, [](const JobView& v) { return v.state == JobState::kPaused; }).reason,
       HasSubstr("disk is full"));
@@ -186,8 +186,8 @@ TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
 
 // The reserve takes the space that the journal lacks.
 TEST_F(FullDiskTest, TheReserveIsForTheJournal) {
-  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
-  JobSpec another = farm_.spec(StopAtSamples{.samples = 16});
+  const JobId job = farm_.begin(StopAtSamples{.samples = 8});
+  JobSpec another = farm_.spec(StopAtSamples{.samples = 8});
   another.request_id = "another request id";
   ASSERT_TRUE(file_exists(farm_.folder() + "/reserve"));
   disk_->refuse_while([file = farm_.folder() + "/reserve"] { return file_exists(file); });

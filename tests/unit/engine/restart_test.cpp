@@ -82,11 +82,11 @@ TEST(Restart, NothingAcknowledgedIsLeasedAgainAndTheImageIsTheSame) {
 TEST(Restart, AFinishedJobKeepsItsResult) {
   TestFarm farm;
   ASSERT_TRUE(farm.start().ok());
-  const JobId job = farm.begin(StopAtSamples{.samples = 16});
+  const JobId job = farm.begin(StopAtSamples{.samples = 8});
   {
     FakeWorker one(farm.scene(), "one");
     one.join(farm.engine());
-    expect_local_image(farm, job, 16);
+    expect_local_image(farm, job, 8);
   }
   const auto rendered_by = [&] {
     Box<std::vector<RowsBy>> box;
@@ -97,7 +97,7 @@ TEST(Restart, AFinishedJobKeepsItsResult) {
   EXPECT_EQ(rendered_by(), by_one);
   farm.stop();
   ASSERT_TRUE(farm.start().ok());
-  expect_local_image(farm, job, 16);
+  expect_local_image(farm, job, 8);
   EXPECT_EQ(rendered_by(), by_one);
 }
 

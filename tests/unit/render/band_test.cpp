@@ -12,9 +12,9 @@ namespace {
 bool is_node_by_definition(std::uint64_t first, std::uint64_t last) {
   for (std::uint64_t blocks = 1; blocks <= 64; blocks *= 2) {
     for (std::uint64_t index = 0; index < 64; ++index) {
-      const std::uint64_t begin = index * blocks * 16;
-      const std::uint64_t end = begin + blocks * 16;
-      if (first == begin && last <= end && last > end - 16) {
+      const std::uint64_t begin = index * blocks * 8;
+      const std::uint64_t end = begin + blocks * 8;
+      if (first == begin && last <= end && last > end - 8) {
         return true;
       }
     }
@@ -33,7 +33,7 @@ TEST(Band, NodesAreAlignedPowersOfTwoOfBlocks) {
 
 TEST(Band, HugeRangesAreNotNodes) {
   EXPECT_FALSE(is_node({0, ~std::uint64_t{0}}));
-  EXPECT_FALSE(is_node({~std::uint64_t{0} - 15, ~std::uint64_t{0}}));
+  EXPECT_FALSE(is_node({~std::uint64_t{0} - 7, ~std::uint64_t{0}}));
 }
 
 TEST(Band, MaximalNodesTileTheSamplesWithoutSiblings) {
@@ -54,8 +54,8 @@ TEST(Band, MaximalNodesTileTheSamplesWithoutSiblings) {
 }
 
 TEST(Band, HalvesOfANodeAreNodesThatTileIt) {
-  for (std::uint64_t first = 0; first < 512; first += 16) {
-    for (std::uint64_t last = first + 17; last <= 1024; ++last) {
+  for (std::uint64_t first = 0; first < 512; first += 8) {
+    for (std::uint64_t last = first + 9; last <= 1024; ++last) {
       if (!is_node({first, last})) {
         continue;
       }

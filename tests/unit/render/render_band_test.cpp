@@ -172,7 +172,7 @@ TEST(RenderBand, C5_RowsAreTheSameInEveryBand) {
 
 TEST(RenderBand, A7_ANodeIsTheSumOfItsHalvesToTheBit) {
   const auto rendered = scene();
-  for (const SampleRange& node : {SampleRange{0, 64}, {64, 128}, {0, 128}, {32, 60}, {0, 24}}) {
+  for (const SampleRange& node : {SampleRange{0, 64}, {64, 128}, {0, 128}, {32, 60}, {0, 12}}) {
     const Halves halves = split(node);
     const BandPixels whole = render(*rendered, {node, {4, 6}}, 2);
     const BandPixels left = render(*rendered, {halves.left, {4, 6}}, 1);
@@ -314,11 +314,11 @@ TEST(RenderBand, CountsTruncatedPathsAndDroppedPrimitives) {
 
 TEST(RenderImage, PassesDoubleAndAreNodes) {
   EXPECT_TRUE(passes_of(0).empty());
-  EXPECT_EQ(passes_of(16), (std::vector<SampleRange>{{0, 16}}));
-  EXPECT_EQ(passes_of(128), (std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}, {64, 128}}));
-  EXPECT_EQ(passes_of(100),
-            (std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}, {64, 96}, {96, 100}}));
-  EXPECT_EQ(passes_of(24), (std::vector<SampleRange>{{0, 16}, {16, 24}}));
+  EXPECT_EQ(passes_of(8), (std::vector<SampleRange>{{0, 8}}));
+  EXPECT_EQ(passes_of(64), (std::vector<SampleRange>{{0, 8}, {8, 16}, {16, 32}, {32, 64}}));
+  EXPECT_EQ(passes_of(50),
+            (std::vector<SampleRange>{{0, 8}, {8, 16}, {16, 32}, {32, 48}, {48, 50}}));
+  EXPECT_EQ(passes_of(12), (std::vector<SampleRange>{{0, 8}, {8, 12}}));
 }
 
 TEST(Canary, DependsOnTheProgramAlone) {

@@ -77,7 +77,7 @@ farm::BandChunk FarmTest::band_chunk(const std::vector<double>& sums) {
   farm::BandChunk chunk;
   farm::BandHeader* header = chunk.mutable_header();
   header->set_job(1);
-  header->mutable_band()->set_last_sample(16);
+  header->mutable_band()->set_last_sample(8);
   header->mutable_band()->set_last_row(2);
   header->set_instance(std::string(32, 'a'));
   header->set_size(bytes.size());
@@ -127,7 +127,7 @@ std::uint64_t FarmTest::submit_job(std::uint32_t side) {
   request.set_request_id("request-of-a-job-" + std::to_string(++submitted_));
   request.mutable_settings()->set_width(side);
   request.mutable_settings()->set_height(side);
-  request.mutable_stop()->set_samples(16);
+  request.mutable_stop()->set_samples(8);
   farm::SubmitReply reply;
   const grpc::Status status = people()->Submit(context(link::Role::kFarm).get(), request, &reply);
   EXPECT_TRUE(status.ok()) << status.error_message();
@@ -136,9 +136,9 @@ std::uint64_t FarmTest::submit_job(std::uint32_t side) {
 
 void FarmTest::put_rows(std::uint64_t job, std::uint32_t side, std::uint32_t first,
                         std::uint32_t last) {
-  const BandPixels pixels{.band = {.samples = {0, 16}, .rows = {first, last}},
+  const BandPixels pixels{.band = {.samples = {0, 8}, .rows = {first, last}},
                           .width = side,
-                          .sums = std::vector<double>(std::size_t{side} * (last - first) * 3, 8.0),
+                          .sums = std::vector<double>(std::size_t{side} * (last - first) * 3, 4.0),
                           .counters = {}};
   using Put = absl::StatusOr<BandOutcome>;
   const Put put = blocking_call<Put>(

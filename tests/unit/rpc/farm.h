@@ -47,7 +47,7 @@ class FarmTest : public ::testing::Test {
   wire::Digest put_cornell_box();
   farm::SubmitRequest cornell_request(const wire::Digest& manifest) const;
 
-  /// Submits a job of side x side pixels with 16 samples.
+  /// Submits a job of side x side pixels with 8 samples.
   std::uint64_t submit_job(std::uint32_t side);
   /// Uploads all samples of these rows and waits until they are stored.
   void put_rows(std::uint64_t job, std::uint32_t side, std::uint32_t first, std::uint32_t last);

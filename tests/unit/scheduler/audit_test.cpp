@@ -52,7 +52,7 @@ struct AuditFarm : FarmDriver {
 /// A job of one row, rendered by a and then by b; c may be connected as a third machine.
 AuditFarm two_results(std::uint64_t lie_of_a, std::uint64_t lie_of_b, bool third = false) {
   AuditFarm farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a", 1);
   farm.hello(2, "b", 1);
   farm.result(farm.lease(1, false), "a", lie_of_a);
@@ -65,12 +65,12 @@ AuditFarm two_results(std::uint64_t lie_of_a, std::uint64_t lie_of_b, bool third
 }
 
 TEST(Audit, SelectsTheShareOfBandsAndTheSameInEveryEpoch) {
-  const JobSpec spec = test_job("a request that nobody guesses", StopAtSamples{16});
-  const JobSpec other = test_job("another", StopAtSamples{16});
+  const JobSpec spec = test_job("a request that nobody guesses", StopAtSamples{8});
+  const JobSpec other = test_job("another", StopAtSamples{8});
   int count = 0;
   int both = 0;
   for (std::uint32_t row = 0; row < 20'000; ++row) {
-    const Band band{{0, 16}, {row, row + 1}};
+    const Band band{{0, 8}, {row, row + 1}};
     const bool one = is_audited(spec, band, 0.05);
     count += one ? 1 : 0;
     both += one && is_audited(other, band, 0.05) ? 1 : 0;
@@ -90,7 +90,7 @@ TEST(Audit, ASecondMachineRendersTheBandAndTheJobEnds) {
 
 TEST(Audit, WithOneMachineAuditsDoNotBlockTheJob) {
   AuditFarm farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a", 1);
   farm.result(farm.lease(1, false), "a");
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
@@ -111,7 +111,7 @@ TEST(Audit, AnAuditWithoutAMachineDoesNotStopATimedJob) {
 
 TEST(Audit, AMachineDoesNotConfirmItself) {
   AuditFarm farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a", 1);
   WorkerHello sibling;
   sibling.instance = "b";
@@ -177,7 +177,7 @@ TEST(Audit, TwoThatRepeatTheirResultsWaitForAThird) {
 
 TEST(Audit, ABackupTaskThatDiffersOpensADispute) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{32}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
   farm.hello(1, "a", 1);
   const auto first = farm.all<action::Lease>();
   farm.send(input::SessionEnded{1, "connection reset"});
@@ -205,7 +205,7 @@ TEST(Audit, ABackupTaskThatDiffersOpensADispute) {
 
 TEST(Audit, AFailedAuditDoesNotFailTheJob) {
   AuditFarm farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a", 1);
   farm.hello(2, "b", 1);
   farm.result(farm.lease(1, false), "a");
@@ -250,7 +250,7 @@ TEST(Quarantine, LastsOverRestartsUntilItIsLifted) {
 
 TEST(Audit, AuditsTheRowsThatReplaceRetractedOnes) {
   AuditFarm farm = two_results(0, 0);
-  farm.submit(test_job("r2", StopAtSamples{16}, 8, 2));
+  farm.submit(test_job("r2", StopAtSamples{8}, 8, 2));
   farm.hello(3, "c", 1);
   farm.result(farm.lease(1, false), "a");
   farm.send(input::Quarantine{"worker-a"});
@@ -269,7 +269,7 @@ TEST(Audit, ALargeBandIsComparedInPartsAndNoPartTwice) {
   SchedulerOptions options = audited();
   options.band_target_s = 1;
   AuditFarm farm(options);
-  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.submit(test_job("r1", StopAtSamples{8}));
   farm.hello(1, "a", 1);
   farm.hello(2, "b", 1);
   input::BandStored slow;
@@ -307,7 +307,7 @@ TEST(Audit, ALargeBandIsComparedInPartsAndNoPartTwice) {
 
 TEST(Audit, DecidesNothingOnceTheImageIsRequested) {
   AuditFarm farm(test_options());
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a", 1);
   farm.hello(2, "b", 1);
   const action::Lease lease = farm.all<action::Lease>()[0];
@@ -334,7 +334,7 @@ TEST(Quarantine, ForgetsAnErrorMeasuredWithWrongPixels) {
     const action::Lease lease = farm.all<action::Lease>().at(i);
     farm.result(lease, who[lease.session], lease.session == 1 ? 7 : 0);
     if (farm.all<action::Retract>().empty()) {
-      farm.send(input::PassMerged{1, 16 * (i + 1), ErrorEstimate{.relative_rmse = 1e-6}});
+      farm.send(input::PassMerged{1, 8 * (i + 1), ErrorEstimate{.relative_rmse = 1e-6}});
       EXPECT_EQ(farm.job(1).error, 1e-6);
       EXPECT_EQ(farm.job(1).state, JobState::kRunning) << "a look waits for the audits";
     }

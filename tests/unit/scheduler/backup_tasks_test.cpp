@@ -11,7 +11,7 @@ namespace {
 /// task.
 struct OneRow {
   OneRow() {
-    job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+    job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
     farm.hello(1, "a");
     farm.hello(2, "b");
     original = farm.all<action::Lease>().at(0);
@@ -73,7 +73,7 @@ TEST(BackupTasks, ALostBackupDoesNotChangeTheOriginal) {
 
 TEST(BackupTasks, ALongBandIsSplitByRowsOverIdleWorkers) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 1000, 8));
+  farm.submit(test_job("r1", StopAtSamples{8}, 1000, 8));
   farm.hello(1, "a", 1);
   farm.stored(farm.all<action::Lease>()[0], "a", 0.001);
   const action::Lease large = farm.all<action::Lease>().back();
@@ -99,7 +99,7 @@ TEST(BackupTasks, ALeaseThatIsNotBegunIsStolen) {
   SchedulerOptions options = test_options();
   options.band_target_s = 1e-4;
   FarmDriver farm(options);
-  farm.submit(test_job("r1", StopAtSamples{16}, 64, 2));
+  farm.submit(test_job("r1", StopAtSamples{8}, 64, 2));
   farm.hello(1, "a", 2);
   const auto leases = farm.all<action::Lease>();
   ASSERT_EQ(leases.size(), 2u);

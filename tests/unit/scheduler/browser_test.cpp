@@ -76,7 +76,7 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 JobSpec one_row(const std::string& request = "r1") {
-  return test_job(request, StopAtSamples{16}, 8, 1);
+  return test_job(request, StopAtSamples{8}, 8, 1);
 }
 
 JobSpec of_size(std::uint64_t package_bytes) {
@@ -168,7 +168,7 @@ TEST(Browser, GetsOnlyFramesThatFit) {
   SequenceSpec spec;
   spec.request_id = "sequence";
   spec.settings.width = spec.settings.height = 8;
-  spec.stop = StopAtSamples{16};
+  spec.stop = StopAtSamples{8};
   spec.frames = {1, 2};
   const JobId sequence = farm.send(input::SubmitSequence{spec}).job;
   farm.send(input::AddFrames{
@@ -321,7 +321,7 @@ TEST(Browser, ASecondOneDoesNotConfirmALie) {
 
 TEST(Browser, DoesNotHoldUpPixelsOfANativeWorkerThatHasLeft) {
   BrowserFarm farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 2));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 2));
   farm.hello(1, "a", 1);
   farm.hello_tab(2, "t");
   const action::Lease native = farm.lease(1);
@@ -340,7 +340,7 @@ TEST(Browser, AuditsAnotherOneOnlyIfNoNativeWorkerIsThere) {
   farm.send(input::SessionEnded{1, "restarts"});
   farm.hello_tab(2, "t");
   farm.hello_tab(3, "u");
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 40));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 40));
   farm.result(farm.lease(2), "t");
   EXPECT_EQ(farm.leases(3, true), 0u) << "a native worker may be back soon";
   farm.pass_time(61, {2, 3});
@@ -418,7 +418,7 @@ TEST(Browser, OnesThatLieAreFoundWithTheExpectedProbability) {
   int found = 0;
   for (int i = 0; i < kTabs; ++i) {
     BrowserFarm farm(options);
-    const JobSpec spec = test_job(absl::StrCat("request ", i), StopAtSamples{16}, 8, 6);
+    const JobSpec spec = test_job(absl::StrCat("request ", i), StopAtSamples{8}, 8, 6);
     farm.submit(spec);
     farm.hello(1, "a", 1);
     farm.hello(2, "b", 1);
@@ -455,7 +455,7 @@ TEST(Browser, GetsNoBandsThatWouldNotBeAudited) {
   SchedulerOptions options = browsers_audited();
   options.browsers = Browsers::kOnly;
   Scheduler farm(options);
-  farm.step(input::Submit{test_job("r1", StopAtSamples{16}, 8, 4'000)}, 0);
+  farm.step(input::Submit{test_job("r1", StopAtSamples{8}, 8, 4'000)}, 0);
   farm.step(input::Hello{1, test_worker("a", 1)}, 0);
   WorkerHello tab = test_worker("t", 1);
   tab.browser = true;
@@ -600,7 +600,7 @@ TEST(Browser, CannotPredictWhichBandsOfAFrameAreAudited) {
   SequenceSpec spec;
   spec.request_id = "known to its submitter only";
   spec.settings.width = spec.settings.height = 8;
-  spec.stop = StopAtSamples{16};
+  spec.stop = StopAtSamples{8};
   spec.frames = {1};
   const JobId sequence = farm.send(input::SubmitSequence{spec}).job;
   farm.send(input::AddFrames{sequence, {{1, std::string(64, 'a')}}});

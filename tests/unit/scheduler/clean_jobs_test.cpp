@@ -25,10 +25,11 @@ TEST(CleanJobs, AreTheGuidesAndHalfOfASingleBlock) {
   EXPECT_EQ(many.albedo.stop, StopRule(StopAtSamples{kMaxGuideSamples}));
   EXPECT_EQ(many.albedo.settings.seed, 3u);
   EXPECT_FALSE(many.half);
-  const CleanJobs few = clean_jobs(job(), 9);
-  EXPECT_EQ(few.shape.stop, StopRule(StopAtSamples{9}));
+  const CleanJobs few = clean_jobs(job(), 7);
+  EXPECT_EQ(few.shape.stop, StopRule(StopAtSamples{7}));
   ASSERT_TRUE(few.half);
-  EXPECT_EQ(few.half->stop, StopRule(StopAtSamples{4}));
+  EXPECT_EQ(few.half->stop, StopRule(StopAtSamples{3}));
+  EXPECT_FALSE(clean_jobs(job(), 9).half) << "two blocks";
   EXPECT_EQ(few.half->settings.integrator, Integrator::kPath);
 }
 

@@ -31,11 +31,11 @@ TEST(Coverage, PartsOfARowThatAreStoredMakeTheWholeRow) {
 }
 
 TEST(Coverage, APassThatIsCutOffAtTheJobsLastSampleSplitsAtItsBlocks) {
-  Coverage coverage({32, 56}, 1);
-  coverage.assign({{32, 48}, {0, 1}}, 7);
-  EXPECT_EQ(coverage.free_from(0), (Band{{48, 56}, {0, 1}}));
-  coverage.give_back({{32, 48}, {0, 1}}, 7);
-  EXPECT_EQ(coverage.free_from(0), (Band{{32, 56}, {0, 1}}));
+  Coverage coverage({16, 28}, 1);
+  coverage.assign({{16, 24}, {0, 1}}, 7);
+  EXPECT_EQ(coverage.free_from(0), (Band{{24, 28}, {0, 1}}));
+  coverage.give_back({{16, 24}, {0, 1}}, 7);
+  EXPECT_EQ(coverage.free_from(0), (Band{{16, 28}, {0, 1}}));
 }
 
 TEST(Coverage, AWholeRowIsNotWantedOnceAPartOfItIsStored) {

@@ -19,7 +19,7 @@ Step lose(FarmDriver& farm, JobId job, const Band& band, const std::string& inst
 
 TEST(Damage, ADamagedBandIsFreeAgainAndCountedOnce) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const action::Lease lease = farm.all<action::Lease>().at(0);
   farm.stored(lease, "a");
@@ -36,27 +36,27 @@ TEST(Damage, ADamagedBandIsFreeAgainAndCountedOnce) {
   farm.stored(again[0], "a");
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
   EXPECT_EQ(farm.all<action::WriteResult>().size(), 2u) << "the image is requested again";
-  EXPECT_EQ(farm.job(job).samples_done, 8u * 16);
+  EXPECT_EQ(farm.job(job).samples_done, 8u * 8);
   EXPECT_EQ(farm.job(job).counters.rays, rays);
 }
 
 TEST(Damage, BandsThatTheWorkerDidNotStoreStay) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const action::Lease lease = farm.all<action::Lease>().at(0);
   farm.stored(lease, "a");
   lose(farm, job, lease.band, "b");
   lose(farm, job, {lease.band.samples, {0, 2}}, "a");
   lose(farm, job + 1, lease.band, "a");
-  EXPECT_EQ(farm.job(job).samples_done, 8u * 16);
+  EXPECT_EQ(farm.job(job).samples_done, 8u * 8);
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
   EXPECT_TRUE(farm.all_records<record::BandLost>().empty());
 }
 
 /// Worker a stores the only band, worker b audits it with the same result.
 action::Lease store_and_audit(FarmDriver& farm) {
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const action::Lease lease = farm.all<action::Lease>().at(0);
   farm.hello(2, "b");
@@ -96,7 +96,7 @@ TEST(Damage, ARestartNotesAuditedBandsMissingFromTheLog) {
 
 TEST(Damage, TheAuditOfALostBandEnds) {
   FarmDriver farm(with_audits());
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const action::Lease lease = farm.all<action::Lease>().at(0);
   farm.hello(2, "b");

@@ -59,7 +59,7 @@ TEST(Dispatch, LittleWorkIsSpreadOverManyWorkers) {
   for (SessionId s = 1; s <= 8; ++s) {
     farm.hello(s, std::to_string(s));
   }
-  farm.submit(test_job("r1", StopAtSamples{16}, 64, 8));
+  farm.submit(test_job("r1", StopAtSamples{8}, 64, 8));
   std::set<SessionId> served;
   for (const auto& lease : farm.all<action::Lease>()) {
     EXPECT_TRUE(served.insert(lease.session).second);

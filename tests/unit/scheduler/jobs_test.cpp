@@ -39,23 +39,23 @@ TEST(Jobs, OneWorkerRendersEverySampleOnceAndTheResultIsWritten) {
 
 TEST(Jobs, TheSameRequestIdIsTheSameJob) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}));
   const std::size_t records = farm.records.size();
-  EXPECT_EQ(farm.submit(test_job("r1", StopAtSamples{16})), job);
+  EXPECT_EQ(farm.submit(test_job("r1", StopAtSamples{8})), job);
   EXPECT_EQ(farm.records.size(), records);
   const Step other = farm.send(input::Submit{test_job("r1", StopAtSamples{32})});
   EXPECT_EQ(other.status.code(), absl::StatusCode::kAlreadyExists);
-  EXPECT_NE(farm.submit(test_job("r2", StopAtSamples{16})), job);
+  EXPECT_NE(farm.submit(test_job("r2", StopAtSamples{8})), job);
 }
 
 TEST(Jobs, TooManyAreRefusedUntilOneIsOver) {
   FarmDriver farm;
   for (std::size_t i = 0; i < wire::kActiveJobs; ++i) {
     ASSERT_TRUE(
-        farm.scheduler.step(input::Submit{test_job(std::to_string(i), StopAtSamples{16})}, farm.now)
+        farm.scheduler.step(input::Submit{test_job(std::to_string(i), StopAtSamples{8})}, farm.now)
             .status.ok());
   }
-  const JobSpec one_more = test_job("one more", StopAtSamples{16});
+  const JobSpec one_more = test_job("one more", StopAtSamples{8});
   EXPECT_EQ(farm.send(input::Submit{one_more}).status.code(), absl::StatusCode::kResourceExhausted);
   farm.send(input::Cancel{7});
   EXPECT_TRUE(farm.send(input::Submit{one_more}).status.ok());
@@ -80,8 +80,8 @@ TEST(Jobs, CancelRevokesLeasesAndDropsTheBands) {
 
 TEST(Jobs, AWorkerGoesOnToTheNextJobWhenTheFirstHasNothingFree) {
   FarmDriver farm;
-  const JobId first = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
-  const JobId second = farm.submit(test_job("r2", StopAtSamples{16}, 8, 1));
+  const JobId first = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
+  const JobId second = farm.submit(test_job("r2", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const auto leases = farm.all<action::Lease>();
   ASSERT_EQ(leases.size(), 2u);
@@ -165,7 +165,7 @@ TEST(Jobs, ATimeLimitShorterThanTheFirstPassStillGivesAWholeImage) {
   EXPECT_EQ(farm.job(job).state, JobState::kRunning);
   farm.render_all(1, "a");
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
-  EXPECT_GE(farm.job(job).samples_per_pixel, 16u);
+  EXPECT_GE(farm.job(job).samples_per_pixel, 8u);
 }
 
 }  // namespace

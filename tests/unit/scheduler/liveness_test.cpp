@@ -8,7 +8,7 @@ namespace {
 
 TEST(Liveness, LeasesTheBandOfALostWorkerToAnother) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const auto first = farm.all<action::Lease>();
   ASSERT_EQ(first.size(), 1u);
@@ -25,7 +25,7 @@ TEST(Liveness, LeasesTheBandOfALostWorkerToAnother) {
 
 TEST(Liveness, ALateResultCountsAndRevokesTheSecondAttempt) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const auto first = farm.all<action::Lease>();
   farm.hello(2, "b");
@@ -38,7 +38,7 @@ TEST(Liveness, ALateResultCountsAndRevokesTheSecondAttempt) {
 
 TEST(Liveness, DisconnectsASilentWorkerAndLeasesItsBandAgain) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   farm.hello(2, "b");
   farm.pass_time(6, {2});
@@ -48,7 +48,7 @@ TEST(Liveness, DisconnectsASilentWorkerAndLeasesItsBandAgain) {
 
 TEST(Liveness, AJumpOfTheClockDisconnectsNobody) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   farm.now += 1e6;
   farm.send(input::Tick{});
@@ -59,7 +59,7 @@ TEST(Liveness, AJumpOfTheClockDisconnectsNobody) {
 
 TEST(Liveness, RevokesALeaseWithoutProgress) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   farm.pass_time(20, {1});
   const LeaseId id = farm.all<action::Lease>()[0].lease;
@@ -73,7 +73,7 @@ TEST(Liveness, RevokesALeaseWithoutProgress) {
 // A finished band may be uploading over a slow line, but not for ever.
 TEST(Liveness, AnUploadHasALongerTimeout) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const action::Lease lease = farm.all<action::Lease>()[0];
   farm.send(input::Heartbeat{1, {{lease.lease, lease.band.rows.count(), true, 0}}, "sending"});
@@ -85,7 +85,7 @@ TEST(Liveness, AnUploadHasALongerTimeout) {
 
 TEST(Liveness, AReconnectKeepsTheLease) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 2));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 2));
   farm.hello(1, "a");
   const auto leases = farm.all<action::Lease>();
   const action::Lease lease = leases[0];
@@ -100,7 +100,7 @@ TEST(Liveness, AReconnectKeepsTheLease) {
 
 TEST(BandFailures, LeasesAFailedBandToAnotherWorker) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const auto first = farm.all<action::Lease>();
   farm.hello(2, "b");
@@ -112,7 +112,7 @@ TEST(BandFailures, LeasesAFailedBandToAnotherWorker) {
 
 TEST(BandFailures, ThreeFailuresOfABandFailTheJobWithTheReason) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   for (std::size_t i = 0; i < 3; ++i) {
     ASSERT_GT(farm.all<action::Lease>().size(), i);
@@ -146,7 +146,7 @@ void fail_all(FarmDriver& farm, SessionId session) {
 
 TEST(BandFailures, AJobFailsIfNoConnectedWorkerMayRenderIt) {
   FarmDriver farm(slow());
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 64));
   farm.hello(1, "a", 3);
   farm.hello(2, "b", 3);
   fail_all(farm, 1);
@@ -164,7 +164,7 @@ TEST(BandFailures, AJobFailsIfNoConnectedWorkerMayRenderIt) {
 
 TEST(BandFailures, AJobWaitsALimitedTimeForAWorkerThatMayRenderIt) {
   FarmDriver farm(slow());
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 64));
   farm.hello(1, "a", 3);
   farm.hello(2, "b", 1);
   fail_all(farm, 1);
@@ -181,7 +181,7 @@ TEST(BandFailures, AJobWaitsALimitedTimeForAWorkerThatMayRenderIt) {
 
 TEST(BandFailures, ReconnectsOfAFailingWorkerDoNotKeepTheJob) {
   FarmDriver farm(slow());
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 64));
   farm.hello(1, "a", 3);
   fail_all(farm, 1);
   for (SessionId session = 2; session < 20; ++session) {
@@ -195,7 +195,7 @@ TEST(BandFailures, ReconnectsOfAFailingWorkerDoNotKeepTheJob) {
 
 TEST(BandFailures, AWorkerThatFailsNowAndThenKeepsItsJob) {
   FarmDriver farm(slow());
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 64));
   farm.hello(1, "a", 1);
   for (int i = 0; i < 12; ++i) {
     const action::Lease lease = farm.all<action::Lease>().back();
@@ -224,7 +224,7 @@ void store_one_and_lose(FarmDriver& farm, SessionId session) {
 
 TEST(CrashAttribution, SixCrashesOnANewFarmFailTheJobAndNameTheBand) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   const std::string names = "abcdef";
   for (SessionId session = 1; session <= 6; ++session) {
     EXPECT_EQ(farm.job(job).state, JobState::kRunning)
@@ -234,14 +234,14 @@ TEST(CrashAttribution, SixCrashesOnANewFarmFailTheJobAndNameTheBand) {
   EXPECT_EQ(farm.job(job).state, JobState::kFailed);
   const std::string reason = farm.job(job).reason;
   for (const char* part :
-       {"6 workers", "rows 0–1", "samples 0–16", "worker-a", "connection reset"}) {
+       {"6 workers", "rows 0–1", "samples 0–8", "worker-a", "connection reset"}) {
     EXPECT_NE(reason.find(part), std::string::npos) << part << " in: " << reason;
   }
 }
 
 TEST(CrashAttribution, DoesNotCountWorkersThatReconnectOrDrain) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   for (SessionId session = 1; session < 20; ++session) {
     lose_one(farm, session, "a");  // a bad cable
   }
@@ -255,7 +255,7 @@ TEST(CrashAttribution, DoesNotCountWorkersThatReconnectOrDrain) {
 
 TEST(CrashAttribution, StoredRowsAreNotSuspect) {
   FarmDriver farm(slow());
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 8));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 8));
   for (SessionId session = 1; session <= 6; ++session) {
     store_one_and_lose(farm, session);
   }
@@ -304,7 +304,7 @@ Band lose_one_at(FarmDriver& farm, std::uint32_t row, SessionId session) {
 
 TEST(CrashAttribution, FindsOneDeadlyRowOfALongBand) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 800));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 800));
   const Band first = lose_one_at(farm, 23, 1);
   ASSERT_GE(first.rows.count(), 24u);
   const Band second = lose_one_at(farm, 23, 2);
@@ -323,7 +323,7 @@ TEST(CrashAttribution, FindsOneDeadlyRowOfALongBand) {
 // not stored.
 TEST(CrashAttribution, TheSecondLeaseIsSuspectToo) {
   FarmDriver farm(slow());
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 2));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 2));
   farm.hello(1, "a", 2);
   const std::vector<action::Lease> held = farm.all<action::Lease>();
   ASSERT_EQ(held.size(), 2u);
@@ -340,8 +340,8 @@ TEST(CrashAttribution, TheSecondLeaseIsSuspectToo) {
 // A worker may be rendering a revoked lease until a heartbeat no longer names it.
 TEST(CrashAttribution, ABandIsNotBlamedForARevokedLease) {
   FarmDriver farm;
-  const JobId deadly = farm.submit(test_job("deadly", StopAtSamples{16}, 8, 1));
-  const JobId sound = farm.submit(test_job("sound", StopAtSamples{16}, 8, 1));
+  const JobId deadly = farm.submit(test_job("deadly", StopAtSamples{8}, 8, 1));
+  const JobId sound = farm.submit(test_job("sound", StopAtSamples{8}, 8, 1));
   for (SessionId session = 1; session <= 8; ++session) {
     const std::string instance = std::to_string(session);
     farm.hello(session, instance, 1);
@@ -359,7 +359,7 @@ TEST(CrashAttribution, ABandIsNotBlamedForARevokedLease) {
 
 TEST(CrashAttribution, CrashesOfOneMachineDoNotFailAJobThatAnotherCanRender) {
   FarmDriver farm(slow());
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 64));
   farm.hello(100, "good", 1);
   for (SessionId session = 1; session <= 12; ++session) {
     WorkerHello bad;
@@ -380,7 +380,7 @@ TEST(CrashAttribution, CrashesOfOneMachineDoNotFailAJobThatAnotherCanRender) {
 
 TEST(CrashAttribution, CrashesOfTheOnlyMachineFailTheJob) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   for (SessionId session = 1; session <= 6; ++session) {
     EXPECT_EQ(farm.job(job).state, JobState::kRunning);
     WorkerHello only;
@@ -420,7 +420,7 @@ TEST(CrashRate, RequiresMoreCrashesIfMoreWorkersAreLost) {
 
 TEST(CrashAttribution, RandomKillsDoNotFailAJobThatAdvances) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 800));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 800));
   lose_one_at(farm, 0, 1);
   for (SessionId session = 2; session <= 9; ++session) {
     store_one_and_lose(farm, session);
@@ -430,7 +430,7 @@ TEST(CrashAttribution, RandomKillsDoNotFailAJobThatAdvances) {
 
 TEST(CrashAttribution, DoesNotCountAWorkerThatWasSilentBefore) {
   FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   for (SessionId session = 1; session <= 5; ++session) {
     farm.send(input::Pause{job});
     farm.hello(session, std::to_string(session), 1);

@@ -19,7 +19,7 @@ TEST(Passes, AreNodesThatFollowEachOtherToTheLastSample) {
     for (const SampleRange& pass : passes_between(0, samples)) {
       EXPECT_EQ(pass.first, end);
       EXPECT_TRUE(is_node(pass)) << pass.first << " " << pass.last;
-      EXPECT_TRUE(pass.blocks() <= 1 || pass.blocks() * 4 <= (samples + 15) / 16) << samples;
+      EXPECT_TRUE(pass.blocks() <= 1 || pass.blocks() * 4 <= (samples + 7) / 8) << samples;
       end = pass.last;
     }
     EXPECT_EQ(end, samples);
@@ -27,9 +27,9 @@ TEST(Passes, AreNodesThatFollowEachOtherToTheLastSample) {
 }
 
 TEST(Passes, BeginSmallAndDouble) {
-  const std::vector<SampleRange> expected = {{0, 16},   {16, 32},   {32, 64},
-                                             {64, 128}, {128, 192}, {192, 256}};
-  EXPECT_EQ(passes_between(0, 256), expected);
+  const std::vector<SampleRange> expected = {{0, 8},   {8, 16},  {16, 32},
+                                             {32, 64}, {64, 96}, {96, 128}};
+  EXPECT_EQ(passes_between(0, 128), expected);
 }
 
 TEST(Passes, OfTheLargestJobAreFew) { EXPECT_LE(passes_between(0, kMaxSamples).size(), 64u); }
@@ -40,11 +40,11 @@ TEST(Passes, OfATimedJobAreNodesOfAtMostAQuarterOfTheSamples) {
     const SampleRange pass = next_timed_pass(end, 1e12, kMaxSamples);
     EXPECT_EQ(pass.first, end);
     EXPECT_TRUE(is_node(pass));
-    EXPECT_TRUE(end < 64 || pass.samples() * 4 <= end);
+    EXPECT_TRUE(end < 32 || pass.samples() * 4 <= end);
     end = pass.last;
   }
   EXPECT_EQ(next_timed_pass(1024, 100, kMaxSamples), (SampleRange{1024, 1088}));
-  EXPECT_EQ(next_timed_pass(1024, 0, kMaxSamples), (SampleRange{1024, 1040}));
+  EXPECT_EQ(next_timed_pass(1024, 0, kMaxSamples), (SampleRange{1024, 1032}));
   EXPECT_EQ(next_timed_pass(64, 1000, 70), (SampleRange{64, 70}));
 }
 
@@ -78,43 +78,43 @@ Sizing sizing() {
   static const CostMap even(2000);
   Sizing s;
   s.cost = &even;
-  s.free = {{0, 16}, {10, 1010}};
+  s.free = {{0, 8}, {10, 1010}};
   s.width = 100;
-  s.work_rate = 160'000;  // 100 rows a second
+  s.work_rate = 80'000;  // 100 rows a second
   s.measured = true;
   s.farm_share = 0.5;
-  s.work_left = 1'600'000;
+  s.work_left = 800'000;
   return s;
 }
 
 TEST(BandSizes, AreTheTargetWhileMuchWorkIsLeft) {
   Sizing s = sizing();
   s.free.rows.first = 12;
-  EXPECT_EQ(size_band(s), (Band{{0, 16}, {12, 112}}));
+  EXPECT_EQ(size_band(s), (Band{{0, 8}, {12, 112}}));
 }
 
 TEST(BandSizes, EndWhereARowOfTilesEndsIfTheyReachOne) {
   Sizing s = sizing();
   EXPECT_EQ(size_band(s).rows, (RowRange{10, 96}));  // not 110
-  s.work_left = 160'000;
+  s.work_left = 80'000;
   EXPECT_EQ(size_band(s).rows, (RowRange{10, 32}));  // not 35
   s.free.rows.first = 16;
-  s.work_left = 1600;
+  s.work_left = 800;
   EXPECT_EQ(size_band(s).rows, (RowRange{16, 28}));  // 32 would be a third longer
   s.free.rows = {16, 30};
   EXPECT_EQ(size_band(s).rows, (RowRange{16, 30}));
   s.free.rows = {16, 1010};
-  s.work_rate = 80'000;
+  s.work_rate = 40'000;
   EXPECT_EQ(size_band(s).rows, (RowRange{16, 22}));  // much shorter than a tile
 }
 
 TEST(BandSizes, ShrinkTowardTheEndDownToAMinimum) {
   Sizing s = sizing();
   s.free.rows.first = 7;
-  s.work_left = 160'000;
+  s.work_left = 80'000;
   EXPECT_EQ(size_band(s).rows.count(), 25u);
   s.free.rows.first = 4;
-  s.work_left = 1600;
+  s.work_left = 800;
   EXPECT_EQ(size_band(s).rows.count(), 12u);
 }
 
@@ -128,22 +128,22 @@ TEST(BandSizes, AreSmallBeforeAnythingIsMeasured) {
 TEST(BandSizes, ARowOfTilesThatIsTooMuchWorkIsCutByItsSamples) {
   Sizing s = sizing();
   s.free.samples = {256, 512};
-  s.work_rate = 16 * 1600;  // a block of a row of tiles a second
+  s.work_rate = 8 * 1600;  // a block of a row of tiles a second
   s.free.rows.first = 32;
-  EXPECT_EQ(size_band(s), (Band{{256, 288}, {32, 48}}));
+  EXPECT_EQ(size_band(s), (Band{{256, 272}, {32, 48}}));
   s.free.rows.first = 40;
-  EXPECT_EQ(size_band(s), (Band{{256, 320}, {40, 48}}));
+  EXPECT_EQ(size_band(s), (Band{{256, 288}, {40, 48}}));
 }
 
 TEST(BandSizes, ABlockOfARowOfTilesThatIsTooMuchWorkIsCutByItsRows) {
   Sizing s = sizing();
   s.free.samples = {256, 512};
-  s.work_rate = 3 * 1600;
-  EXPECT_EQ(size_band(s), (Band{{256, 272}, {10, 16}}));
-  s.work_rate = 2 * 1600;
-  EXPECT_EQ(size_band(s), (Band{{256, 272}, {10, 12}}));
+  s.work_rate = 3 * 800;
+  EXPECT_EQ(size_band(s), (Band{{256, 264}, {10, 16}}));
+  s.work_rate = 2 * 800;
+  EXPECT_EQ(size_band(s), (Band{{256, 264}, {10, 12}}));
   s.work_rate = 1;
-  EXPECT_EQ(size_band(s), (Band{{256, 272}, {10, 11}}));
+  EXPECT_EQ(size_band(s), (Band{{256, 264}, {10, 11}}));
 }
 
 TEST(BandSizes, FitIntoAMessage) {

@@ -13,7 +13,7 @@ bool share_rows(const action::Lease& one, const action::Lease& other) {
 /// Two workers that fall silent together, each with a lease.
 struct AllLost {
   FarmDriver farm{slow()};
-  JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 32));
+  JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 32));
   std::vector<action::Lease> leases;
 
   AllLost() {
@@ -63,7 +63,7 @@ TEST(ReconnectBarrier, ANewWorkerGetsWorkAtOnce) {
 
 TEST(ReconnectBarrier, DoesNotWaitForWorkersThatWereKilled) {
   FarmDriver farm{slow()};
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 32));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 32));
   for (const SessionId session : {1u, 2u}) {
     farm.hello(session, std::to_string(session), 1);
   }

@@ -13,7 +13,7 @@ struct Before {
   input::BandStored band;
 
   Before() {
-    farm.submit(test_job("r1", StopAtSamples{16}));
+    farm.submit(test_job("r1", StopAtSamples{8}));
     farm.hello(1, "a", 3);
     leases = farm.all<action::Lease>();
     band.job = 1;
@@ -54,8 +54,8 @@ FarmDriver restarted(const FarmDriver& farm, const std::vector<input::BandStored
 // different versions.
 TEST(Restart, FailsJobsOfAnotherPixelVersionButNotFinalOnes) {
   FarmDriver farm;
-  const JobId running = farm.submit(test_job("r1", StopAtSamples{16}));
-  const JobId cancelled = farm.submit(test_job("r2", StopAtSamples{16}));
+  const JobId running = farm.submit(test_job("r1", StopAtSamples{8}));
+  const JobId cancelled = farm.submit(test_job("r2", StopAtSamples{8}));
   farm.send(input::Cancel{cancelled});
   for (const std::uint32_t version : {2u, 3u}) {
     SchedulerOptions options = test_options();
@@ -78,7 +78,7 @@ TEST(Restart, FailsJobsOfAnotherPixelVersionButNotFinalOnes) {
 
 TEST(Restart, KeepsTheTotalsOfARunningJob) {
   FarmDriver farm(slow());
-  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.submit(test_job("r1", StopAtSamples{8}));
   farm.hello(1, "a", 1);
   input::BandStored band;
   band.job = 1;
@@ -102,11 +102,11 @@ TEST(Restart, KeepsTheTotalsOfARunningJob) {
 
 TEST(Restart, KeepsTheSummaryOfAFinalJob) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.submit(test_job("r1", StopAtSamples{8}));
   farm.submit(test_job("r2", StopAtSamples{1000}));
   farm.hello(1, "a", 1);
   farm.render_all(1, "a");
-  farm.send(input::PassMerged{1, 16, ErrorEstimate{.relative_rmse = 0.25, .worst_share = 0.5}});
+  farm.send(input::PassMerged{1, 8, ErrorEstimate{.relative_rmse = 0.25, .worst_share = 0.5}});
   farm.send(input::ResultWritten{1});
   farm.send(input::Cancel{2});
   ASSERT_EQ(farm.job(1).curve.size(), 1u);
@@ -131,7 +131,7 @@ TEST(Restart, KeepsTheSummaryOfAFinalJob) {
 
 TEST(Restart, KeepsTheErrorCurveOfARunningJob) {
   FarmDriver farm(slow());
-  farm.submit(test_job("r1", StopAtSamples{32}));
+  farm.submit(test_job("r1", StopAtSamples{16}));
   const input::PassMerged merged{1, 16, ErrorEstimate{.relative_rmse = 0.25}};
   farm.send(merged);
   FarmDriver next = restarted(farm, {});
@@ -161,7 +161,7 @@ void expect_equal(const FarmDriver& one, const FarmDriver& other) {
 
 TEST(Snapshot, ReplaysToTheSameStateAndIsSmall) {
   FarmDriver farm;
-  farm.submit(test_job("done", StopAtSamples{16}));
+  farm.submit(test_job("done", StopAtSamples{8}));
   farm.hello(1, "a", 1);
   farm.render_all(1, "a");
   farm.send(input::ResultWritten{1});
@@ -186,8 +186,8 @@ TEST(Snapshot, ReplaysToTheSameStateAndIsSmall) {
 
 TEST(Snapshot, DropsForgottenJobsAndNeverReusesTheirIds) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}));
-  farm.submit(test_job("r2", StopAtSamples{16}));
+  farm.submit(test_job("r1", StopAtSamples{8}));
+  farm.submit(test_job("r2", StopAtSamples{8}));
   farm.send(input::Cancel{2});
   const Step step = farm.send(input::Forget{{1, 2, 99}});
   ASSERT_EQ(in<action::DropJob>(step).size(), 1u) << "one runs, one is not known";
@@ -198,7 +198,7 @@ TEST(Snapshot, DropsForgottenJobsAndNeverReusesTheirIds) {
     next.scheduler.replay(record);
   }
   next.take(next.scheduler.replayed(next.now));
-  EXPECT_EQ(next.submit(test_job("r2", StopAtSamples{16})), 3u);
+  EXPECT_EQ(next.submit(test_job("r2", StopAtSamples{8})), 3u);
 }
 
 TEST(Restart, LeasesNothingBeforeTheFormerWorkersReconnect) {
@@ -239,7 +239,7 @@ TEST(Restart, DoesNotLeaseStoredRows) {
 
 TEST(Restart, AdoptsAHeldLeaseUnderItsId) {
   FarmDriver farm(slow());
-  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.submit(test_job("r1", StopAtSamples{8}));
   farm.hello(1, "a", 1);
   const action::Lease lease = farm.all<action::Lease>()[0];
   SchedulerOptions options = slow();
@@ -259,9 +259,9 @@ TEST(Restart, AdoptsAHeldLeaseUnderItsId) {
 // The data folder was reset or restored, and the id is of another job.
 TEST(Restart, RevokesAHeldLeaseOfAnotherJobWithTheSameId) {
   FarmDriver farm(slow());
-  JobSpec spec = test_job("r1", StopAtSamples{16});
+  JobSpec spec = test_job("r1", StopAtSamples{8});
   farm.submit(spec);
-  const Band band{{0, 16}, {0, 1}};
+  const Band band{{0, 8}, {0, 1}};
   const std::uint64_t right = work_hash(spec.manifest, spec.settings);
   spec.settings.seed += 1;
   const std::uint64_t wrong = work_hash(spec.manifest, spec.settings);
@@ -269,7 +269,7 @@ TEST(Restart, RevokesAHeldLeaseOfAnotherJobWithTheSameId) {
   ASSERT_EQ(in<action::Revoke>(refused).size(), 1u);
   EXPECT_EQ(in<action::Revoke>(refused)[0].leases, std::vector<LeaseId>{77});
   FarmDriver other(slow());
-  other.submit(test_job("r1", StopAtSamples{16}));
+  other.submit(test_job("r1", StopAtSamples{8}));
   const Step taken = other.hello(1, "a", 1, {{1, band, 77, "old", true, right}});
   EXPECT_TRUE(in<action::Revoke>(taken).empty());
 }
@@ -287,7 +287,7 @@ TEST(Restart, RevokesAHeldLeaseThatIsNotWanted) {
 
 TEST(Restart, FinishesACompleteJobAgain) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const action::Lease lease = farm.all<action::Lease>()[0];
   FarmDriver next;
@@ -301,12 +301,12 @@ TEST(Restart, FinishesACompleteJobAgain) {
                                           .counters = {}});
   const Step step = next.scheduler.replayed(next.now);
   ASSERT_EQ(in<action::WriteResult>(step).size(), 1u);
-  EXPECT_EQ(in<action::WriteResult>(step)[0].samples, 16u);
+  EXPECT_EQ(in<action::WriteResult>(step)[0].samples, 8u);
 }
 
 TEST(Restart, RendersTheMissingBandsOfAFinishingJob) {
   FarmDriver farm;
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   farm.stored(farm.all<action::Lease>()[0], "a");
   ASSERT_EQ(farm.job(1).state, JobState::kFinishing);
@@ -322,7 +322,7 @@ TEST(Restart, RendersTheMissingBandsOfAFinishingJob) {
 
 TEST(Reconnect, FreesLeasesThatTheWorkerDoesNotName) {
   FarmDriver farm(slow());
-  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.submit(test_job("r1", StopAtSamples{8}));
   farm.hello(1, "a", 1);
   farm.hello(2, "b", 8);
   farm.render_all(2, "b");
@@ -336,7 +336,7 @@ TEST(Reconnect, FreesLeasesThatTheWorkerDoesNotName) {
 
 TEST(Reconnect, PrefersAFinishedBandToOneThatAnotherHasBegun) {
   FarmDriver farm(slow());
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a", 1);
   const action::Lease lease = farm.all<action::Lease>()[0];
   farm.hello(2, "b", 1);
@@ -354,7 +354,7 @@ TEST(Reconnect, PrefersAFinishedBandToOneThatAnotherHasBegun) {
 input::BandStored on_disk(const RowRange& rows, std::uint64_t process, std::uint64_t lie = 0) {
   input::BandStored band;
   band.job = 1;
-  band.band = {{0, 16}, rows};
+  band.band = {{0, 8}, rows};
   band.row_digests = honest_digests(band.band);
   for (std::uint64_t& digest : band.row_digests) {
     digest += lie;
@@ -365,7 +365,7 @@ input::BandStored on_disk(const RowRange& rows, std::uint64_t process, std::uint
 
 TEST(Restart, RetractsAWrongMachineOnceAllBandsAreReplayed) {
   FarmDriver farm(slow());
-  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.submit(test_job("r1", StopAtSamples{8}));
   FarmDriver next;
   for (const Record& record : farm.records) {
     next.scheduler.replay(record);
@@ -375,13 +375,13 @@ TEST(Restart, RetractsAWrongMachineOnceAllBandsAreReplayed) {
   next.scheduler.replay(on_disk({0, 2}, 1, 99));
   next.scheduler.replay(on_disk({0, 3}, 2));
   next.scheduler.replay(on_disk({0, 4}, 3));
-  EXPECT_TRUE(next.scheduler.wanted(1, {{0, 16}, {0, 4}})->empty())
+  EXPECT_TRUE(next.scheduler.wanted(1, {{0, 8}, {0, 4}})->empty())
       << "the film has the first one's rows and cannot take another's yet";
   next.take(next.scheduler.replayed(next.now));
   const auto retracted = next.all<action::Retract>();
   ASSERT_EQ(retracted.size(), 1u);
   EXPECT_EQ(retracted[0].process, 1u);
-  EXPECT_EQ(next.scheduler.wanted(1, {{0, 16}, {0, 4}}), (std::vector<RowRange>{{0, 2}}));
+  EXPECT_EQ(next.scheduler.wanted(1, {{0, 8}, {0, 4}}), (std::vector<RowRange>{{0, 2}}));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ SequenceSpec test_sequence(const std::string& frames, std::uint32_t height = 64)
   spec.name = "walk";
   spec.settings.width = 64;
   spec.settings.height = height;
-  spec.stop = StopAtSamples{16};
+  spec.stop = StopAtSamples{8};
   spec.frames = *parse_frames(frames);
   return spec;
 }
@@ -123,7 +123,7 @@ TEST(Sequences, AllFramesAreRenderedOnceAsOneJob) {
   EXPECT_EQ(view.state, JobState::kDone);
   EXPECT_EQ(view.frames.of(FrameState::kDone), 20u);
   EXPECT_EQ(view.fraction, 1);
-  EXPECT_EQ(view.samples_done, 20u * 64 * 64 * 16);
+  EXPECT_EQ(view.samples_done, 20u * 64 * 64 * 8);
   EXPECT_EQ(farm.results.size(), 20u);
   for (const auto& [job, times] : farm.results) {
     EXPECT_EQ(times, 1) << "of job " << job;
@@ -307,9 +307,9 @@ TEST(Sequences, AreForgottenWithAllTheirFrames) {
 
 TEST(Sequences, OlderSingleJobsAreRenderedBeforeAndNewerOnesAfterIt) {
   FrameFarm farm;
-  const JobId before = farm.submit(test_job("before", StopAtSamples{16}));
+  const JobId before = farm.submit(test_job("before", StopAtSamples{8}));
   const JobId id = farm.submit_frames(test_sequence("1-12"));
-  const JobId after = farm.submit(test_job("after", StopAtSamples{16}));
+  const JobId after = farm.submit(test_job("after", StopAtSamples{8}));
   farm.join(1);
   std::vector<JobId> order;
   while (farm.work()) {

@@ -112,10 +112,10 @@ std::uint64_t WebTest::submit_box() {
 
 void WebTest::finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
                      std::uint64_t samples) {
-  for (std::uint64_t sample = 0; sample < samples; sample += 16) {
-    const BandPixels pixels{.band = {.samples = {sample, sample + 16}, .rows = {0, height}},
+  for (std::uint64_t sample = 0; sample < samples; sample += 8) {
+    const BandPixels pixels{.band = {.samples = {sample, sample + 8}, .rows = {0, height}},
                             .width = width,
-                            .sums = std::vector<double>(std::size_t{width} * height * 3, 8.0),
+                            .sums = std::vector<double>(std::size_t{width} * height * 3, 4.0),
                             .counters = {}};
     using Put = absl::StatusOr<BandOutcome>;
     const Put put = blocking_call<Put>([&](auto answer) {

@@ -36,7 +36,7 @@ class WebTest : public ::testing::Test {
   void log_in();
   /// Submits a job that no worker renders.
   std::uint64_t submit_box();
-  /// Uploads all samples of a job, a multiple of 16, and waits until the job is done.
+  /// Uploads all samples of a job, a multiple of 8, and waits until the job is done.
   void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
               std::uint64_t samples = 64);
   /// Parses the body as a message; fails the test if it is not one.
