@@ -61,7 +61,14 @@ class Frames : public testing::Test {
   }
   std::string file_of(int frame) const { return farm_.path(absl::StrFormat("w.%04d.pfm", frame)); }
 
-  void expect_bytes_of_render(int frame, std::vector<std::string> more = {}) {
+  void expect_bytes_of_render(int frame, const std::vector<std::string>& more = {}) {
+    render_alone(frame, more);
+    EXPECT_TRUE(file_bytes(file_of(frame)) == file_bytes(farm_.path("alone.pfm")))
+        << "frame " << frame;
+  }
+
+  /// Renders a frame on this machine, to alone.pfm.
+  void render_alone(int frame, const std::vector<std::string>& more = {}) {
     const std::string file = farm_.path("alone.pfm");
     std::vector<std::string> argv = {BANDSAW_BIN,           "render", scene_, "--frame",
                                      std::to_string(frame), "-o",     file,   "--quiet"};
@@ -70,7 +77,6 @@ class Frames : public testing::Test {
     argv.insert(argv.end(), more.begin(), more.end());
     const Finished finished = run(argv);
     ASSERT_EQ(finished.code, 0) << finished.err;
-    EXPECT_TRUE(file_bytes(file_of(frame)) == file_bytes(file)) << "frame " << frame;
   }
 
   /// Waits until so many frames are written.
@@ -166,6 +172,37 @@ TEST_F(Frames, AContactSheetAndACommandAndAClearWordWithoutFfmpeg) {
       run(submit("1-4", {"-o", outputs_, "--video", farm_.path("w.mp4")}), {"PATH=/nowhere"});
   EXPECT_EQ(without.code, 1);
   EXPECT_THAT(without.err, HasSubstr("ffmpeg, which is not on PATH"));
+}
+
+TEST_F(Frames, AreCleanedAsRenderDoes) {
+  farm_.add_worker("one", 1);
+  farm_.add_worker("two", 1);
+  const Finished done = run(submit("1-4", {"-o", outputs_, "--denoise"}));
+  ASSERT_EQ(done.code, 0) << done.err;
+  for (int frame = 1; frame <= 4; ++frame) {
+    expect_bytes_of_render(frame, {"--denoise"});
+    EXPECT_TRUE(file_bytes(farm_.path(absl::StrFormat("w.%04d.raw.pfm", frame))) ==
+                file_bytes(farm_.path("alone.raw.pfm")));
+    EXPECT_THAT(file_bytes(farm_.path(absl::StrFormat("w.%04d.json", frame))),
+                HasSubstr("\"method\":\"regression\""));
+  }
+  // The guides are there already.
+  const Finished again =
+      run(farm_.command({"watch", "1", "--denoise", "-o", farm_.path("again.####.pfm")}));
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_TRUE(file_bytes(farm_.path("again.0003.pfm")) == file_bytes(file_of(3)));
+  const Finished listed = run(farm_.command({"jobs"}));
+  EXPECT_THAT(listed.out, HasSubstr("4 of 4 frames"));
+  EXPECT_THAT(listed.out, HasSubstr("8 guides of clean images"));
+  EXPECT_EQ(std::count(listed.out.begin(), listed.out.end(), '\n'), 3) << listed.out;
+}
+
+TEST_F(Frames, OfOneSampleAreNotCleaned) {
+  samples_ = "1";
+  const Finished refused = run(submit("1-2", {"-o", outputs_, "--denoise"}));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("take 2 samples or more"));
+  EXPECT_THAT(run(farm_.command({"jobs"})).out, HasSubstr("no jobs"));
 }
 
 TEST_F(Frames, AreAVideo) {

@@ -33,6 +33,18 @@ farm::SubmitRequest request_of(const JobSpec& spec, const std::string& manifest,
   return request;
 }
 
+/// Submits a job that a clean image needs. A farm that has it already returns that one.
+absl::StatusOr<JobId> submit(FarmClient& client, const JobSpec& spec, std::int32_t priority) {
+  ASSIGN_OR_RETURN(const wire::Digest manifest, wire::digest_from_hex(spec.manifest));
+  const farm::SubmitRequest request = request_of(spec, manifest.raw(), priority);
+  absl::StatusOr<JobId> job = call_with_retries(client, [&] { return client.submit(request); });
+  return absl::IsFailedPrecondition(job.status())
+             ? absl::FailedPreconditionError(
+                   absl::StrCat("the farm cannot render the guides of the clean image (",
+                                job.status().message(), "); submit the scene again with --denoise"))
+             : std::move(job);
+}
+
 /// Renders the images of jobs on a farm.
 class FarmRenderer {
  public:
@@ -42,7 +54,7 @@ class FarmRenderer {
   absl::StatusOr<std::vector<Image>> render(const std::vector<JobSpec>& specs) {
     std::vector<JobId> jobs;
     for (const JobSpec& spec : specs) {
-      ASSIGN_OR_RETURN(const JobId job, submit(spec));
+      ASSIGN_OR_RETURN(const JobId job, submit(client_, spec, priority_));
       jobs.push_back(job);
     }
     std::vector<Image> images;
@@ -54,17 +66,6 @@ class FarmRenderer {
   }
 
  private:
-  absl::StatusOr<JobId> submit(const JobSpec& spec) {
-    ASSIGN_OR_RETURN(const wire::Digest manifest, wire::digest_from_hex(spec.manifest));
-    const farm::SubmitRequest request = request_of(spec, manifest.raw(), priority_);
-    absl::StatusOr<JobId> job = call_with_retries(client_, [&] { return client_.submit(request); });
-    return absl::IsFailedPrecondition(job.status())
-               ? absl::FailedPreconditionError(absl::StrCat(
-                     "the farm cannot render the guides of the clean image (",
-                     job.status().message(), "); submit the scene again with --denoise"))
-               : std::move(job);
-  }
-
   /// `spec`: the specification of the job. Its request id is the same for all users who need this
   /// image, so the job may be an earlier one that was cancelled or has failed. Then another job is
   /// submitted.
@@ -72,7 +73,7 @@ class FarmRenderer {
     ASSIGN_OR_RETURN(Progress last, follow_job(client_, job, display_));
     if (last.job.state != JobState::kDone) {
       spec.request_id = link::random_hex(16);
-      ASSIGN_OR_RETURN(job, submit(spec));
+      ASSIGN_OR_RETURN(job, submit(client_, spec, priority_));
       ASSIGN_OR_RETURN(last, follow_job(client_, job, display_));
     }
     if (last.job.state != JobState::kDone) {
@@ -108,6 +109,16 @@ absl::StatusOr<std::optional<Film::FirstPart>> first_part_of(FarmClient& client,
 }
 
 }  // namespace
+
+absl::Status start_guides(FarmClient& client, const Progress& last) {
+  const JobView& job = last.job;
+  RETURN_IF_ERROR(check_cleanable(job.spec.settings, job.samples_per_pixel));
+  const CleanJobs jobs = clean_jobs(job.spec, job.samples_per_pixel);
+  const std::int32_t priority = std::min(job.priority + 1, kMaxPriority);
+  RETURN_IF_ERROR(submit(client, jobs.albedo, priority).status());
+  RETURN_IF_ERROR(submit(client, jobs.shape, priority).status());
+  return jobs.half ? submit(client, *jobs.half, priority).status() : absl::OkStatus();
+}
 
 absl::StatusOr<Denoised> clean_job(FarmClient& client, const Progress& last, const Image& image,
                                    Denoiser denoiser, ProgressDisplay& display) {

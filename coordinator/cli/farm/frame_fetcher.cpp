@@ -10,8 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/farm/call_with_retries.h"
-#include "coordinator/cli/image/output.h"
-#include "coordinator/cli/image/report.h"
+#include "coordinator/cli/farm/clean_job.h"
 #include "coordinator/cli/image/report_file.h"
 #include "coordinator/cli/options/output_names.h"
 #include "renderlib/base/status_macros.h"
@@ -20,8 +19,12 @@
 namespace bandsaw::coordinator {
 
 FrameFetcher::FrameFetcher(const FarmClient& client, JobId sequence, const WantedFrames& wanted,
-                           ProgressDisplay& display)
-    : client_(client.another()), sequence_(sequence), wanted_(wanted), display_(display) {
+                           ProgressDisplay& display, const Console& console)
+    : client_(client.another()),
+      sequence_(sequence),
+      wanted_(wanted),
+      display_(display),
+      silent_(console, {.quiet = true}) {
   if (!wanted.after.video.empty()) {
     video_.emplace(wanted.after.video, wanted.after.video_fps);
   }
@@ -31,12 +34,30 @@ bool FrameFetcher::needs_images() const {
   return !wanted_.outputs.empty() || video_ || !wanted_.after.contact_sheet.empty();
 }
 
+/// Looks for changes after each frame, because cleaning one may take long and the guides of frames
+/// that were done meanwhile are to be rendered.
 absl::Status FrameFetcher::update() {
   RETURN_IF_ERROR(take_changes());
   while (!not_fetched_.empty()) {
+    RETURN_IF_ERROR(start_guides_of_new_frames());
     const auto [number, job] = *not_fetched_.begin();
     RETURN_IF_ERROR(fetch(number, job));
     not_fetched_.erase(number);
+    RETURN_IF_ERROR(take_changes());
+  }
+  return absl::OkStatus();
+}
+
+absl::Status FrameFetcher::start_guides_of_new_frames() {
+  if (wanted_.denoise == Denoiser::kNone) {
+    return absl::OkStatus();
+  }
+  for (const auto& [number, job] : not_fetched_) {
+    if (!guided_.contains(job)) {
+      ASSIGN_OR_RETURN(const Progress progress, client_->job(job));
+      RETURN_IF_ERROR(start_guides(*client_, progress));
+      guided_.insert(job);
+    }
   }
   return absl::OkStatus();
 }
@@ -79,41 +100,53 @@ void FrameFetcher::report_failure(const FrameView& frame) {
 }
 
 absl::Status FrameFetcher::fetch(FrameNumber number, JobId job) {
-  const auto image = client_->result(job);
-  if (!image.ok()) {
-    return absl::Status(image.status().code(),
-                        absl::StrCat("frame ", number, ": ", image.status().message()));
-  }
-  const Display display = wanted_.display.over(image->display);
+  ASSIGN_OR_RETURN(const Pictures pictures, pictures_of(number, job));
   if (!wanted_.outputs.empty()) {
-    RETURN_IF_ERROR(write(number, job, image->image, display));
+    RETURN_IF_ERROR(write(number, job, pictures));
   }
-  return add_to_collections(number, image->image, display);
+  return add_to_collections(number, pictures);
 }
 
-absl::Status FrameFetcher::write(FrameNumber number, JobId job, const Image& image,
-                                 const Display& display) {
+absl::StatusOr<Pictures> FrameFetcher::pictures_of(FrameNumber number, JobId job) {
+  const auto of_frame = [number](const absl::Status& status) {
+    return absl::Status(status.code(), absl::StrCat("frame ", number, ": ", status.message()));
+  };
+  absl::StatusOr<FarmImage> image = client_->result(job);
+  if (!image.ok()) {
+    return of_frame(image.status());
+  }
+  Pictures pictures{*std::move(image), {}, std::nullopt};
+  if (wanted_.denoise != Denoiser::kNone) {
+    ASSIGN_OR_RETURN(const Progress progress, client_->job(job));
+    absl::StatusOr<Denoised> clean =
+        clean_job(*client_, progress, pictures.result.image, wanted_.denoise, silent_);
+    if (!clean.ok()) {
+      return of_frame(clean.status());
+    }
+    pictures.clean = *std::move(clean);
+  }
+  return pictures;
+}
+
+absl::Status FrameFetcher::write(FrameNumber number, JobId job, const Pictures& pictures) {
   std::vector<std::string> outputs;
   for (const std::string& output : wanted_.outputs) {
     outputs.push_back(name_of_frame(output, number));
   }
-  RETURN_IF_ERROR(write_outputs(image, outputs, display));
   const ReportOption named{name_of_frame(wanted_.report.file, number)};
   ASSIGN_OR_RETURN(const std::vector<std::string> reports, report_files(named, outputs));
-  if (!reports.empty()) {
-    ASSIGN_OR_RETURN(const Progress progress, client_->job(job));
-    const Report report{progress, pixels_sha256(image), outputs,
-                        cut_off_values(image, outputs, display)};
-    RETURN_IF_ERROR(write_reports(report_text(report), reports));
-  }
+  ASSIGN_OR_RETURN(const Progress progress, client_->job(job));
+  RETURN_IF_ERROR(
+      write_pictures(pictures, progress, {outputs, reports, wanted_.display, "", wanted_.denoise}));
   display_.frame_written(sequence_, number, outputs, reports);
   files_.insert(files_.end(), outputs.begin(), outputs.end());
   files_.insert(files_.end(), reports.begin(), reports.end());
   return absl::OkStatus();
 }
 
-absl::Status FrameFetcher::add_to_collections(FrameNumber number, const Image& image,
-                                              const Display& display) {
+absl::Status FrameFetcher::add_to_collections(FrameNumber number, const Pictures& pictures) {
+  const Image& image = pictures.best();
+  const Display display = wanted_.display.over(pictures.result.display);
   if (!wanted_.after.contact_sheet.empty()) {
     if (!sheet_) {
       sheet_.emplace(numbers_, image.width, image.height);
@@ -133,12 +166,13 @@ absl::Status FrameFetcher::fetch_rest() {
 }
 
 /// Adds the frames that the video does not have yet, and ends the video. These frames were done
-/// before an earlier one was, so they are fetched a second time here.
+/// before an earlier one was, so they are fetched, and cleaned, a second
+/// time here.
 absl::Status FrameFetcher::feed_video() {
   while (in_video_ < numbers_.size()) {
-    const auto image = client_->result(done_.at(numbers_[in_video_]));
-    RETURN_IF_ERROR(image.status());
-    RETURN_IF_ERROR(video_->add(image->image, wanted_.display.over(image->display)));
+    const FrameNumber number = numbers_[in_video_];
+    ASSIGN_OR_RETURN(const Pictures pictures, pictures_of(number, done_.at(number)));
+    RETURN_IF_ERROR(video_->add(pictures.best(), wanted_.display.over(pictures.result.display)));
     ++in_video_;
   }
   return video_->finish();

@@ -1,6 +1,7 @@
 #pragma once
 
-// Fetches the images of the frames of a sequence as they are done, and writes their files.
+// Fetches the images of the frames of a sequence as they are done, cleans them if wanted, and
+// writes their files.
 
 #include <cstdint>
 #include <map>
@@ -12,6 +13,7 @@
 
 #include "coordinator/cli/farm/farm_client.h"
 #include "coordinator/cli/farm/watch_frames.h"
+#include "coordinator/cli/farm/watch_job.h"
 #include "coordinator/cli/image/contact_sheet.h"
 #include "coordinator/cli/image/video.h"
 #include "coordinator/cli/progress/progress_display.h"
@@ -21,7 +23,7 @@ namespace bandsaw::coordinator {
 class FrameFetcher {
  public:
   FrameFetcher(const FarmClient& client, JobId sequence, const WantedFrames& wanted,
-               ProgressDisplay& display);
+               ProgressDisplay& display, const Console& console);
 
   /// Fetches the frames that were done since the last call and that some file needs, and reports
   /// frames that failed. UNAVAILABLE: call it again when the farm is back; what was not fetched is
@@ -40,9 +42,11 @@ class FrameFetcher {
  private:
   absl::Status take_changes();
   void report_failure(const FrameView& frame);
+  absl::Status start_guides_of_new_frames();
   absl::Status fetch(FrameNumber number, JobId job);
-  absl::Status write(FrameNumber number, JobId job, const Image& image, const Display& display);
-  absl::Status add_to_collections(FrameNumber number, const Image& image, const Display& display);
+  absl::StatusOr<Pictures> pictures_of(FrameNumber number, JobId job);
+  absl::Status write(FrameNumber number, JobId job, const Pictures& pictures);
+  absl::Status add_to_collections(FrameNumber number, const Pictures& pictures);
   absl::Status feed_video();
   bool needs_images() const;
 
@@ -50,11 +54,13 @@ class FrameFetcher {
   const JobId sequence_;
   const WantedFrames& wanted_;
   ProgressDisplay& display_;
+  ProgressDisplay silent_;  ///< for the jobs of guides: prints nothing
   std::string epoch_;
   std::uint64_t after_ = 0;
   std::vector<FrameNumber> numbers_;          ///< numbers of all frames
   std::map<FrameNumber, JobId> done_;         ///< the jobs of the frames that are done
   std::map<FrameNumber, JobId> not_fetched_;  ///< frames in `done_` whose files are not written yet
+  std::set<JobId> guided_;                    ///< frame jobs whose guides are started
   std::set<std::pair<FrameNumber, std::string>> reported_;  ///< failures
   std::vector<std::string> files_;
   std::optional<ContactSheet> sheet_;

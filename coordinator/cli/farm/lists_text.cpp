@@ -10,6 +10,7 @@
 #include "coordinator/cli/progress/progress_json.h"
 #include "coordinator/cli/progress/progress_text.h"
 #include "coordinator/scheduler/api/job_spec.h"
+#include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -43,8 +44,13 @@ std::vector<std::string> table(const std::vector<std::vector<std::string>>& rows
 std::vector<std::string> jobs_table(const std::vector<Progress>& jobs) {
   std::vector<std::vector<std::string>> rows = {
       {"job", "scene", "state", "priority", "done", "size", "until", "error", "time"}};
+  std::size_t guides = 0;
   for (const Progress& progress : jobs) {
     const JobView& job = progress.job;
+    if (is_guide(job.spec.settings.integrator) && job.state == JobState::kDone) {
+      ++guides;
+      continue;
+    }
     rows.push_back({
         absl::StrCat(job.id),
         printable(job.spec.name),
@@ -63,8 +69,15 @@ std::vector<std::string> jobs_table(const std::vector<Progress>& jobs) {
       rows.back().push_back(printable(job.reason));
     }
   }
-  return jobs.empty() ? std::vector<std::string>{"no jobs; start one with: bandsaw submit SCENE"}
-                      : table(rows);
+  if (jobs.empty()) {
+    return {"no jobs; start one with: bandsaw submit SCENE"};
+  }
+  std::vector<std::string> lines = table(rows);
+  if (guides > 0) {
+    lines.push_back(absl::StrCat("not listed, because they are done: ", guides,
+                                 guides == 1 ? " guide" : " guides", " of clean images"));
+  }
+  return lines;
 }
 
 std::vector<std::string> jobs_json(const std::vector<Progress>& jobs) {

@@ -10,6 +10,7 @@
 
 namespace bandsaw::coordinator {
 
+/// Without the guides of clean images that are done; a last line states their number.
 std::vector<std::string> jobs_table(const std::vector<Progress>& jobs);
 std::vector<std::string> jobs_json(const std::vector<Progress>& jobs);
 std::vector<std::string> why_json(JobId job, const std::vector<std::string>& reasons);

@@ -13,6 +13,7 @@
 #include "coordinator/cli/farm/frame_sender.h"
 #include "coordinator/cli/farm/upload.h"
 #include "coordinator/cli/farm/watch_frames.h"
+#include "coordinator/cli/image/clean.h"
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
 #include "coordinator/scheduler/api/frame_numbers.h"
@@ -76,6 +77,11 @@ absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options,
     return package.status();
   }
   ASSIGN_OR_RETURN(const RenderSettings settings, image_settings(options.image, package->info()));
+  if (const auto status = check_denoise(options.denoise, settings, options.image.stop);
+      !status.ok()) {
+    code = ExitCode::kWrong;
+    return status;
+  }
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
   ProgressDisplay display(process.console, options.verbosity);
   if (started.job == 0) {
@@ -109,7 +115,8 @@ ExitCode not_sent(const absl::Status& status, JobId job, const FrameSender& send
 ExitCode submit_frames(FarmClient& client, const SubmitOptions& options,
                        const std::vector<std::string>& outputs, Process& process) {
   const Console& console = process.console;
-  const WantedFrames wanted{outputs, options.report, options.display, options.after};
+  const WantedFrames wanted{outputs, options.report, options.display, options.after,
+                            options.denoise};
   if (const absl::Status status = check_wanted(wanted); !status.ok()) {
     return console.fail(absl::IsFailedPrecondition(status) ? ExitCode::kFailed : ExitCode::kWrong,
                         std::string(status.message()));

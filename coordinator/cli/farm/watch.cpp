@@ -13,18 +13,21 @@
 namespace bandsaw::coordinator {
 namespace {
 
-ExitCode watch_sequence(const WatchOptions& options, FarmClient& client, Process& process) {
-  if (!options.tev.empty() || options.verbosity.preview || options.denoise != Denoiser::kNone) {
+ExitCode watch_sequence(const WatchOptions& options, const JobSpec& spec, FarmClient& client,
+                        Process& process) {
+  if (!options.tev.empty() || options.verbosity.preview) {
     return process.console.fail(
-        ExitCode::kWrong,
-        absl::StrCat("--preview, --tev and --denoise are for one image: job ", options.job,
-                     " has frames; watch the job of one of them"));
+        ExitCode::kWrong, absl::StrCat("--preview and --tev are for one image: job ", options.job,
+                                       " has frames; watch the job of one of them"));
   }
-  const WantedFrames wanted{options.outputs, options.report, options.display, options.after};
-  if (const absl::Status status = check_wanted(wanted); !status.ok()) {
-    return process.console.fail(
-        absl::IsFailedPrecondition(status) ? ExitCode::kFailed : ExitCode::kWrong,
-        std::string(status.message()));
+  const WantedFrames wanted{options.outputs, options.report, options.display, options.after,
+                            options.denoise};
+  absl::Status status = check_wanted(wanted);
+  const bool lacks_program = absl::IsFailedPrecondition(status);
+  status.Update(check_denoise(options.denoise, spec.settings, spec.stop));
+  if (!status.ok()) {
+    return process.console.fail(lacks_program ? ExitCode::kFailed : ExitCode::kWrong,
+                                std::string(status.message()));
   }
   return watch_frames(client, options.job, wanted, options.verbosity, process);
 }
@@ -70,7 +73,7 @@ ExitCode run(const WatchOptions& options, Process& process) {
   if (!job.ok()) {
     return console.fail(exit_code_of(job.status()), std::string(job.status().message()));
   }
-  return job->job.has_frames() ? watch_sequence(options, **client, process)
+  return job->job.has_frames() ? watch_sequence(options, job->job.spec, **client, process)
                                : watch_image(options, **client, process);
 }
 

@@ -8,6 +8,7 @@
 #include "coordinator/cli/farm/farm_errors.h"
 #include "coordinator/cli/farm/frame_fetcher.h"
 #include "coordinator/cli/farm/watch_job.h"
+#include "coordinator/cli/image/clean.h"
 #include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report_file.h"
 #include "coordinator/cli/options/output_names.h"
@@ -72,6 +73,9 @@ absl::Status check_wanted(const WantedFrames& wanted) {
     }
   }
   RETURN_IF_ERROR(check_outputs_writable(wanted.outputs));
+  if (wanted.denoise != Denoiser::kNone) {
+    RETURN_IF_ERROR(check_outputs_writable(raw_outputs(wanted.outputs)));
+  }
   if (!wanted.after.contact_sheet.empty()) {
     RETURN_IF_ERROR(check_outputs_writable({wanted.after.contact_sheet}));
   }
@@ -82,7 +86,7 @@ ExitCode watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
                       Verbosity verbosity, Process& process) {
   const Console& console = process.console;
   ProgressDisplay display(console, verbosity);
-  FrameFetcher fetcher(client, job, wanted, display);
+  FrameFetcher fetcher(client, job, wanted, display, console);
   const Interrupts::Listener listener(process.interrupts, [&] {
     client.stop();
     fetcher.stop();

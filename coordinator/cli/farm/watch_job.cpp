@@ -166,28 +166,6 @@ ExitCode not_fetched(const absl::Status& status, JobId job, const Console& conso
       absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
 }
 
-/// The pictures of a job that are to be written.
-struct Pictures {
-  FarmImage result;
-  Layers layers;
-  std::optional<Denoised> clean;
-};
-
-absl::Status write_wanted(const Pictures& pictures, const Progress& progress,
-                          const Wanted& wanted) {
-  const Image& image = pictures.result.image;
-  const Display display = wanted.display.over(pictures.result.display);
-  RETURN_IF_ERROR(pictures.clean ? write_clean_outputs(*pictures.clean, image, wanted.outputs,
-                                                       display, pictures.layers)
-                                 : write_outputs(image, wanted.outputs, display, pictures.layers));
-  Report report{progress, pixels_sha256(image), wanted.outputs,
-                cut_off_values(image, wanted.outputs, display)};
-  if (pictures.clean) {
-    report.clean = clean_report(*pictures.clean, wanted.denoise, wanted.outputs);
-  }
-  return write_reports(report_text(report), wanted.reports);
-}
-
 /// Renders the layers and, if wanted, the guides of the clean image on the farm; shows both
 /// images.
 absl::StatusOr<Pictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
@@ -206,6 +184,24 @@ absl::StatusOr<Pictures> with_layers(FarmClient& client, FarmImage result, const
 }
 
 }  // namespace
+
+absl::Status write_pictures(const Pictures& pictures, const Progress& progress,
+                            const Wanted& wanted) {
+  const Image& image = pictures.result.image;
+  const Display display = wanted.display.over(pictures.result.display);
+  RETURN_IF_ERROR(pictures.clean ? write_clean_outputs(*pictures.clean, image, wanted.outputs,
+                                                       display, pictures.layers)
+                                 : write_outputs(image, wanted.outputs, display, pictures.layers));
+  if (wanted.reports.empty()) {
+    return absl::OkStatus();
+  }
+  Report report{progress, pixels_sha256(image), wanted.outputs,
+                cut_off_values(image, wanted.outputs, display)};
+  if (pictures.clean) {
+    report.clean = clean_report(*pictures.clean, wanted.denoise, wanted.outputs);
+  }
+  return write_reports(report_text(report), wanted.reports);
+}
 
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display,
                                     const std::function<void(const Progress&)>& on_status) {
@@ -251,7 +247,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
                  ? not_fetched(pictures.status(), job, process.console)
                  : left_early(pictures.status(), job, outputs, process.console);
     }
-    if (const auto status = write_wanted(*pictures, *last, wanted); !status.ok()) {
+    if (const auto status = write_pictures(*pictures, *last, wanted); !status.ok()) {
       display.clear();
       return not_fetched(status, job, process.console);
     }

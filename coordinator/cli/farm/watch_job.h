@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "coordinator/cli/farm/farm_client.h"
 #include "coordinator/cli/options/commands.h"
 #include "coordinator/cli/progress/progress_display.h"
+#include "renderlib/denoise/denoise.h"
 #include "renderlib/image/layers.h"
 
 namespace bandsaw::coordinator {
@@ -22,6 +24,20 @@ struct Wanted {
   std::string tev;                   ///< HOST:PORT of a tev viewer; empty: none
   Denoiser denoise = Denoiser::kNone;
 };
+
+/// All pictures of a finished job that are written.
+struct Pictures {
+  FarmImage result;
+  Layers layers;
+  std::optional<Denoised> clean;  ///< absent if the image is not cleaned
+
+  /// The clean image, or else the one as rendered.
+  const Image& best() const { return clean ? clean->image : result.image; }
+};
+
+/// Writes the files of a job. `progress`: its last status.
+absl::Status write_pictures(const Pictures& pictures, const Progress& progress,
+                            const Wanted& wanted);
 
 /// Displays the job's progress until its state is final, and returns the last status. If the farm
 /// is unreachable, retries for one minute. UNAVAILABLE: it did not come back. CANCELLED: `client`

@@ -316,8 +316,8 @@ absl::Status read_sequence(const RawOptions& raw, SubmitOptions& options) {
   if (options.frames.empty() && (raw.video || raw.contact_sheet)) {
     return wrong("--video and --contact-sheet are made of frames: add --frames, as in 1:48");
   }
-  if (!options.frames.empty() && (raw.layers || raw.tev || raw.preview || !raw.denoise.empty())) {
-    return wrong("--layers, --denoise, --tev and --preview are for a single image: omit --frames");
+  if (!options.frames.empty() && (raw.layers || raw.tev || raw.preview)) {
+    return wrong("--layers, --tev and --preview are for a single image: omit --frames");
   }
   if (raw.detach && (raw.video || raw.contact_sheet || raw.then)) {
     return wrong(

@@ -102,9 +102,10 @@ TEST(CommandLine, FramesAreOneJob) {
   expect_wrong("submit a.glb --frames 1-9 --video w.avi", "--video: must end in .mp4");
   expect_wrong("submit a.glb --frames 1-9 --detach --then x", "--detach does not wait");
   expect_wrong("submit a.glb --continue 7", "--continue needs --frames");
-  expect_wrong("submit a.glb --frames 1-9 --layers depth -o w.#.exr", "--layers");
-  expect_wrong("submit a.glb --frames 1-9 --denoise -o w.#.exr",
-               "--denoise, --tev and --preview are for a single image: omit --frames");
+  EXPECT_EQ(parsed<SubmitOptions>("submit a.glb --frames 1-9 --denoise -o w.#.exr").denoise,
+            Denoiser::kRegression);
+  expect_wrong("submit a.glb --frames 1-9 --layers depth -o w.#.exr",
+               "--layers, --tev and --preview are for a single image: omit --frames");
   expect_wrong("render a.glb --frames 1-9 --denoise", "'--frames'; did you mean --frame?");
   expect_wrong("render a.glb --fixed-seed", "--fixed-seed needs --frame");
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "coordinator/cli/farm/farm_errors.h"
+#include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -30,6 +31,22 @@ TEST(Lists, JobsAreATableWithEvenColumns) {
       ElementsAre("job  scene    state    priority  done  size     until       error  time",
                   "7    cornell  running  -5        25 %  600×400  64 samples         3.0 s"));
   EXPECT_THAT(jobs_table({}), ElementsAre(HasSubstr("no jobs")));
+}
+
+TEST(Lists, GuidesThatAreDoneAreCountedAndNotListed) {
+  farm::JobStatus guide;
+  guide.set_job(8);
+  guide.set_name("cornell (guide: albedo)");
+  guide.set_state(farm::JOB_STATE_RUNNING);
+  guide.mutable_settings()->set_integrator(static_cast<farm::Integrator>(kGuideAlbedo));
+  guide.mutable_stop()->set_samples(16);
+  const Progress running = progress_of(guide);
+  guide.set_state(farm::JOB_STATE_DONE);
+  const Progress done = progress_of(guide);
+  EXPECT_THAT(jobs_table({running, done, done}),
+              ElementsAre(HasSubstr("job"), HasSubstr("guide: albedo"),
+                          "not listed, because they are done: 2 guides of clean images"));
+  EXPECT_EQ(jobs_json({running, done}).size(), 2u);
 }
 
 TEST(Lists, WorkersAreATable) {
