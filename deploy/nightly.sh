@@ -6,7 +6,7 @@
 #      those run that have no row of this commit. So several runs, in several nights, add up to one table.
 #   N: minutes for each fuzz target (default 1), and for the calibration, which continues from there in the next run (default 60)
 #   FOLDER: table.md and a log for each part (default: out/nightly)
-#   PART: parts to run: default labels browser blender asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
+#   PART: parts to run: default labels wasm browser blender asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
 #         (default: all, in this order; about seven hours on two cores)
 # A part whose requirements this machine lacks (root, debootstrap) is skipped, and the table states the reason. A compiler and a browser
 # are installed if they are missing.
@@ -14,7 +14,7 @@ set -uo pipefail
 cd "$(dirname "$0")/.."
 . deploy/bare.sh
 
-every_part=(default labels browser blender asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration)
+every_part=(default labels wasm browser blender asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration)
 fuzz_minutes=1
 calibration_minutes=60
 out=out/nightly
@@ -53,6 +53,11 @@ part_default() { deploy/test.sh --strict; }
 
 part_labels() {
   preset release hard_cases unit_scheduler farm && tests build/release --label-regex '^(hard_cases_full|simulation_full|schedules_full)$'
+}
+
+# Before the browsers, which load what it builds.
+part_wasm() {
+  deploy/wasm.sh && preset release bandsaw bandsaw-import wasm_native gallery && tests build/release --label-regex '^wasm$'
 }
 
 part_browser() { deploy/install.sh browser && preset release browser && tests build/release --label-regex '^browser$'; }
