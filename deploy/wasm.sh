@@ -20,9 +20,13 @@ get_sources() {
   local apt=(apt-get -qq -o Dir::Etc::sourcelist="$sources/apt.list" -o Dir::Etc::sourceparts=/dev/null -o Dir::State::lists="$sources/lists"
     -o APT::Sandbox::User=root)
   "${apt[@]}" update
-  (cd "$sources" && "${apt[@]}" source --download-only abseil protobuf)
+  # apt checks both archives of a package by the signed index, so the .dsc file, which some mirrors lack, is not needed.
   for package in abseil protobuf; do
-    dpkg-source --require-strong-checksums -x "$sources/${package}"_*.dsc "$sources/$package" >/dev/null
+    (cd "$sources" && "${apt[@]}" source --download-only --tar-only "$package" && "${apt[@]}" source --download-only --diff-only "$package")
+    mkdir "$sources/$package"
+    tar -xf "$sources/${package}"_*.orig.tar.* --strip-components=1 -C "$sources/$package"
+    tar -xf "$sources/${package}"_*.debian.tar.* -C "$sources/$package"
+    dpkg-source --before-build "$sources/$package" >/dev/null  # applies Debian's patches
   done
   touch "$sources/complete"
 }
