@@ -165,12 +165,16 @@ std::size_t Connection::write(const char* bytes, std::size_t size) {
   return repeat([&] { return try_write(bytes, size); });
 }
 
-void Connection::finish() {
+void Connection::end_sending() {
   if (ssl_ != nullptr && SSL_is_init_finished(ssl_.get()) != 0) {
     ERR_clear_error();
     SSL_shutdown(ssl_.get());
   }
   shutdown(socket_, SHUT_WR);
+}
+
+void Connection::finish() {
+  end_sending();
   deadline_ = Clock::now() + kFinishTimeout;
   std::array<char, 16 << 10> ignored;
   ssize_t got = 0;

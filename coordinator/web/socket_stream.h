@@ -66,7 +66,7 @@ class SocketStream {
   template <class Token>
   auto async_finish(Token&& token) {
     if (socket_.is_open()) {
-      shutdown(socket_.native_handle(), SHUT_WR);
+      connection_->end_sending();
     }
     return boost::asio::async_compose<Token, void(ErrorCode)>(
         [this, begun = false](auto& self, ErrorCode error = {}) mutable {
