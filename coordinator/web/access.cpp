@@ -1,3 +1,6 @@
+// A login is a cookie whose value is derived from the users' secret by HMAC, so it becomes invalid
+// when the secret is renewed.
+
 #include "coordinator/web/access.h"
 
 #include <arpa/inet.h>

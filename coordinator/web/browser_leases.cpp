@@ -1,3 +1,6 @@
+// Notes the leases of each session, and answers whether a scene's blobs may be read or a band sent
+// with them.
+
 #include "coordinator/web/browser_leases.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Reads bandsaw.wasm and, if it exists, its form compressed by Brotli.
+
 #include "coordinator/web/browser_program.h"
 
 #include "proto/wire/digest.h"

@@ -8,7 +8,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Held in memory, so that the bytes that are handed out have these tags. It contains no secret.
+/// Held in memory, so that `tag` always describes the bytes that are handed out, even if the files
+/// change. It contains no secret.
 struct BrowserProgram {
   std::string bytes;       ///< bandsaw.wasm; empty: it is not installed
   std::string compressed;  ///< the same by brotli, of bandsaw.wasm.br; empty: not installed

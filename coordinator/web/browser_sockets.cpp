@@ -1,3 +1,6 @@
+// All sockets are served by one thread. A tab's messages go to the engine, and the engine's
+// messages to a queue for each tab.
+
 #include "coordinator/web/browser_sockets.h"
 
 #include <signal.h>

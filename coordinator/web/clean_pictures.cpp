@@ -1,3 +1,6 @@
+// For each clean picture: submits the jobs of its guides (images of albedo and shape, from which
+// the denoiser learns where edges are), waits until they are done, and runs the filter.
+
 #include "coordinator/web/clean_pictures.h"
 
 #include <algorithm>

@@ -1,7 +1,8 @@
 #pragma once
 
-// Clean pictures of finished jobs (renderlib/denoise). The farm renders the guides as jobs of their
-// own; the filter runs here.
+// Clean, that is denoised, pictures of finished jobs (renderlib/denoise). The denoiser needs
+// guides, images of the albedo and the shape of the surfaces: the farm renders them as jobs of
+// their own. The filter runs here.
 
 #include <cstdint>
 #include <functional>

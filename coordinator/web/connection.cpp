@@ -1,3 +1,6 @@
+// The socket does not block: each operation is repeated, with poll() in between, until it succeeds
+// or the deadline is over.
+
 #include "coordinator/web/connection.h"
 
 #include <fcntl.h>

@@ -20,8 +20,8 @@ class Connection {
  public:
   /// The request's head, with the TLS handshake, must come within this time.
   static constexpr std::chrono::milliseconds kTimeout{10'000};
-  /// A body, in either direction, has the same time, plus a second for each so many transferred
-  /// bytes.
+  /// The transfer of a body, in either direction, has kTimeout plus one second for each
+  /// kMinBytesPerSecond bytes that were transferred.
   static constexpr double kMinBytesPerSecond = 32 << 10;
   /// Time that finish() waits for the peer.
   static constexpr std::chrono::seconds kFinishTimeout{2};
@@ -42,13 +42,14 @@ class Connection {
   /// read.
   std::size_t write(const char* bytes, std::size_t size);
 
-  /// What one attempt to read or write did. Neither `bytes` nor `wait_for`: the connection has
-  /// ended.
+  /// Result of one attempt to read or write. If `bytes` and `wait_for` are both 0, the connection
+  /// has ended.
   struct Attempt {
     std::size_t bytes = 0;
     short wait_for = 0;  ///< the attempt can be repeated after these events of poll
   };
-  /// The same as read and write, but they do not wait and know no deadline.
+  /// Read or write what is possible at once: unlike read() and write() they do not wait, and no
+  /// deadline ends them.
   Attempt try_read(char* bytes, std::size_t size);
   Attempt try_write(const char* bytes, std::size_t size);
 

@@ -1,3 +1,5 @@
+// Collects the routes of all parts of the dashboard, and starts the HTTP server.
+
 #include "coordinator/web/dashboard.h"
 
 #include <optional>

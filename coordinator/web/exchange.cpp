@@ -1,3 +1,5 @@
+// Reads one request with Boost.Beast, calls the handler, and writes its response.
+
 #include "coordinator/web/exchange.h"
 
 #include <algorithm>

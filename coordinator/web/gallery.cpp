@@ -1,3 +1,6 @@
+// Lists the scene files below the folder, each with the comment at its beginning as its
+// description.
+
 #include "coordinator/web/gallery.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Decodes targets, and cuts a range of bytes out of a response.
+
 #include "coordinator/web/http.h"
 
 #include <algorithm>

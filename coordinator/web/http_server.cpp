@@ -1,3 +1,5 @@
+// One thread accepts connections; a limited number of threads serves one connection each.
+
 #include "coordinator/web/http_server.h"
 
 #include <netdb.h>

@@ -21,7 +21,8 @@ namespace {
 /// Number of blobs and bands in transfer at a time: some of the HTTP server's threads remain for
 /// the dashboard, however slow the browsers are.
 constexpr int kMaxTransfers = 20;
-/// Bytes of the length before a BandHeader, little-endian, and the most that it may be.
+/// The body of a band begins with the length of its BandHeader: a little-endian number of
+/// kLengthBytes bytes, at most kMaxHeaderBytes.
 constexpr std::size_t kLengthBytes = 4;
 constexpr std::uint32_t kMaxHeaderBytes = 64 << 10;
 

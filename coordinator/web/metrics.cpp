@@ -1,3 +1,5 @@
+// Writes each figure of the farm as lines of Prometheus's text format.
+
 #include "coordinator/web/metrics.h"
 
 #include <map>

@@ -11,8 +11,8 @@ namespace bandsaw::coordinator {
 
 namespace {
 
-/// The policy of the page for browsers that render, and of its scripts, which become workers: the
-/// only ones that may compile WebAssembly and start workers.
+/// The Content-Security-Policy of the page for browsers that render, and of its scripts, which run
+/// as web workers. No other page may compile WebAssembly and start web workers.
 constexpr char kJoinPolicy[] =
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src "
     "'self'; "

@@ -1,3 +1,6 @@
+// Makes pictures one at a time, and keeps the last ones for requests that come within a second,
+// within a limit of bytes.
+
 #include "coordinator/web/pictures.h"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Converts the modules of libqrencode to true (dark) and false.
+
 #include "coordinator/web/qr_code.h"
 
 #include <qrencode.h>

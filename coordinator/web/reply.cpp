@@ -1,3 +1,6 @@
+// Protobuf messages become JSON with the names of the .proto file; statuses become HTTP statuses
+// with a JSON object that has the error's text.
+
 #include "coordinator/web/reply.h"
 
 #include <google/protobuf/util/json_util.h>

@@ -1,3 +1,6 @@
+// Compares a path with the patterns of the routes in order; `*` stands for one part between
+// slashes.
+
 #include "coordinator/web/router.h"
 
 #include <utility>

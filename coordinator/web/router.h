@@ -16,7 +16,7 @@ class Router {
   /// Adds a route for GET and HEAD of paths equal to `pattern`. It may have one "*", which matches
   /// one or more characters other than "/"; they become `HttpRequest::captured`.
   void get(std::string pattern, std::function<HttpReply(const HttpRequest&)> answer);
-  /// The same for POST, whose handler may read the body.
+  /// Adds a handler of POST requests, which may read the body.
   void post(std::string pattern, HttpHandler answer);
 
   /// Returns the response of the first matching route, or a 404.

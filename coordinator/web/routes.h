@@ -29,7 +29,7 @@ void add_jobs(Router& router, Engine& engine);
 void add_pictures(Router& router, Pictures& pictures, const MakeReport& report);
 void add_clean_pictures(Router& router, CleanPictures& pictures);
 void add_scenes(Router& router, Scenes& scenes);
-/// Scenes whose files are sent apart, each once.
+/// Adds the requests that submit a scene whose files are sent separately, each file once.
 void add_scene_files(Router& router, Engine& engine, Scenes& scenes);
 /// The link by which browsers join.
 void add_browser_link(Router& router, BrowserAccess& access);

@@ -1,3 +1,5 @@
+// Reads and checks the width, the stop rule and the texts of the request.
+
 #include "coordinator/web/scene_request.h"
 
 #include "absl/strings/numbers.h"

@@ -1,3 +1,5 @@
+// Imports a scene in the confined importer, stores its blobs in the engine, and submits the job.
+
 #include "coordinator/web/scenes.h"
 
 #include <optional>

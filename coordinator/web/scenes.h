@@ -22,9 +22,9 @@ struct SceneOnFarm {
   PackageInfo info;
 };
 
-/// Imports a scene file, or of a zip file the scene `inside` (empty: the only one), and stores its
-/// package. Blocks; CANCELLED soon after `stop` becomes true. Errors of the importer, naming the
-/// file, and of the store.
+/// Imports a scene file, or the scene `inside` of a zip file (empty: the only scene in it), and
+/// stores its package. Blocks; CANCELLED soon after `stop` becomes true. Errors of the importer,
+/// naming the file, and of the store.
 using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(
     const std::string& path, const std::string& inside, const std::atomic<bool>& stop)>;
 

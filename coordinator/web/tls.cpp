@@ -1,3 +1,5 @@
+// Makes OpenSSL's server context from the certificate and the key of the farm, in memory.
+
 #include "coordinator/web/tls.h"
 
 #include <openssl/pem.h>

@@ -1,3 +1,7 @@
+// Fits balls to the records of one cell: clusters of directions, seen from the cell's middle, are
+// split as long as that explains the records better. Then it is estimated by cross-validation what
+// share of the directions should be sampled towards the balls.
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

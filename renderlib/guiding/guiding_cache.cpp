@@ -1,3 +1,6 @@
+// Keeps the newest fields. A thread that needs a field which another thread is training waits for
+// it.
+
 #include "renderlib/guiding/guiding_cache.h"
 
 #include <utility>

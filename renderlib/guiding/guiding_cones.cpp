@@ -1,3 +1,6 @@
+// Each ball of a cell, as seen from a point, is a cone of directions. Cones are sampled uniformly,
+// with a probability by the light of their ball.
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,3 +1,7 @@
+// Builds a binary tree over the records: a range is halved along its longest axis until it has few
+// enough records. In each leaf the records are divided by the main direction of their normal into
+// up to six cells, and fit_cell() is called for each.
+
 #include "renderlib/guiding/guiding_field.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// Casters are surfaces that may cast caustics: smooth metal and glass. The constructor lists their
+// primitives by material, with the sums of their areas. sample() chooses a material, a primitive by
+// its area, and a point.
+
 #include "renderlib/integrate/casters.h"
 
 #include <algorithm>

@@ -1,3 +1,7 @@
+// Follows mirrors, smooth glass and nearly smooth metal from the camera, and returns the albedo or
+// the shape (two coordinates of the normal, and the depth) of the first other surface. The denoiser
+// uses such pictures, which have hardly any noise, to find edges.
+
 #include "renderlib/integrate/guide.h"
 
 #include <algorithm>

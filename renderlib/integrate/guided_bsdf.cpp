@@ -1,3 +1,6 @@
+// With the probability `share` of the cones a direction is sampled in a cone, otherwise by the
+// BSDF. The pdf is in both cases that of the mixture of the two.
+
 #include "renderlib/integrate/guided_bsdf.h"
 
 #include "renderlib/base/overloaded.h"

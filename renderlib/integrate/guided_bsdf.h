@@ -36,7 +36,7 @@ struct GuidedSample {
   double scaling = 1;
 };
 
-/// sample(), where the share of `cones` is not 0.
+/// As sample() below, for cones whose share is not 0.
 std::optional<GuidedSample> sample_mixture(const Bsdf& bsdf, const GuidingCones& cones, double u,
                                            double v, double lobe);
 

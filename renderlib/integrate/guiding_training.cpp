@@ -1,3 +1,7 @@
+// The rounds of the training: photons, a small round of paths, a large round of paths. Each is
+// divided among a fixed number of chunks, which the threads trace, and whose records are joined in
+// order.
+
 #include "renderlib/integrate/guiding_training.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Finds the hits of a ray one after the other and skips those at surfaces that are not there for
+// this sample: holes by alpha, and boundaries of glass within a glass of higher priority.
+
 #include "renderlib/integrate/intersect_visible.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// The loop over the vertices of a path, and its steps (path_steps.h): emission, light sampling,
+// sampling of a direction, Russian roulette.
+
 #include "renderlib/integrate/path.h"
 
 #include <optional>

@@ -1,3 +1,7 @@
+// Traces the path of each pixel of a group up to its second vertex, then connects every such vertex
+// with the first vertices of all pixels of the group, with balance-heuristic weights (path_reuse.h
+// has the formulas).
+
 #include "renderlib/integrate/path_reuse.h"
 
 #include <array>

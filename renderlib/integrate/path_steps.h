@@ -13,8 +13,9 @@
 
 namespace bandsaw {
 
-/// Returns the first visible surface along the path's ray, towards scattering `depth`; std::nullopt
-/// if the ray leaves the scene.
+/// Returns the first visible surface along the path's ray; std::nullopt if the ray leaves the
+/// scene. `depth`, here and below: the number of the scattering that may happen at this surface,
+/// from 0.
 inline std::optional<SurfacePoint> next_surface(const PathContext& context, std::uint32_t depth,
                                                 PathState& path) {
   std::optional<SurfacePoint> hit = intersect_visible(
@@ -25,25 +26,26 @@ inline std::optional<SurfacePoint> next_surface(const PathContext& context, std:
   return hit;
 }
 
-/// Adds the emission of the surface at `point`, which the path's ray hits towards scattering
-/// `depth`, with its MIS weight and attenuated by all media on the ray. It is added
-/// deterministically, before the media decide whether the path passes them: a light is usually
-/// brighter than the light scattered in front of it, and the transmittance costs no extra path.
+/// Adds the emission of the surface at `point`, which the path's ray hits, with its MIS weight and
+/// attenuated by all media on the ray. It is added deterministically, before the media decide
+/// whether the path passes them: a light is usually brighter than the light scattered in front of
+/// it, and the transmittance costs no extra path.
 void add_emission(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                   PathState& path);
 
 /// Adds the background radiance with its MIS weight when the path leaves the scene.
 void add_background(const PathContext& context, PathState& path);
 
-/// Returns the BSDF of the surface at `point` as scattering number `depth`. Returns std::nullopt if
-/// the surface does not scatter or if `max_depth` is reached; the latter marks the path as
-/// truncated.
+/// Returns the BSDF of the surface at `point`, where scattering number `depth` may happen. Returns
+/// std::nullopt if the surface does not scatter or if `max_depth` is reached; the latter marks the
+/// path as truncated.
 std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& point,
                               std::uint32_t depth, PathState& path);
 
 /// Adds the light-sampling estimate at the surface, samples a direction, applies Russian roulette,
 /// and continues the path in the sampled direction. Returns false if the path ends. `bsdf` is the
-/// result of `make_bsdf()`, and `cones` that of `cones_at()`.
+/// result of `make_bsdf()`, and `cones` that of `cones_at()`: cones of directions from which path
+/// guiding expects light, or none.
 bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
              const GuidingCones& cones, std::uint32_t depth, PathState& path);
 

@@ -1,3 +1,6 @@
+// Selects the function of the integrator: path tracing, or a picture of the first surface (normal,
+// depth, albedo, guides of the denoiser, ambient occlusion).
+
 #include "renderlib/integrate/sample_value.h"
 
 #include "renderlib/geometry/surface.h"

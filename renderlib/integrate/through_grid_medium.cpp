@@ -1,3 +1,7 @@
+// The path flies through the segment by delta tracking (medium/tracking.h). At the collision where
+// it is scattered, a light is sampled and a direction is sampled. If it may not be scattered there,
+// its light is multiplied by the estimated transmittance instead.
+
 #include "renderlib/integrate/through_grid_medium.h"
 
 #include <optional>

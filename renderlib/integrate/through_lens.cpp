@@ -1,3 +1,6 @@
+// Samples a light from the point in focus, finds where the line from the light through that point
+// crosses the lens, traces a shadow ray from there to the light, and adds the weighted estimate.
+
 #include "renderlib/integrate/through_lens.h"
 
 #include <optional>

@@ -1,3 +1,7 @@
+// Traces paths from the camera and remembers their vertices. When a path has ended, each vertex
+// whose direction can be guided becomes a record: the direction of the path from there, and the
+// light that it found in that direction.
+
 #include "renderlib/integrate/training_paths.h"
 
 #include <algorithm>

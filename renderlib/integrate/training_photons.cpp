@@ -1,3 +1,8 @@
+// Photons are paths that begin at a caster, a surface of metal or glass that may cast a caustic. A
+// random point of a caster is chosen, a light is sampled from it, and the light goes on as its BSDF
+// says. Where a photon arrives at a surface whose directions can be guided, a record says from
+// which direction how much light came.
+
 #include "renderlib/integrate/training_photons.h"
 
 #include <algorithm>

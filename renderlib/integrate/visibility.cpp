@@ -1,3 +1,6 @@
+// One any-hit query, or, if the scene has surfaces that are partly transparent, all hits along the
+// ray in order, whose transparencies are multiplied.
+
 #include "renderlib/integrate/visibility.h"
 
 #include "renderlib/geometry/surface.h"

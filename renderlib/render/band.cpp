@@ -1,3 +1,5 @@
+// Divides ranges of samples into nodes, and checks bands.
+
 #include "renderlib/render/band.h"
 
 #include <bit>

@@ -1,3 +1,5 @@
+// Sends WebDriver commands to chromedriver by HTTP.
+
 #include "tests/web/browser.h"
 
 #include <google/protobuf/util/json_util.h>

@@ -1,3 +1,5 @@
+// Sends Marionette commands to Firefox.
+
 #include "tests/web/firefox.h"
 
 #include <google/protobuf/util/json_util.h>

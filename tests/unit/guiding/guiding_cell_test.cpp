@@ -1,3 +1,6 @@
+// One cell of path guiding: a few balls from which much light comes. Tests the fit of the balls to
+// recorded light, and the sampling of the cones in which a surface sees them.
+
 #include "renderlib/guiding/guiding_cell.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// The guiding cells of a whole scene, in a tree over position and normal.
+
 #include "renderlib/guiding/guiding_field.h"
 
 #include <gtest/gtest.h>

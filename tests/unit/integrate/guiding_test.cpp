@@ -1,4 +1,5 @@
-// Path guiding: its training, and that it changes no expected value.
+// Path guiding: its training, and that it changes no expected value. The training also traces
+// photons from casters, the surfaces of metal and glass that may cast caustics.
 
 #include <gtest/gtest.h>
 
@@ -162,7 +163,7 @@ TEST(Guiding, WithoutCastersThereAreNoPhotons) {
   EXPECT_GT(guiding->field.cells(), 0u);
 }
 
-// A sample's weight is value / pdf, whichever of both sampled it.
+// A sample's weight is value / pdf, whether the BSDF or a cone sampled it.
 TEST(GuidedBsdf, SamplesAgreeWithTheirEvaluation) {
   const auto scene = lamp_in_glass(1.5, 0.2, 0.5f).build();
   const auto guiding = trained(*scene);

@@ -1,3 +1,5 @@
+// The weights of multiple importance sampling.
+
 #include "renderlib/integrate/mis.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,6 @@
+// Path tracing of scenes whose value is known exactly, ray by ray: emitters, mirrors, glass, depth
+// limits, and counters.
+
 #include "renderlib/integrate/path.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// The integrators other than `path`: normals, depth, albedo, ambient occlusion and direct light.
+
 #include "renderlib/integrate/sample_value.h"
 
 #include <gtest/gtest.h>

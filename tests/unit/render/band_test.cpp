@@ -1,3 +1,6 @@
+// Bands (a range of rows by a range of samples): the nodes of the summation tree, validation, and
+// counters.
+
 #include "renderlib/render/band.h"
 
 #include <gtest/gtest.h>

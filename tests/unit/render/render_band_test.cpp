@@ -1,3 +1,5 @@
+// Rendering of bands: the same bits for any threads, any division into bands and any order.
+
 #include "renderlib/render/render_band.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Who may use the dashboard: logins, secrets, foreign sites, and limits on connections.
+
 #include "coordinator/web/access.h"
 
 #include <arpa/inet.h>

@@ -1,3 +1,6 @@
+// Denoised pictures of finished jobs, for which the farm first renders the guides: images of albedo
+// and normal.
+
 #include "coordinator/web/clean_pictures.h"
 
 #include <gmock/gmock.h>

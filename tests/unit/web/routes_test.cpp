@@ -1,3 +1,5 @@
+// The requests of the dashboard's page and their answers.
+
 #include <gmock/gmock.h>
 
 #include <thread>

@@ -1,3 +1,5 @@
+// A coordinator with its dashboard, and a browser's requests for tests.
+
 #include "tests/unit/web/web_farm.h"
 
 #include <google/protobuf/util/json_util.h>
