@@ -36,31 +36,46 @@ class SchedulerInbox {
   virtual void bands_damaged(input::BandsDamaged damaged) = 0;
 };
 
-/// Messages to the store's thread; see StoreThread.
+/// Messages to the store's thread, which alone writes the logs of bands and the results.
+/// StoreThread has the same functions and says when they fail.
 class StoreInbox {
  public:
   virtual ~StoreInbox() = default;
+  /// Creates the folder of a new job.
   virtual void add_job(JobId job, const JobSpec& spec) = 0;
+  /// Writes a band to its job's log.
   virtual void append(IncomingBand incoming) = 0;
+  /// Computes the digests of a band's rows without writing it: an audit needs no more.
   virtual void compare(IncomingBand incoming) = 0;
   virtual void write_result(JobId job, Finished finished) = 0;
+  /// The job's log was found damaged: later bands go behind its last sound record.
   virtual void reopen(JobId job) = 0;
+  /// Removes the log of a final job.
   virtual void drop_bands(JobId job) = 0;
+  /// Removes all files of a forgotten job.
   virtual void drop_job(JobId job) = 0;
+  /// Removes blobs and folders that none of these jobs, which are all known ones, needs.
   virtual void collect(std::vector<KeptJob> jobs) = 0;
   virtual void test_disk_until_writable() = 0;
 };
 
-/// Messages to the film's thread; see FilmThread.
+/// Messages to the film's thread, which adds the bands of each job to its image. FilmThread has the
+/// same functions and says when they fail.
 class FilmInbox {
  public:
   virtual ~FilmInbox() = default;
   virtual void add_job(JobId job, const RenderSettings& settings, bool adaptive) = 0;
+  /// Announces a pass that ends at `samples`; pass_merged follows when the film has all of it.
   virtual void plan(JobId job, std::uint64_t samples) = 0;
+  /// Adds these rows of a stored band.
   virtual void add(IncomingBand incoming, std::vector<RowRange> rows) = 0;
+  /// Sends the image of samples [0, samples) to the store as soon as the film has them.
   virtual void request_image(JobId job, std::uint64_t samples) = 0;
+  /// Retries the additions and images that failed.
   virtual void retry() = 0;
+  /// Removes the bands of this worker process, whose pixels are not trusted any more.
   virtual void retract(JobId job, std::uint64_t process) = 0;
+  /// Forgets the film of a job.
   virtual void drop(JobId job) = 0;
 };
 

@@ -32,6 +32,9 @@ inline unsigned filter_spheres(const SpherePack& pack, const FloatRay& ray, floa
   const Vector8<Float> c = {Float::load(pack.center[0].data()) - Float(ray.origin[0]),
                             Float::load(pack.center[1].data()) - Float(ray.origin[1]),
                             Float::load(pack.center[2].data()) - Float(ray.origin[2])};
+  // With c from the ray's origin to the centre: |cross(c, d)| is the distance of the centre from
+  // the ray, and dot(c, d) its place along the ray, both times |d|. `slack` bounds the rounding of
+  // both.
   const Vector8<Float> off = cross(c, d);
   const Float along = dot(c, d);
   const Float reach = abs(c.x) + abs(c.y) + abs(c.z) + Float(ray.origin_size) + Float(pack.reach);

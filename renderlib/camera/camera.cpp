@@ -200,7 +200,7 @@ RayGenerator::Projection RayGenerator::project(const OrthographicCamera& camera,
                                                int height) {
   const Axes axes(camera);
   Projection to;
-  to.origin = axes.forward;
+  to.origin = axes.forward;  // the direction of all rays; the image points are their origins
   set_image(camera.position, axes.right, axes.up, camera.height / 2, camera.window, width, height,
             to);
   return to;
@@ -259,7 +259,7 @@ Ray RayGenerator::ray_now(const Projection& now, double x, double y, double lens
     return {.origin = now.origin, .direction = normalize(at)};
   }
   if (kind_ == Kind::kParallel) {
-    return {.origin = at, .direction = now.origin};
+    return {.origin = at, .direction = now.origin};  // project() says why
   }
   const Vec2 on_lens = sample_disk(lens_u, lens_v);
   const Vec3 from = now.lens_x * on_lens.x + now.lens_y * on_lens.y;

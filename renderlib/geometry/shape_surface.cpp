@@ -1,5 +1,7 @@
 // Computes the surface at a hit in the space of the shape, then transforms it to the world (placed)
-// with an offset for rays that leave it.
+// with an offset for rays that leave it: their origin is moved by the offset, so that they do not
+// hit the same surface again because of rounding. A placement squashes if its condition number is
+// above kMaxPlainCondition; then the origin is moved along the normal in the space of the shape.
 
 #include "renderlib/geometry/shape_surface.h"
 

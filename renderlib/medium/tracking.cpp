@@ -1,5 +1,6 @@
-// visit_collisions() finds the tentative collisions along a ray; fly(), pass() and
-// estimate_transmittance() differ in what they do at each.
+// visit_collisions() finds the tentative collisions of null-collision tracking along a ray; fly(),
+// pass() and estimate_transmittance() differ in what they do at each. The space is divided into
+// regions with bounds of the density, `least` and `most`; a span is the part of a ray in a region.
 
 #include "renderlib/medium/tracking.h"
 

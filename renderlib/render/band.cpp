@@ -1,4 +1,8 @@
 // Divides ranges of samples into nodes, and checks bands.
+//
+// The samples of a pixel are counted in blocks of kBlockSamples. A node is a range of 2^k blocks
+// that starts at a multiple of 2^k; a leaf is a node of one block. The last block of a job may be
+// cut short. A band is the unit of work: one node of samples for some rows of pixels.
 
 #include "renderlib/render/band.h"
 

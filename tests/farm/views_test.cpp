@@ -90,7 +90,9 @@ std::string pixels_of_pfm(const std::string& file, std::size_t width, std::size_
 }
 
 constexpr std::size_t kSide = 16;
-// header of a job's update packet
+// Bytes before the pixels in an update packet of tev: length, type, flag that selects the image,
+// name of the image with its closing zero (14 bytes for a job), number of channels, their three
+// names, rectangle, and offset and stride of each channel.
 constexpr std::size_t kHeader = 4 + 1 + 1 + 14 + 4 + 6 + 16 + 48;
 
 void expect_the_image(std::vector<std::string> packets, std::size_t header,

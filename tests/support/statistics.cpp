@@ -58,6 +58,8 @@ ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
         std::numeric_limits<double>::infinity();  // a practically impossible event happened
   }
   result.degrees = std::max(1, result.degrees - 1);
+  // Wilson and Hilferty 1931: the cube root of chi-squared / k is nearly normal, with this variance
+  // and the mean 1 - variance.
   const double k = result.degrees;
   const double spread = 2 / (9 * k);
   const double z = (std::cbrt(result.statistic / k) - (1 - spread)) / std::sqrt(spread);

@@ -89,6 +89,8 @@ class Piece:
         atlas = self.make_atlas()
         weights = atlas.weights
         if du or dv:
+            # A triangle's legs are atlas.cell - 4 texels long (geometry.Atlas), so a texel is that part of a barycentric coordinate. The second
+            # triangle of a pair is turned by half a turn.
             sign = np.where(atlas.triangle % 2 == 0, 1.0, -1.0) / (atlas.cell - 4.0)
             b, c = weights[:, 1] + du * sign, weights[:, 2] + dv * sign
             weights = np.stack([1 - b - c, b, c], axis=1)
@@ -345,6 +347,8 @@ class Shader:
         distance = self.constant(input_of(node, "Distance"))
         distance = 1.0 if distance is None else float(distance[0])
         distance *= -1.0 if node.invert else 1.0
+        # The slopes along u and v, and the edges of the triangle in the world for one texel (along_u, along_v), give the gradient of the
+        # height on the surface; the normal n is bent against it.
         atlas = self.piece.make_atlas()
 
         def at(du, dv):

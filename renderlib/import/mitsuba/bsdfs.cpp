@@ -1,5 +1,6 @@
 // Makes a material for each combination of bsdf, emitter and uvs that occurs, and returns the same
-// one when it occurs again.
+// one when it occurs again. Our glass has the larger index of refraction inside. If that of a bsdf
+// is larger outside, its shapes must exchange their sides: SurfaceMaterial::turned.
 
 #include "renderlib/import/mitsuba/bsdfs.h"
 

@@ -1,5 +1,12 @@
-// add_kind() calls one function for each type of shape. Shapes that we do not have, or that are
-// placed in a way that ours cannot be, become meshes.
+// Converts the shapes of a Mitsuba scene to those of our scene files. add_kind() calls one function
+// for each type of shape. A shape becomes a mesh if our scene files have none of its type
+// (cylinders), or if ours cannot have its orientation (spheres turned inside out) or its uv
+// coordinates (textured disks).
+//
+// A surface is turned if its outside is the other side than in our shape: either the shape has
+// flip_normals, or its material exchanges the two sides, but not both. A transform that mirrors
+// (determinant < 0) also exchanges them for a rectangle. `open` is a copy of the surface without
+// its interior: a shape that is not closed cannot contain a medium.
 
 #include "renderlib/import/mitsuba/shapes.h"
 

@@ -1,5 +1,6 @@
 // Reads each shape as values of geometry/shapes.h. A shape that moves becomes a group in a frame; a
-// shape with a medium inside also becomes a boundary.
+// shape with a medium inside also becomes a boundary. `seen` holds the placed shapes that have a
+// surface, `filled` the boundaries of media.
 
 #include "renderlib/import/scene_file/read_shapes.h"
 

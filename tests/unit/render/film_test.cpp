@@ -160,7 +160,8 @@ TEST(Film, TheFirstPartIsAboutHalfOfTheSamples) {
   EXPECT_EQ(part->mean.at(1, 0).r, static_cast<float>(sum / 64));
 }
 
-// Whole halves, further nodes after them, and a truncated last block.
+// The numbers of samples are two equal halves (64), have further nodes after these (80, 96, 112),
+// or end with a single block (72).
 TEST(Film, TheErrorOfIndependentSamplesIsTheirStandardError) {
   // Samples uniform in [0, 2): mean 1, variance 1/3. The estimate is a root of a mean of 128 x 96 x
   // 3 squares, whose relative error is 1 / sqrt(2 * 36864) = 0.4 %; the tolerance of 2 % is five
