@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# A farm whose workers are jobs of a Slurm that this script runs on this machine, in a folder of its own: scale up, requeue,
-# drain, cancel; the image has the bytes of `bandsaw render`. Installs nothing. Exit status 77: Slurm is not installed.
+# Tests a farm whose workers are jobs of Slurm. The script runs a Slurm on this machine, in a folder of its own, and installs nothing. While a
+# job renders, it adds workers, requeues one and cancels others; these must drain. The image must have the bytes of `bandsaw render`.
+# Exit status 77: Slurm is not installed.
 # Usage: deploy/slurm/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

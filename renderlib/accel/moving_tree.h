@@ -19,8 +19,8 @@ struct MovingInstance {
 };
 
 struct MovingTree {
-  WideTree tree;  ///< bounds at the beginning; its `reach` covers all times
-  NodeChanges changes;
+  WideTree tree;        ///< bounds at the beginning; its `reach` covers all times
+  NodeChanges changes;  ///< how far each bound moves until the shutter closes
   std::vector<MovingInstance> moving;
 
   std::size_t bytes() const {

@@ -4,12 +4,12 @@
 // local majorant of the extinction (delta tracking: Woodcock et al. 1965), of which a random part
 // are real ones.
 //
-// - A flight weighs its three channels as free-flight sampling does (free_flight.h): at a tentative
-//   collision, the probability of scattering is the light that would be scattered divided by the
-//   light that would be scattered or would pass, each summed over the channels (Kutz, Habel, Li and
-//   Novak 2017, "Spectral and Decomposition Tracking for Rendering Heterogeneous Volumes", section
-//   4.1, history-aware). Absorption is contained in the weights. So the sum of the channels is the
-//   same for either outcome and never grows.
+// - A flight carries a weight for each of the three channels. Let s be the light that a tentative
+//   collision would scatter, and p the light that would pass, each summed over the channels. The
+//   probability of scattering is s / (s + p), as in free_flight.h (Kutz, Habel, Li and Novak 2017,
+//   "Spectral and Decomposition Tracking for Rendering Heterogeneous Volumes", section 4.1,
+//   history-aware). Absorption only lowers the weights. So the sum of the channels is the same for
+//   either outcome and never grows.
 // - Transmittance is estimated by residual ratio tracking (Novak, Selle and Jarosz 2014, "Residual
 //   Ratio Tracking for Estimating Attenuation in Participating Media", section 4.2), whose control
 //   is the least density of each region: in regions of constant density it is exact.

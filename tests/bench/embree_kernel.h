@@ -1,6 +1,7 @@
 #pragma once
 
-// Embree with the interface of Accel's two queries. Without BANDSAW_EMBREE there is none.
+// Wraps Embree in the interface of Accel's two queries, for comparisons of speed. A build without
+// BANDSAW_EMBREE has no Embree.
 
 #include <memory>
 
@@ -11,7 +12,8 @@ namespace bandsaw::bench {
 
 class EmbreeKernel {
  public:
-  /// Returns nullptr if built without Embree. `config` configures the device: "isa=avx2,threads=2".
+  /// Returns nullptr if built without Embree. `robust`: Embree's flag for tests without gaps
+  /// between triangles. `config` configures the device: "isa=avx2,threads=2".
   static std::unique_ptr<EmbreeKernel> create(const Mesh& mesh, bool robust, const char* config);
   ~EmbreeKernel();
 

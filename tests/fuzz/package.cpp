@@ -1,5 +1,6 @@
-// A manifest, and bytes that replace every blob that it names: two bytes with the
-// manifest's length, little-endian, the manifest, the blob's bytes.
+// Decodes a package that consists of a manifest and of the same bytes for every blob that the
+// manifest names. The input is the length of the manifest (two bytes, little-endian), the manifest,
+// and the bytes of the blobs.
 
 #include "renderlib/package/package.h"
 

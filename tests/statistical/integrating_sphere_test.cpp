@@ -1,7 +1,7 @@
 // Inside a sphere each point of the wall illuminates every other equally: for any albedo texture, a
 // light of flux Phi at the wall gives the irradiance Phi / (4 pi R^2 (1 - mean albedo)) everywhere.
-// Covers texture lookups by the sphere's uvs, light sampling and BSDF sampling. Within 4 standard
-// errors.
+// This tests texture lookups by the sphere's uvs, light sampling and BSDF sampling. The measured
+// means must lie within 4 standard errors.
 
 #include <gtest/gtest.h>
 

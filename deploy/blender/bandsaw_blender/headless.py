@@ -2,9 +2,11 @@
 
     blender -b -Y FILE.blend --python-expr "import sys; sys.path.insert(0, ZIP); from bandsaw_blender import headless; headless.main(FOLDER, NAME, FRAME)"
 
-FRAME is optional: without it the scene is at the frame that is saved in the file. If it is "-", frames are read from standard input, one a line, and
-each is answered with the line "bandsaw: done" on standard output; the files are those of that frame alone then. Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that is not shown as it is; or
-FOLDER/error with one line."""
+FRAME is optional: without it the scene is at the frame that is saved in the file. If it is "-", frames are read from standard input, one a line.
+Each of them is answered with the line "bandsaw: done" on standard output; the folder then has the files of that frame alone.
+
+Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that is not shown as it is. If it fails,
+writes FOLDER/error with one line instead."""
 
 import os
 import shutil

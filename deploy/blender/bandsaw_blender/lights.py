@@ -1,5 +1,6 @@
-"""Converts Blender's lights and world. Powers become radiances, intensities and irradiances; docs of the units: Blender's manual, "Light
-Objects", and deploy/blender/README.md."""
+"""Converts Blender's lights and world. Powers become radiances, intensities and irradiances; Blender's manual, "Light Objects", and
+deploy/blender/README.md define the units. In add_*(), `place` is the light's position, `toward` the direction in which it shines, both in the
+axes of scene files, and `tint` its colour times its power."""
 
 import math
 

@@ -1,5 +1,7 @@
-// place() copies frames and instances to another place: what has no frame of its own is placed
-// directly or gets the frame of the place; indices of frames are shifted.
+// place() copies frames and instances to another place. A frame without a parent gets the frame of
+// the place as its parent, and an instance without a frame gets that frame; both are transformed by
+// the place. The indices of the other frames are shifted, because the copies follow those that are
+// there.
 
 #include "renderlib/import/draft/placements.h"
 

@@ -31,7 +31,7 @@ Rgb absorption_of(const GltfVolume& volume) {
 
 bool is_white(const Rgb& color) { return color == Rgb{1, 1, 1}; }
 
-/// Adds warnings for features of the material that glass does not have.
+/// Returns true if the material has features that glass does not have.
 bool has_more_than_glass(const MaterialReader& reader, const Material& material) {
   const auto& layers = std::get<MetallicRoughness>(material.kind);
   return !is_white(layers.base_color.factor) || reader.has({aiTextureType_BASE_COLOR}) ||

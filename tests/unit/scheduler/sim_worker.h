@@ -54,8 +54,8 @@ class SimWorker {
     SessionId id = 0;
     std::uint64_t epoch_number = 0;
     bool open = true;
-    double down_at = 0;
-    double up_at = 0;
+    double down_at = 0;  ///< arrival of the last message from the coordinator; the order is kept
+    double up_at = 0;    ///< the same for messages to the coordinator
   };
   struct Held {
     action::Lease lease;
@@ -68,16 +68,20 @@ class SimWorker {
     bool hangs = false;
   };
 
+  /// Calls `what` after this time, unless the process has ended; a frozen process calls it later.
   void later(double seconds, std::function<void()> what);
   void connect();
   void disconnected(double wait);
+  /// Sends an action of the coordinator to this worker.
   void down(const std::shared_ptr<Stream>& stream, const Action& action);
+  /// Sends an input to the coordinator.
   void up(const Input& input);
   void receive(const Action& action);
   void take(const action::Lease& lease);
   void drop(LeaseId id);
   void render();
   bool has_deadly_row(const action::Lease& lease) const;
+  /// Crashes; a new process starts after a second.
   void die();
   void finish(LeaseId id);
   void upload(LeaseId id);
