@@ -16,9 +16,11 @@
 
 namespace bandsaw::test {
 
-FarmProcesses::FarmProcesses(const Hosts* hosts, std::vector<std::string> options)
+FarmProcesses::FarmProcesses(const Hosts* hosts, std::vector<std::string> options,
+                             std::string program)
     : hosts_(hosts),
       options_(std::move(options)),
+      program_(std::move(program)),
       listen_((hosts == nullptr ? std::string("127.0.0.1") : hosts->address("coordinator")) +
               ":0") {
   start_coordinator();
@@ -30,7 +32,7 @@ std::vector<std::string> FarmProcesses::on(const std::string& host,
 }
 
 void FarmProcesses::start_coordinator() {
-  std::vector<std::string> argv = {BANDSAW_BIN,      "serve",    "--data",
+  std::vector<std::string> argv = {program_,         "serve",    "--data",
                                    folder_ / "data", "--listen", listen_};
   argv.insert(argv.end(), options_.begin(), options_.end());
   coordinator_ = std::make_unique<Process>(Process::start(on("coordinator", argv)));

@@ -27,9 +27,11 @@ class FarmProcesses {
  public:
   /// Starts the coordinator with additional `options` (the default disables audits, because tests
   /// count rendered bands). If `hosts` is given, the coordinator runs on machine "coordinator" and
-  /// each worker on the machine of its name; `hosts` MUST outlive this object.
+  /// each worker on the machine of its name; `hosts` MUST outlive this object. `program`: bandsaw,
+  /// for the coordinator.
   explicit FarmProcesses(const Hosts* hosts = nullptr,
-                         std::vector<std::string> options = {"--audit", "0%"});
+                         std::vector<std::string> options = {"--audit", "0%"},
+                         std::string program = BANDSAW_BIN);
 
   /// Starts a worker and waits until it has joined.
   Process& add_worker(const std::string& name, int threads,
@@ -58,6 +60,7 @@ class FarmProcesses {
   TempDir folder_;
   const Hosts* hosts_;
   std::vector<std::string> options_;
+  std::string program_;
   std::string listen_;
   std::unique_ptr<Process> coordinator_;
   std::string earlier_log_;

@@ -14,6 +14,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "tests/farm/farm_processes.h"
+#include "tests/support/temp_dir.h"
 #include "tests/web/browser.h"
 #include "tests/web/firefox.h"
 
@@ -60,21 +61,49 @@ int free_port() {
 std::string program_of(const Browser*) { return chromedriver_program(); }
 std::string program_of(const Firefox*) { return firefox_program(); }
 
+/// Starts to render with `cores` cores in a tab with the page of the link.
+template <class Kind>
+void start(Kind& tab, int cores) {
+  ASSERT_TRUE(tab.wait("document.querySelector('#start')?.offsetParent"));
+  tab.run(absl::StrCat("document.querySelector('#cores').value = ", cores,
+                       "; document.querySelector('#start').click();"));
+  ASSERT_TRUE(tab.wait("['waiting', 'loading', 'rendering'].includes(document.body.dataset.phase)"))
+      << tab.text("document.body.innerText");
+}
+
+template <class Kind>
+bool has_rendered(Kind& tab) {
+  return tab.wait("Number(document.body.dataset.rows) > 0");
+}
+
 /// A farm, and tabs of one kind of browser.
 template <class Kind>
 class JoinTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (program_of(static_cast<const Kind*>(nullptr)).empty()) {
+    check_installed<Kind>();
+    if (!IsSkipped()) {
+      start_farm(absl::StrCat("127.0.0.1:", free_port()));
+    }
+  }
+
+  /// Skips the test if this kind of browser, or the renderer, is not installed.
+  template <class AnyKind>
+  static void check_installed() {
+    if (program_of(static_cast<const AnyKind*>(nullptr)).empty()) {
       GTEST_SKIP() << "the browser is not installed (deploy/install.sh browser)";
     }
     if (!fs::exists(BANDSAW_WASM)) {
       GTEST_SKIP() << BANDSAW_WASM << " does not exist: run deploy/wasm.sh";
     }
-    farm_.emplace(nullptr,
-                  std::vector<std::string>{"--audit", "0%", "--browser-audit", "0%", "--web",
-                                           absl::StrCat("127.0.0.1:", free_port())});
-    const Finished made = run(farm_->command({"link", "--json"}));
+  }
+
+  /// `web`: address and port of the dashboard; `program`: bandsaw, for the coordinator.
+  void start_farm(const std::string& web, const std::string& program = BANDSAW_BIN) {
+    farm_.emplace(hosts_.get(),
+                  std::vector<std::string>{"--audit", "0%", "--browser-audit", "0%", "--web", web},
+                  program);
+    const Finished made = run(farm_->on("person", farm_->command({"link", "--json"})));
     ASSERT_EQ(made.code, 0) << made.err;
     google::protobuf::Struct link;
     ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(made.out, &link).ok()) << made.out;
@@ -88,15 +117,6 @@ class JoinTest : public ::testing::Test {
     start(*tab, cores);
     return tab;
   }
-  static void start(Kind& tab, int cores) {
-    ASSERT_TRUE(tab.wait("document.querySelector('#start')?.offsetParent"));
-    tab.run(absl::StrCat("document.querySelector('#cores').value = ", cores,
-                         "; document.querySelector('#start').click();"));
-    ASSERT_TRUE(
-        tab.wait("['waiting', 'loading', 'rendering'].includes(document.body.dataset.phase)"))
-        << tab.text("document.body.innerText");
-  }
-  static bool has_rendered(Kind& tab) { return tab.wait("Number(document.body.dataset.rows) > 0"); }
 
   std::vector<std::string> settings(const std::string& scene, const std::string& samples) const {
     return {std::string(BANDSAW_GALLERY) + "/" + scene + ".textproto",
@@ -110,7 +130,7 @@ class JoinTest : public ::testing::Test {
     std::vector<std::string> arguments = {"submit"};
     arguments.insert(arguments.end(), what.begin(), what.end());
     arguments.insert(arguments.end(), {"-o", farm_->path("farm.pfm")});
-    return Process::start(farm_->command(arguments));
+    return Process::start(farm_->on("person", farm_->command(arguments)));
   }
   void expect_same_bytes(Process& client, const std::vector<std::string>& what) {
     ASSERT_EQ(client.wait(), 0) << client.err() << farm_->coordinator_log();
@@ -121,6 +141,7 @@ class JoinTest : public ::testing::Test {
     EXPECT_TRUE(file_bytes(farm_->path("farm.pfm")) == file_bytes(farm_->path("here.pfm")));
   }
 
+  std::unique_ptr<Hosts> hosts_;  ///< nullptr: everything is on loopback
   std::optional<FarmProcesses> farm_;
   std::string link_;
 };
@@ -149,7 +170,7 @@ TYPED_TEST(JoinTest, ATabBesideANativeWorkerGivesTheSameBytes) {
   const auto tab = this->open(1);
   const auto what = this->settings("cornell", "400");
   Process client = this->submit(what);
-  EXPECT_TRUE(this->has_rendered(*tab));
+  EXPECT_TRUE(has_rendered(*tab));
   this->expect_same_bytes(client, what);
 }
 
@@ -161,13 +182,13 @@ TYPED_TEST(JoinTest, AJobSurvivesItsTabs) {
   const auto what = this->settings("cornell", "1500");
   Process client = this->submit(what);
   for (TypeParam* tab : {closed.get(), reloaded.get(), frozen.get()}) {
-    EXPECT_TRUE(this->has_rendered(*tab));
+    EXPECT_TRUE(has_rendered(*tab));
   }
   const std::vector<pid_t> processes = family(frozen->pid());
   signal_all(processes, SIGSTOP);
   closed.reset();
   reloaded->reload();
-  this->start(*reloaded, 1);
+  start(*reloaded, 1);
   this->expect_same_bytes(client, what);
   signal_all(processes, SIGCONT);
 }
@@ -176,7 +197,7 @@ TYPED_TEST(JoinTest, ATabPausesAndGoesOn) {
   const auto tab = this->open(1);
   const auto what = this->settings("cornell", "150");
   Process client = this->submit(what);
-  EXPECT_TRUE(this->has_rendered(*tab));
+  EXPECT_TRUE(has_rendered(*tab));
   tab->run("document.querySelector('#pause').click()");
   EXPECT_TRUE(tab->wait("document.body.dataset.phase === 'paused'"));
   tab->run("document.querySelector('#pause').click()");
@@ -187,7 +208,7 @@ TYPED_TEST(JoinTest, ATabComesBackToARestartedCoordinator) {
   const auto tab = this->open(1);
   const auto what = this->settings("cornell", "150");
   Process client = this->submit(what);
-  EXPECT_TRUE(this->has_rendered(*tab));
+  EXPECT_TRUE(has_rendered(*tab));
   this->farm_->coordinator().signal(SIGKILL);
   ASSERT_EQ(this->farm_->coordinator().wait(), 128 + SIGKILL);
   this->farm_->restart_coordinator();
@@ -198,6 +219,63 @@ TYPED_TEST(JoinTest, ATabStopsWhenItsLinkIsRevoked) {
   const auto tab = this->open(1);
   expect_success(run(this->farm_->command({"link", "--revoke"})));
   EXPECT_TRUE(tab->wait("document.body.dataset.phase === 'stopped'"));
+}
+
+/// Returns the module with a bound of `pages` of 64 KiB for its memory.
+std::string with_memory(std::string module, std::uint32_t pages) {
+  std::size_t at = 8;
+  const auto number = [&] {  // LEB128
+    std::uint32_t value = 0;
+    for (int shift = 0;; shift += 7) {
+      const auto byte = static_cast<unsigned char>(module.at(at++));
+      value |= std::uint32_t{byte} % 128 << shift;
+      if (byte < 128) {
+        return value;
+      }
+    }
+  };
+  while (module.at(at++) != 5) {  // the section of the memory
+    const std::uint32_t size = number();
+    at += size;
+  }
+  number();  // its size
+  number();  // one memory
+  EXPECT_EQ(number(), 1U) << "it has a bound";
+  number();  // pages at the start
+  std::size_t digits = at;
+  number();
+  for (; digits < at; ++digits) {
+    module[digits] = static_cast<char>(pages % 128 + (digits + 1 < at ? 128 : 0));
+    pages /= 128;
+  }
+  return module;
+}
+
+TYPED_TEST(JoinTest, ASceneThatExhaustsTheMemoryIsGivenBackAndNotTakenAgain) {
+  // A coordinator whose browsers get 20 MB; "instances" needs twice as much.
+  const TempDir folder;
+  fs::create_directories(folder / "bin");
+  fs::create_directories(folder / "share/bandsaw/browser");
+  fs::copy_file(BANDSAW_BIN, folder / "bin/bandsaw");
+  std::ofstream(folder / "share/bandsaw/browser/bandsaw.wasm", std::ios::binary)
+      << with_memory(file_bytes(BANDSAW_WASM), 320);
+  this->start_farm(absl::StrCat("127.0.0.1:", free_port()), folder / "bin/bandsaw");
+  const auto tab = this->open(1);
+  const auto what = this->settings("instances", "16");
+  Process client = this->submit(what);
+  EXPECT_TRUE(tab->wait("document.body.dataset.text.includes('needs more memory')"));
+  EXPECT_THAT(this->farm_->coordinator_log(), ::testing::HasSubstr("MB in use"));
+  EXPECT_TRUE(tab->wait("document.body.dataset.phase === 'waiting'"));
+  const Finished why = run(this->farm_->command({"why", "1"}));
+  EXPECT_THAT(why.out, ::testing::HasSubstr("its scene needs about"));
+  Process& native = this->farm_->add_worker("native", 1);
+  this->expect_same_bytes(client, what);
+  EXPECT_EQ(tab->text("document.body.dataset.rows"), "0");
+  // A smaller scene is rendered.
+  native.signal(SIGKILL);
+  const auto next = this->settings("cornell", "16");
+  client = this->submit(next);
+  this->expect_same_bytes(client, next);
 }
 
 }  // namespace

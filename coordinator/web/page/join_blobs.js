@@ -34,7 +34,7 @@ export class Blobs {
   }
 
   /// Returns a blob. If the connection is lost, waits for the next one, as long as `wanted()` is true. `took` is called with
-  /// numbers of bytes as they arrive. Throws Final or LinkEnded.
+  /// numbers of bytes as they arrive. Throws Final, LinkEnded, or a RangeError: there is no memory for it.
   get(digest, wanted, took) {
     const known = this.kept.get(digest);
     if (known) {
@@ -67,7 +67,7 @@ export class Blobs {
     const backoff = new Backoff();
     for (let wrong = 0;;) {
       const bytes = await this.once(digest, wrong > 0, took).catch((error) => {
-        if (error instanceof Final || error instanceof LinkEnded) throw error;
+        if (error instanceof Final || error instanceof LinkEnded || error instanceof RangeError) throw error;
         return null;
       });
       if (bytes) {

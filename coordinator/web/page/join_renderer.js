@@ -1,17 +1,26 @@
 // One core of the tab, as the session sees it: a worker with join_render.js, and the scenes that it has loaded.
 
-const SCENES = 2;          // of a sequence, the next frame's besides the present one's
-const AHEAD = 4;           // blobs that are fetched while earlier ones are copied
-const SCENE_PER_BYTE = 4;  // memory of a scene over the bytes of its blobs (coordinator/scheduler/README.md)
+const SCENES = 2;  // of a sequence, the next frame's besides the present one's
+const AHEAD = 4;   // blobs that are fetched while earlier ones are copied
+export const SCENE_PER_BYTE = 4;  // memory of a scene over the bytes of its blobs (coordinator/scheduler/README.md)
 
-/// The renderer has ended; another one can be started in its place.
-export class RendererEnded extends Error {}
+/// The renderer has ended; another one can be started in its place. `sceneBytes`: of the blobs of the only scene that it had or
+/// was loading; 0: it had none, or several.
+export class RendererEnded extends Error {
+  constructor(why, sceneBytes) {
+    super(why);
+    this.sceneBytes = sceneBytes;
+  }
+}
+
+const isOutOfMemory = (error) => error instanceof RangeError || error instanceof WebAssembly.RuntimeError;
 
 export class Renderer {
   /// `memoryBytes`: what its scenes may take.
   constructor(module, memoryBytes) {
     this.memoryBytes = memoryBytes;
     this.scenes = new Map();  // digest of the manifest: {rowStep, size}, the most recently used last
+    this.loading = 0;         // bytes of the blobs of a scene that is being loaded, as far as they are known
     this.asked = new Map();   // id: {done, failed}
     this.lastId = 0;
     this.busy = false;
@@ -28,12 +37,13 @@ export class Renderer {
   }
 
   answer({id, value, error, fatal}) {
+    if (fatal) {
+      this.end(error);
+      return;
+    }
     const one = this.asked.get(id);
     this.asked.delete(id);
-    if (fatal) {
-      one?.failed(new RendererEnded(error));
-      this.end(error);
-    } else if (error !== undefined) {
+    if (error !== undefined) {
       one?.failed(new Error(error));
     } else {
       one?.done(value);
@@ -45,12 +55,18 @@ export class Renderer {
     if (this.ended) return;
     this.ended = why;
     this.worker.terminate();
-    for (const one of this.asked.values()) one.failed(new RendererEnded(why));
+    for (const one of this.asked.values()) one.failed(this.error());
     this.asked.clear();
   }
 
+  error() {
+    const sizes = [...this.scenes.values()].map(({size}) => size);
+    if (this.loading > 0) sizes.push(this.loading);
+    return new RendererEnded(this.ended, sizes.length === 1 ? sizes[0] : 0);
+  }
+
   ask(call, values = {}, moved = []) {
-    if (this.ended) return Promise.reject(new RendererEnded(this.ended));
+    if (this.ended) return Promise.reject(this.error());
     const id = ++this.lastId;
     const answer = new Promise((done, failed) => this.asked.set(id, {done, failed}));
     this.worker.postMessage({id, call, ...values}, moved);
@@ -72,8 +88,21 @@ export class Renderer {
   /// Loads a scene. `get`: a function from a digest to a promise of its blob; `step`: called with each step of progress.
   async load(scene, get, step) {
     await this.ready;
+    try {
+      await this.loadBlobs(scene, get, step);
+    } catch (error) {
+      if (!isOutOfMemory(error)) throw error;
+      this.end(`the browser gives no memory for the scene: ${error.message}`);
+      throw this.error();
+    } finally {
+      this.loading = 0;
+    }
+  }
+
+  async loadBlobs(scene, get, step) {
     while (this.scenes.size >= SCENES) await this.drop();
     const manifest = await get(scene);
+    this.loading = manifest.byteLength;
     let blobs = await this.ask("begin", {scene, manifest});
     const size = manifest.byteLength + blobs.reduce((sum, blob) => sum + blob.size, 0);
     const loaded = [...this.scenes.values()].reduce((sum, one) => sum + one.size, 0);
@@ -81,6 +110,7 @@ export class Renderer {
       while (this.scenes.size > 0) await this.drop();
       blobs = await this.ask("begin", {scene, manifest});  // nothing is shared any more
     }
+    this.loading = size;
     const fetched = [];
     const fetchNext = () => {
       if (fetched.length >= blobs.length) return;
@@ -98,6 +128,7 @@ export class Renderer {
     }
     const {row_step: rowStep} = await this.ask("build", {scene});
     this.scenes.set(scene, {rowStep, size});
+    this.loading = 0;
     step();
   }
 

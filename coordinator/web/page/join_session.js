@@ -3,7 +3,7 @@
 // heartbeats go on.
 
 import {Blobs, Final, LinkEnded, sentence} from "/join_blobs.js";
-import {Renderer} from "/join_renderer.js";
+import {Renderer, RendererEnded, SCENE_PER_BYTE} from "/join_renderer.js";
 import {Alarm, Backoff} from "/join_wait.js";
 import {Program, fromBase64} from "/join_wasm.js";
 
@@ -33,6 +33,8 @@ let connected = false;
 let heardAt = 0;
 let pausedWhy = null;
 let dismissed = null;           // {reason, until}: when the coordinator takes the tab again
+let mostSceneMemory = Infinity; // a larger scene has ended a renderer
+let tooLarge = null;            // what the page says of the last such scene
 let over = false;
 let renderers = [];
 const tasks = new Map();        // the bands that are held, in the order of their leases
@@ -90,7 +92,7 @@ function look() {
   } else if (held > 0) {
     setPhase("loading", "Loading the scene …");
   } else {
-    setPhase("waiting", "Connected. There is nothing to render now.");
+    setPhase("waiting", `Connected. ${tooLarge ?? "There is nothing to render now."}`);
   }
 }
 
@@ -249,6 +251,7 @@ function beat() {
 
 function take(start) {
   log(`leased job=${start.job} rows=${start.first}:${start.last}`);
+  tooLarge = null;
   tasks.set(start.task, {...start, id: start.task, scene: start.manifest, lease: fromBase64(start.lease), rowsGiven: start.first,
     rowsDone: 0, parts: [], began: 0, seconds: 0, prepared: 0});
   Object.assign(state, {job: start.job, width: start.width, height: start.height});
@@ -293,10 +296,22 @@ function failed(renderer, task, error) {
     end("stopped", error.message);
     return;
   }
-  // Wrong blobs serve for none of the bands of the scene.
+  const isTooLarge = error instanceof RendererEnded && error.sceneBytes > 0;
+  // Wrong blobs, and a scene that is too large, serve for none of the bands of the scene.
   for (const one of [...tasks.values()]) {
-    if (one === task || (one.scene === task.scene && error instanceof Final)) fail(one, error.message);
+    if (one === task || (one.scene === task.scene && (error instanceof Final || isTooLarge))) fail(one, error.message);
   }
+  if (isTooLarge) takeOnlySmaller(task.job, error.sceneBytes);
+}
+
+/// A scene with blobs of so many bytes has ended a renderer, most likely for want of memory: offers the coordinator, from now
+/// on, memory for scenes of at most three quarters of it.
+function takeOnlySmaller(job, sceneBytes) {
+  tooLarge = `The scene of job ${job} needs more memory than this browser gives; other machines render it.`;
+  mostSceneMemory = Math.min(mostSceneMemory, 0.75 * SCENE_PER_BYTE * sceneBytes);
+  setCores(state.cores);
+  program.bytes("session_offer", session, state.cores, state.memoryBytes);
+  if (connected) reconnect();
 }
 
 /// Starts another renderer in the place of one that has ended.
@@ -467,7 +482,7 @@ function leaveIfDrained() {
 
 function setCores(count) {
   state.cores = Math.max(1, Math.floor(count));
-  state.memoryBytes = Math.floor(Math.min(options.memory / state.cores, options.mostOfAnInstance));
+  state.memoryBytes = Math.floor(Math.min(options.memory / state.cores, options.mostOfAnInstance, mostSceneMemory));
   while (renderers.length < state.cores) renderers.push(new Renderer(module, state.memoryBytes));
   for (const renderer of renderers.splice(state.cores)) {
     renderer.leaving = true;
