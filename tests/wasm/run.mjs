@@ -36,7 +36,7 @@ async function checkBits() {
 
 async function checkScene(scene, folder, hashes) {
   const name = basename(scene, '.textproto');
-  const {settings, sums} = renderNatively(bin, scene, folder, {width: 48, height: 36, samples: 16});
+  const {settings, sums} = renderNatively(bin, scene, folder, {width: 48, height: 36, samples: 8});
   const parts = importScene(bin, scene, folder);
   const module = await load(file);  // a new memory for each scene
   module.build(parts);

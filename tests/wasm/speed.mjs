@@ -15,7 +15,7 @@ for (const scene of scenes) {
     let native = Infinity;
     let wasm = Infinity;
     for (let i = 0; i < times; ++i) {
-      const band = renderNatively(bin, scene, folder, {width: 192, height: 144, samples: 16});
+      const band = renderNatively(bin, scene, folder, {width: 272, height: 204, samples: 8});
       native = Math.min(native, band.cpuSeconds);
       const begin = process.cpuUsage();
       module.render(band.settings);
