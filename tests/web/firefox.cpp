@@ -100,8 +100,8 @@ Firefox::Firefox() {
   socket_ = std::make_unique<Socket>(port_in(profile));
   socket_->receive();  // what it speaks
   call("WebDriver:NewSession",
-       parsed(R"({"capabilities": {"alwaysMatch": {"acceptInsecureCerts": true,
-                  "timeouts": {"script": 180000, "pageLoad": 120000}}}})"));
+       parsed(R"({"acceptInsecureCerts": true,
+                  "timeouts": {"script": 180000, "pageLoad": 120000}})"));
 }
 
 Firefox::~Firefox() {
