@@ -3,6 +3,8 @@
 
 #include "tests/farm/hosts.h"
 
+#include <fcntl.h>
+#include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +22,22 @@ const std::string kIp = "/usr/sbin/ip";
 const std::string kSwitch = "switch";
 
 }  // namespace
+
+Hosts::Visit::Visit(const std::string& space)
+    : home_(open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC)) {
+  const int there = open(("/run/netns/" + space).c_str(), O_RDONLY | O_CLOEXEC);
+  BANDSAW_CHECK(home_ >= 0 && there >= 0 && setns(there, CLONE_NEWNET) == 0, space.c_str());
+  close(there);
+}
+
+Hosts::Visit::~Visit() {
+  BANDSAW_CHECK(setns(home_, CLONE_NEWNET) == 0, "its own namespace exists");
+  close(home_);
+}
+
+std::unique_ptr<Hosts::Visit> Hosts::visit(const std::string& name) const {
+  return std::unique_ptr<Visit>(new Visit(space_of(name)));
+}
 
 Hosts::Hosts(std::vector<std::string> names)
     : names_(std::move(names)), prefix_("bandsaw-" + std::to_string(getpid()) + "-") {}

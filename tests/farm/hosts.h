@@ -14,6 +14,20 @@ namespace bandsaw::test {
 
 class Hosts {
  public:
+  /// While it exists, the thread that made it is on a machine: its sockets, and the processes that
+  /// it starts.
+  class Visit {
+   public:
+    ~Visit();
+    Visit(const Visit&) = delete;
+    Visit& operator=(const Visit&) = delete;
+
+   private:
+    friend class Hosts;
+    explicit Visit(const std::string& space);
+    int home_;  ///< file descriptor of the thread's own namespace
+  };
+
   /// PERMISSION_DENIED: namespaces cannot be created here (this needs root and the command `ip`).
   static absl::StatusOr<std::unique_ptr<Hosts>> create(std::vector<std::string> names);
   ~Hosts();
@@ -24,6 +38,7 @@ class Hosts {
   /// Returns the command line that runs the command on that machine. The process id is that of the
   /// command itself.
   std::vector<std::string> on(const std::string& name, std::vector<std::string> argv) const;
+  std::unique_ptr<Visit> visit(const std::string& name) const;
 
   /// Disconnects the cable: packets are dropped in both directions, connections are not reset.
   void unplug(const std::string& name) const;

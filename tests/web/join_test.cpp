@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <regex>
 
 #include "absl/strings/str_cat.h"
 #include "tests/farm/farm_processes.h"
@@ -219,6 +220,92 @@ TYPED_TEST(JoinTest, ATabStopsWhenItsLinkIsRevoked) {
   const auto tab = this->open(1);
   expect_success(run(this->farm_->command({"link", "--revoke"})));
   EXPECT_TRUE(tab->wait("document.body.dataset.phase === 'stopped'"));
+}
+
+class BothBrowsersTest : public JoinTest<Browser> {
+ protected:
+  void SetUp() override {
+    check_installed<Firefox>();
+    if (!IsSkipped()) {
+      JoinTest::SetUp();
+    }
+  }
+};
+
+TEST_F(BothBrowsersTest, ChromiumAndFirefoxGiveTheBytesOfANativeWorker) {
+  Process& native = farm_->add_worker("native", 1);
+  const auto chromium = open(1);
+  Firefox firefox;
+  firefox.go(link_);
+  start(firefox, 1);
+  const auto what = settings("cornell", "600");
+  Process client = submit(what);
+  EXPECT_TRUE(native.wait_for("stored job=1"));
+  EXPECT_TRUE(has_rendered(*chromium));
+  EXPECT_TRUE(has_rendered(firefox));
+  expect_same_bytes(client, what);
+}
+
+/// The coordinator, a native worker, the tab's machine and a user's have a cable each. The
+/// dashboard is not on loopback, so tabs reach it by TLS.
+template <class Kind>
+class PulledCableTest : public JoinTest<Kind> {
+ protected:
+  void SetUp() override {
+    this->template check_installed<Kind>();
+    if (this->IsSkipped()) {
+      return;
+    }
+    auto hosts = Hosts::create({"coordinator", "native", "tab", "person"});
+    if (!hosts.ok()) {
+      GTEST_SKIP() << hosts.status().message();
+    }
+    this->hosts_ = *std::move(hosts);
+    this->start_farm(this->hosts_->address("coordinator") + ":8787");
+    visit_ = this->hosts_->visit("tab");
+  }
+
+  /// Pulls the cable of a tab that renders, and waits until both ends have noticed: its leases are
+  /// over.
+  void pull_cable(Kind& tab) {
+    this->hosts_->unplug("tab");
+    const std::regex lost("@browser.*(closed|disconnected|answers no more)");
+    ASSERT_TRUE(this->farm_->coordinator().wait_until([&](const std::string&,
+                                                          const std::string& log) {
+      return std::regex_search(log, lost);
+    })) << this->farm_->coordinator_log();
+    ASSERT_TRUE(tab.wait("document.body.dataset.phase === 'connecting'"));
+  }
+
+  std::unique_ptr<Hosts::Visit> visit_;  ///< of the test, which drives the browser from there
+};
+
+TYPED_TEST_SUITE(PulledCableTest, Kinds, KindName);
+
+TYPED_TEST(PulledCableTest, ATabComesBackWithWhatItHas) {
+  const auto tab = this->open(1);
+  EXPECT_EQ(this->link_.substr(0, 8), "https://");
+  const auto what = this->settings("cornell", "200");
+  Process client = this->submit(what);
+  EXPECT_TRUE(has_rendered(*tab));
+  this->pull_cable(*tab);
+  this->hosts_->plug("tab");
+  this->expect_same_bytes(client, what);
+}
+
+TYPED_TEST(PulledCableTest, AJobGoesOnWithoutATabThatReturnsForTheNext) {
+  Process& native = this->farm_->add_worker("native", 1);
+  const auto tab = this->open(1);
+  const auto what = this->settings("cornell", "500");
+  Process client = this->submit(what);
+  EXPECT_TRUE(has_rendered(*tab));
+  this->pull_cable(*tab);
+  this->expect_same_bytes(client, what);
+  native.signal(SIGKILL);
+  const auto next = this->settings("mesh", "16");
+  client = this->submit(next);
+  this->hosts_->plug("tab");
+  this->expect_same_bytes(client, next);
 }
 
 /// Returns the module with a bound of `pages` of 64 KiB for its memory.
