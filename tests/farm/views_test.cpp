@@ -110,7 +110,7 @@ TEST(Views, AViewerGetsTheImageOfAJobWhileItIsRendered) {
   FarmProcesses farm;
   farm.add_worker("one", 1);
   FakeViewer viewer;
-  const Finished done = run(farm.command({"submit", kCornell, "--width", "16", "--samples", "16",
+  const Finished done = run(farm.command({"submit", kCornell, "--width", "16", "--samples", "8",
                                           "--tev", viewer.address(), "-o", farm.path("a.pfm")}));
   ASSERT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(done.err, "");
@@ -120,7 +120,7 @@ TEST(Views, AViewerGetsTheImageOfAJobWhileItIsRendered) {
 TEST(Views, AViewerGetsTheImageOfALocalRender) {
   TempDir folder;
   FakeViewer viewer;
-  const Finished done = run({BANDSAW_BIN, "render", kCornell, "--width", "16", "--samples", "16",
+  const Finished done = run({BANDSAW_BIN, "render", kCornell, "--width", "16", "--samples", "8",
                              "--tev", viewer.address(), "-o", folder / "a.pfm"});
   ASSERT_EQ(done.code, 0) << done.err;
   const std::size_t name = std::string("cornell").size() + 1;
@@ -134,7 +134,7 @@ TEST(Views, AMissingViewerIsReportedOnceAndTheImageIsRendered) {
     address = gone.address();
   }
   TempDir folder;
-  const Finished done = run({BANDSAW_BIN, "render", kCornell, "--width", "16", "--samples", "16",
+  const Finished done = run({BANDSAW_BIN, "render", kCornell, "--width", "16", "--samples", "8",
                              "--tev", address, "-o", folder / "a.pfm"});
   EXPECT_EQ(done.code, 0);
   EXPECT_THAT(done.err, StartsWith("bandsaw: warning: no viewer at " + address));
@@ -154,7 +154,7 @@ Finished on_terminal(const std::vector<std::string>& command, const std::string&
 TEST(Views, TheTerminalShowsTheImage) {
   FarmProcesses farm;
   farm.add_worker("one", 1);
-  const auto submit = farm.command({"submit", kCornell, "--width", "16", "--samples", "16",
+  const auto submit = farm.command({"submit", kCornell, "--width", "16", "--samples", "8",
                                     "--preview", "-o", farm.path("a.png")});
   const Finished shown = on_terminal(submit, "COLUMNS=80");
   EXPECT_EQ(shown.code, 0) << shown.out;
@@ -191,7 +191,7 @@ TEST(Views, APreviewShowsTheRowsThatAreStored) {
   EXPECT_TRUE(absl::IsInvalidArgument((*client)->preview(1, 65'537).status()));
   EXPECT_TRUE((*client)->cancel(1).ok());
   const Finished done = run(farm.command(
-      {"submit", kCornell, "--width", "16", "--samples", "16", "-o", farm.path("a.pfm")}));
+      {"submit", kCornell, "--width", "16", "--samples", "8", "-o", farm.path("a.pfm")}));
   ASSERT_EQ(done.code, 0) << done.err;
   EXPECT_EQ((*client)->preview(2, 0)->image.pixels, (*client)->result(2)->image.pixels);
 }

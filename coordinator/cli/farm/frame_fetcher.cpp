@@ -100,14 +100,14 @@ void FrameFetcher::report_failure(const FrameView& frame) {
 }
 
 absl::Status FrameFetcher::fetch(FrameNumber number, JobId job) {
-  ASSIGN_OR_RETURN(const Pictures pictures, pictures_of(number, job));
+  ASSIGN_OR_RETURN(const JobPictures pictures, pictures_of(number, job));
   if (!wanted_.outputs.empty()) {
     RETURN_IF_ERROR(write(number, job, pictures));
   }
   return add_to_collections(number, pictures);
 }
 
-absl::StatusOr<Pictures> FrameFetcher::pictures_of(FrameNumber number, JobId job) {
+absl::StatusOr<JobPictures> FrameFetcher::pictures_of(FrameNumber number, JobId job) {
   const auto of_frame = [number](const absl::Status& status) {
     return absl::Status(status.code(), absl::StrCat("frame ", number, ": ", status.message()));
   };
@@ -115,7 +115,7 @@ absl::StatusOr<Pictures> FrameFetcher::pictures_of(FrameNumber number, JobId job
   if (!image.ok()) {
     return of_frame(image.status());
   }
-  Pictures pictures{*std::move(image), {}, std::nullopt};
+  JobPictures pictures{*std::move(image), {}, std::nullopt};
   if (wanted_.denoise != Denoiser::kNone) {
     ASSIGN_OR_RETURN(const Progress progress, client_->job(job));
     absl::StatusOr<Denoised> clean =
@@ -128,7 +128,7 @@ absl::StatusOr<Pictures> FrameFetcher::pictures_of(FrameNumber number, JobId job
   return pictures;
 }
 
-absl::Status FrameFetcher::write(FrameNumber number, JobId job, const Pictures& pictures) {
+absl::Status FrameFetcher::write(FrameNumber number, JobId job, const JobPictures& pictures) {
   std::vector<std::string> outputs;
   for (const std::string& output : wanted_.outputs) {
     outputs.push_back(name_of_frame(output, number));
@@ -144,7 +144,7 @@ absl::Status FrameFetcher::write(FrameNumber number, JobId job, const Pictures& 
   return absl::OkStatus();
 }
 
-absl::Status FrameFetcher::add_to_collections(FrameNumber number, const Pictures& pictures) {
+absl::Status FrameFetcher::add_to_collections(FrameNumber number, const JobPictures& pictures) {
   const Image& image = pictures.best();
   const Display display = wanted_.display.over(pictures.result.display);
   if (!wanted_.after.contact_sheet.empty()) {
@@ -171,7 +171,7 @@ absl::Status FrameFetcher::fetch_rest() {
 absl::Status FrameFetcher::feed_video() {
   while (in_video_ < numbers_.size()) {
     const FrameNumber number = numbers_[in_video_];
-    ASSIGN_OR_RETURN(const Pictures pictures, pictures_of(number, done_.at(number)));
+    ASSIGN_OR_RETURN(const JobPictures pictures, pictures_of(number, done_.at(number)));
     RETURN_IF_ERROR(video_->add(pictures.best(), wanted_.display.over(pictures.result.display)));
     ++in_video_;
   }

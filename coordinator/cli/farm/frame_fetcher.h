@@ -44,9 +44,9 @@ class FrameFetcher {
   void report_failure(const FrameView& frame);
   absl::Status start_guides_of_new_frames();
   absl::Status fetch(FrameNumber number, JobId job);
-  absl::StatusOr<Pictures> pictures_of(FrameNumber number, JobId job);
-  absl::Status write(FrameNumber number, JobId job, const Pictures& pictures);
-  absl::Status add_to_collections(FrameNumber number, const Pictures& pictures);
+  absl::StatusOr<JobPictures> pictures_of(FrameNumber number, JobId job);
+  absl::Status write(FrameNumber number, JobId job, const JobPictures& pictures);
+  absl::Status add_to_collections(FrameNumber number, const JobPictures& pictures);
   absl::Status feed_video();
   bool needs_images() const;
 

@@ -168,10 +168,10 @@ ExitCode not_fetched(const absl::Status& status, JobId job, const Console& conso
 
 /// Renders the layers and, if wanted, the guides of the clean image on the farm; shows both
 /// images.
-absl::StatusOr<Pictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
-                                     const Wanted& wanted, ImageViews& views,
-                                     ProgressDisplay& display, const BesideImage& beside) {
-  Pictures out{std::move(result), {}, std::nullopt};
+absl::StatusOr<JobPictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
+                                        const Wanted& wanted, ImageViews& views,
+                                        ProgressDisplay& display, const BesideImage& beside) {
+  JobPictures out{std::move(result), {}, std::nullopt};
   views.show(out.result.image, out.result.display);
   if (beside) {
     ASSIGN_OR_RETURN(out.layers, beside(last.job.samples_per_pixel, display));
@@ -185,7 +185,7 @@ absl::StatusOr<Pictures> with_layers(FarmClient& client, FarmImage result, const
 
 }  // namespace
 
-absl::Status write_pictures(const Pictures& pictures, const Progress& progress,
+absl::Status write_pictures(const JobPictures& pictures, const Progress& progress,
                             const Wanted& wanted) {
   const Image& image = pictures.result.image;
   const Display display = wanted.display.over(pictures.result.display);

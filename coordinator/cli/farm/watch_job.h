@@ -26,7 +26,7 @@ struct Wanted {
 };
 
 /// All pictures of a finished job that are written.
-struct Pictures {
+struct JobPictures {
   FarmImage result;
   Layers layers;
   std::optional<Denoised> clean;  ///< absent if the image is not cleaned
@@ -36,7 +36,7 @@ struct Pictures {
 };
 
 /// Writes the files of a job. `progress`: its last status.
-absl::Status write_pictures(const Pictures& pictures, const Progress& progress,
+absl::Status write_pictures(const JobPictures& pictures, const Progress& progress,
                             const Wanted& wanted);
 
 /// Displays the job's progress until its state is final, and returns the last status. If the farm
