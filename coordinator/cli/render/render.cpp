@@ -182,8 +182,8 @@ class LocalRun {
     return absl::OkStatus();
   }
 
-  /// Returns a renderer that renders each job once: from kMaxGuideSamples samples on, the guides of
-  /// earlier passes are used again.
+  /// Returns a renderer that renders each job once: while the number of samples of the guides is
+  /// the same, those of earlier passes are used again.
   JobRenderer guides_of(const Scene& scene) {
     return [this, render = one_by_one(layer_renderer(scene))](
                const std::vector<JobSpec>& jobs) -> absl::StatusOr<std::vector<Image>> {

@@ -5,6 +5,7 @@
 #include "coordinator/scheduler/api/clean_jobs.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -55,8 +56,13 @@ absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t sampl
   return absl::OkStatus();
 }
 
+std::uint64_t guide_samples(std::uint64_t samples) {
+  const std::uint64_t quarter = std::bit_floor(samples / 4);
+  return std::min(samples, std::clamp(quarter, kMinGuideSamples, kMaxGuideSamples));
+}
+
 CleanJobs clean_jobs(const JobSpec& of, std::uint64_t samples) {
-  const std::uint64_t of_guides = std::min(samples, kMaxGuideSamples);
+  const std::uint64_t of_guides = guide_samples(samples);
   CleanJobs jobs{.albedo = beside(of, kGuideAlbedo, of_guides, " (guide: albedo)"),
                  .shape = beside(of, kGuideShape, of_guides, " (guide: shape)"),
                  .half = std::nullopt};

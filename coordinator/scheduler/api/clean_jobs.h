@@ -12,8 +12,16 @@
 
 namespace bandsaw::coordinator {
 
-/// Guides are rendered with at most this many samples; more do not improve the clean image.
+/// Bounds of the number of samples of the guides.
+inline constexpr std::uint64_t kMinGuideSamples = 8;
 inline constexpr std::uint64_t kMaxGuideSamples = 32;
+
+/// Returns the number of samples per pixel of the guides of an image with `samples` samples, at
+/// least 1: about a quarter as many, within the bounds, and not more than the image has. More would
+/// cost more time than they improve the clean image (renderlib/denoise/NOTES.md). It is a power of
+/// two unless the image has fewer than 8 samples, so that an image which goes on being rendered
+/// needs new guides seldom.
+std::uint64_t guide_samples(std::uint64_t samples);
 
 /// Checks if an image with this many samples per pixel can be cleaned. FAILED_PRECONDITION: the
 /// integrator computes no radiance, or the pixels have a single sample.

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
@@ -22,7 +24,7 @@ TEST(CleanJobs, AreTheGuidesAndHalfOfASingleBlock) {
   const CleanJobs many = clean_jobs(job(), 64);
   EXPECT_EQ(many.albedo.settings.integrator, kGuideAlbedo);
   EXPECT_EQ(many.shape.settings.integrator, kGuideShape);
-  EXPECT_EQ(many.albedo.stop, StopRule(StopAtSamples{kMaxGuideSamples}));
+  EXPECT_EQ(many.albedo.stop, StopRule(StopAtSamples{16}));
   EXPECT_EQ(many.albedo.settings.seed, 3u);
   EXPECT_FALSE(many.half);
   const CleanJobs few = clean_jobs(job(), 7);
@@ -33,17 +35,25 @@ TEST(CleanJobs, AreTheGuidesAndHalfOfASingleBlock) {
   EXPECT_EQ(few.half->settings.integrator, Integrator::kPath);
 }
 
+TEST(CleanJobs, TheGuidesHaveAQuarterOfTheSamplesWithinBounds) {
+  const std::map<std::uint64_t, std::uint64_t> expected = {
+      {1, 1}, {7, 7}, {8, 8}, {16, 8}, {63, 8}, {64, 16}, {127, 16}, {128, 32}, {1 << 20, 32}};
+  for (const auto& [samples, of_guides] : expected) {
+    EXPECT_EQ(guide_samples(samples), of_guides) << samples;
+  }
+}
+
 TEST(CleanJobs, AreTheSameForAllImagesThatNeedThem) {
   JobSpec other = job();
   other.request_id = "fedcba9876543210";
   other.name = "another name";
   other.stop = StopAtTime{5};
-  const CleanJobs jobs = clean_jobs(job(), 64);
+  const CleanJobs jobs = clean_jobs(job(), 128);
   EXPECT_EQ(clean_jobs(other, 4096).albedo.request_id, jobs.albedo.request_id);
   EXPECT_NE(jobs.shape.request_id, jobs.albedo.request_id);
-  EXPECT_NE(clean_jobs(job(), 31).albedo.request_id, jobs.albedo.request_id);
+  EXPECT_NE(clean_jobs(job(), 127).albedo.request_id, jobs.albedo.request_id);
   other.settings.seed = 4;
-  EXPECT_NE(clean_jobs(other, 64).albedo.request_id, jobs.albedo.request_id);
+  EXPECT_NE(clean_jobs(other, 128).albedo.request_id, jobs.albedo.request_id);
   EXPECT_GE(jobs.albedo.request_id.size(), 16u);
   EXPECT_LE(jobs.albedo.request_id.size(), 64u);
 }

@@ -41,9 +41,9 @@ TEST_F(CleanPicturesTest, AreMadeWhenTheFarmHasRenderedTheGuides) {
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");  // the same jobs
   EXPECT_EQ(state(job).state(), "guides");
-  finish(job + 1, 24, 16, 32);
+  finish(job + 1, 24, 16, 16);
   EXPECT_EQ(state(job).fraction(), 0.5);
-  finish(job + 2, 24, 16, 32);
+  finish(job + 2, 24, 16, 16);
   const web::CleanPicture ready = wait_until_filtered(job);
   EXPECT_EQ(ready.state(), "ready") << ready.reason();
   EXPECT_EQ(ready.relative_rmse_raw(), 0);  // all samples are equal
@@ -69,8 +69,8 @@ TEST_F(CleanPicturesTest, SayWhyTheyFailedAndAreTriedAgain) {
   EXPECT_EQ(failed.state(), "failed");
   EXPECT_THAT(failed.reason(), HasSubstr("cancelled"));
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
-  finish(job + 1, 24, 16, 32);
-  finish(job + 3, 24, 16, 32);  // instead of the cancelled one
+  finish(job + 1, 24, 16, 16);
+  finish(job + 3, 24, 16, 16);  // instead of the cancelled one
   EXPECT_EQ(wait_until_filtered(job).state(), "ready");
 }
 
