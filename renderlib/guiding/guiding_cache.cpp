@@ -24,4 +24,23 @@ GuidingCache::Trained GuidingCache::get(const GuidingKey& key, absl::FunctionRef
   return trained;
 }
 
+GuidingCache::Map GuidingCache::get_map(const PhotonMapKey& key, absl::FunctionRef<Map()> make) {
+  const MutexLock lock(mutex_);
+  for (const MapEntry& entry : maps_) {
+    if (entry.key == key) {
+      return entry.map;
+    }
+  }
+  Map map = make();
+  if (map != nullptr) {
+    maps_.push_back({key, map});
+    map_bytes_ += map->map.bytes();
+    while (maps_.size() > 1 && map_bytes_ > kMaxMapBytes) {
+      map_bytes_ -= maps_.front().map->map.bytes();
+      maps_.pop_front();
+    }
+  }
+  return map;
+}
+
 }  // namespace bandsaw

@@ -1,6 +1,7 @@
 #pragma once
 
-// The guiding fields of a scene (guiding_field.h), each trained when it is first used.
+// The guiding fields of a scene (guiding_field.h) and its photon maps (photon_map.h), each made
+// when it is first used.
 
 #include <cstdint>
 #include <deque>
@@ -10,8 +11,11 @@
 #include "absl/functional/function_ref.h"
 #include "renderlib/base/mutex.h"
 #include "renderlib/guiding/guiding_field.h"
+#include "renderlib/guiding/photon_map.h"
 
 namespace bandsaw {
+
+class Casters;  // renderlib/integrate/casters.h
 
 /// The field of a scene depends on the shape of the image and the length of the paths. It does not
 /// depend on the seed: images of all seeds use the same field.
@@ -27,25 +31,55 @@ struct TrainedGuiding {
   std::uint64_t paths = 0;    ///< training paths from the camera
   std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
   std::uint64_t rays = 0;     ///< rays of both
+  /// The casters whose caustics are taken from photon maps (integrate/caustics.h); null: there are
+  /// none, or maps do not pay.
+  std::shared_ptr<const Casters> casters;
+};
+
+/// What a photon map depends on besides the scene.
+struct PhotonMapKey {
+  std::uint64_t seed = 0;
+  std::uint32_t number = 0;   ///< the radii of its photons fall with it
+  std::uint64_t photons = 0;  ///< number of photons that are started
+  friend bool operator==(const PhotonMapKey&, const PhotonMapKey&) = default;
+};
+
+struct TracedMap {
+  PhotonMap map;
+  /// Mean solid angle of the lamps as seen from where their photons start, by power.
+  double lamp_angle = 0;
+  std::uint64_t rays = 0;
 };
 
 class GuidingCache {
  public:
   using Trained = std::shared_ptr<const TrainedGuiding>;
+  using Map = std::shared_ptr<const TracedMap>;
 
   /// Returns the field of `key`. If it is not kept yet, calls `make`; other threads that call get()
   /// wait meanwhile. If `make` returns nullptr (it was stopped), returns that and keeps nothing.
   Trained get(const GuidingKey& key, absl::FunctionRef<Trained()> make) EXCLUDES(mutex_);
+  /// The same for the map of `key`.
+  Map get_map(const PhotonMapKey& key, absl::FunctionRef<Map()> make) EXCLUDES(mutex_);
 
  private:
   /// Number of fields that are kept. When there are more, the oldest one is dropped.
   static constexpr std::size_t kMaxFields = 4;
+  /// Memory of the maps that are kept, in bytes. When they have more, the oldest are dropped,
+  /// except the newest one.
+  static constexpr std::size_t kMaxMapBytes = std::size_t{512} << 20;
   struct Entry {
     GuidingKey key;
     Trained trained;
   };
+  struct MapEntry {
+    PhotonMapKey key;
+    Map map;
+  };
   Mutex mutex_;
   std::deque<Entry> entries_ GUARDED_BY(mutex_);
+  std::deque<MapEntry> maps_ GUARDED_BY(mutex_);
+  std::size_t map_bytes_ GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace bandsaw

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "renderlib/geometry/placement.h"
+#include "renderlib/light/ellipsoid_light.h"
 #include "renderlib/light/shape_light.h"
 #include "renderlib/sampling/warp.h"
 
@@ -20,8 +21,7 @@ constexpr std::size_t kMaxPrimitives = std::size_t{1} << 18;
 /// Rougher metals cast no sharp light.
 constexpr double kRoughest = 0.5;
 
-bool casts(const Scene& scene, MaterialId id) {
-  const Material& material = scene.material(id);
+bool is_caster(const Material& material) {
   if (const auto* metal = std::get_if<Metal>(&material.kind)) {
     return metal->fuzz <= kRoughest;
   }
@@ -39,7 +39,7 @@ bool casts(const Scene& scene, MaterialId id) {
   return std::holds_alternative<Dielectric>(material.kind);
 }
 
-/// A uniform place on a shape: a position, and Hit::u and Hit::v.
+/// A place on a shape, uniform except on ellipsoids: a position, and Hit::u and Hit::v.
 struct Place {
   Vec3 position;
   Vec2 on_shape;
@@ -50,7 +50,7 @@ Place place_on(const ShapeView& shape, double u, double v) {
   if (shape.kind == Kind::kSphere) {
     return {shape.a + sample_sphere(u, v) * shape.radius, {}};
   }
-  if (shape.kind == Kind::kEllipsoid) {  // not quite uniform, which is enough for training
+  if (shape.kind == Kind::kEllipsoid) {
     const Vec3 on_ball = sample_sphere(u, v);
     return {shape.a + shape.u * on_ball.x + shape.v * on_ball.y + shape.w * on_ball.z, {}};
   }
@@ -69,9 +69,8 @@ Place place_on(const ShapeView& shape, double u, double v) {
 Casters::Casters(const Scene& scene) : scene_(scene) {
   const Geometry& geometry = scene.geometry();
   const std::size_t materials = scene.materials().size();
-  std::vector<bool> casting(materials);
-  for (std::uint32_t i = 0; i < materials; ++i) {
-    casting[i] = casts(scene, MaterialId{i});
+  for (const Material& material : scene.materials()) {
+    casting_.push_back(is_caster(material));
   }
   std::vector<PrimitiveId> ids;
   for (std::uint32_t instance = 0; instance <= geometry.instances.size(); ++instance) {
@@ -82,12 +81,13 @@ Casters::Casters(const Scene& scene) : scene_(scene) {
       const MaterialId material = placed == nullptr
                                       ? material_of(static_cast<const Shapes&>(geometry), primitive)
                                       : material_of(geometry, *placed, primitive);
-      if (casting[index_of(material)]) {
+      if (casts(material)) {
         ids.push_back({instance, primitive});
       }
     }
   }
   const std::size_t step = (ids.size() + kMaxPrimitives - 1) / kMaxPrimitives;
+  complete_ = step <= 1;
   std::vector<OfMaterial> all(materials);
   for (std::size_t i = 0; i < ids.size(); i += step) {
     OfMaterial& to = all[index_of(material_of(geometry, ids[i]))];
@@ -95,6 +95,8 @@ Casters::Casters(const Scene& scene) : scene_(scene) {
     const double size = area(shape_view(geometry, ids[i], middle_of(shutter_of(scene.camera()))));
     if (size > 0 && std::isfinite(before + size)) {
       to.primitives.push_back({ids[i], before + size});
+    } else if (size > 0) {
+      complete_ = false;
     }
   }
   for (OfMaterial& of : all) {
@@ -124,6 +126,9 @@ std::optional<CasterSample> Casters::sample(double material, double primitive, d
   const Hit hit{.t = 1, .id = found->id, .u = place.on_shape.x, .v = place.on_shape.y};
   CasterSample sample{surface_at(scene_.geometry(), ray, hit, scene_.features().uv)};
   sample.pdf = 1 / (total * static_cast<double>(materials_.size()));
+  if (shape.kind == ShapeView::Kind::kEllipsoid) {
+    sample.pdf *= area(shape) * ellipsoid_area_pdf(shape, place.position);
+  }
   return std::isfinite(sample.pdf) && is_finite(sample.point.position) ? std::optional(sample)
                                                                        : std::nullopt;
 }

@@ -25,6 +25,10 @@ class Casters {
   explicit Casters(const Scene& scene);
 
   bool empty() const { return materials_.empty(); }
+  /// Returns true if every point of every caster can be sampled.
+  bool complete() const { return complete_; }
+  /// Returns true if surfaces of this material are casters; false for mixtures.
+  bool casts(MaterialId id) const { return casting_[index_of(id)]; }
 
   /// Returns a point at this time: first a material is chosen, each with the same probability, then
   /// a primitive by its area, then a place on it. All numbers are in [0, 1). Returns std::nullopt
@@ -43,6 +47,8 @@ class Casters {
   };
 
   const Scene& scene_;
+  std::vector<bool> casting_;  ///< for each material
+  bool complete_ = true;
   std::vector<OfMaterial> materials_;
 };
 

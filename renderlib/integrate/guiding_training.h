@@ -22,8 +22,11 @@ namespace bandsaw {
 /// Trains the field of the scene: 3/4 n paths and, if there are casters, 2 n photons, where n is
 /// the number of pixels of the image, clamped to [2^15, 2^18]. The first eight vertices of each
 /// path and each photon that arrives become records, which take at most 2 x 93 MB during the
-/// training. Returns nullptr if `stop` was set.
+/// training. With `caustic_maps` and where they pay, the caustics of receivers come from a photon
+/// map (caustics.h), and the field does not learn them; that is for paths that take them from
+/// photon maps as well, which TrainedGuiding::casters tells. Returns nullptr if `stop` was set.
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
-                                                    Pool& pool, const std::atomic<bool>& stop);
+                                                    Pool& pool, const std::atomic<bool>& stop,
+                                                    bool caustic_maps = false);
 
 }  // namespace bandsaw

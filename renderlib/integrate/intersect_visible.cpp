@@ -18,22 +18,6 @@ SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   return surface_at(scene.geometry(), ray, hit, scene.features().uv);
 }
 
-/// Adds the uv directions that the material needs.
-void add_directions(const Scene& scene, SurfacePoint& point) {
-  const Material& material = scene.material(point.material);
-  const UvSets sets = uv_sets_of(material, scene.textures());
-  for (const bool second : {false, true}) {
-    if (!(second ? sets.second : sets.first)) {
-      continue;
-    }
-    if (material.relief.height) {
-      add_uv_derivatives(scene.geometry(), second, point);
-    } else {
-      add_uv_directions(scene.geometry(), second, point);
-    }
-  }
-}
-
 /// Returns the next boundary of a nested glass that touches the boundary of `hit`, and advances
 /// `hit` to it. Two boundaries touch if a ray that leaves the first one starts beyond both.
 /// Distances above `max_t` do not touch. Returns std::nullopt if the next surface does not touch or
@@ -103,6 +87,21 @@ double presence_for(const Scene& scene, const Ray& ray, const SurfacePoint& poin
 }
 
 }  // namespace
+
+void add_directions(const Scene& scene, SurfacePoint& point) {
+  const Material& material = scene.material(point.material);
+  const UvSets sets = uv_sets_of(material, scene.textures());
+  for (const bool second : {false, true}) {
+    if (!(second ? sets.second : sets.first)) {
+      continue;
+    }
+    if (material.relief.height) {
+      add_uv_derivatives(scene.geometry(), second, point);
+    } else {
+      add_uv_directions(scene.geometry(), second, point);
+    }
+  }
+}
 
 std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray,
                                               const PixelSampler& sampler, std::uint64_t sample,

@@ -33,4 +33,7 @@ std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray
                                               std::uint32_t bounce, NestedDielectrics& nesting,
                                               std::uint64_t& rays);
 
+/// Sets the uv directions that the material of the point needs.
+void add_directions(const Scene& scene, SurfacePoint& point);
+
 }  // namespace bandsaw

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "renderlib/geometry/surface.h"
+#include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/medium_traversal.h"
 #include "renderlib/integrate/mis.h"
 #include "renderlib/integrate/path_state.h"
@@ -13,6 +14,7 @@
 #include "renderlib/integrate/russian_roulette.h"
 #include "renderlib/integrate/through_lens.h"
 #include "renderlib/integrate/through_media.h"
+#include "renderlib/integrate/trace_photons.h"
 #include "renderlib/integrate/visibility.h"
 #include "renderlib/light/emission.h"
 #include "renderlib/material/albedo.h"
@@ -67,7 +69,28 @@ struct CompetingBsdfSampling {
   /// True if light is sampled on the far side of the surface. There, directions that pass the
   /// surface have MIS weight 1, so light sampling covers only lights that they cannot reach.
   bool beyond_surface = false;
+  /// True if photons find the light of emissive surfaces.
+  bool without_surfaces = false;
 };
+
+/// Returns true if photons find the light that emissive surfaces send to a caster after `casters`
+/// casters of a chain.
+bool is_left_to_photons(const PathContext& context, std::uint32_t casters) {
+  return context.options.caustics != nullptr && casters != kNoChain && casters < kMaxCausticChain;
+}
+
+/// Returns true if photons find the emission that the path hit from its last vertex at `light`.
+bool is_found_by_photons(const PathContext& context, const PathState& path,
+                         const SurfacePoint& light) {
+  if (path.chain == 0 || !is_left_to_photons(context, path.chain - 1)) {
+    return false;
+  }
+  Receiver caster = path.previous.receiver;
+  if (dot(path.ray.direction, *caster.normal) < 0) {
+    caster.normal = -*caster.normal;
+  }
+  return context.scene.lights().pdf(caster, light) > 0;
+}
 
 /// Returns true if BSDF sampling alone accounts for the light on the far side of the surface.
 bool is_left_to_bsdf_sampling(const LightSample& light, const CompetingBsdfSampling& bsdf) {
@@ -89,7 +112,8 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
   const double choice = numbers[0] + numbers[3] * 0x1p-32;
   const std::optional<LightSample> light =
       scene.lights().sample(receiver, choice, numbers[1], numbers[2]);
-  if (!light || is_left_to_bsdf_sampling(*light, competing)) {
+  if (!light || is_left_to_bsdf_sampling(*light, competing) ||
+      (competing.without_surfaces && !light->delta && !light->distant)) {
     return {};
   }
   const BsdfValue scattered = evaluate(bsdf, cones, light->direction);
@@ -169,7 +193,7 @@ void add_emission(const PathContext& context, const SurfacePoint& point, std::ui
   const Scene& scene = context.scene;
   const Rgb light =
       emitted(scene.material(point.material), scene.textures(), point, -path.ray.direction);
-  if (is_black(light)) {
+  if (is_black(light) || is_found_by_photons(context, path, point)) {
     return;
   }
   Rgb passing = gray(1);
@@ -222,6 +246,14 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   const bool both_sides = is_diffuse_behind(bsdf);
   // Local shading ends here; the sampled direction only collects the environment.
   const bool is_last = options.local && has_pdf(bsdf) && !is_metal(material);
+  const CausticRole role = options.caustics == nullptr
+                               ? CausticRole::kOther
+                               : caustic_role(options.caustics->casters(), point.material, bsdf);
+  if (role == CausticRole::kReceiver) {
+    path.radiance += path.throughput * caustic_radiance(options.caustics->of_sample(context.sample),
+                                                        point, bsdf, -path.ray.direction,
+                                                        context.scatterings_left(path, depth));
+  }
 
   // Light sampling, on the side from which the path came and, where only light sampling reaches
   // some lights, on the far side.
@@ -229,6 +261,8 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
     const Sample4 numbers = context.numbers(group_light(depth));
     CompetingBsdfSampling competing = is_last ? CompetingBsdfSampling{Technique::kLightsOnly, true}
                                               : CompetingBsdfSampling{options.technique, false};
+    competing.without_surfaces =
+        role == CausticRole::kCaster && is_left_to_photons(context, path.chain);
     path.radiance +=
         path.throughput * sample_light(scene, point, receiver, bsdf, cones, numbers, competing,
                                        context.stream(group_shadow(depth, ShadowUse::kLight)),
@@ -259,6 +293,9 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   path.previous = {passes && both_sides ? behind : receiver, next->pdf,
                    next->delta || (passes && !both_sides)};
   path.throughput *= next->weight;
+  path.chain = role == CausticRole::kReceiver && !next->delta           ? 0
+               : role == CausticRole::kCaster && path.chain != kNoChain ? path.chain + 1
+                                                                        : kNoChain;
   if (is_last && !next->delta) {
     if (scene.background().environment) {
       path.radiance +=
@@ -297,6 +334,7 @@ void trace_path(const PathContext& context, std::uint32_t depth, PathState& path
         return;
       }
       if (event == MediumEvent::kScattered) {
+        path.chain = kNoChain;
         continue;
       }
     }

@@ -16,6 +16,7 @@
 
 namespace bandsaw {
 
+class CausticMaps;   // renderlib/integrate/caustics.h
 class GuidingField;  // renderlib/guiding/guiding_field.h
 
 /// Strategies used to find light. All have the same expected value; the second and third exist only
@@ -42,6 +43,9 @@ struct PathOptions {
   /// Guides the directions at surfaces if it is not null (integrate/guided_bsdf.h); changes no
   /// expected value. MUST outlive the paths.
   const GuidingField* guiding = nullptr;
+  /// If not null, photons find the caustics (integrate/caustics.h), and `branches` MUST be 1. MUST
+  /// outlive the paths.
+  const CausticMaps* caustics = nullptr;
 };
 
 /// Returns the value of `PathOptions::branches` that is most efficient for the scene (README.md,

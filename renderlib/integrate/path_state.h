@@ -10,9 +10,11 @@
 
 namespace bandsaw {
 
-/// Maximum value of PathState::uncounted: with it, a path of 1024 scatterings that count stays below
-/// the 2^11 scatterings for which there are random numbers (sampling/sampler.h).
+/// Maximum value of PathState::uncounted: with it, a path of 1024 scatterings that count stays
+/// below the 2^11 scatterings for which there are random numbers (sampling/sampler.h).
 inline constexpr std::uint32_t kMaxUncounted = 1000;
+
+inline constexpr std::uint32_t kNoChain = 0xffffffffu;
 
 struct PathState {
   /// Starts a path with this ray. (As an aggregate, all of it would be zeroed first, including the
@@ -28,6 +30,9 @@ struct PathState {
   PreviousVertex previous = {};
   /// Number of scatterings that do not count towards `max_depth` (BsdfSample::counts).
   std::uint32_t uncounted = 0;
+  /// Number of casters since the last receiver (integrate/caustics.h); kNoChain where there was
+  /// another scattering in between, or no receiver.
+  std::uint32_t chain = kNoChain;
   bool truncated = false;          ///< see PathCounts::truncated
   NestedDielectrics nesting = {};  ///< glasses that contain the path
 };
@@ -55,6 +60,10 @@ struct PathContext {
   /// Returns true if the path may not be scattered as number `depth`.
   bool is_at_end(const PathState& path, std::uint32_t depth) const {
     return depth - path.uncounted >= options.max_depth;
+  }
+  /// Returns the number of scatterings that may follow scattering `depth`.
+  std::uint32_t scatterings_left(const PathState& path, std::uint32_t depth) const {
+    return options.max_depth - 1 - (depth - path.uncounted);
   }
   bool samples_lights() const {
     return scene.features().lights && options.technique != Technique::kScatteringOnly;

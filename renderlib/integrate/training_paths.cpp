@@ -96,6 +96,7 @@ void trace_and_remember(const PathContext& context, TrainingPath& path) {
         path.end_ray(event == MediumEvent::kScattered ? bandsaw::length(state.ray.origin - origin)
                                                       : length);
         if (event == MediumEvent::kScattered) {
+          state.chain = kNoChain;
           continue;
         }
         return;
@@ -149,10 +150,11 @@ PixelSampler training_sampler(const TrainingChunk& chunk) {
 }
 
 TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
-                               const TrainingChunk& chunk, const GuidingField* field) {
+                               const TrainingChunk& chunk, const GuidingField* field,
+                               const CausticMaps* caustics) {
   const RayGenerator camera(scene.camera(), static_cast<int>(key.width),
                             static_cast<int>(key.height), scene.camera_at_close());
-  const PathOptions options{.max_depth = key.max_depth, .guiding = field};
+  const PathOptions options{.max_depth = key.max_depth, .guiding = field, .caustics = caustics};
   const PixelSampler sampler = training_sampler(chunk);
   TrainingRecords out;
   std::vector<Vertex> vertices;

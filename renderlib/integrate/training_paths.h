@@ -12,6 +12,8 @@
 
 namespace bandsaw {
 
+class CausticMaps;  // renderlib/integrate/caustics.h
+
 /// Some of the training paths, or photons, of one round.
 struct TrainingChunk {
   std::uint32_t round = 0;
@@ -25,11 +27,13 @@ struct TrainingRecords {
   std::uint64_t rays = 0;
 };
 
-/// Traces the paths of a chunk through random places of the image, guided by `field` if it is not
-/// null, and returns a record for each vertex whose direction can be guided: the light that the
-/// path found from there on, light sampling at the vertex excluded.
+/// Traces the paths of a chunk through random places of the image, guided by `field` and with the
+/// caustics of `caustics` if they are not null, and returns a record for each vertex whose
+/// direction can be guided: the light that the path found from there on, light sampling at the
+/// vertex excluded.
 TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
-                               const TrainingChunk& chunk, const GuidingField* field);
+                               const TrainingChunk& chunk, const GuidingField* field,
+                               const CausticMaps* caustics);
 
 /// The numbers of training are those of pixels beyond the largest image.
 PixelSampler training_sampler(const TrainingChunk& chunk);

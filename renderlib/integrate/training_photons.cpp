@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 
+#include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/guided_bsdf.h"
 #include "renderlib/integrate/intersect_visible.h"
 #include "renderlib/integrate/visibility.h"
@@ -80,7 +81,8 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Pi
 
 /// Follows the photon until it arrives at a surface that can be guided, and records that.
 void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sample,
-            std::uint32_t longest, double photons, Photon photon, TrainingRecords& out) {
+            std::uint32_t longest, double photons, bool mapped, Photon photon,
+            TrainingRecords& out) {
   NestedDielectrics nesting;
   for (std::uint32_t depth = 1; depth < longest; ++depth) {
     const std::optional<SurfacePoint> hit =
@@ -90,6 +92,9 @@ void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sampl
     }
     const Vec3 wo = -photon.ray.direction;
     const Bsdf bsdf = bsdf_at(scene.material(hit->material), scene.textures(), *hit, wo);
+    if (mapped && receives_caustics(bsdf)) {
+      return;
+    }
     if (can_be_guided(bsdf)) {
       const Vec3 normal =
           dot(wo, hit->geometric_normal) >= 0 ? hit->geometric_normal : -hit->geometric_normal;
@@ -109,13 +114,13 @@ void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sampl
 }  // namespace
 
 TrainingRecords training_photons(const Scene& scene, const Casters& casters, const GuidingKey& key,
-                                 const TrainingChunk& chunk, std::uint64_t photons) {
+                                 const TrainingChunk& chunk, std::uint64_t photons, bool mapped) {
   const PixelSampler sampler = training_sampler(chunk);
   const std::uint32_t longest = std::min(kMaxChain, key.max_depth);
   TrainingRecords out;
   for (std::uint64_t sample = 0; sample < chunk.count; ++sample) {
     if (const std::optional<Photon> photon = start(scene, casters, sampler, sample, out)) {
-      follow(scene, sampler, sample, longest, static_cast<double>(photons), *photon, out);
+      follow(scene, sampler, sample, longest, static_cast<double>(photons), mapped, *photon, out);
     }
   }
   return out;

@@ -11,8 +11,9 @@ namespace bandsaw {
 /// Traces the photons of a chunk and returns a record for each that arrives at a surface whose
 /// direction can be guided. A photon starts at a random point of a caster, from which a light is
 /// sampled; it is followed over further mirrors and glass. `photons` is their number in all chunks.
-/// Media are ignored.
+/// Media are ignored. With `mapped`, photon maps find the light of receivers (caustics.h), which
+/// get no record then.
 TrainingRecords training_photons(const Scene& scene, const Casters& casters, const GuidingKey& key,
-                                 const TrainingChunk& chunk, std::uint64_t photons);
+                                 const TrainingChunk& chunk, std::uint64_t photons, bool mapped);
 
 }  // namespace bandsaw

@@ -22,7 +22,8 @@ Technique technique_of(Integrator integrator) {
 }  // namespace
 
 PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const Band& band,
-                     const GuidingField* guiding, const std::atomic<bool>& stop)
+                     const GuidingField* guiding, const CausticMaps* caustics,
+                     const std::atomic<bool>& stop)
     : scene_(scene),
       settings_(settings),
       band_(band),
@@ -31,7 +32,8 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
                .technique = technique_of(settings.integrator),
                .local = settings.integrator == Integrator::kDirect,
                .branches = settings.integrator == Integrator::kDirect ? 1 : branches_for(scene),
-               .guiding = guiding},
+               .guiding = guiding,
+               .caustics = caustics},
       camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height),
               scene.camera_at_close()),
       samples_through_lens_(!scene.lights().empty() && computes_radiance(settings.integrator)),

@@ -22,10 +22,12 @@ namespace bandsaw {
 /// Immutable; shared by the threads that render the band.
 class PixelSums {
  public:
-  /// `scene`, `guiding` and `stop` MUST outlive this object. `settings` and `band` MUST be valid.
-  /// `guiding`: the field of path guiding, or nullptr.
+  /// All references and pointers MUST outlive this object. `settings` and `band` MUST be valid.
+  /// `guiding`: the field of path guiding, or nullptr. `caustics`: the photon maps of the band's
+  /// samples, or nullptr.
   PixelSums(const Scene& scene, const RenderSettings& settings, const Band& band,
-            const GuidingField* guiding, const std::atomic<bool>& stop);
+            const GuidingField* guiding, const CausticMaps* caustics,
+            const std::atomic<bool>& stop);
 
   bool stopped() const { return stop_.load(std::memory_order_relaxed); }
 

@@ -7,7 +7,10 @@
 
 #include "renderlib/base/status_macros.h"
 #include "renderlib/guiding/guiding_cache.h"
+#include "renderlib/integrate/caustic_maps.h"
+#include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/guiding_training.h"
+#include "renderlib/render/band_parts.h"
 #include "renderlib/render/kernel_code.h"
 #include "renderlib/render/pixel_sums.h"
 
@@ -79,38 +82,38 @@ class Units {
   std::uint32_t per_strip_ = 1;
 };
 
-}  // namespace
+/// What the parts of a band have in common.
+struct Render {
+  const Scene& scene;
+  const RenderSettings& settings;
+  Pool& pool;
+  const std::atomic<bool>& stop;
+  const TrainedGuiding* guiding;  ///< null: without guiding
+};
 
-absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
-                                                   const RenderSettings& settings, const Band& band,
-                                                   Pool& pool, const std::atomic<bool>& stop,
-                                                   const RowsDone& progress,
-                                                   const TileSamples& tiles) {
-  RETURN_IF_ERROR(validate(band, settings));
-  std::shared_ptr<const TrainedGuiding> guiding;
-  if (settings.integrator == Integrator::kPathGuided) {
-    const GuidingKey key{settings.width, settings.height, settings.max_depth};
-    guiding = scene.guiding().get(key, [&] { return train_guiding(scene, key, pool, stop); });
-    if (guiding == nullptr) {
-      return absl::CancelledError("the render was stopped");
-    }
-  }
-  const GuidingField* const field = guiding != nullptr ? &guiding->field : nullptr;
-  const PixelSums pixel_sums(scene, settings, band, field, stop);
+absl::Status stopped() { return absl::CancelledError("the render was stopped"); }
+
+/// Renders a part with these photon maps, null if there are none.
+absl::StatusOr<BandPixels> render_part(const Render& render, const BandPart& part,
+                                       const CausticMaps* caustics, const RowsDone& progress) {
+  const RenderSettings& settings = render.settings;
+  const Band& band = part.band;
+  const GuidingField* const field = render.guiding != nullptr ? &render.guiding->field : nullptr;
+  const PixelSums pixel_sums(render.scene, settings, band, field, caustics, render.stop);
   const Units units(pixel_sums, band, {settings.width, settings.height});
   BandPixels pixels{
       .band = band,
       .width = settings.width,
       .sums = std::vector<double>(std::size_t{band.rows.count()} * settings.width * 3),
-      .counters = {.dropped_primitives = scene.dropped_primitives()}};
+      .counters = {.dropped_primitives = render.scene.dropped_primitives()}};
   std::vector<Counters> counters(static_cast<std::size_t>(units.count()));
   std::vector<std::atomic<std::uint32_t>> units_done(units.strips());
   std::atomic<std::uint32_t> rows_done = 0;
 
-  pool.parallel_for(units.count(), [&](std::int64_t unit) {
+  render.pool.parallel_for(units.count(), [&](std::int64_t unit) {
     const auto strip = static_cast<std::uint32_t>(unit / units.per_strip());
     Counters of_unit;
-    units.render(strip, static_cast<std::uint32_t>(unit % units.per_strip()), tiles,
+    units.render(strip, static_cast<std::uint32_t>(unit % units.per_strip()), part.tiles,
                  absl::MakeSpan(pixels.sums), of_unit);
     if (pixel_sums.stopped()) {
       return;
@@ -124,12 +127,71 @@ absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
   });
 
   if (pixel_sums.stopped()) {
-    return absl::CancelledError("the render was stopped");
+    return stopped();
   }
   for (const Counters& of_unit : counters) {
     pixels.counters.add(of_unit);
   }
   return pixels;
+}
+
+/// Maximum number of photon maps that are in use at the same time for a band.
+constexpr std::size_t kMaxMaps = 8;
+static_assert(CausticMaps::kMinSamplesOfMap % kBlockSamples == 0, "a block has one photon map");
+
+/// Renders a part with its photon maps: at once, or in halves if there are too many maps.
+absl::StatusOr<BandPixels> render_with_maps(const Render& render, const BandPart& part,
+                                            const RowsDone& progress) {
+  const std::vector<std::uint32_t> numbers = maps_of(part);
+  if (numbers.size() > kMaxMaps) {
+    const auto [first, second] = halves_of(part, render.settings.width);
+    ASSIGN_OR_RETURN(BandPixels pixels, render_with_maps(render, first, {}));
+    ASSIGN_OR_RETURN(const BandPixels more, render_with_maps(render, second, progress));
+    for (std::size_t i = 0; i < pixels.sums.size(); ++i) {
+      pixels.sums[i] += more.sums[i];
+    }
+    pixels.band = part.band;
+    pixels.counters.add(more.counters);
+    return pixels;
+  }
+  const Casters& casters = *render.guiding->casters;
+  const RenderSettings& settings = render.settings;
+  CausticMaps caustics(casters);
+  std::vector<GuidingCache::Map> maps;
+  for (const std::uint32_t number : numbers) {
+    const PhotonMapKey key{settings.seed, number, photons_of_map(settings.width, settings.height)};
+    maps.push_back(render.scene.guiding().get_map(key, [&] {
+      return make_caustic_map(render.scene, casters, key, render.pool, render.stop);
+    }));
+    if (maps.back() == nullptr) {
+      return stopped();
+    }
+    caustics.add(number, maps.back()->map);
+  }
+  return render_part(render, part, &caustics, progress);
+}
+
+}  // namespace
+
+absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
+                                                   const RenderSettings& settings, const Band& band,
+                                                   Pool& pool, const std::atomic<bool>& stop,
+                                                   const RowsDone& progress,
+                                                   const TileSamples& tiles) {
+  RETURN_IF_ERROR(validate(band, settings));
+  std::shared_ptr<const TrainedGuiding> guiding;
+  if (settings.integrator == Integrator::kPathGuided) {
+    const GuidingKey key{settings.width, settings.height, settings.max_depth};
+    guiding = scene.guiding().get(key, [&] { return train_guiding(scene, key, pool, stop, true); });
+    if (guiding == nullptr) {
+      return stopped();
+    }
+  }
+  const Render render{scene, settings, pool, stop, guiding.get()};
+  const BandPart whole{band, tiles.of(band.rows)};
+  return guiding != nullptr && guiding->casters != nullptr
+             ? render_with_maps(render, whole, progress)
+             : render_part(render, whole, nullptr, progress);
 }
 
 }  // namespace bandsaw

@@ -21,7 +21,9 @@ enum class Integrator {
   kAmbientOcclusion = 5,
   kPathLights = 6,      ///< kPath with light sampling alone, where a BSDF has a pdf
   kPathScattering = 7,  ///< kPath with BSDF sampling alone
-  kPathGuided = 8,      ///< kPath with path guiding (integrate/guiding_training.h)
+  /// kPath with path guiding (integrate/guiding_training.h), and caustics from photon maps where
+  /// they pay (integrate/caustics.h).
+  kPathGuided = 8,
 };
 inline constexpr int kLastIntegrator = 8;
 

@@ -245,6 +245,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, traversal, accels));
   scene->lights_ = Lights(own.geometry, own.materials, own.textures, own.lights, own.background);
   const SceneFeatures features = features_of(own, scene->lights_);
+  scene->moves_ = features.motion;
   scene->reuses_paths_ = can_reuse_paths(own, scene->lights_, features);
   scene->features_ = features | forced;
   if (scene->features_.grids) {

@@ -76,6 +76,9 @@ class Scene {
   const std::vector<Texture>& textures() const { return description_.textures; }
   /// Returns the features that the scene uses, and those that were forced.
   const SceneFeatures& features() const { return features_; }
+  /// Returns true if the camera, an instance or a mesh moves during the shutter interval. Forced
+  /// features do not change it.
+  bool moves() const { return moves_; }
   /// Returns true if neighbouring pixels reuse each other's path vertices
   /// (integrate/path_reuse.h). Forced features do not change it.
   bool reuses_paths() const { return reuses_paths_; }
@@ -106,6 +109,7 @@ class Scene {
   MediumSpaces medium_spaces_;
   Lights lights_;
   SceneFeatures features_;
+  bool moves_ = false;
   bool reuses_paths_ = false;
   std::size_t dropped_ = 0;
   std::vector<std::size_t> dropped_of_mesh_;  ///< number of triangles that each mesh lost

@@ -1,0 +1,274 @@
+#include "renderlib/guiding/photon_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "renderlib/base/split_mix.h"
+#include "renderlib/guiding/guiding_record.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::uint32_t kPhotonsOfLeaf = 8;
+/// Fewer photons do not tell the area of one.
+constexpr std::uint32_t kEnough = 16;
+constexpr int kMaxTreeDepth = 48;
+/// A place with this many photons or fewer has disks of this part of its photons if they are even
+/// there: if the halves of each part of it have the same power up to so many standard deviations
+/// and this part of the whole, and its normals add up to this part of their number.
+constexpr std::uint32_t kMostOfEven = 1024;
+constexpr double kPartOfEven = 1.0 / 4;
+constexpr double kDeviations = 3.5;
+constexpr double kSlope = 0.1;
+constexpr double kFlat = 0.97;
+/// There, a point sees about this many disks at least.
+constexpr double kSeen = 10;
+/// The largest radius, as a part of the diagonal of the box of all photons.
+constexpr double kLargestDisk = 1.0 / 16;
+
+struct Box {
+  Float3 low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
+             std::numeric_limits<float>::max()};
+  Float3 high{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
+              std::numeric_limits<float>::lowest()};
+
+  void add(const Float3& from, const Float3& to) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], from[axis]);
+      high[axis] = std::max(high[axis], to[axis]);
+    }
+  }
+  double extent(std::size_t axis) const { return double{high[axis]} - low[axis]; }
+  std::size_t longest_axis() const {
+    const double x = extent(0);
+    const double y = extent(1);
+    const double z = extent(2);
+    return x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+  }
+};
+
+Box box_of(absl::Span<const CausticPhoton> photons) {
+  Box box;
+  for (const CausticPhoton& photon : photons) {
+    box.add(photon.position, photon.position);
+  }
+  return box;
+}
+
+/// Returns the area of the surface in the box, which is about flat: the product of the two longer
+/// sides.
+double area_of(const Box& box) {
+  const double x = box.extent(0);
+  const double y = box.extent(1);
+  const double z = box.extent(2);
+  return std::max({x * y, y * z, z * x});
+}
+
+/// A node of the tree from which the disks are found.
+struct Place {
+  std::uint32_t first = 0;  ///< photons [first, last)
+  std::uint32_t last = 0;
+  std::uint32_t next = 0;  ///< the place after all descendants
+  double area = 0;         ///< area of a photon, from the smallest ancestor with enough of them
+  double power = 0;        ///< sum of the luminances
+  double squares = 0;      ///< sum of the squared luminances
+  Vec3 normal;             ///< sum of the normals, by luminance
+  bool even = false;       ///< the photons are as good as uniform on a flat surface
+
+  std::uint32_t count() const { return last - first; }
+};
+
+/// Divides the photons at the middle of the longest side of their box. Returns the first photon of
+/// the second half; std::nullopt if there are few photons, or if they are in one point.
+std::optional<std::uint32_t> divide(std::vector<CausticPhoton>& photons, std::uint32_t first,
+                                    std::uint32_t last, int depth, const Box& box) {
+  const std::size_t axis = box.longest_axis();
+  const float middle = box.low[axis] / 2 + box.high[axis] / 2;
+  if (last - first <= kPhotonsOfLeaf || depth >= kMaxTreeDepth || !(middle > box.low[axis])) {
+    return std::nullopt;
+  }
+  const auto half = std::stable_partition(
+      photons.begin() + static_cast<std::ptrdiff_t>(first),
+      photons.begin() + static_cast<std::ptrdiff_t>(last),
+      [&](const CausticPhoton& photon) { return photon.position[axis] < middle; });
+  return static_cast<std::uint32_t>(half - photons.begin());
+}
+
+/// Adds the place of photons [first, last) and its descendants, in depth-first order, and sorts the
+/// photons accordingly. `area` is that of the parent.
+void add_places(std::vector<CausticPhoton>& photons, std::uint32_t first, std::uint32_t last,
+                int depth, double area, std::vector<Place>& places) {
+  const absl::Span<const CausticPhoton> own(photons.data() + first, last - first);
+  const Box box = box_of(own);
+  Place place{.first = first, .last = last, .area = area, .normal = {}};
+  if (own.size() >= kEnough) {
+    // The outermost photons lie on the sides of the box, so it holds about one photon less.
+    place.area = area_of(box) / static_cast<double>(own.size() - 1);
+  }
+  const std::size_t number = places.size();
+  places.push_back(place);
+  if (const auto half = divide(photons, first, last, depth, box)) {
+    add_places(photons, first, *half, depth + 1, place.area, places);
+    const std::size_t second = places.size();
+    add_places(photons, *half, last, depth + 1, place.area, places);
+    const Place& a = places[number + 1];
+    const Place& b = places[second];
+    place.power = a.power + b.power;
+    place.squares = a.squares + b.squares;
+    place.normal = a.normal + b.normal;
+    place.even = a.even && b.even && length(place.normal) >= kFlat * place.power &&
+                 std::abs(a.power - b.power) <=
+                     kDeviations * std::sqrt(place.squares) + kSlope * place.power;
+  } else {
+    for (const CausticPhoton& photon : own) {
+      const double power = luminance(photon.power);
+      place.power += power;
+      place.squares += power * power;
+      place.normal = place.normal + vec3(photon.normal) * power;
+    }
+    place.even = true;
+  }
+  place.next = static_cast<std::uint32_t>(places.size());
+  places[number] = place;
+}
+
+/// Returns one of the photons, with a probability in proportion to its power, with the power of
+/// all. It stands for all of them where they are close to each other compared with their disks.
+CausticPhoton stand_in(absl::Span<const CausticPhoton> photons, std::uint64_t seed) {
+  double total = 0;
+  for (const CausticPhoton& photon : photons) {
+    total += luminance(photon.power);
+  }
+  double left = static_cast<double>(split_mix(seed + kSplitMixIncrement) >> 11) * 0x1p-53 * total;
+  std::size_t chosen = 0;
+  while (chosen + 1 < photons.size() && left >= luminance(photons[chosen].power)) {
+    left -= luminance(photons[chosen].power);
+    ++chosen;
+  }
+  CausticPhoton one = photons[chosen];
+  one.power = one.power * static_cast<float>(total / luminance(one.power));
+  return one;
+}
+
+/// Sets the radii of the photons, and replaces photons that are close to each other compared with
+/// their disks.
+std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double radius_factor) {
+  std::vector<Place> places;
+  // The walls of a corner are apart.
+  auto from = photons.begin();
+  for (std::uint32_t side = 0; side < 6 && from != photons.end(); ++side) {
+    const auto to = std::stable_partition(from, photons.end(), [&](const CausticPhoton& photon) {
+      return side_of(vec3(photon.normal)) == side;
+    });
+    if (from != to) {
+      add_places(photons, static_cast<std::uint32_t>(from - photons.begin()),
+                 static_cast<std::uint32_t>(to - photons.begin()), 0, kInfinity, places);
+    }
+    from = to;
+  }
+  const Box all = box_of(photons);
+  const double largest =
+      kLargestDisk * radius_factor * length(Vec3{all.extent(0), all.extent(1), all.extent(2)});
+  std::vector<CausticPhoton> out;
+  const auto radius_of = [&](double area) {
+    const double wanted = radius_factor * std::sqrt(area / kPi);
+    return std::max(std::min(wanted, largest), 1e-6 * largest);
+  };
+  double even_radius = 0;   // of the current even place
+  double together = 0;      // number of photons that one stands for there
+  std::uint32_t until = 0;  // end of the current even place
+  for (std::uint32_t i = 0; i < places.size();) {
+    const Place& place = places[i];
+    if (i >= until && place.even && place.count() >= kEnough && place.count() <= kMostOfEven) {
+      even_radius =
+          radius_of(std::max(PhotonMap::kPhotonsOfDisk, place.count() * kPartOfEven) * place.area);
+      together = kPi * even_radius * even_radius / (place.area * kSeen);
+      until = place.next;
+    }
+    const bool even = i < until;
+    const bool is_leaf = place.next == i + 1;
+    if (!is_leaf && !(even && place.count() <= together)) {
+      ++i;
+      continue;
+    }
+    const auto radius =
+        static_cast<float>(even ? even_radius : radius_of(PhotonMap::kPhotonsOfDisk * place.area));
+    const absl::Span<const CausticPhoton> own(photons.data() + place.first, place.count());
+    const std::size_t first = out.size();
+    if (even && place.count() <= together) {
+      out.push_back(stand_in(own, place.first));
+    } else {
+      out.insert(out.end(), own.begin(), own.end());
+    }
+    for (std::size_t at = first; at < out.size(); ++at) {
+      out[at].radius = radius;
+    }
+    i = place.next;
+  }
+  return out;
+}
+
+}  // namespace
+
+PhotonMap::PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, Pool& pool,
+                     absl::FunctionRef<double(const CausticPhoton&)> share_on_surface) {
+  if (photons.empty()) {
+    return;
+  }
+  photons_ = with_disks(std::move(photons), radius_factor);
+  split(0, static_cast<std::uint32_t>(photons_.size()), 0);
+  set_boxes();
+  constexpr std::size_t kRun = 1024;
+  const std::size_t runs = (photons_.size() + kRun - 1) / kRun;
+  pool.parallel_for(static_cast<std::int64_t>(runs), [&](std::int64_t run) {
+    const auto first = static_cast<std::size_t>(run) * kRun;
+    for (std::size_t i = first; i < std::min(first + kRun, photons_.size()); ++i) {
+      photons_[i].power = photons_[i].power * static_cast<float>(1 / share_on_surface(photons_[i]));
+    }
+  });
+}
+
+void PhotonMap::split(std::uint32_t first, std::uint32_t last, int depth) {
+  const std::size_t number = nodes_.size();
+  nodes_.emplace_back();
+  const Box box = box_of({photons_.data() + first, last - first});
+  if (const auto half = divide(photons_, first, last, depth, box)) {
+    split(first, *half, depth + 1);
+    split(*half, last, depth + 1);
+  } else {
+    nodes_[number].first = first;
+    nodes_[number].last = last;
+  }
+  nodes_[number].next = static_cast<std::uint32_t>(nodes_.size());
+}
+
+/// Children follow their parents, so in reverse order they are complete first.
+void PhotonMap::set_boxes() {
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    Node& node = nodes_[i];
+    Box box;
+    for (std::uint32_t at = node.first; at < node.last; ++at) {
+      const CausticPhoton& photon = photons_[at];
+      Float3 low = photon.position;
+      Float3 high = photon.position;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        // A little more than the disk, for rounding.
+        low[axis] = std::nextafter(low[axis] - photon.radius * 1.001f,
+                                   -std::numeric_limits<float>::infinity());
+        high[axis] = std::nextafter(high[axis] + photon.radius * 1.001f,
+                                    std::numeric_limits<float>::infinity());
+      }
+      box.add(low, high);
+    }
+    for (std::size_t child = i + 1; child < node.next; child = nodes_[child].next) {
+      box.add(nodes_[child].low, nodes_[child].high);
+    }
+    node.low = box.low;
+    node.high = box.high;
+  }
+}
+
+}  // namespace bandsaw

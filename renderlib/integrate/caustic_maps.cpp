@@ -1,0 +1,82 @@
+#include "renderlib/integrate/caustic_maps.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "renderlib/integrate/trace_photons.h"
+#include "renderlib/material/interiors.h"
+#include "renderlib/material/opacity.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::uint64_t kChunks = 64;
+
+/// Paths find lamps of more steradians, as seen from the casters, well enough.
+constexpr double kLargestLamp = 0.5;
+
+bool has_emissive_surface(const Scene& scene) {
+  return std::any_of(scene.materials().begin(), scene.materials().end(), [](const Material& m) {
+    return std::holds_alternative<Emissive>(m.kind) || !is_black(m.emission.radiance.factor);
+  });
+}
+
+}  // namespace
+
+std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height) {
+  return std::clamp(std::uint64_t{8} * width * height, std::uint64_t{1} << 15,
+                    std::uint64_t{1} << 19);
+}
+
+std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Casters& casters,
+                                                  const PhotonMapKey& key, Pool& pool,
+                                                  const std::atomic<bool>& stop) {
+  std::vector<TracedPhotons> chunks(kChunks);
+  pool.parallel_for(kChunks, [&](std::int64_t number) {
+    if (!stop.load(std::memory_order_relaxed)) {
+      const auto i = static_cast<std::uint64_t>(number);
+      chunks[i] = trace_photons(scene, casters,
+                                {.seed = key.seed,
+                                 .map = key.number,
+                                 .photons = key.photons,
+                                 .first = key.photons * i / kChunks,
+                                 .last = key.photons * (i + 1) / kChunks});
+    }
+  });
+  TracedMap traced;
+  std::vector<CausticPhoton> photons;
+  double power_by_angle = 0;
+  double power = 0;
+  for (TracedPhotons& chunk : chunks) {
+    photons.insert(photons.end(), chunk.photons.begin(), chunk.photons.end());
+    chunk.photons = {};
+    traced.rays += chunk.rays;
+    power += chunk.power;
+    power_by_angle += chunk.power_by_angle;
+  }
+  traced.lamp_angle = power > 0 ? power_by_angle / power : 0;
+  const double factor = pow(key.number + 1.0, -1.0 / 6);
+  traced.map = PhotonMap(std::move(photons), factor, pool, [&](const CausticPhoton& photon) {
+    return stop.load(std::memory_order_relaxed) ? 1 : share_on_surface(scene, photon);
+  });
+  return stop.load(std::memory_order_relaxed)
+             ? nullptr
+             : std::make_shared<const TracedMap>(std::move(traced));
+}
+
+bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
+  const auto hinders = [&](const Material& material) {
+    const auto* mix = std::get_if<Mix>(&material.kind);
+    return is_hidden_lamp(material) || nested_glass(material) != nullptr ||
+           (mix != nullptr && (casters.casts(mix->a) || casters.casts(mix->b)));
+  };
+  return !casters.empty() && casters.complete() && has_emissive_surface(scene) &&
+         !scene.moves() &&
+         std::none_of(scene.materials().begin(), scene.materials().end(), hinders);
+}
+
+bool pays(const TracedMap& map) { return map.map.size() > 0 && map.lamp_angle <= kLargestLamp; }
+
+}  // namespace bandsaw

@@ -1,0 +1,37 @@
+#pragma once
+
+// The photon maps of a scene, and whether they pay.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "renderlib/base/pool.h"
+#include "renderlib/guiding/guiding_cache.h"
+#include "renderlib/integrate/casters.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+
+/// Returns the number of photons that are started for each map of an image: about half of its
+/// paths, between 2^15 and 2^19.
+std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height);
+
+/// Traces and builds a map: a pure function of the scene and the key. The radii fall with the
+/// number of the map, so that the mean over maps converges to the irradiance (Knaus and Zwicker
+/// 2011, "Progressive Photon Mapping: A Probabilistic Approach", section 4, alpha = 2/3). Returns
+/// nullptr if `stop` was set.
+std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Casters& casters,
+                                                  const PhotonMapKey& key, Pool& pool,
+                                                  const std::atomic<bool>& stop);
+
+/// Returns true if the scene has what photon maps can find: complete casters and emissive surfaces,
+/// and neither motion, nor glass with priorities, nor mixtures with casters, nor hidden lamps,
+/// whose light the photons would not follow exactly as paths do.
+bool can_have_caustic_maps(const Scene& scene, const Casters& casters);
+
+/// Returns true if photon maps are better than paths: light arrives, and its lamps are small as
+/// seen from the casters.
+bool pays(const TracedMap& map);
+
+}  // namespace bandsaw

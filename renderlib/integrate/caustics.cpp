@@ -1,0 +1,83 @@
+#include "renderlib/integrate/caustics.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "renderlib/base/check.h"
+#include "renderlib/base/overloaded.h"
+
+namespace bandsaw {
+namespace {
+
+/// The smallest GGX alpha of a wide lobe: a roughness of 1/2.
+constexpr double kWideAlpha = 0.25;
+
+bool is_wide(const PlasticBsdf& bsdf) {
+  return !bsdf.facets || std::min(bsdf.facets->alpha_u, bsdf.facets->alpha_v) >= kWideAlpha;
+}
+
+bool is_wide(const MetallicRoughnessBsdf& bsdf) {
+  return bsdf.surface.alpha >= kWideAlpha && (bsdf.coat == 0 || bsdf.coating.alpha >= kWideAlpha);
+}
+
+}  // namespace
+
+bool receives_caustics(const Bsdf& bsdf) {
+  return std::visit(Overloaded{[](const DiffuseBsdf&) { return true; },
+                               [](const PlasticBsdf& b) { return is_wide(b); },
+                               [](const MetallicRoughnessBsdf& b) { return is_wide(b); },
+                               [](const auto&) { return false; }},
+                    bsdf) &&
+         !has_pdf_behind(bsdf);
+}
+
+std::uint32_t CausticMaps::number_of(std::uint64_t sample) {
+  const std::uint64_t unit = sample / kMinSamplesOfMap;
+  if (unit == 0) {
+    return 0;
+  }
+  const int octave = std::bit_width(unit) - 1;
+  const std::uint64_t root = std::uint64_t{1} << (octave / 2);
+  const std::uint64_t first = octave % 2 == 0 ? 3 * root - 2 : 4 * root - 2;
+  return static_cast<std::uint32_t>(first + (unit - (std::uint64_t{1} << octave)) / root);
+}
+
+const PhotonMap& CausticMaps::of_sample(std::uint64_t sample) const {
+  if (for_all_ != nullptr) {
+    return *for_all_;
+  }
+  const std::uint32_t number = number_of(sample);
+  const auto found =
+      std::lower_bound(maps_.begin(), maps_.end(), number,
+                       [](const auto& map, std::uint32_t wanted) { return map.first < wanted; });
+  BANDSAW_CHECK(found != maps_.end() && found->first == number, "a sample without photon map");
+  return *found->second;
+}
+
+Rgb caustic_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf& bsdf,
+                     const Vec3& wo, std::uint32_t longest) {
+  const Vec3 normal =
+      dot(wo, point.geometric_normal) >= 0 ? point.geometric_normal : -point.geometric_normal;
+  Rgb sum;
+  const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
+  if (diffuse != nullptr && diffuse->normal.shading == diffuse->normal.geometric) {
+    map.visit(point.position, normal, [&](const CausticPhoton& photon, float density) {
+      sum += photon.chain <= longest ? photon.power * density : Rgb{};
+    });
+    return sum * diffuse->reflectance * static_cast<float>(1 / kPi);
+  }
+  map.visit(point.position, normal, [&](const CausticPhoton& photon, float density) {
+    if (photon.chain > longest) {
+      return;
+    }
+    const Vec3 wi = vec3(photon.from);
+    const double cosine = dot(wi, vec3(photon.normal));
+    if (cosine > 0) {
+      sum += evaluate(bsdf, wi).value * photon.power * static_cast<float>(density / cosine);
+    }
+  });
+  return sum;
+}
+
+}  // namespace bandsaw

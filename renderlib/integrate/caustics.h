@@ -1,0 +1,74 @@
+#pragma once
+
+// Caustics from photon maps. The light that travels from an emissive surface over one or more
+// casters (casters.h) to a receiver, and no other light, is estimated from photons
+// (trace_photons.h); path tracing leaves out just this light. The roles of surfaces divide all
+// paths:
+//
+// - a caster scatters the photon or the path further,
+// - a receiver is a surface of which every sampled lobe is wide: the photons are scattered there
+//   towards the path,
+// - any other surface, a scattering in a medium, and a delta direction at a receiver end the chain.
+//
+// A chain is counted from the receiver towards the light. Beyond the first caster of a chain, path
+// tracing samples no emissive surface, and the emission that it hits is left out where light
+// sampling at the last caster could have produced it, because there the photons start. Delta
+// lights, environments and backgrounds are not concerned.
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "renderlib/guiding/photon_map.h"
+#include "renderlib/integrate/casters.h"
+#include "renderlib/material/bsdf.h"
+
+namespace bandsaw {
+
+enum class CausticRole { kOther, kCaster, kReceiver };
+
+/// Returns true if all lobes of the BSDF that have a pdf are wide, so that photons around a point
+/// tell what it scatters: diffuse surfaces, plastic and glTF's material unless they are polished. A
+/// smooth coat is a delta direction and does not matter.
+bool receives_caustics(const Bsdf& bsdf);
+
+/// Returns the role of a surface of this material with this BSDF.
+inline CausticRole caustic_role(const Casters& casters, MaterialId material, const Bsdf& bsdf) {
+  return casters.casts(material)   ? CausticRole::kCaster
+         : receives_caustics(bsdf) ? CausticRole::kReceiver
+                                   : CausticRole::kOther;
+}
+
+/// The photon maps of some samples of an image.
+class CausticMaps {
+ public:
+  /// The fewest samples that have a map in common: an aligned range.
+  static constexpr std::uint64_t kMinSamplesOfMap = 16;
+  /// Returns the number of the map of a sample. The first four maps have 16 samples each, and
+  /// samples [16 * 4^k, 32 * 4^k) and [32 * 4^k, 64 * 4^k) have maps of 16 * 2^k samples. So the
+  /// number of maps grows with the root of the number of samples: a map costs as much as 10^5 to
+  /// 10^6 samples, and a band of many samples must not need more maps than a worker can keep.
+  static std::uint32_t number_of(std::uint64_t sample);
+
+  explicit CausticMaps(const Casters& casters) : casters_(&casters) {}
+  /// Adds map `number`, larger than that of all maps so far. It MUST outlive this object.
+  void add(std::uint32_t number, const PhotonMap& map) { maps_.push_back({number, &map}); }
+  /// Uses this map for all samples.
+  void use_for_all(const PhotonMap& map) { for_all_ = &map; }
+
+  const Casters& casters() const { return *casters_; }
+  /// Returns the map of a sample; one that was not added is a bug of the caller.
+  const PhotonMap& of_sample(std::uint64_t sample) const;
+
+ private:
+  const Casters* casters_;
+  std::vector<std::pair<std::uint32_t, const PhotonMap*>> maps_;
+  const PhotonMap* for_all_ = nullptr;
+};
+
+/// Returns the radiance that a receiver scatters along `wo`, of photons whose chain has at most
+/// `longest` casters.
+Rgb caustic_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf& bsdf,
+                     const Vec3& wo, std::uint32_t longest);
+
+}  // namespace bandsaw

@@ -1,0 +1,197 @@
+#include "renderlib/integrate/trace_photons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "renderlib/integrate/caustics.h"
+#include "renderlib/integrate/intersect_visible.h"
+#include "renderlib/integrate/medium_traversal.h"
+#include "renderlib/integrate/visibility.h"
+#include "renderlib/material/bsdf.h"
+#include "renderlib/material/opacity.h"
+#include "renderlib/material/shading_normal.h"
+#include "renderlib/math/elementary.h"
+#include "renderlib/sampling/basis.h"
+
+namespace bandsaw {
+namespace {
+
+struct Photon {
+  Ray ray;
+  Rgb power;
+  double angle = 0;  ///< solid angle of the light
+};
+
+/// The numbers of a photon.
+struct Numbers {
+  const PixelSampler& sampler;
+  std::uint64_t photon;
+  Sample4 group(std::uint32_t number) const { return sampler.group(photon, number); }
+  NumberStream stream(std::uint32_t depth) const {
+    return sampler.stream(photon, group_shadow(depth, ShadowUse::kLight));
+  }
+};
+
+/// Scatters the photon, which comes from `in`, at the caster. Its power changes by the BSDF as
+/// paths see it, which arrive from the other direction (Veach 1997, section 5.3: neither refraction
+/// nor shading normals are symmetric). Returns false if it is absorbed.
+bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& in,
+                    const Sample4& numbers, Photon& photon) {
+  const Material& material = scene.material(point.material);
+  const Bsdf bsdf = bsdf_at(material, scene.textures(), point, in);
+  const std::optional<BsdfSample> next = sample(bsdf, numbers[0], numbers[1], numbers[2]);
+  if (!next) {
+    return false;
+  }
+  const Vec3& out = next->wi;
+  double factor = std::abs(dot(out, point.geometric_normal) / dot(in, point.geometric_normal));
+  Rgb scattered = next->weight;
+  if (next->delta) {
+    const Vec3 normal = bent_normal(material.relief, scene.textures(), point);
+    factor *= std::abs(dot(in, normal) / dot(out, normal)) / next->compression;
+  } else {
+    scattered = evaluate(bsdf_at(material, scene.textures(), point, out), in).value;
+    factor /= next->pdf;
+  }
+  photon.power = photon.power * scattered * static_cast<float>(factor);
+  photon.ray = spawn_ray(point, out);
+  return max_component(photon.power) > 0 && is_finite(photon.power);
+}
+
+/// Returns the photon that leaves a random point of a caster.
+std::optional<Photon> start(const Scene& scene, const Casters& casters, const Numbers& numbers,
+                            std::uint64_t photons, std::uint64_t& rays) {
+  const Sample4 place = numbers.group(kGroupCamera);
+  const Sample4 choice = numbers.group(kGroupTime);
+  const Sample4 toward = numbers.group(group_light(0));
+  const double time = middle_of(shutter_of(scene.camera()));
+  std::optional<CasterSample> caster =
+      casters.sample(choice[1], place[0] + choice[3] * 0x1p-32, place[1], place[2], time);
+  if (!caster) {
+    return std::nullopt;
+  }
+  SurfacePoint& point = caster->point;
+  point.time = time;
+  add_directions(scene, point);
+  // Light may come from either side.
+  const Vec3 normal = place[3] < 0.5 ? point.geometric_normal : -point.geometric_normal;
+  const Receiver receiver{point.position, normal, time};
+  const std::optional<LightSample> light =
+      scene.lights().sample(receiver, toward[0] + toward[3] * 0x1p-32, toward[1], toward[2]);
+  if (!light || light->delta || light->distant) {
+    return std::nullopt;
+  }
+  const double cosine = dot(light->direction, normal);
+  if (!(cosine > 0)) {
+    return std::nullopt;
+  }
+  const Rgb passing =
+      transmittance(scene, spawn_ray_to(point, light->target, 0), numbers.stream(0), rays);
+  const double weight = 2 * cosine / (light->pdf * caster->pdf * static_cast<double>(photons)) *
+                        opacity(scene.material(point.material), scene.textures(), point);
+  Photon photon{.ray = {},
+                .power = light->radiance * passing * static_cast<float>(weight),
+                .angle = 1 / light->pdf};
+  if (!(max_component(photon.power) > 0) ||
+      !scatter_photon(scene, point, light->direction, numbers.group(group_bsdf(0)), photon)) {
+    return std::nullopt;
+  }
+  return photon;
+}
+
+/// Follows the photon until it arrives at a surface that receives caustics, and adds it there.
+void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, Photon photon,
+            TracedPhotons& out) {
+  NestedDielectrics nesting;
+  for (std::uint32_t chain = 1; chain <= kMaxCausticChain; ++chain) {
+    const std::optional<SurfacePoint> hit = intersect_visible(
+        scene, photon.ray, numbers.sampler, numbers.photon, chain, nesting, out.rays);
+    if (!hit || std::holds_alternative<Emissive>(scene.material(hit->material).kind)) {
+      return;
+    }
+    if (scene.features().media) {
+      Ray up_to_hit = photon.ray;
+      up_to_hit.t_max = distance_along(photon.ray, *hit);
+      photon.power *= media_transmittance(scene, up_to_hit, numbers.stream(chain), out.rays);
+    }
+    const Vec3 from = -photon.ray.direction;
+    const CausticRole role =
+        caustic_role(casters, hit->material,
+                     bsdf_at(scene.material(hit->material), scene.textures(), *hit, from));
+    if (role == CausticRole::kReceiver) {
+      const bool outside = dot(from, hit->geometric_normal) >= 0;
+      out.photons.push_back(
+          {.position = float3(hit->position),
+           .normal = float3(outside ? hit->geometric_normal : -hit->geometric_normal),
+           .chain = chain,
+           .from = float3(from),
+           .power = photon.power});
+      out.power += luminance(photon.power);
+      out.power_by_angle += luminance(photon.power) * photon.angle;
+      return;
+    }
+    if (role != CausticRole::kCaster ||
+        !scatter_photon(scene, *hit, from, numbers.group(group_bsdf(chain)), photon)) {
+      return;
+    }
+  }
+}
+
+/// Returns true if there is a surface around the point `to` of the photon's disk, and nothing
+/// stands between both.
+bool is_on_surface(const Scene& scene, const CausticPhoton& photon, const Vec3& to) {
+  const Vec3 lift = vec3(photon.normal) * (photon.radius / 8.0);
+  const Vec3 start = vec3(photon.position) + lift;
+  const double time = middle_of(shutter_of(scene.camera()));
+  const Ray along{.origin = start, .direction = to + lift - start, .t_max = 1, .time = time};
+  const Ray down{.origin = to + lift, .direction = lift * -3, .t_max = 1, .time = time};
+  return !scene.accel().occluded(along) && scene.accel().occluded(down);
+}
+
+}  // namespace
+
+TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk) {
+  // The numbers are those of a pixel beyond the largest image.
+  constexpr std::uint32_t kBeyondImages = 1u << 24;
+  const PixelSampler sampler(chunk.seed, kBeyondImages, kBeyondImages + chunk.map);
+  TracedPhotons out;
+  for (std::uint64_t number = chunk.first; number < chunk.last; ++number) {
+    const Numbers numbers{sampler, number};
+    if (const auto photon = start(scene, casters, numbers, chunk.photons, out.rays)) {
+      follow(scene, casters, numbers, *photon, out);
+    }
+  }
+  return out;
+}
+
+double share_on_surface(const Scene& scene, const CausticPhoton& photon) {
+  constexpr int kAtRim = 4;
+  constexpr int kAllOver = 16;
+  constexpr double kGoldenTurn = 0.381966011250105;
+  const Basis basis = orthonormal_basis(vec3(photon.normal));
+  const auto is_there = [&](double turn, double distance) {
+    const SinCos angle = sincos_turns(turn);
+    return is_on_surface(scene, photon,
+                         vec3(photon.position) + basis.x * (distance * angle.cos) +
+                             basis.y * (distance * angle.sin));
+  };
+  int found = 0;
+  for (int i = 0; i < kAtRim; ++i) {
+    found += is_there((i + 0.5) / kAtRim, 0.9 * photon.radius) ? 1 : 0;
+  }
+  if (found == kAtRim) {
+    return 1;
+  }
+  // Points with the density of the kernel.
+  found = 0;
+  for (int i = 0; i < kAllOver; ++i) {
+    const double inside = (i + 0.5) / kAllOver;
+    const double distance = std::sqrt(1 - std::sqrt(1 - inside));
+    const double turn = i * kGoldenTurn;
+    found += is_there(turn - std::floor(turn), distance * photon.radius) ? 1 : 0;
+  }
+  return std::max(1, found) / static_cast<double>(kAllOver);
+}
+
+}  // namespace bandsaw

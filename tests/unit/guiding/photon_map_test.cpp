@@ -1,0 +1,162 @@
+#include "renderlib/guiding/photon_map.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "renderlib/sampling/sampler.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr Vec3 kAbove{0, 0, 1};
+
+double whole(const CausticPhoton&) { return 1; }
+
+/// Photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4.
+std::vector<CausticPhoton> on_floor(std::uint64_t count) {
+  std::vector<CausticPhoton> photons;
+  const PixelSampler sampler(1, 2, 3);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const Sample4 at = sampler.group(i, 0);
+    const double x = at[2] < 10.0 / 13 ? at[0] / 4 : 0.25 + at[0] * 0.75;
+    photons.push_back({.position = float3({x, at[1], 0}),
+                       .normal = float3(kAbove),
+                       .chain = 1,
+                       .from = float3(kAbove),
+                       .power = gray(1)});
+  }
+  return photons;
+}
+
+double irradiance(const PhotonMap& map, const Vec3& position, const Vec3& normal = kAbove) {
+  double sum = 0;
+  map.visit(position, normal,
+            [&](const CausticPhoton& photon, float density) { sum += photon.power.g * density; });
+  return sum;
+}
+
+TEST(PhotonMap, TheDensityOfAPhotonIntegratesToOne) {
+  const CausticPhoton photon{.position = {1, 2, 3}, .radius = 0.5f, .normal = float3(kAbove)};
+  constexpr int kSteps = 400;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      const Vec3 at{0.4 + 1.2 * (i + 0.5) / kSteps, 1.4 + 1.2 * (j + 0.5) / kSteps, 3};
+      sum += density_at(photon, float3(at), float3(kAbove));
+    }
+  }
+  EXPECT_NEAR(sum * 1.2 * 1.2 / (kSteps * kSteps), 1, 1e-3);
+  EXPECT_EQ(density_at(photon, {1, 2, 3}, float3(-kAbove)), 0);
+  EXPECT_EQ(density_at(photon, {1, 2, 3.3}, float3(kAbove)), 0);
+  EXPECT_EQ(density_at(photon, {1.51, 2, 3}, float3(kAbove)), 0);
+}
+
+TEST(PhotonMap, FindsThePhotonsThatAnExhaustiveSearchFinds) {
+  Pool pool(2);
+  const PhotonMap map(on_floor(5000), 1, pool, whole);
+  ASSERT_GT(map.size(), 500u);
+  const PixelSampler sampler(4, 5, 6);
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const Sample4 at = sampler.group(i, 0);
+    const Vec3 point{at[0], at[1], 0};
+    double expected = 0;
+    for (const CausticPhoton& photon : map.photons()) {
+      expected += photon.power.g * density_at(photon, float3(point), float3(kAbove));
+    }
+    EXPECT_NEAR(irradiance(map, point), expected, 1e-5 * expected);
+  }
+}
+
+/// The sum of the power, and the mean of the radius by power.
+struct Totals {
+  double power = 0;
+  double radius = 0;
+};
+Totals totals_of(const PhotonMap& map, double from = 0, double to = 1) {
+  Totals sum;
+  for (const CausticPhoton& photon : map.photons()) {
+    if (photon.position[0] >= from && photon.position[0] < to) {
+      sum.power += photon.power.g;
+      sum.radius += double{photon.power.g} * photon.radius;
+    }
+  }
+  sum.radius /= sum.power;
+  return sum;
+}
+
+// The mean over many places of the estimate is the density of the photons, which is ten times as
+// high where x < 1/4. The disks are in proportion. As the photons are even, there is little noise.
+TEST(PhotonMap, EstimatesTheDensityAndAdaptsTheDisks) {
+  Pool pool(1);
+  constexpr std::uint64_t kPhotons = 100'000;
+  const PhotonMap map(on_floor(kPhotons), 1, pool, whole);
+  for (const bool dense : {false, true}) {
+    test::Moments moments;
+    const PixelSampler sampler(7, 8, 9);
+    for (std::uint64_t i = 0; i < 2000; ++i) {
+      const Sample4 at = sampler.group(i, 0);
+      const double x = dense ? 0.05 + 0.15 * at[0] : 0.4 + 0.4 * at[0];
+      moments.add(irradiance(map, {x, 0.2 + 0.6 * at[1], 0}));
+    }
+    const double expected = kPhotons * (dense ? 10 : 1) / 3.25;
+    EXPECT_NEAR(moments.mean(), expected, 0.02 * expected);
+    EXPECT_LT(moments.variance(), 0.15 * 0.15 * expected * expected);
+  }
+  EXPECT_NEAR(totals_of(map).power, kPhotons, 1e-3 * kPhotons);
+  EXPECT_LT(map.size(), kPhotons / 2);  // where they are even, some stand for others
+  const double ratio = totals_of(map, 0.25).radius / totals_of(map, 0, 0.25).radius;
+  EXPECT_GT(ratio, 2);
+  EXPECT_LT(ratio, 5);
+}
+
+TEST(PhotonMap, KeepsAnEdgeOfLight) {
+  std::vector<CausticPhoton> photons = on_floor(100'000);
+  std::erase_if(photons, [](const CausticPhoton& photon) { return photon.position[0] > 0.25f; });
+  Pool pool(1);
+  const PhotonMap map(photons, 1, pool, whole);
+  const double lit = static_cast<double>(photons.size()) * 4;
+  EXPECT_NEAR(irradiance(map, {0.2, 0.5, 0}), lit, 0.4 * lit);
+  EXPECT_EQ(irradiance(map, {0.3, 0.5, 0}), 0);
+}
+
+TEST(PhotonMap, TheFactorScalesTheDisks) {
+  Pool pool(1);
+  const PhotonMap one(on_floor(30'000), 1, pool, whole);
+  const PhotonMap half(on_floor(30'000), 0.5, pool, whole);
+  EXPECT_NEAR(totals_of(half).radius, 0.5 * totals_of(one).radius, 1e-3 * totals_of(one).radius);
+}
+
+TEST(PhotonMap, DividesByTheShareOnTheSurface) {
+  Pool pool(3);
+  const PhotonMap map(on_floor(3000), 1, pool,
+                      [](const CausticPhoton& photon) { return photon.radius > 0 ? 0.25 : 1; });
+  EXPECT_NEAR(totals_of(map).power, 12'000, 1);
+}
+
+TEST(PhotonMap, DependsNotOnThreads) {
+  Pool one(1);
+  Pool three(3);
+  const PhotonMap a(on_floor(5000), 1, one, whole);
+  const PhotonMap b(on_floor(5000), 1, three, whole);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_TRUE(a.photons()[i].position == b.photons()[i].position &&
+                a.photons()[i].power == b.photons()[i].power);
+  }
+}
+
+TEST(PhotonMap, MayBeEmptyOrHaveAllPhotonsAtOnePoint) {
+  EXPECT_EQ(irradiance(PhotonMap(), {}), 0);
+  Pool pool(1);
+  std::vector<CausticPhoton> photons = on_floor(100);
+  for (CausticPhoton& photon : photons) {
+    photon.position = {1, 1, 0};
+  }
+  const PhotonMap map(photons, 1, pool, whole);
+  EXPECT_EQ(irradiance(map, {0, 0, 0}), 0);
+}
+
+}  // namespace
+}  // namespace bandsaw

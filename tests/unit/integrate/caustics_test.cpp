@@ -1,0 +1,393 @@
+// Caustics from photon maps: closed forms, and that maps and path tracing divide the light exactly.
+
+#include "renderlib/integrate/caustics.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "renderlib/integrate/caustic_maps.h"
+#include "renderlib/integrate/guiding_training.h"
+#include "renderlib/integrate/path.h"
+#include "renderlib/integrate/trace_photons.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::SceneMaker;
+
+const std::atomic<bool> kGoOn = false;
+
+void add_room(SceneMaker& maker, MaterialId wall) {
+  maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, wall);
+  maker.quad({-2, -2, 2}, {0, 4, 0}, {4, 0, 0}, wall);
+  maker.quad({-2, -2, -2}, {0, 4, 0}, {0, 0, 4}, wall);
+  maker.quad({2, -2, -2}, {0, 0, 4}, {0, 4, 0}, wall);
+  maker.quad({-2, -2, -2}, {0, 0, 4}, {4, 0, 0}, wall);
+  maker.quad({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, wall);
+  maker.camera({0, 0, 1.9}, {0, 0, -1}, 60);
+}
+
+/// A closed room of 4 x 4 x 4 with a lamp of radiance 10 in its middle, inside a ball of glass.
+SceneMaker lamp_in_glass(double index, double lamp, float reflectance = 0.5f) {
+  SceneMaker maker;
+  add_room(maker, maker.diffuse(reflectance));
+  maker.sphere({0, 0, 0}, lamp, maker.lamp(10));
+  maker.sphere({0, 0, 0}, 0.5, maker.glass(index));
+  return maker;
+}
+
+std::shared_ptr<const TracedMap> map_of(const Scene& scene, const Casters& casters,
+                                        std::uint32_t number, std::uint64_t photons,
+                                        int threads = 2) {
+  Pool pool(threads);
+  return make_caustic_map(scene, casters, {.seed = 3, .number = number, .photons = photons}, pool,
+                          kGoOn);
+}
+
+/// What a surface of reflectance 1/2 in this point should scatter to the eye.
+struct Expected {
+  Vec3 point;
+  double radiance;
+};
+
+/// Expects the mean over maps, each with its own seed, of the radiance that arrives from each point
+/// after at most two scatterings: within 4 standard errors and 2 % of bias.
+void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expected>& expected) {
+  const Casters casters(scene);
+  Pool pool(2);
+  std::vector<test::Moments> moments(expected.size());
+  for (std::uint64_t seed = 0; seed < 48; ++seed) {
+    const auto map =
+        make_caustic_map(scene, casters, {.seed = seed, .photons = 1 << 15}, pool, kGoOn);
+    CausticMaps caustics(casters);
+    caustics.use_for_all(map->map);
+    const PathOptions options{.max_depth = 2, .caustics = &caustics};
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const Ray ray{.origin = eye, .direction = normalize(expected[i].point - eye)};
+      PathCounts counts;
+      moments[i].add(path_radiance(scene, ray, PixelSampler(5, 0, 0), seed, options, counts).g);
+    }
+  }
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const double radiance = expected[i].radiance;
+    EXPECT_LE(std::abs(moments[i].mean() - radiance),
+              4 * moments[i].standard_error() + 0.02 * radiance)
+        << i << ": " << moments[i].mean() << " and " << radiance;
+    EXPECT_LT(moments[i].standard_error(), 0.15 * radiance) << i;
+  }
+}
+
+// Glass that hardly refracts stops shadow rays, but the lamp lights the wall as if it were bare. A
+// sphere of radius r and radiance L at distance d gives a surface that is wholly on one side of it
+// the irradiance pi L (r / d)^2 cos.
+TEST(Caustics, MeetTheClosedFormOfALampInGlassThatDoesNotRefract) {
+  const auto scene = lamp_in_glass(1.00001, 0.2).build();
+  std::vector<Expected> expected;
+  for (const Vec3& to : {Vec3{2, 0, 0}, {2, 1.2, 0.9}, {2, -1.2, -1.4}}) {
+    const double distance = length(to);
+    expected.push_back({to, 0.5 * 10 * 0.04 / (distance * distance) * (to.x / distance)});
+  }
+  expect_radiance(*scene, {0, 0, 1.9}, expected);
+}
+
+// A mirror on the floor lights a wall as a second lamp below it would, if the wall sees it in the
+// mirror wholly.
+TEST(Caustics, MeetTheClosedFormOfALampAboveAMirror) {
+  SceneMaker maker;
+  const MaterialId wall = maker.diffuse(0.5f);
+  maker.quad({-5, -5, 0}, {9, 0, 0}, {0, 10, 0}, maker.metal(0.8f, 0));
+  maker.quad({4, -5, 0}, {0, 10, 0}, {0, 0, 10}, wall);
+  maker.sphere({0, 0, 2}, 0.2, maker.lamp(10));
+  maker.camera({-3, 0, 3}, {4, 0, 3}, 60);
+  const auto scene = maker.build();
+  std::vector<Expected> expected;
+  for (const Vec3& to : {Vec3{4, 0, 2.5}, {4, 1, 4}, {4, -2, 0.5}}) {
+    const double own = length(to - Vec3{0, 0, 2});
+    const double mirrored = length(to - Vec3{0, 0, -2});
+    expected.push_back(
+        {to, 0.5 * 10 * 0.04 *
+                 (to.x / (own * own * own) + 0.8 * to.x / (mirrored * mirrored * mirrored))});
+  }
+  expect_radiance(*scene, {-3, -1, 3}, expected);
+}
+
+// All light of a small lamp in the middle of a ball meets the glass at right angles; 4 % of it is
+// reflected back to the lamp. The other power arrives at the walls.
+TEST(Caustics, TheWallsReceiveThePowerOfTheLampInGlass) {
+  const auto scene = lamp_in_glass(1.5, 0.02).build();
+  const Casters casters(*scene);
+  test::Moments power;
+  constexpr std::uint64_t kPhotons = 1 << 12;
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    const TracedPhotons traced = trace_photons(
+        *scene, casters, {.seed = 1, .map = i, .photons = kPhotons, .first = 0, .last = kPhotons});
+    power.add(traced.power);
+    EXPECT_NEAR(traced.power_by_angle / traced.power, kPi * 0.02 * 0.02 / 0.25, 1e-3);
+  }
+  const double expected = 0.96 * 10 * kPi * 4 * kPi * 0.02 * 0.02;
+  EXPECT_LE(std::abs(power.z(expected)), 4) << power.mean() << " and " << expected;
+  EXPECT_LT(power.standard_error(), 0.01 * expected);
+}
+
+// The disks of all photons together have the power of the photons, up to the edges of the room.
+TEST(Caustics, NoPowerIsLostAtEdges) {
+  const auto scene = lamp_in_glass(1.5, 0.02).build();
+  const Casters casters(*scene);
+  const auto map = map_of(*scene, casters, 0, 1 << 14);
+  // The irradiance of the floor's midpoints of a grid.
+  constexpr int kSteps = 400;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    for (int j = 0; j < kSteps; ++j) {
+      const Vec3 at{-2 + 4 * (i + 0.5) / kSteps, -2 + 4 * (j + 0.5) / kSteps, -2};
+      map->map.visit(at, {0, 0, 1}, [&](const CausticPhoton& photon, float density) {
+        sum += photon.power.g * density * 16 / (kSteps * kSteps);
+      });
+    }
+  }
+  // A sixth of the lamp's power; within 4 standard errors of 1/sixth of the photons that arrive.
+  const double expected = 0.96 * 10 * kPi * 4 * kPi * 0.02 * 0.02 / 6;
+  EXPECT_NEAR(sum, expected, 0.05 * expected);
+  double raw = 0;
+  double lost = 0;
+  for (const CausticPhoton& photon : map->map.photons()) {
+    const bool on_floor = photon.normal[2] > 0.5f;
+    raw += on_floor ? photon.power.g * share_on_surface(*scene, photon) : 0;
+    lost += on_floor ? photon.power.g * (1 - share_on_surface(*scene, photon)) : 0;
+  }
+  EXPECT_NEAR(sum, raw, 0.01 * raw);
+  EXPECT_GT(lost, 0.02 * raw);  // without the correction
+}
+
+TEST(Caustics, TheShareOnTheSurfaceKnowsEdges) {
+  SceneMaker maker;
+  const MaterialId wall = maker.diffuse(0.5f);
+  maker.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, wall);
+  maker.quad({0, 0, 0}, {0, 4, 0}, {0, 0, 4}, wall);  // a wall at x = 0; the other edges are free
+  maker.camera({3, 3, 3}, {0, 0, 0}, 60);
+  const auto scene = maker.build();
+  CausticPhoton photon{.position = {2, 2, 0}, .radius = 0.5f, .normal = {0, 0, 1}};
+  EXPECT_EQ(share_on_surface(*scene, photon), 1);
+  photon.position = {0.001f, 2, 0};
+  EXPECT_NEAR(share_on_surface(*scene, photon), 0.5, 0.1);
+  photon.position = {3.999f, 2, 0};
+  EXPECT_NEAR(share_on_surface(*scene, photon), 0.5, 0.1);
+  photon.position = {3.999f, 0.001f, 0};
+  EXPECT_NEAR(share_on_surface(*scene, photon), 0.25, 0.1);
+}
+
+// With an empty map, paths bring just the light that is not left to the photons: none in a room
+// whose lamp is in glass, up to the depth at which a surface of the room is the second receiver.
+TEST(Caustics, PathsLeaveOutJustTheLightOfThePhotons) {
+  const auto scene = lamp_in_glass(1.5, 0.2).build();
+  const Casters casters(*scene);
+  const PhotonMap empty;
+  CausticMaps caustics(casters);
+  caustics.use_for_all(empty);
+  const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{1.2, 1.0, -1.5})};
+  const Ray to_lamp{.origin = {0, 0, 1.9}, .direction = {0, 0, -1}};
+  PathCounts counts;
+  double plain = 0;
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    const PixelSampler sampler(5, i, 0);
+    const PathOptions options{.max_depth = 12, .caustics = &caustics};
+    ASSERT_EQ(path_radiance(*scene, ray, sampler, 0, options, counts), Rgb{});
+    plain += path_radiance(*scene, ray, sampler, 0, {.max_depth = 12}, counts).g;
+    // The camera sees the lamp itself as before.
+    ASSERT_EQ(
+        path_radiance(*scene, to_lamp, sampler, 0, {.max_depth = 2, .caustics = &caustics}, counts),
+        path_radiance(*scene, to_lamp, sampler, 0, {.max_depth = 2}, counts));
+  }
+  EXPECT_GT(plain, 0);
+}
+
+// Maps follow each other, each takes an aligned range of a power of two of samples, and their
+// number grows with the root of the number of samples.
+TEST(CausticMaps, TakeAlignedRangesOfSamples) {
+  constexpr std::uint64_t kStep = CausticMaps::kMinSamplesOfMap;
+  std::uint64_t first = 0;
+  for (std::uint64_t sample = 1; sample <= 1 << 16; ++sample) {
+    const std::uint32_t before = CausticMaps::number_of(sample - 1);
+    const std::uint32_t number = CausticMaps::number_of(sample);
+    if (number == before) {
+      continue;
+    }
+    ASSERT_EQ(number, before + 1);
+    const std::uint64_t length = sample - first;
+    ASSERT_TRUE(std::has_single_bit(length)) << first;
+    ASSERT_GE(length, kStep) << first;
+    ASSERT_EQ(first % length, 0u) << first;
+    first = sample;
+  }
+  EXPECT_EQ(CausticMaps::number_of(4 * kStep - 1), 3u);
+  for (const std::uint64_t samples : {64, 256, 1024, 4096, 16384, 65536}) {
+    const double root = std::sqrt(static_cast<double>(samples / kStep));
+    EXPECT_EQ(CausticMaps::number_of(samples), 3 * root - 2) << samples;
+  }
+}
+
+/// Expects paths with and without maps to have the same mean, within 4 standard errors and 1 %. The
+/// others are guided, because they would be too noisy otherwise.
+void expect_same_mean(const Scene& scene, const Ray& ray, std::uint32_t max_depth) {
+  const Casters casters(scene);
+  Pool pool(2);
+  const auto guiding = train_guiding(scene, {64, 64, max_depth}, pool, kGoOn);
+  test::Moments with;
+  test::Moments without;
+  PathCounts counts;
+  for (std::uint32_t number = 0; number < 32; ++number) {
+    const auto map = map_of(scene, casters, number, 1 << 14);
+    CausticMaps caustics(casters);
+    caustics.use_for_all(map->map);
+    const PathOptions mapped{.max_depth = max_depth, .caustics = &caustics};
+    const PathOptions guided{.max_depth = max_depth, .guiding = &guiding->field};
+    test::Moments of_map;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+      const PixelSampler sampler(5, i, number);
+      // The directions differ a little, so that one map tells more.
+      const Vec3 aside{0.0004 * (i % 32) - 0.0064, 0.0004 * (i / 32) - 0.0064, 0};
+      const Ray near{.origin = ray.origin, .direction = normalize(ray.direction + aside * 20)};
+      of_map.add(path_radiance(scene, near, sampler, 0, mapped, counts).g);
+      without.add(path_radiance(scene, near, sampler, 0, guided, counts).g);
+    }
+    with.add(of_map.mean());
+  }
+  const double deviation = std::hypot(with.standard_error(), without.standard_error());
+  EXPECT_LE(std::abs(with.mean() - without.mean()), 4 * deviation + 0.01 * without.mean())
+      << with.mean() << " and " << without.mean();
+  EXPECT_LT(deviation, 0.06 * without.mean());
+}
+
+TEST(Caustics, ChangeNoMean) {
+  const auto scene = lamp_in_glass(1.5, 0.2).build();
+  const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{1.2, 1.0, -1.5})};
+  for (const std::uint32_t max_depth : {2u, 3u, 8u}) {
+    SCOPED_TRACE(max_depth);
+    expect_same_mean(*scene, ray, max_depth);
+  }
+}
+
+// Casters whose directions have a pdf: there light sampling finds the lamp too, and the photons
+// take its place.
+TEST(Caustics, ChangeNoMeanWithFuzzyMetalAndRoughGlass) {
+  for (const bool glass : {false, true}) {
+    SCOPED_TRACE(glass);
+    SceneMaker maker;
+    add_room(maker, maker.diffuse(0.5f));
+    maker.sphere({0.5, 0.6, 1}, 0.25, maker.lamp(10));
+    MaterialId caster = maker.metal(0.9f, 0.2);
+    if (glass) {
+      maker.scene.materials.push_back(
+          Material{Dielectric{.index_of_refraction = 1.5, .roughness = 0.4}});
+      caster = MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+    }
+    maker.sphere({0, 0, -0.8}, 0.7, caster);
+    const auto scene = maker.build();
+    const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{0.95, 0.4, -3.9})};
+    for (const std::uint32_t max_depth : {2u, 6u}) {
+      expect_same_mean(*scene, ray, max_depth);
+    }
+  }
+}
+
+TEST(Caustics, MapsDependNeitherOnThreadsNorOnChunks) {
+  const auto scene = lamp_in_glass(1.5, 0.2).build();
+  const Casters casters(*scene);
+  const auto one = map_of(*scene, casters, 2, 1 << 12, 1);
+  const auto three = map_of(*scene, casters, 2, 1 << 12, 3);
+  ASSERT_EQ(one->map.size(), three->map.size());
+  ASSERT_GT(one->map.size(), 100u);
+  for (std::size_t i = 0; i < one->map.size(); ++i) {
+    const CausticPhoton& a = one->map.photons()[i];
+    const CausticPhoton& b = three->map.photons()[i];
+    ASSERT_TRUE(a.position == b.position && a.radius == b.radius && a.power == b.power);
+  }
+  const auto trace = [&](std::uint64_t first, std::uint64_t last) {
+    return trace_photons(*scene, casters,
+                         {.seed = 3, .map = 2, .photons = 1000, .first = first, .last = last})
+        .photons;
+  };
+  const auto whole = trace(0, 1000);
+  auto parts = trace(0, 333);
+  for (const CausticPhoton& photon : trace(333, 1000)) {
+    parts.push_back(photon);
+  }
+  ASSERT_EQ(whole.size(), parts.size());
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    ASSERT_TRUE(whole[i].position == parts[i].position && whole[i].power == parts[i].power);
+  }
+}
+
+TEST(Caustics, MapsOfOtherSeedsAndNumbersDiffer) {
+  const auto scene = lamp_in_glass(1.5, 0.2).build();
+  const Casters casters(*scene);
+  const auto first = [&](std::uint64_t seed, std::uint32_t map) {
+    return trace_photons(*scene, casters,
+                         {.seed = seed, .map = map, .photons = 100, .first = 0, .last = 100})
+        .photons[0]
+        .position;
+  };
+  EXPECT_NE(first(1, 0), first(2, 0));
+  EXPECT_NE(first(1, 0), first(1, 1));
+}
+
+TEST(Caustics, PayForSmallLampsOnly) {
+  Pool pool(1);
+  const auto casters_of = [&](const Scene& scene) {
+    return train_guiding(scene, {16, 16, 8}, pool, kGoOn, true)->casters;
+  };
+  EXPECT_NE(casters_of(*lamp_in_glass(1.5, 0.05).build()), nullptr);
+  EXPECT_EQ(casters_of(*lamp_in_glass(1.5, 0.4).build()), nullptr);
+  EXPECT_EQ(casters_of(*test::cornell_box().build()), nullptr);
+  EXPECT_EQ(train_guiding(*lamp_in_glass(1.5, 0.05).build(), {16, 16, 8}, pool, kGoOn)->casters,
+            nullptr);
+}
+
+TEST(Caustics, AreLeftToPathsWherePhotonsWouldNotFollowThem) {
+  const auto possible = [](SceneMaker maker) {
+    const auto scene = maker.build();
+    return can_have_caustic_maps(*scene, Casters(*scene));
+  };
+  EXPECT_TRUE(possible(lamp_in_glass(1.5, 0.05)));
+  EXPECT_FALSE(possible(test::cornell_box()));
+  SceneMaker nested = lamp_in_glass(1.5, 0.05);
+  nested.scene.materials.push_back(Material{Dielectric{.priority = 1}});
+  EXPECT_FALSE(possible(nested));
+  SceneMaker hidden = lamp_in_glass(1.5, 0.05);
+  hidden.scene.materials.push_back(
+      Material{Emissive{.radiance = hidden.texture(ConstantTexture{{1, 1, 1}}), .hidden = true}});
+  EXPECT_FALSE(possible(hidden));
+}
+
+TEST(Caustics, ReceiversHaveWideLobes) {
+  const Vec3 up{0, 0, 1};
+  const SidedNormals normal{up, up};
+  EXPECT_TRUE(receives_caustics(DiffuseBsdf{normal, gray(0.5f)}));
+  EXPECT_FALSE(receives_caustics(MirrorBsdf{}));
+  EXPECT_FALSE(receives_caustics(BlackBsdf{}));
+  EXPECT_FALSE(receives_caustics(FuzzyMetalBsdf{normal, gray(0.5f), up, 1}));
+  MetallicRoughnessBsdf gltf{};
+  gltf.surface = {0.5, 0.25};
+  EXPECT_TRUE(receives_caustics(gltf));
+  gltf.surface = {0.4, 0.16};
+  EXPECT_FALSE(receives_caustics(gltf));
+  gltf.surface = {0.5, 0.25};
+  gltf.coat = 1;
+  gltf.coating = {0.1, 0.01};
+  EXPECT_FALSE(receives_caustics(gltf));
+  PlasticBsdf plastic{};
+  EXPECT_TRUE(receives_caustics(plastic));
+  plastic.facets = Facets{};
+  plastic.facets->alpha_u = 0.1;
+  EXPECT_FALSE(receives_caustics(plastic));
+}
+
+}  // namespace
+}  // namespace bandsaw

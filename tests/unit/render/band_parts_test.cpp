@@ -1,0 +1,54 @@
+#include "renderlib/render/band_parts.h"
+
+#include <gtest/gtest.h>
+
+#include "renderlib/integrate/caustics.h"
+
+namespace bandsaw {
+namespace {
+
+using Maps = std::vector<std::uint32_t>;
+/// Samples of each of the first four maps.
+constexpr std::uint64_t kOfMap = CausticMaps::kMinSamplesOfMap;
+static_assert(kOfMap == 2 * kBlockSamples);
+
+TEST(BandParts, AWholeBandNeedsTheMapsOfItsNode) {
+  const BandPart part{{{16 * kOfMap, 32 * kOfMap}, {0, 16}}, {}};
+  EXPECT_EQ(maps_of(part), (Maps{10, 11, 12, 13}));
+  const auto [left, right] = halves_of(part, 32);
+  EXPECT_EQ(maps_of(left), (Maps{10, 11}));
+  EXPECT_EQ(maps_of(right), (Maps{12, 13}));
+  // The last block may be truncated.
+  EXPECT_EQ(maps_of({{{0, kOfMap + 1}, {0, 16}}, {}}), (Maps{0, 1}));
+}
+
+// Half tiles with one, two, no and four blocks are divided until each part needs one map; each
+// sample of each half tile is in one part.
+TEST(BandParts, HalvesDivideTheSamplesOfAllHalfTiles) {
+  TileSamples tiles(32, {0, 16});
+  tiles.set(0, {kBlockSamples, 2 * kBlockSamples});
+  tiles.set(1, {2 * kBlockSamples, 4 * kBlockSamples});
+  tiles.set(3, {4 * kBlockSamples, 8 * kBlockSamples - 3});
+  const BandPart part{{{0, kBlockSamples}, {0, 16}}, tiles};
+  EXPECT_EQ(maps_of(part), (Maps{0, 1, 2, 3}));
+  std::vector<BandPart> open{part};
+  std::vector<std::uint64_t> samples(4);
+  while (!open.empty()) {
+    const BandPart next = open.back();
+    open.pop_back();
+    if (maps_of(next).size() > 1) {
+      const auto [left, right] = halves_of(next, 32);
+      open.insert(open.end(), {left, right});
+      continue;
+    }
+    const std::vector<std::uint32_t> numbers = next.tiles.numbers();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      samples[i] += numbers[2 * i + 1];
+    }
+  }
+  EXPECT_EQ(samples, (std::vector<std::uint64_t>{kBlockSamples, 2 * kBlockSamples, 0,
+                                                 4 * kBlockSamples - 3}));
+}
+
+}  // namespace
+}  // namespace bandsaw
