@@ -3,7 +3,8 @@
 # after a part that fails, and writes one table of the parts that passed, failed or were skipped. Exit 1: a part in the table failed.
 # Usage: deploy/nightly.sh [--continue] [--fuzz-minutes N] [--calibration-minutes N] [--out FOLDER] [PART...]
 #   --continue: keeps the rows that the table in FOLDER has; each states its commit. Parts that are named run again; without PART
-#      those run that have no row of this commit. So several runs, in several nights, add up to one table.
+#      those run that have no row of this commit. So several runs, in several nights, add up to one table. tests/nightly.md is the
+#      last one that was kept; copy it to FOLDER/table.md to go on from it.
 #   N: minutes for each fuzz target (default 1), and for the calibration, which continues from there in the next run (default 60)
 #   FOLDER: table.md and a log for each part (default: out/nightly)
 #   PART: parts to run: default labels wasm browser blender asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
@@ -134,13 +135,14 @@ row() {
     $(($3 / 3600)) $(($3 / 60 % 60)) "$commit" "$(date --utc +%Y-%m-%d)" "$(basename "$log")"
 }
 
-# The rows, one file for each part. A dirty checkout is no commit, so its rows are made again.
-rows=$out/rows
-[ -n "$continues" ] || rm -rf "$rows"
-mkdir -p "$rows"
+# The row of each part. A dirty checkout is no commit, so its rows are made again.
+declare -A rows=()
+if [ -n "$continues" ]; then
+  for part in "${every_part[@]}"; do rows[$part]=$(grep -sm1 "^| $part |" "$table"); done
+fi
 if [ $# -eq 0 ]; then
   for part in "${every_part[@]}"; do
-    [[ $commit != *-dirty ]] && grep -qs "| $commit, " "$rows/$part" || set -- "$@" "$part"
+    [[ $commit != *-dirty && ${rows[$part]-} == *"| $commit, "* ]] || set -- "$@" "$part"
   done
 fi
 
@@ -151,7 +153,7 @@ write_table() {
     echo
     echo "| part | result | tests passed | failed | skipped | hours | commit, day | log |"
     echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
-    for part in "${every_part[@]}"; do [ ! -e "$rows/$part" ] || cat "$rows/$part"; done
+    for part in "${every_part[@]}"; do [ -z "${rows[$part]-}" ] || echo "${rows[$part]}"; done
   } >"$table"
 }
 
@@ -163,7 +165,8 @@ for part in "$@"; do
   begun=$SECONDS
   ("part_$part") >"$log" 2>&1 </dev/null
   status=$?
-  row "$part" "$status" $((SECONDS - begun)) "$log" | tee "$rows/$part"
+  rows[$part]=$(row "$part" "$status" $((SECONDS - begun)) "$log")
+  echo "${rows[$part]}"
   write_table
 done
 echo
