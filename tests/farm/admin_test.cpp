@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
 
 #include "tests/farm/farm_processes.h"
 
@@ -29,6 +30,12 @@ class Administration : public testing::Test {
 
   FarmProcesses farm_;
 };
+
+// Scripts wait for the users' file, as the README does, and then start a worker with the other one.
+TEST_F(Administration, TheFileForUsersIsWrittenLast) {
+  EXPECT_LE(std::filesystem::last_write_time(farm_.join_file()),
+            std::filesystem::last_write_time(farm_.farm_file()));
+}
 
 TEST_F(Administration, AWorkersLogIsReadOverTheNetwork) {
   farm_.add_worker("desk", 1);

@@ -109,11 +109,14 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   const std::string host = options.listen.substr(0, options.listen.rfind(':'));
   ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
   const std::vector<std::string> addresses = join_addresses(host, serving.server->port(), local);
-  for (const link::Role role : {link::Role::kFarm, link::Role::kWorker}) {
+  // The users' file is the last one: scripts wait for it and then start a worker with the other.
+  for (const link::Role role : {link::Role::kWorker, link::Role::kFarm}) {
     link::JoinString join = join_string(role, identity, addresses, options.insecure);
     join.web = role == link::Role::kFarm ? serving.web->place(options) : "";
     RETURN_IF_ERROR(unless_full(write_join_file(folder, join)));
-    serving.join = join.text();  // after the loop: the workers' join string
+    if (role == link::Role::kWorker) {
+      serving.join = join.text();
+    }
   }
   ASSIGN_OR_RETURN(serving.line, serving.web->worker_line(options, identity, serving.join));
   serving.address = absl::StrCat(host, ":", serving.server->port());
