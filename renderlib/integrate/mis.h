@@ -8,7 +8,7 @@
 // - At a surface: light sampling against BSDF sampling, by the power heuristic (path.cpp).
 // - In a medium: light sampling at a sampled distance against free-flight sampling and phase
 //   function sampling, by the power heuristic over the product of distance pdf and direction pdf
-//   (through_media.cpp).
+//   (through_media.cpp, through_grid_medium.cpp).
 // - Through a lens: light sampling through the point in focus against the camera ray, by the power
 //   heuristic (through_lens.cpp).
 // - Among the distance strategies of light sampling in a medium: equiangular sampling towards
