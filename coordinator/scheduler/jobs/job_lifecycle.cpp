@@ -88,6 +88,12 @@ void JobLifecycle::evaluate_checkpoint(Job& job, const input::PassMerged& merged
       samples != job.complete_samples()) {
     return;
   }
+  // A coordinator that ended while it journalled passes has fewer of them than it had planned.
+  if (const std::uint64_t past = samples % kCheckpointStep;
+      past != 0 && samples < rule->max_samples) {
+    planner_.plan_until(job, std::min(samples - past + kCheckpointStep, rule->max_samples));
+    return;
+  }
   const double error = merged.error_at_most();
   const bool reached = error >= 0 && error <= rule->relative_rmse;
   if (reached || samples >= rule->max_samples) {

@@ -17,9 +17,6 @@ std::uint64_t blocks_of(std::uint64_t samples) {
   return (samples + kBlockSamples - 1) / kBlockSamples;
 }
 
-/// Error checkpoints before the last sample are multiples of this number of samples.
-constexpr std::uint64_t kCheckpointStep = 16;
-
 std::uint64_t steps_of(std::uint64_t samples) {
   return (samples + kCheckpointStep - 1) / kCheckpointStep;
 }

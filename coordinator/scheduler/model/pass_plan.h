@@ -17,6 +17,8 @@ namespace bandsaw::coordinator {
 /// `to`. `from`: 0 or a multiple of 8; to > from.
 std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to);
 
+/// Error checkpoints before the last sample are multiples of this number of samples.
+inline constexpr std::uint64_t kCheckpointStep = 16;
 /// The fewest samples per pixel of which the error is estimated.
 inline constexpr std::uint64_t kMinCheckpoint = 32;
 

@@ -487,6 +487,13 @@ TEST(Simulation, SeedsAtWhichAHealthyJobOnceFailed) {
   EXPECT_EQ(run_storm(20'771).broken, "");
 }
 
+// Seed 23577: the coordinator ends between the records of two passes of one plan.
+TEST(Simulation, AnErrorTargetStopsAtTheSampleThatWasPlannedBeforeACrash) {
+  const Outcome calm = Simulation(23'577, {.chaos = false, .failures = false, .cancels = false})
+                           .run(job_with_error_target(23'577));
+  EXPECT_EQ(calm.results, run_storm(23'577).results);
+}
+
 TEST(Simulation, AnErrorTargetStopsAtTheSameSampleOnEveryFarm) {
   for_seeds(20'001, 200, [&](std::uint64_t seed) {
     const Outcome calm = Simulation(seed, {.chaos = false, .failures = false, .cancels = false})
