@@ -6,39 +6,44 @@
 #include <utility>
 
 namespace bandsaw {
+namespace {
+
+/// Returns what is kept for `key`. If nothing is, makes it and appends it unless it is nullptr.
+template <class Entry, class Key, class Made>
+Made get_or_make(std::deque<Entry>& entries, const Key& key, absl::FunctionRef<Made()> make) {
+  for (const Entry& entry : entries) {
+    if (entry.key == key) {
+      return entry.made;
+    }
+  }
+  Made made = make();
+  if (made != nullptr) {
+    entries.push_back({key, made});
+  }
+  return made;
+}
+
+}  // namespace
 
 GuidingCache::Trained GuidingCache::get(const GuidingKey& key, absl::FunctionRef<Trained()> make) {
   const MutexLock lock(mutex_);
-  for (const Entry& entry : entries_) {
-    if (entry.key == key) {
-      return entry.trained;
-    }
-  }
-  Trained trained = make();
-  if (trained != nullptr) {
-    if (entries_.size() == kMaxFields) {
-      entries_.pop_front();
-    }
-    entries_.push_back({key, trained});
+  Trained trained = get_or_make(fields_, key, make);
+  if (fields_.size() > kMaxFields) {
+    fields_.pop_front();
   }
   return trained;
 }
 
 GuidingCache::Map GuidingCache::get_map(const PhotonMapKey& key, absl::FunctionRef<Map()> make) {
   const MutexLock lock(mutex_);
+  Map map = get_or_make(maps_, key, make);
+  std::size_t bytes = 0;
   for (const MapEntry& entry : maps_) {
-    if (entry.key == key) {
-      return entry.map;
-    }
+    bytes += entry.made->map.bytes();
   }
-  Map map = make();
-  if (map != nullptr) {
-    maps_.push_back({key, map});
-    map_bytes_ += map->map.bytes();
-    while (maps_.size() > 1 && map_bytes_ > kMaxMapBytes) {
-      map_bytes_ -= maps_.front().map->map.bytes();
-      maps_.pop_front();
-    }
+  while (maps_.size() > 1 && bytes > kMaxMapBytes) {
+    bytes -= maps_.front().made->map.bytes();
+    maps_.pop_front();
   }
   return map;
 }

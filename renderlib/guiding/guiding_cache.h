@@ -36,7 +36,7 @@ struct TrainedGuiding {
   std::shared_ptr<const Casters> casters;
 };
 
-/// What a photon map depends on besides the scene.
+/// The parameters of a photon map, besides the scene.
 struct PhotonMapKey {
   std::uint64_t seed = 0;
   std::uint32_t number = 0;   ///< the radii of its photons fall with it
@@ -68,18 +68,17 @@ class GuidingCache {
   /// Memory of the maps that are kept, in bytes. When they have more, the oldest are dropped,
   /// except the newest one.
   static constexpr std::size_t kMaxMapBytes = std::size_t{512} << 20;
-  struct Entry {
+  struct FieldEntry {
     GuidingKey key;
-    Trained trained;
+    Trained made;
   };
   struct MapEntry {
     PhotonMapKey key;
-    Map map;
+    Map made;
   };
   Mutex mutex_;
-  std::deque<Entry> entries_ GUARDED_BY(mutex_);
+  std::deque<FieldEntry> fields_ GUARDED_BY(mutex_);
   std::deque<MapEntry> maps_ GUARDED_BY(mutex_);
-  std::size_t map_bytes_ GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace bandsaw

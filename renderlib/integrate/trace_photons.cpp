@@ -62,39 +62,27 @@ bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& i
 /// Returns the photon that leaves a random point of a caster.
 std::optional<Photon> start(const Scene& scene, const Casters& casters, const Numbers& numbers,
                             std::uint64_t photons, std::uint64_t& rays) {
-  const Sample4 place = numbers.group(kGroupCamera);
-  const Sample4 choice = numbers.group(kGroupTime);
-  const Sample4 toward = numbers.group(group_light(0));
-  const double time = middle_of(shutter_of(scene.camera()));
-  std::optional<CasterSample> caster =
-      casters.sample(choice[1], place[0] + choice[3] * 0x1p-32, place[1], place[2], time);
-  if (!caster) {
+  std::optional<PhotonStart> at = start_photon(scene, casters, numbers.sampler, numbers.photon,
+                                               middle_of(shutter_of(scene.camera())));
+  if (!at || at->light.delta || at->light.distant) {
     return std::nullopt;
   }
-  SurfacePoint& point = caster->point;
-  point.time = time;
+  const LightSample& light = at->light;
+  SurfacePoint& point = at->point;
   add_directions(scene, point);
-  // Light may come from either side.
-  const Vec3 normal = place[3] < 0.5 ? point.geometric_normal : -point.geometric_normal;
-  const Receiver receiver{point.position, normal, time};
-  const std::optional<LightSample> light =
-      scene.lights().sample(receiver, toward[0] + toward[3] * 0x1p-32, toward[1], toward[2]);
-  if (!light || light->delta || light->distant) {
-    return std::nullopt;
-  }
-  const double cosine = dot(light->direction, normal);
+  const double cosine = dot(light.direction, at->normal);
   if (!(cosine > 0)) {
     return std::nullopt;
   }
   const Rgb passing =
-      transmittance(scene, spawn_ray_to(point, light->target, 0), numbers.stream(0), rays);
-  const double weight = 2 * cosine / (light->pdf * caster->pdf * static_cast<double>(photons)) *
+      transmittance(scene, spawn_ray_to(point, light.target, 0), numbers.stream(0), rays);
+  const double weight = 2 * cosine / (light.pdf * at->pdf * static_cast<double>(photons)) *
                         opacity(scene.material(point.material), scene.textures(), point);
   Photon photon{.ray = {},
-                .power = light->radiance * passing * static_cast<float>(weight),
-                .angle = 1 / light->pdf};
+                .power = light.radiance * passing * static_cast<float>(weight),
+                .angle = 1 / light.pdf};
   if (!(max_component(photon.power) > 0) ||
-      !scatter_photon(scene, point, light->direction, numbers.group(group_bsdf(0)), photon)) {
+      !scatter_photon(scene, point, light.direction, numbers.group(group_bsdf(0)), photon)) {
     return std::nullopt;
   }
   return photon;

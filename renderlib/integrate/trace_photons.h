@@ -8,12 +8,10 @@
 
 #include "renderlib/guiding/photon_map.h"
 #include "renderlib/integrate/casters.h"
+#include "renderlib/integrate/photon_start.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
-
-/// Longer chains of casters are left to path tracing.
-inline constexpr std::uint32_t kMaxCausticChain = 16;
 
 /// Some of the photons of a map.
 struct PhotonChunk {

@@ -12,14 +12,12 @@
 #include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/guided_bsdf.h"
 #include "renderlib/integrate/intersect_visible.h"
+#include "renderlib/integrate/photon_start.h"
 #include "renderlib/integrate/visibility.h"
 #include "renderlib/material/bsdf.h"
 
 namespace bandsaw {
 namespace {
-
-/// Longer chains of mirrors and glass are not followed.
-constexpr std::uint32_t kMaxChain = 16;
 
 struct Photon {
   Ray ray;
@@ -46,33 +44,21 @@ bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& w
 /// Returns the photon that leaves a random point of a caster, by its light and its BSDF.
 std::optional<Photon> start(const Scene& scene, const Casters& casters, const PixelSampler& sampler,
                             std::uint64_t sample, TrainingRecords& out) {
-  const Sample4 place = sampler.group(sample, kGroupCamera);
-  const Sample4 choice = sampler.group(sample, kGroupTime);
-  const Sample4 toward = sampler.group(sample, group_light(0));
   const Shutter& shutter = shutter_of(scene.camera());
-  const double time = shutter.open + choice[0] * (shutter.close - shutter.open);
-  const std::optional<CasterSample> caster =
-      casters.sample(choice[1], place[0] + choice[3] * 0x1p-32, place[1], place[2], time);
-  if (!caster) {
+  const double moment = sampler.group(sample, kGroupTime)[0];
+  const std::optional<PhotonStart> at = start_photon(
+      scene, casters, sampler, sample, shutter.open + moment * (shutter.close - shutter.open));
+  if (!at) {
     return std::nullopt;
   }
-  SurfacePoint point = caster->point;
-  point.time = time;
-  // Light may come from either side.
-  const Vec3 normal = place[3] < 0.5 ? point.geometric_normal : -point.geometric_normal;
-  const Receiver receiver{point.position, normal, time};
-  const std::optional<LightSample> light =
-      scene.lights().sample(receiver, toward[0] + toward[3] * 0x1p-32, toward[1], toward[2]);
-  if (!light) {
-    return std::nullopt;
-  }
-  const Ray shadow_ray =
-      light->distant ? spawn_ray(point, light->direction) : spawn_ray_to(point, light->target, 0);
+  const LightSample& light = at->light;
+  const Ray shadow_ray = light.distant ? spawn_ray(at->point, light.direction)
+                                       : spawn_ray_to(at->point, light.target, 0);
   const double passing = visibility(scene, shadow_ray, out.rays);
   Photon photon;
-  photon.power = 2 * passing * luminance(light->radiance) / light->pdf *
-                 std::abs(dot(light->direction, normal)) / caster->pdf;
-  if (!(photon.power > 0) || !scatter_photon(scene, point, light->direction,
+  photon.power = 2 * passing * luminance(light.radiance) / light.pdf *
+                 std::abs(dot(light.direction, at->normal)) / at->pdf;
+  if (!(photon.power > 0) || !scatter_photon(scene, at->point, light.direction,
                                              sampler.group(sample, group_bsdf(0)), photon)) {
     return std::nullopt;
   }
@@ -116,7 +102,7 @@ void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sampl
 TrainingRecords training_photons(const Scene& scene, const Casters& casters, const GuidingKey& key,
                                  const TrainingChunk& chunk, std::uint64_t photons, bool mapped) {
   const PixelSampler sampler = training_sampler(chunk);
-  const std::uint32_t longest = std::min(kMaxChain, key.max_depth);
+  const std::uint32_t longest = std::min(kMaxCausticChain, key.max_depth);
   TrainingRecords out;
   for (std::uint64_t sample = 0; sample < chunk.count; ++sample) {
     if (const std::optional<Photon> photon = start(scene, casters, sampler, sample, out)) {

@@ -26,11 +26,12 @@ BandPart with_numbers(const BandPart& part, const std::vector<std::uint32_t>& nu
 std::vector<std::uint32_t> maps_of(const BandPart& part) {
   std::vector<std::uint32_t> maps;
   const auto add = [&](const SampleRange& samples) {
-    for (std::uint64_t at = samples.first; at < samples.last; at += kBlockSamples) {
-      const std::uint32_t map = CausticMaps::number_of(at);
-      if (maps.empty() || maps.back() != map) {
-        maps.push_back(map);
-      }
+    if (samples.samples() == 0) {
+      return;
+    }
+    const std::uint32_t last = CausticMaps::number_of(samples.last - 1);
+    for (std::uint32_t map = CausticMaps::number_of(samples.first); map <= last; ++map) {
+      maps.push_back(map);
     }
   };
   if (part.tiles.whole()) {

@@ -1,0 +1,26 @@
+#include "renderlib/integrate/photon_start.h"
+
+namespace bandsaw {
+
+std::optional<PhotonStart> start_photon(const Scene& scene, const Casters& casters,
+                                        const PixelSampler& sampler, std::uint64_t sample,
+                                        double time) {
+  const Sample4 place = sampler.group(sample, kGroupCamera);
+  const Sample4 choice = sampler.group(sample, kGroupTime);
+  const Sample4 toward = sampler.group(sample, group_light(0));
+  const std::optional<CasterSample> caster =
+      casters.sample(choice[1], place[0] + choice[3] * 0x1p-32, place[1], place[2], time);
+  if (!caster) {
+    return std::nullopt;
+  }
+  SurfacePoint point = caster->point;
+  point.time = time;
+  // Light may come from either side.
+  const Vec3 normal = place[3] < 0.5 ? point.geometric_normal : -point.geometric_normal;
+  const Receiver receiver{point.position, normal, time};
+  const std::optional<LightSample> light =
+      scene.lights().sample(receiver, toward[0] + toward[3] * 0x1p-32, toward[1], toward[2]);
+  return light ? std::optional(PhotonStart{point, normal, *light, caster->pdf}) : std::nullopt;
+}
+
+}  // namespace bandsaw
