@@ -34,24 +34,22 @@ bool FrameFetcher::needs_images() const {
   return !wanted_.outputs.empty() || video_ || !wanted_.after.contact_sheet.empty();
 }
 
-/// Looks for changes after each frame, because cleaning one may take long and the guides of frames
-/// that were done meanwhile are to be rendered.
 absl::Status FrameFetcher::update() {
   RETURN_IF_ERROR(take_changes());
   while (!not_fetched_.empty()) {
-    RETURN_IF_ERROR(start_guides_of_new_frames());
+    if (wanted_.denoise != Denoiser::kNone) {
+      RETURN_IF_ERROR(start_guides_of_new_frames());
+    }
     const auto [number, job] = *not_fetched_.begin();
     RETURN_IF_ERROR(fetch(number, job));
     not_fetched_.erase(number);
-    RETURN_IF_ERROR(take_changes());
   }
   return absl::OkStatus();
 }
 
+/// Also of frames that were done while one was cleaned, which may take long.
 absl::Status FrameFetcher::start_guides_of_new_frames() {
-  if (wanted_.denoise == Denoiser::kNone) {
-    return absl::OkStatus();
-  }
+  RETURN_IF_ERROR(take_changes());
   for (const auto& [number, job] : not_fetched_) {
     if (!guided_.contains(job)) {
       ASSIGN_OR_RETURN(const Progress progress, client_->job(job));
@@ -102,7 +100,7 @@ void FrameFetcher::report_failure(const FrameView& frame) {
 absl::Status FrameFetcher::fetch(FrameNumber number, JobId job) {
   ASSIGN_OR_RETURN(const JobPictures pictures, pictures_of(number, job));
   if (!wanted_.outputs.empty()) {
-    RETURN_IF_ERROR(write(number, job, pictures));
+    RETURN_IF_ERROR(write(number, pictures));
   }
   return add_to_collections(number, pictures);
 }
@@ -115,11 +113,11 @@ absl::StatusOr<JobPictures> FrameFetcher::pictures_of(FrameNumber number, JobId 
   if (!image.ok()) {
     return of_frame(image.status());
   }
-  JobPictures pictures{*std::move(image), {}, std::nullopt};
+  ASSIGN_OR_RETURN(Progress progress, client_->job(job));
+  JobPictures pictures{std::move(progress), *std::move(image), {}, std::nullopt};
   if (wanted_.denoise != Denoiser::kNone) {
-    ASSIGN_OR_RETURN(const Progress progress, client_->job(job));
     absl::StatusOr<Denoised> clean =
-        clean_job(*client_, progress, pictures.result.image, wanted_.denoise, silent_);
+        clean_job(*client_, pictures.job, pictures.result.image, wanted_.denoise, silent_);
     if (!clean.ok()) {
       return of_frame(clean.status());
     }
@@ -128,16 +126,15 @@ absl::StatusOr<JobPictures> FrameFetcher::pictures_of(FrameNumber number, JobId 
   return pictures;
 }
 
-absl::Status FrameFetcher::write(FrameNumber number, JobId job, const JobPictures& pictures) {
+absl::Status FrameFetcher::write(FrameNumber number, const JobPictures& pictures) {
   std::vector<std::string> outputs;
   for (const std::string& output : wanted_.outputs) {
     outputs.push_back(name_of_frame(output, number));
   }
   const ReportOption named{name_of_frame(wanted_.report.file, number)};
   ASSIGN_OR_RETURN(const std::vector<std::string> reports, report_files(named, outputs));
-  ASSIGN_OR_RETURN(const Progress progress, client_->job(job));
   RETURN_IF_ERROR(
-      write_pictures(pictures, progress, {outputs, reports, wanted_.display, "", wanted_.denoise}));
+      write_pictures(pictures, {outputs, reports, wanted_.display, "", wanted_.denoise}));
   display_.frame_written(sequence_, number, outputs, reports);
   files_.insert(files_.end(), outputs.begin(), outputs.end());
   files_.insert(files_.end(), reports.begin(), reports.end());

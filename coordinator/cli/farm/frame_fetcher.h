@@ -45,7 +45,7 @@ class FrameFetcher {
   absl::Status start_guides_of_new_frames();
   absl::Status fetch(FrameNumber number, JobId job);
   absl::StatusOr<JobPictures> pictures_of(FrameNumber number, JobId job);
-  absl::Status write(FrameNumber number, JobId job, const JobPictures& pictures);
+  absl::Status write(FrameNumber number, const JobPictures& pictures);
   absl::Status add_to_collections(FrameNumber number, const JobPictures& pictures);
   absl::Status feed_video();
   bool needs_images() const;

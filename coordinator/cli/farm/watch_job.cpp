@@ -171,7 +171,7 @@ ExitCode not_fetched(const absl::Status& status, JobId job, const Console& conso
 absl::StatusOr<JobPictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
                                         const Wanted& wanted, ImageViews& views,
                                         ProgressDisplay& display, const BesideImage& beside) {
-  JobPictures out{std::move(result), {}, std::nullopt};
+  JobPictures out{last, std::move(result), {}, std::nullopt};
   views.show(out.result.image, out.result.display);
   if (beside) {
     ASSIGN_OR_RETURN(out.layers, beside(last.job.samples_per_pixel, display));
@@ -185,8 +185,7 @@ absl::StatusOr<JobPictures> with_layers(FarmClient& client, FarmImage result, co
 
 }  // namespace
 
-absl::Status write_pictures(const JobPictures& pictures, const Progress& progress,
-                            const Wanted& wanted) {
+absl::Status write_pictures(const JobPictures& pictures, const Wanted& wanted) {
   const Image& image = pictures.result.image;
   const Display display = wanted.display.over(pictures.result.display);
   RETURN_IF_ERROR(pictures.clean ? write_clean_outputs(*pictures.clean, image, wanted.outputs,
@@ -195,7 +194,7 @@ absl::Status write_pictures(const JobPictures& pictures, const Progress& progres
   if (wanted.reports.empty()) {
     return absl::OkStatus();
   }
-  Report report{progress, pixels_sha256(image), wanted.outputs,
+  Report report{pictures.job, pixels_sha256(image), wanted.outputs,
                 cut_off_values(image, wanted.outputs, display)};
   if (pictures.clean) {
     report.clean = clean_report(*pictures.clean, wanted.denoise, wanted.outputs);
@@ -247,7 +246,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
                  ? not_fetched(pictures.status(), job, process.console)
                  : left_early(pictures.status(), job, outputs, process.console);
     }
-    if (const auto status = write_pictures(*pictures, *last, wanted); !status.ok()) {
+    if (const auto status = write_pictures(*pictures, wanted); !status.ok()) {
       display.clear();
       return not_fetched(status, job, process.console);
     }

@@ -27,6 +27,7 @@ struct Wanted {
 
 /// All pictures of a finished job that are written.
 struct JobPictures {
+  Progress job;  ///< last status of the job
   FarmImage result;
   Layers layers;
   std::optional<Denoised> clean;  ///< absent if the image is not cleaned
@@ -35,9 +36,8 @@ struct JobPictures {
   const Image& best() const { return clean ? clean->image : result.image; }
 };
 
-/// Writes the files of a job. `progress`: its last status.
-absl::Status write_pictures(const JobPictures& pictures, const Progress& progress,
-                            const Wanted& wanted);
+/// Writes the files of a job.
+absl::Status write_pictures(const JobPictures& pictures, const Wanted& wanted);
 
 /// Displays the job's progress until its state is final, and returns the last status. If the farm
 /// is unreachable, retries for one minute. UNAVAILABLE: it did not come back. CANCELLED: `client`

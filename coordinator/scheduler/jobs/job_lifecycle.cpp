@@ -88,7 +88,8 @@ void JobLifecycle::evaluate_checkpoint(Job& job, const input::PassMerged& merged
       samples != job.complete_samples()) {
     return;
   }
-  // A coordinator that ended while it journalled passes has fewer of them than it had planned.
+  // Not a checkpoint: a crash kept only some of the records of a plan. The journal keeps all or
+  // none of them; the scheduler does not rely on that.
   if (const std::uint64_t past = samples % kCheckpointStep;
       past != 0 && samples < rule->max_samples) {
     planner_.plan_until(job, std::min(samples - past + kCheckpointStep, rule->max_samples));
