@@ -82,7 +82,7 @@ class Units {
   std::uint32_t per_strip_ = 1;
 };
 
-/// What the parts of a band have in common.
+/// The parameters that all parts of a band share.
 struct Render {
   const Scene& scene;
   const RenderSettings& settings;

@@ -95,6 +95,24 @@ SceneMaker cornell_box() {
   return maker;
 }
 
+void add_room(SceneMaker& maker, MaterialId wall) {
+  maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, wall);
+  maker.quad({-2, -2, 2}, {0, 4, 0}, {4, 0, 0}, wall);
+  maker.quad({-2, -2, -2}, {0, 4, 0}, {0, 0, 4}, wall);
+  maker.quad({2, -2, -2}, {0, 0, 4}, {0, 4, 0}, wall);
+  maker.quad({-2, -2, -2}, {0, 0, 4}, {4, 0, 0}, wall);
+  maker.quad({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, wall);
+  maker.camera({0, 0, 1.9}, {0, 0, -1}, 60);
+}
+
+SceneMaker lamp_in_glass(double index, double lamp, float reflectance) {
+  SceneMaker maker;
+  add_room(maker, maker.diffuse(reflectance));
+  maker.sphere({0, 0, 0}, lamp, maker.lamp(10));
+  maker.sphere({0, 0, 0}, 0.5, maker.glass(index));
+  return maker;
+}
+
 Mesh grid(int n) {
   Mesh mesh;
   for (int y = 0; y <= n; ++y) {

@@ -34,6 +34,12 @@ class SceneMaker {
 /// The Cornell box, 555 units wide: a quad that emits downwards and two boxes of diffuse quads.
 SceneMaker cornell_box();
 
+/// Adds a closed room of 4 x 4 x 4 with walls of one material, and a camera in it.
+void add_room(SceneMaker& maker, MaterialId wall);
+
+/// This room with a lamp of this radius and radiance 10 in its middle, inside a ball of glass.
+SceneMaker lamp_in_glass(double index, double lamp, float reflectance = 0.5f);
+
 /// A grid of n x n squares in z = 0 over [-1, 1]^2, two triangles each, normal +z.
 Mesh grid(int n);
 

@@ -28,7 +28,7 @@ struct TexturedSurface {
   std::map<std::string, std::string> attributes = {};
 };
 
-/// What a value is used for. It decides how a spectrum becomes RGB: as the reflectance of a surface
+/// The use of a value. It decides how a spectrum becomes RGB: as the reflectance of a surface
 /// or as the radiance of a light. kNumber is a texture of numbers, such as roughness: for these
 /// Mitsuba exchanges the two values of a checkerboard, so they are exchanged here too.
 enum class ColorOf { kSurface, kLight, kNumber };

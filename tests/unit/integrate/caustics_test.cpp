@@ -20,28 +20,11 @@
 namespace bandsaw {
 namespace {
 
+using test::add_room;
+using test::lamp_in_glass;
 using test::SceneMaker;
 
 const std::atomic<bool> kGoOn = false;
-
-void add_room(SceneMaker& maker, MaterialId wall) {
-  maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, wall);
-  maker.quad({-2, -2, 2}, {0, 4, 0}, {4, 0, 0}, wall);
-  maker.quad({-2, -2, -2}, {0, 4, 0}, {0, 0, 4}, wall);
-  maker.quad({2, -2, -2}, {0, 0, 4}, {0, 4, 0}, wall);
-  maker.quad({-2, -2, -2}, {0, 0, 4}, {4, 0, 0}, wall);
-  maker.quad({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, wall);
-  maker.camera({0, 0, 1.9}, {0, 0, -1}, 60);
-}
-
-/// A closed room of 4 x 4 x 4 with a lamp of radiance 10 in its middle, inside a ball of glass.
-SceneMaker lamp_in_glass(double index, double lamp, float reflectance = 0.5f) {
-  SceneMaker maker;
-  add_room(maker, maker.diffuse(reflectance));
-  maker.sphere({0, 0, 0}, lamp, maker.lamp(10));
-  maker.sphere({0, 0, 0}, 0.5, maker.glass(index));
-  return maker;
-}
 
 std::shared_ptr<const TracedMap> map_of(const Scene& scene, const Casters& casters,
                                         std::uint32_t number, std::uint64_t photons,
@@ -51,7 +34,7 @@ std::shared_ptr<const TracedMap> map_of(const Scene& scene, const Casters& caste
                           kGoOn);
 }
 
-/// What a surface of reflectance 1/2 in this point should scatter to the eye.
+/// The radiance that a surface of reflectance 1/2 should scatter from this point to the eye.
 struct Expected {
   Vec3 point;
   double radiance;

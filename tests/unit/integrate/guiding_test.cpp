@@ -16,29 +16,13 @@
 namespace bandsaw {
 namespace {
 
+using test::lamp_in_glass;
 using test::SceneMaker;
 
 std::shared_ptr<const TrainedGuiding> trained(const Scene& scene, int threads = 1) {
   Pool pool(threads);
   const std::atomic<bool> stop = false;
   return train_guiding(scene, {64, 64, 8}, pool, stop);
-}
-
-/// A closed room of 4 x 4 x 4 with walls of this reflectance; a lamp of radius `lamp` in its middle
-/// that is inside a ball of glass.
-SceneMaker lamp_in_glass(double index, double lamp, float reflectance) {
-  SceneMaker maker;
-  const MaterialId wall = maker.diffuse(reflectance);
-  maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, wall);
-  maker.quad({-2, -2, 2}, {0, 4, 0}, {4, 0, 0}, wall);
-  maker.quad({-2, -2, -2}, {0, 4, 0}, {0, 0, 4}, wall);
-  maker.quad({2, -2, -2}, {0, 0, 4}, {0, 4, 0}, wall);
-  maker.quad({-2, -2, -2}, {0, 0, 4}, {4, 0, 0}, wall);
-  maker.quad({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, wall);
-  maker.sphere({0, 0, 0}, lamp, maker.lamp(10));
-  maker.sphere({0, 0, 0}, 0.5, maker.glass(index));
-  maker.camera({0, 0, 1.9}, {0, 0, -1}, 60);
-  return maker;
 }
 
 /// Moments of one sample of each of many pixels along `ray`.

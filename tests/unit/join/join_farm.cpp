@@ -85,6 +85,16 @@ JoinTest::Answer JoinTest::join_post(const std::string& path, const std::string&
                           .body = body});
 }
 
+void JoinTest::send_until_nobody_is_connected() {
+  // Each job gives the tab leases, and cancelling the job revokes them.
+  int jobs = 0;
+  while (!workers().empty()) {
+    const std::string job = std::to_string(submit_box());
+    ASSERT_EQ(post("/api/jobs/" + job + "/cancel")->status, 200);
+    ASSERT_LT(++jobs, 20'000);
+  }
+}
+
 std::vector<std::string> JoinTest::workers() {
   std::vector<std::string> names;
   for (const WorkerView& worker :

@@ -29,6 +29,9 @@ class JoinTest : public WebTest {
   Answer join_post(const std::string& path, const std::string& body);
   /// Returns the workers that are connected, by their names.
   std::vector<std::string> workers();
+  /// Sends messages to a tab that reads none, until its session is ended. It MUST be the only
+  /// worker.
+  void send_until_nobody_is_connected();
   /// Waits until the condition is true.
   template <class Condition>
   static void wait_until(Condition condition) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What simulated farms have in common: their parts, the storm in which things fail, and jobs that
+// The common base of simulated farms: their parts, the storm in which things fail, and jobs that
 // are submitted until the coordinator knows them.
 
 #include <memory>

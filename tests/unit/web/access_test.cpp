@@ -1,4 +1,4 @@
-// Who may use the dashboard: logins, secrets, foreign sites, and limits on connections.
+// Tests access to the dashboard: logins, secrets, foreign sites, and limits on connections.
 
 #include "coordinator/web/access.h"
 
