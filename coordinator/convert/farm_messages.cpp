@@ -210,6 +210,8 @@ farm::JobStatus to_message(const JobView& job) {
   message.set_negative_samples(job.counters.negative_samples);
   message.set_truncated_paths(job.counters.truncated_paths);
   message.set_dropped_primitives(job.counters.dropped_primitives);
+  message.set_techniques(job.counters.techniques);
+  message.set_training_rays(job.counters.training_rays);
   message.set_manifest_sha256(raw_digest(job.spec.manifest));
   message.set_cpu_s(job.cpu_s);
   message.set_priority(job.priority);
@@ -288,6 +290,8 @@ JobView job_view_of(const farm::JobStatus& message) {
   job.counters.negative_samples = message.negative_samples();
   job.counters.truncated_paths = message.truncated_paths();
   job.counters.dropped_primitives = message.dropped_primitives();
+  job.counters.techniques = message.techniques();
+  job.counters.training_rays = message.training_rays();
   job.cpu_s = message.cpu_s();
   job.priority = message.priority();
   job.log_of = message.log_of();

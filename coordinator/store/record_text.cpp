@@ -59,6 +59,8 @@ void write_summary(FieldWriter& out, const record::JobSummary& r) {
   out.number("negative_samples", r.counters.negative_samples);
   out.number("truncated_paths", r.counters.truncated_paths);
   out.number("dropped_primitives", r.counters.dropped_primitives);
+  out.number("techniques", r.counters.techniques);
+  out.number("training_rays", r.counters.training_rays);
   out.number("rays", r.counters.rays);
   out.number("bad_samples", r.counters.bad_samples);
   out.number("bad_x", r.counters.bad_x);
@@ -73,6 +75,10 @@ Counters read_counters(FieldReader& in) {
     counters.negative_samples = in.number("negative_samples");
     counters.truncated_paths = in.number("truncated_paths");
     counters.dropped_primitives = in.number("dropped_primitives");
+  }
+  if (in.next_is("techniques")) {
+    counters.techniques = static_cast<std::uint32_t>(in.number("techniques", UINT32_MAX));
+    counters.training_rays = in.number("training_rays");
   }
   counters.rays = in.number("rays");
   counters.bad_samples = in.number("bad_samples");

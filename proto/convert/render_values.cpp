@@ -47,6 +47,8 @@ farm::Counters to_message(const Counters& counters) {
   message.set_negative_samples(counters.negative_samples);
   message.set_truncated_paths(counters.truncated_paths);
   message.set_dropped_primitives(counters.dropped_primitives);
+  message.set_techniques(counters.techniques);
+  message.set_training_rays(counters.training_rays);
   return message;
 }
 
@@ -58,7 +60,9 @@ Counters counters_of(const farm::Counters& message) {
           .bad_sample = message.bad_sample(),
           .negative_samples = message.negative_samples(),
           .truncated_paths = message.truncated_paths(),
-          .dropped_primitives = message.dropped_primitives()};
+          .dropped_primitives = message.dropped_primitives(),
+          .techniques = message.techniques(),
+          .training_rays = message.training_rays()};
 }
 
 }  // namespace bandsaw

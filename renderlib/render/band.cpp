@@ -72,6 +72,8 @@ void Counters::add(const Counters& other) {
   negative_samples += other.negative_samples;
   truncated_paths += other.truncated_paths;
   dropped_primitives = std::max(dropped_primitives, other.dropped_primitives);
+  techniques |= other.techniques;
+  training_rays = std::max(training_rays, other.training_rays);
 }
 
 }  // namespace bandsaw

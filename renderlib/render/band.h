@@ -80,6 +80,13 @@ struct Counters {
   std::uint64_t truncated_paths = 0;
   /// Scene::dropped_primitives; the same in all bands of a scene.
   std::uint64_t dropped_primitives = 0;
+  /// Sum of what path tracing used besides light and BSDF sampling; the same in all bands of an
+  /// image.
+  std::uint32_t techniques = 0;
+  static constexpr std::uint32_t kPathGuiding = 1;
+  static constexpr std::uint32_t kPhotonMaps = 2;
+  /// Rays of the training and the pilots of guiding, once; the same in all bands of an image.
+  std::uint64_t training_rays = 0;
 
   void add(const Counters& other);
   friend bool operator==(const Counters&, const Counters&) = default;

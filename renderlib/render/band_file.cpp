@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMagicSize = kBandRecordMagic.size();
 constexpr std::size_t kDigestSize = 64;
 constexpr std::uint64_t kHeaderSize =
-    kMagicSize + 8 + kDigestSize + 3 * 4 + 8 + 2 * 8 + 2 * 4 + 2 * 8 + 2 * 4 + 6 * 8;
+    kMagicSize + 8 + kDigestSize + 3 * 4 + 8 + 2 * 8 + 2 * 4 + 2 * 8 + 2 * 4 + 7 * 8 + 4;
 constexpr std::uint64_t kHashSize = 8;
 
 class Writer {
@@ -96,6 +96,9 @@ absl::Status check(const BandRecord& record) {
   if (counters.truncated_paths > most) {
     return absl::InvalidArgumentError("counters: more paths are truncated than there are");
   }
+  if (counters.techniques > (Counters::kPathGuiding | Counters::kPhotonMaps)) {
+    return absl::InvalidArgumentError("counters: unknown techniques");
+  }
   if (!std::isfinite(record.cpu_s) || record.cpu_s < 0) {
     return absl::InvalidArgumentError("cpu_s: must be finite and >= 0");
   }
@@ -130,6 +133,8 @@ Reader read_header(Reader reader, BandRecord& record) {
   reader.number(counters.negative_samples);
   reader.number(counters.truncated_paths);
   reader.number(counters.dropped_primitives);
+  reader.number(counters.techniques);
+  reader.number(counters.training_rays);
   reader.number(record.cpu_s);
   reader.number(record.process);
   return reader;
@@ -192,6 +197,8 @@ absl::StatusOr<std::vector<std::byte>> encode_band_record(const BandRecord& reco
   writer.number(pixels.counters.negative_samples);
   writer.number(pixels.counters.truncated_paths);
   writer.number(pixels.counters.dropped_primitives);
+  writer.number(pixels.counters.techniques);
+  writer.number(pixels.counters.training_rays);
   writer.number(record.cpu_s);
   writer.number(record.process);
   writer.put(pixels.sums.data(), pixels.sums.size() * sizeof(double));

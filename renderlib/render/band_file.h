@@ -4,7 +4,7 @@
 // the coordinator. A file is a sequence of records; each is self-describing.
 //
 // A record, little-endian, no padding:
-//   "BSWBAND3"                                          8 bytes: magic and format version
+//   "BSWBAND4"                                          8 bytes: magic and format version
 //   size of the whole record                            u64
 //   package digest                                      64 lower-case hexadecimal digits
 //   width, height                                       u32 each
@@ -17,6 +17,7 @@
 //   bad_sample                                          u64
 //   negative_samples, truncated_paths                   u64 each
 //   dropped_primitives                                  u64
+//   techniques, training_rays                           u32, u64
 //   cpu_s                                               f64
 //   id of the worker process                            u64
 //   sums                                                f64 x rows x width x 3
@@ -36,7 +37,7 @@
 namespace bandsaw {
 
 /// First bytes of a record; also used to find the next record after a damaged one.
-inline constexpr std::array<char, 8> kBandRecordMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '3'};
+inline constexpr std::array<char, 8> kBandRecordMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '4'};
 
 struct BandRecord {
   std::string package_digest;  ///< 64 lower-case hexadecimal digits

@@ -105,7 +105,10 @@ absl::StatusOr<BandPixels> render_part(const Render& render, const BandPart& par
       .band = band,
       .width = settings.width,
       .sums = std::vector<double>(std::size_t{band.rows.count()} * settings.width * 3),
-      .counters = {.dropped_primitives = render.scene.dropped_primitives()}};
+      .counters = {.dropped_primitives = render.scene.dropped_primitives(),
+                   .techniques = (field != nullptr ? Counters::kPathGuiding : 0) |
+                                 (caustics != nullptr ? Counters::kPhotonMaps : 0),
+                   .training_rays = render.guiding != nullptr ? render.guiding->rays : 0}};
   std::vector<Counters> counters(static_cast<std::size_t>(units.count()));
   std::vector<std::atomic<std::uint32_t>> units_done(units.strips());
   std::atomic<std::uint32_t> rows_done = 0;

@@ -62,10 +62,14 @@ JsonObject time_json(const JobView& job) {
 }
 
 JsonObject work_json(const JobView& job) {
+  const std::uint32_t techniques = job.counters.techniques;
   return JsonObject()
       .whole("samples_per_pixel", job.samples_per_pixel)
       .whole("samples", job.samples_done)
-      .whole("rays", job.counters.rays);
+      .whole("rays", job.counters.rays)
+      .flag("path_guiding", (techniques & Counters::kPathGuiding) != 0)
+      .flag("photon_maps", (techniques & Counters::kPhotonMaps) != 0)
+      .whole("training_rays", job.counters.training_rays);
 }
 
 JsonObject health_json(const Report& report) {

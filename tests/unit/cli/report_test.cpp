@@ -36,7 +36,9 @@ Progress finished() {
                   .bad_samples = 5,
                   .negative_samples = 2,
                   .truncated_paths = 11,
-                  .dropped_primitives = 4};
+                  .dropped_primitives = 4,
+                  .techniques = Counters::kPhotonMaps,
+                  .training_rays = 77};
   job.workers_used = 2;
   job.shares = {{1, "desk", 1000, 3}, {2, "", 536, 1}};
   job.curve = {{32, 1, 2, {.relative_rmse = 0.1}},
@@ -80,6 +82,9 @@ TEST(Report, IsJsonWithAllFields) {
   EXPECT_EQ(at(json, "health", "negative_samples").number_value(), 2);
   EXPECT_EQ(at(json, "health", "truncated_paths").number_value(), 11);
   EXPECT_EQ(at(json, "health", "dropped_primitives").number_value(), 4);
+  EXPECT_FALSE(at(json, "work", "path_guiding").bool_value());
+  EXPECT_TRUE(at(json, "work", "photon_maps").bool_value());
+  EXPECT_EQ(at(json, "work", "training_rays").number_value(), 77);
   EXPECT_EQ(at(json, "hashes", "pixels_sha256").string_value().size(), 64u);
 }
 

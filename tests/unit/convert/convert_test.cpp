@@ -22,7 +22,9 @@ const Counters kCounters{.rays = 1,
                          .bad_sample = 5,
                          .negative_samples = 6,
                          .truncated_paths = 7,
-                         .dropped_primitives = 8};
+                         .dropped_primitives = 8,
+                         .techniques = 3,
+                         .training_rays = 9};
 
 TEST(Convert, SettingsRoundTrip) { EXPECT_EQ(settings_of(to_message(kSettings)), kSettings); }
 

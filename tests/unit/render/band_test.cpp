@@ -125,6 +125,10 @@ TEST(Band, CountersAddUpExceptThoseOfTheScene) {
   EXPECT_EQ(sum.negative_samples, 2u);
   EXPECT_EQ(sum.truncated_paths, 8u);
   EXPECT_EQ(sum.dropped_primitives, 3u);
+  sum.add({.techniques = Counters::kPathGuiding, .training_rays = 5});
+  sum.add({.techniques = Counters::kPhotonMaps, .training_rays = 5});
+  EXPECT_EQ(sum.techniques, Counters::kPathGuiding | Counters::kPhotonMaps);
+  EXPECT_EQ(sum.training_rays, 5u);
 }
 
 }  // namespace

@@ -51,11 +51,11 @@ TEST(RecordText, AJobWithoutAPixelVersionHasNone) {
   EXPECT_EQ(std::get<record::JobAdded>(from_text(text).value()).pixel_version, 0u);
 }
 
-TEST(RecordText, VersionsWithoutBrowsersAreRead) {
+TEST(RecordText, VersionsWithoutTheNewestFieldsAreRead) {
   int fields = 0;
   for (const Record& record : sample_records()) {
     RecordText old = to_text(record);
-    for (const std::string field : {"package_bytes ", "browser "}) {
+    for (const std::string field : {"package_bytes ", "browser ", "techniques ", "training_rays "}) {
       if (const std::size_t at = old.fields.find(field); at != std::string::npos) {
         old.fields.erase(at, old.fields.find('\n', at) + 1 - at);
         ++fields;
@@ -68,6 +68,9 @@ TEST(RecordText, VersionsWithoutBrowsersAreRead) {
     }
     if (const auto* added = std::get_if<record::JobAdded>(&*back)) {
       EXPECT_EQ(added->spec.package_bytes, 0u) << "unknown";
+    }
+    if (const auto* summary = std::get_if<record::JobSummary>(&*back)) {
+      EXPECT_EQ(summary->counters.techniques, 0u);
     }
   }
   EXPECT_GT(fields, 5);
