@@ -23,6 +23,8 @@ struct GuidingKey {
   std::uint32_t width = 0;   ///< pixels
   std::uint32_t height = 0;  ///< pixels
   std::uint32_t max_depth = 0;
+  /// Leaves the field empty, and uses no photon maps, where they do not repay their cost.
+  bool only_if_it_pays = false;
   friend bool operator==(const GuidingKey&, const GuidingKey&) = default;
 };
 
@@ -30,7 +32,7 @@ struct TrainedGuiding {
   GuidingField field;
   std::uint64_t paths = 0;    ///< training paths from the camera
   std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
-  std::uint64_t rays = 0;     ///< rays of both
+  std::uint64_t rays = 0;     ///< rays of both, of pilots and of the first photon map
   /// The casters whose caustics are taken from photon maps (integrate/caustics.h); null: there are
   /// none, or maps do not pay.
   std::shared_ptr<const Casters> casters;

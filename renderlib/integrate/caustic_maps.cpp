@@ -12,7 +12,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr std::uint64_t kChunks = 64;
+constexpr std::uint32_t kChunks = 64;
 
 /// Paths find lamps of more steradians, as seen from the casters, well enough.
 constexpr double kLargestLamp = 0.5;
@@ -31,20 +31,19 @@ std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height) {
 }
 
 std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Casters& casters,
-                                                  const PhotonMapKey& key, Pool& pool,
-                                                  const std::atomic<bool>& stop) {
+                                                  const PhotonMapKey& key,
+                                                  const Preparation& preparation) {
   std::vector<TracedPhotons> chunks(kChunks);
-  pool.parallel_for(kChunks, [&](std::int64_t number) {
-    if (!stop.load(std::memory_order_relaxed)) {
-      const auto i = static_cast<std::uint64_t>(number);
-      chunks[i] = trace_photons(scene, casters,
-                                {.seed = key.seed,
-                                 .map = key.number,
-                                 .photons = key.photons,
-                                 .first = key.photons * i / kChunks,
-                                 .last = key.photons * (i + 1) / kChunks});
-    }
-  });
+  if (!preparation.run(kChunks, [&](std::uint64_t i) {
+        chunks[i] = trace_photons(scene, casters,
+                                  {.seed = key.seed,
+                                   .map = key.number,
+                                   .photons = key.photons,
+                                   .first = key.photons * i / kChunks,
+                                   .last = key.photons * (i + 1) / kChunks});
+      })) {
+    return nullptr;
+  }
   TracedMap traced;
   std::vector<CausticPhoton> photons;
   double power_by_angle = 0;
@@ -58,12 +57,14 @@ std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Cast
   }
   traced.lamp_angle = power > 0 ? power_by_angle / power : 0;
   const double factor = pow(key.number + 1.0, -1.0 / 6);
-  traced.map = PhotonMap(std::move(photons), factor, pool, [&](const CausticPhoton& photon) {
-    return stop.load(std::memory_order_relaxed) ? 1 : share_on_surface(scene, photon);
-  });
-  return stop.load(std::memory_order_relaxed)
-             ? nullptr
-             : std::make_shared<const TracedMap>(std::move(traced));
+  traced.map =
+      PhotonMap(std::move(photons), factor, preparation.pool, [&](const CausticPhoton& photon) {
+        return preparation.stopped() ? 1 : share_on_surface(scene, photon);
+      });
+  if (preparation.step) {
+    preparation.step();
+  }
+  return preparation.stopped() ? nullptr : std::make_shared<const TracedMap>(std::move(traced));
 }
 
 bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
@@ -72,8 +73,7 @@ bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
     return is_hidden_lamp(material) || nested_glass(material) != nullptr ||
            (mix != nullptr && (casters.casts(mix->a) || casters.casts(mix->b)));
   };
-  return !casters.empty() && casters.complete() && has_emissive_surface(scene) &&
-         !scene.moves() &&
+  return !casters.empty() && casters.complete() && has_emissive_surface(scene) && !scene.moves() &&
          std::none_of(scene.materials().begin(), scene.materials().end(), hinders);
 }
 

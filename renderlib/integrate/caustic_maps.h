@@ -2,13 +2,12 @@
 
 // The photon maps of a scene, and whether they pay.
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 
-#include "renderlib/base/pool.h"
 #include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/integrate/casters.h"
+#include "renderlib/integrate/preparation.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
@@ -20,10 +19,10 @@ std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height);
 /// Traces and builds a map: a pure function of the scene and the key. The radii fall with the
 /// number of the map, so that the mean over maps converges to the irradiance (Knaus and Zwicker
 /// 2011, "Progressive Photon Mapping: A Probabilistic Approach", section 4, alpha = 2/3). Returns
-/// nullptr if `stop` was set.
+/// nullptr if it was stopped.
 std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Casters& casters,
-                                                  const PhotonMapKey& key, Pool& pool,
-                                                  const std::atomic<bool>& stop);
+                                                  const PhotonMapKey& key,
+                                                  const Preparation& preparation);
 
 /// Returns true if the scene has what photon maps can find: complete casters and emissive surfaces,
 /// and neither motion, nor glass with priorities, nor mixtures with casters, nor hidden lamps,

@@ -1,6 +1,6 @@
 // The rounds of the training: photons, a small round of paths, a large round of paths. Each is
 // divided among a fixed number of chunks, which the threads trace, and whose records are joined in
-// order.
+// order. A pilot of the same rounds, with fewer photons and paths, tells whether that pays.
 
 #include "renderlib/integrate/guiding_training.h"
 
@@ -12,6 +12,7 @@
 #include "renderlib/integrate/casters.h"
 #include "renderlib/integrate/caustic_maps.h"
 #include "renderlib/integrate/caustics.h"
+#include "renderlib/integrate/guiding_gain.h"
 #include "renderlib/integrate/training_paths.h"
 #include "renderlib/integrate/training_photons.h"
 
@@ -23,75 +24,120 @@ constexpr std::uint32_t kChunks = 64;
 /// Smaller and larger images are trained like images of this many pixels.
 constexpr std::uint64_t kMinTrainingPixels = 1 << 15;
 constexpr std::uint64_t kMaxTrainingPixels = 1 << 18;
+/// The pilot, from which the gain of guiding is estimated, is trained like this many.
+constexpr std::uint64_t kPilotPixels = 1 << 13;
 
 /// Runs the chunks of a round and appends their records in order. Returns false if stopped.
 template <class OfChunk>
-bool add_round(std::uint32_t round, std::uint64_t count, Pool& pool, const std::atomic<bool>& stop,
+bool add_round(std::uint32_t round, std::uint64_t count, const Preparation& preparation,
                std::vector<GuidingRecord>& records, TrainedGuiding& trained,
                const OfChunk& of_chunk) {
   std::vector<TrainingRecords> chunks(kChunks);
-  pool.parallel_for(kChunks, [&](std::int64_t number) {
-    if (!stop.load(std::memory_order_relaxed)) {
-      const auto chunk = static_cast<std::uint32_t>(number);
-      chunks[chunk] = of_chunk(TrainingChunk{round, chunk, count / kChunks});
-    }
-  });
+  if (!preparation.run(kChunks, [&](std::uint32_t chunk) {
+        chunks[chunk] = of_chunk(TrainingChunk{round, chunk, count / kChunks});
+      })) {
+    return false;
+  }
   for (const TrainingRecords& chunk : chunks) {
     records.insert(records.end(), chunk.records.begin(), chunk.records.end());
     trained.rays += chunk.rays;
   }
-  trained.field = GuidingField(records, pool);
-  return !stop.load(std::memory_order_relaxed);
+  trained.field = GuidingField(records, preparation.pool);
+  return !preparation.stopped();
 }
 
-}  // namespace
-
-std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
-                                                    Pool& pool, const std::atomic<bool>& stop,
-                                                    bool caustic_maps) {
-  const std::uint64_t pixels =
-      std::clamp(std::uint64_t{key.width} * key.height, kMinTrainingPixels, kMaxTrainingPixels);
+/// Trains as for an image of this many pixels: with photons that start at `casters` unless that is
+/// null, and with paths. `caustics` may be null. Returns std::nullopt if stopped.
+std::optional<TrainedGuiding> train(const Scene& scene, const GuidingKey& key, std::uint64_t pixels,
+                                    const Casters* casters, const CausticMaps* caustics,
+                                    const Preparation& preparation) {
   TrainedGuiding trained;
   std::vector<GuidingRecord> records;
-  const auto casters = std::make_shared<const Casters>(scene);
-  std::shared_ptr<const TracedMap> map;
-  std::optional<CausticMaps> caustics;
-  if (caustic_maps && can_have_caustic_maps(scene, *casters)) {
-    constexpr std::uint64_t kSeed = 0x5bd1e9a74c3f2d86;
-    map = make_caustic_map(scene, *casters,
-                           {.seed = kSeed, .photons = photons_of_map(key.width, key.height)}, pool,
-                           stop);
-    if (map == nullptr) {
-      return nullptr;
-    }
-    trained.rays += map->rays;
-    if (pays(*map)) {
-      trained.casters = casters;
-      caustics.emplace(*casters).use_for_all(map->map);
-    }
-  }
-  if (!casters->empty() && scene.features().lights) {
+  if (casters != nullptr && !casters->empty() && scene.features().lights) {
     trained.photons = 2 * pixels / kChunks * kChunks;
     const auto photons = [&](const TrainingChunk& chunk) {
-      return training_photons(scene, *casters, key, chunk, trained.photons, caustics.has_value());
+      return training_photons(scene, *casters, key, chunk, trained.photons, caustics != nullptr);
     };
-    if (!add_round(0, trained.photons, pool, stop, records, trained, photons)) {
-      return nullptr;
+    if (!add_round(0, trained.photons, preparation, records, trained, photons)) {
+      return std::nullopt;
     }
   }
   for (std::uint32_t round = 1; round <= 2; ++round) {
     const std::uint64_t count = pixels / (round == 1 ? 4 : 2) / kChunks * kChunks;
     const GuidingField field = std::move(trained.field);
     const auto paths = [&](const TrainingChunk& chunk) {
-      return training_paths(scene, key, chunk, field.cells() == 0 ? nullptr : &field,
-                            caustics ? &*caustics : nullptr);
+      return training_paths(scene, key, chunk, field.cells() == 0 ? nullptr : &field, caustics);
     };
     trained.paths += count;
-    if (!add_round(round, count, pool, stop, records, trained, paths)) {
+    if (!add_round(round, count, preparation, records, trained, paths)) {
+      return std::nullopt;
+    }
+  }
+  return trained;
+}
+
+/// Trains a pilot and returns what it promises; std::nullopt if stopped.
+std::optional<GuidingGain> pilot(const Scene& scene, const GuidingKey& key, const Casters& casters,
+                                 const CausticMaps* caustics, const Preparation& preparation,
+                                 std::uint64_t& rays) {
+  const std::optional<TrainedGuiding> trained =
+      train(scene, key, kPilotPixels, &casters, caustics, preparation);
+  if (!trained) {
+    return std::nullopt;
+  }
+  rays += trained->rays;
+  return expected_gain(scene, key, trained->field, caustics, preparation.pool);
+}
+
+}  // namespace
+
+std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
+                                                    const Preparation& preparation,
+                                                    bool caustic_maps) {
+  const auto casters = std::make_shared<const Casters>(scene);
+  std::uint64_t rays = 0;
+  std::optional<GuidingGain> gain;  // set if it decides
+  if (key.only_if_it_pays) {
+    gain = pilot(scene, key, *casters, nullptr, preparation, rays);
+    if (!gain) {
       return nullptr;
     }
   }
-  return std::make_shared<const TrainedGuiding>(std::move(trained));
+  std::shared_ptr<const TracedMap> map;
+  std::optional<CausticMaps> caustics;
+  if (caustic_maps && (!gain || gain->maps_pay()) && can_have_caustic_maps(scene, *casters)) {
+    constexpr std::uint64_t kSeed = 0x5bd1e9a74c3f2d86;
+    map = make_caustic_map(scene, *casters,
+                           {.seed = kSeed, .photons = photons_of_map(key.width, key.height)},
+                           preparation);
+    if (map == nullptr) {
+      return nullptr;
+    }
+    rays += map->rays;
+    if (pays(*map)) {
+      caustics.emplace(*casters).use_for_all(map->map);
+    }
+  }
+  const CausticMaps* const maps = caustics ? &*caustics : nullptr;
+  if (gain && maps != nullptr) {  // what is left for the field
+    gain = pilot(scene, key, *casters, maps, preparation, rays);
+    if (!gain) {
+      return nullptr;
+    }
+  }
+  std::optional<TrainedGuiding> trained = TrainedGuiding();
+  const bool with_photons = !gain || gain->photons_pay();
+  if (with_photons || gain->paths_pay()) {
+    const std::uint64_t pixels =
+        std::clamp(std::uint64_t{key.width} * key.height, kMinTrainingPixels, kMaxTrainingPixels);
+    trained = train(scene, key, pixels, with_photons ? casters.get() : nullptr, maps, preparation);
+    if (!trained) {
+      return nullptr;
+    }
+  }
+  trained->rays += rays;
+  trained->casters = caustics ? casters : nullptr;
+  return std::make_shared<const TrainedGuiding>(*std::move(trained));
 }
 
 }  // namespace bandsaw

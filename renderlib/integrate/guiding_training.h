@@ -8,12 +8,11 @@
 // Photons come first (training_photons.h); the field of their records guides the first round of
 // paths (training_paths.h), and the field of all records so far the second, larger round.
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 
-#include "renderlib/base/pool.h"
 #include "renderlib/guiding/guiding_field.h"
+#include "renderlib/integrate/preparation.h"
 #include "renderlib/integrate/training_paths.h"
 #include "renderlib/scene/scene.h"
 
@@ -24,9 +23,9 @@ namespace bandsaw {
 /// path and each photon that arrives become records, which take at most 2 x 93 MB during the
 /// training. With `caustic_maps` and where they pay, the caustics of receivers come from a photon
 /// map (caustics.h), and the field does not learn them; that is for paths that take them from
-/// photon maps as well, which TrainedGuiding::casters tells. Returns nullptr if `stop` was set.
+/// photon maps as well, which TrainedGuiding::casters tells. Returns nullptr if it was stopped.
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
-                                                    Pool& pool, const std::atomic<bool>& stop,
+                                                    const Preparation& preparation,
                                                     bool caustic_maps = false);
 
 }  // namespace bandsaw

@@ -235,6 +235,25 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
   return bsdf_at(material, scene.textures(), point, wo, outside_index);
 }
 
+/// Returns the caustics that a receiver scatters along the path. Beyond an earlier receiver they
+/// are looked up in one of four consecutive samples, which stands for all: they are a small part of
+/// the light there, and looking them up takes longer than the rest of the scattering.
+Rgb caustics_at(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
+                std::uint32_t depth, const PathState& path) {
+  constexpr std::uint64_t kSamplesOfOne = 4;
+  std::uint64_t stands_for = 1;
+  if (path.after_receiver) {
+    const double first = context.sampler.stream(0, group_bsdf(depth)).next() * kSamplesOfOne;
+    if ((context.sample + static_cast<std::uint64_t>(first)) % kSamplesOfOne != 0) {
+      return {};
+    }
+    stands_for = kSamplesOfOne;
+  }
+  return caustic_radiance(context.options.caustics->of_sample(context.sample), point, bsdf,
+                          -path.ray.direction, context.scatterings_left(path, depth)) *
+         static_cast<float>(stands_for);
+}
+
 bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
              const GuidingCones& cones, std::uint32_t depth, PathState& path) {
   const Scene& scene = context.scene;
@@ -250,9 +269,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
                                ? CausticRole::kOther
                                : caustic_role(options.caustics->casters(), point.material, bsdf);
   if (role == CausticRole::kReceiver) {
-    path.radiance += path.throughput * caustic_radiance(options.caustics->of_sample(context.sample),
-                                                        point, bsdf, -path.ray.direction,
-                                                        context.scatterings_left(path, depth));
+    path.radiance += path.throughput * caustics_at(context, point, bsdf, depth, path);
   }
 
   // Light sampling, on the side from which the path came and, where only light sampling reaches
@@ -296,6 +313,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   path.chain = role == CausticRole::kReceiver && !next->delta           ? 0
                : role == CausticRole::kCaster && path.chain != kNoChain ? path.chain + 1
                                                                         : kNoChain;
+  path.after_receiver = path.after_receiver || (role == CausticRole::kReceiver && !next->delta);
   if (is_last && !next->delta) {
     if (scene.background().environment) {
       path.radiance +=

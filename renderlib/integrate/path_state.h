@@ -33,6 +33,7 @@ struct PathState {
   /// Number of casters since the last receiver (integrate/caustics.h); kNoChain where there was
   /// another scattering in between, or no receiver.
   std::uint32_t chain = kNoChain;
+  bool after_receiver = false;     ///< a receiver of caustics has scattered the path
   bool truncated = false;          ///< see PathCounts::truncated
   NestedDielectrics nesting = {};  ///< glasses that contain the path
 };

@@ -264,6 +264,16 @@ void add_render(Hash64& hash, const SceneDescription& description, const RenderS
   hash.add(pixels->counters.rays);
 }
 
+/// Path tracing without a pilot, which would take longer than these renders.
+RenderSettings path(std::uint32_t width, std::uint32_t height, std::uint32_t max_depth,
+                    std::uint64_t seed) {
+  return {.width = width,
+          .height = height,
+          .max_depth = max_depth,
+          .seed = seed,
+          .integrator = Integrator::kPathPlain};
+}
+
 }  // namespace
 
 std::uint64_t canary(const Kernel* kernel) {
@@ -271,18 +281,15 @@ std::uint64_t canary(const Kernel* kernel) {
   Hash64 hash;
   hash.add(std::uint64_t{kPixelVersion});
   chosen.add_elementary_functions(hash);
-  add_render(hash, every_feature(), {.width = 12, .height = 9, .max_depth = 8, .seed = 20260},
-             chosen);
-  add_render(hash, through_a_lens(), {.width = 4, .height = 3, .max_depth = 3, .seed = 1}, chosen);
-  add_render(hash, flat_view(), {.width = 4, .height = 3, .max_depth = 3, .seed = 2}, chosen);
-  add_render(hash, lit_from_outside(), {.width = 6, .height = 4, .max_depth = 4, .seed = 4},
-             chosen);
-  add_render(hash, in_smoke(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4}, chosen);
-  add_render(hash, in_a_cloud(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4}, chosen);
-  add_render(hash, of_other_materials(), {.width = 12, .height = 9, .max_depth = 6, .seed = 9},
-             chosen);
-  add_render(hash, room(), {.width = 20, .height = 4, .max_depth = 5, .seed = 5}, chosen);
-  add_render(hash, outdoors(), {.width = 8, .height = 6, .max_depth = 5, .seed = 6}, chosen);
+  add_render(hash, every_feature(), path(12, 9, 8, 20260), chosen);
+  add_render(hash, through_a_lens(), path(4, 3, 3, 1), chosen);
+  add_render(hash, flat_view(), path(4, 3, 3, 2), chosen);
+  add_render(hash, lit_from_outside(), path(6, 4, 4, 4), chosen);
+  add_render(hash, in_smoke(), path(6, 4, 5, 4), chosen);
+  add_render(hash, in_a_cloud(), path(6, 4, 5, 4), chosen);
+  add_render(hash, of_other_materials(), path(12, 9, 6, 9), chosen);
+  add_render(hash, room(), path(20, 4, 5, 5), chosen);
+  add_render(hash, outdoors(), path(8, 6, 5, 6), chosen);
   for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,
                                       Integrator::kAlbedo, Integrator::kAmbientOcclusion}) {
     add_render(hash, flat_view(),

@@ -10,6 +10,7 @@
 #include "renderlib/integrate/caustic_maps.h"
 #include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/guiding_training.h"
+#include "renderlib/integrate/preparation.h"
 #include "renderlib/render/band_parts.h"
 #include "renderlib/render/kernel_code.h"
 #include "renderlib/render/pixel_sums.h"
@@ -98,7 +99,9 @@ absl::StatusOr<BandPixels> render_part(const Render& render, const BandPart& par
                                        const CausticMaps* caustics, const RowsDone& progress) {
   const RenderSettings& settings = render.settings;
   const Band& band = part.band;
-  const GuidingField* const field = render.guiding != nullptr ? &render.guiding->field : nullptr;
+  const GuidingField* const field = render.guiding != nullptr && render.guiding->field.cells() > 0
+                                        ? &render.guiding->field
+                                        : nullptr;
   const PixelSums pixel_sums(render.scene, settings, band, field, caustics, render.stop);
   const Units units(pixel_sums, band, {settings.width, settings.height});
   BandPixels pixels{
@@ -138,6 +141,11 @@ absl::StatusOr<BandPixels> render_part(const Render& render, const BandPart& par
   return pixels;
 }
 
+/// Returns a preparation that reports its steps as 0 rows.
+Preparation preparation_of(Pool& pool, const std::atomic<bool>& stop, const RowsDone& progress) {
+  return {pool, stop, progress ? [&progress] { progress(0); } : std::function<void()>()};
+}
+
 /// Maximum number of photon maps that are in use at the same time for a band.
 constexpr std::size_t kMaxMaps = 8;
 static_assert(CausticMaps::kMinSamplesOfMap % kBlockSamples == 0, "a block has one photon map");
@@ -148,7 +156,8 @@ absl::StatusOr<BandPixels> render_with_maps(const Render& render, const BandPart
   const std::vector<std::uint32_t> numbers = maps_of(part);
   if (numbers.size() > kMaxMaps) {
     const auto [first, second] = halves_of(part, render.settings.width);
-    ASSIGN_OR_RETURN(BandPixels pixels, render_with_maps(render, first, {}));
+    const RowsDone no_rows = progress ? [&progress](std::uint32_t) { progress(0); } : RowsDone();
+    ASSIGN_OR_RETURN(BandPixels pixels, render_with_maps(render, first, no_rows));
     ASSIGN_OR_RETURN(const BandPixels more, render_with_maps(render, second, progress));
     for (std::size_t i = 0; i < pixels.sums.size(); ++i) {
       pixels.sums[i] += more.sums[i];
@@ -164,7 +173,8 @@ absl::StatusOr<BandPixels> render_with_maps(const Render& render, const BandPart
   for (const std::uint32_t number : numbers) {
     const PhotonMapKey key{settings.seed, number, photons_of_map(settings.width, settings.height)};
     maps.push_back(render.scene.guiding().get_map(key, [&] {
-      return make_caustic_map(render.scene, casters, key, render.pool, render.stop);
+      return make_caustic_map(render.scene, casters, key,
+                              preparation_of(render.pool, render.stop, progress));
     }));
     if (maps.back() == nullptr) {
       return stopped();
@@ -183,9 +193,11 @@ absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
                                                    const TileSamples& tiles) {
   RETURN_IF_ERROR(validate(band, settings));
   std::shared_ptr<const TrainedGuiding> guiding;
-  if (settings.integrator == Integrator::kPathGuided) {
-    const GuidingKey key{settings.width, settings.height, settings.max_depth};
-    guiding = scene.guiding().get(key, [&] { return train_guiding(scene, key, pool, stop, true); });
+  if (settings.integrator == Integrator::kPathGuided || settings.integrator == Integrator::kPath) {
+    const GuidingKey key{settings.width, settings.height, settings.max_depth,
+                         settings.integrator == Integrator::kPath};
+    guiding = scene.guiding().get(
+        key, [&] { return train_guiding(scene, key, preparation_of(pool, stop, progress), true); });
     if (guiding == nullptr) {
       return stopped();
     }

@@ -15,7 +15,8 @@
 namespace bandsaw {
 
 /// Called from a pool thread each time a row is complete, with the number of complete rows (each
-/// value 1..rows once, possibly out of order); MUST be fast and thread-safe.
+/// value 1..rows once, possibly out of order), and with 0 after each step of a preparation
+/// (integrate/preparation.h); MUST be fast and thread-safe.
 using RowsDone = std::function<void(std::uint32_t)>;
 
 /// Renders the band. The pixels depend only on scene, settings and band. `tiles` says which samples

@@ -10,10 +10,10 @@ namespace bandsaw {
 namespace {
 
 constexpr std::array<absl::string_view, kLastGuideIntegrator + 1> kNames = {
-    "path",         "direct",          "normals",
-    "depth",        "albedo",          "ambient_occlusion",
-    "path_lights",  "path_scattering", "path_guided",
-    "guide_albedo", "guide_shape"};
+    "path",        "direct",          "normals",
+    "depth",       "albedo",          "ambient_occlusion",
+    "path_lights", "path_scattering", "path_guided",
+    "path_plain",  "guide_albedo",    "guide_shape"};
 
 }  // namespace
 

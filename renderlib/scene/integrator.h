@@ -12,30 +12,33 @@ namespace bandsaw {
 
 /// The values are used in protocols and files.
 enum class Integrator {
-  kPath = 0,     ///< path tracing (integrate/path.h)
+  /// Path tracing (integrate/path.h). As kPathGuided where a pilot shows that it pays
+  /// (integrate/guiding_gain.h), otherwise as kPathPlain.
+  kPath = 0,
   kDirect = 1,   ///< direct light and the ambient term; paths continue at mirrors and glass
   kNormals = 2,  ///< (n + 1) / 2 of the shading normal in world space; black for a miss
   kDepth = 3,    ///< distance to the surface along the ray, scene units; 0 for a miss
   kAlbedo = 4,   ///< albedo (material/albedo.h); black for a miss
   /// Share of cosine-weighted directions without a nearby surface; 1 for a miss.
   kAmbientOcclusion = 5,
-  kPathLights = 6,      ///< kPath with light sampling alone, where a BSDF has a pdf
-  kPathScattering = 7,  ///< kPath with BSDF sampling alone
-  /// kPath with path guiding (integrate/guiding_training.h), and caustics from photon maps where
-  /// they pay (integrate/caustics.h).
+  kPathLights = 6,      ///< kPathPlain with light sampling alone, where a BSDF has a pdf
+  kPathScattering = 7,  ///< kPathPlain with BSDF sampling alone
+  /// Path tracing with path guiding (integrate/guiding_training.h), and caustics from photon maps
+  /// where the lamps are small (integrate/caustics.h).
   kPathGuided = 8,
+  kPathPlain = 9,  ///< path tracing without guiding and photon maps
 };
-inline constexpr int kLastIntegrator = 8;
+inline constexpr int kLastIntegrator = 9;
 
 /// Returns true for those that path_radiance (integrate/path.h) computes.
 constexpr bool computes_radiance(Integrator integrator) {
   return integrator == Integrator::kPath || integrator == Integrator::kDirect ||
          integrator == Integrator::kPathLights || integrator == Integrator::kPathScattering ||
-         integrator == Integrator::kPathGuided;
+         integrator == Integrator::kPathGuided || integrator == Integrator::kPathPlain;
 }
 
 /// Returns "path", "direct", "normals", "depth", "albedo", "ambient_occlusion", "path_lights",
-/// "path_scattering" or "path_guided".
+/// "path_scattering", "path_guided" or "path_plain".
 absl::string_view integrator_name(Integrator integrator);
 std::optional<Integrator> integrator_named(absl::string_view name);
 

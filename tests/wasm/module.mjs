@@ -22,7 +22,7 @@ function wasi(memory) {
   }, {get: (known, name) => known[name] ?? (() => refused)});
 }
 
-/** Loads a module. All of its imports are functions of WASI; each gets an implementation. */
+/** Loads a module. Its imports are functions of WASI; each gets an implementation. */
 export async function load(file) {
   const module = await WebAssembly.compile(readFileSync(file));
   let instance;

@@ -98,7 +98,8 @@ absl::StatusOr<std::uint32_t> BrowserRenderer::row_step(const wire::Digest& mani
   return found->second.scene->reuses_paths() ? kTileSide : 1;
 }
 
-absl::StatusOr<BandPixels> BrowserRenderer::render(const Task& task, const RowRange& rows) {
+absl::StatusOr<BandPixels> BrowserRenderer::render(const Task& task, const RowRange& rows,
+                                                   const std::function<void()>& step) {
   const auto found = scenes_.find(task.manifest);
   if (found == scenes_.end()) {
     return not_loaded();
@@ -109,8 +110,13 @@ absl::StatusOr<BandPixels> BrowserRenderer::render(const Task& task, const RowRa
         absl::StrCat("rows ", rows.first, ":", rows.last, " do not lie in the band"));
   }
   const std::atomic<bool> never{false};
+  const auto progress = [&](std::uint32_t rows_done) {
+    if (rows_done == 0) {
+      step();
+    }
+  };
   return render_band(*found->second.scene, task.settings,
-                     {.samples = task.band.samples, .rows = rows}, pool_, never, nullptr,
+                     {.samples = task.band.samples, .rows = rows}, pool_, never, progress,
                      task.tiles);
 }
 

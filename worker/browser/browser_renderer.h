@@ -4,6 +4,7 @@
 // The page's JavaScript fetches the blobs and checks their digests.
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -46,7 +47,9 @@ class BrowserRenderer {
 
   /// Renders rows of a task's band; the sums are those of the same rows in the whole band.
   /// NOT_FOUND: the scene is not loaded. INVALID_ARGUMENT: the rows do not lie in the band.
-  absl::StatusOr<BandPixels> render(const Task& task, const RowRange& rows);
+  /// `step` is called after each step of what the renderer prepares before the first row.
+  absl::StatusOr<BandPixels> render(const Task& task, const RowRange& rows,
+                                    const std::function<void()>& step);
   /// Returns the rows as 8-bit sRGB, 4 bytes a pixel, the last of them 255, with the scene's
   /// exposure and tone. Pixels without samples are black. `pixels`: of render() with `task`.
   std::vector<std::uint8_t> picture(const Task& task, const BandPixels& pixels) const;

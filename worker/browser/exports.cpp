@@ -27,6 +27,13 @@
 #include "worker/browser/json_text.h"
 #include "worker/session/lease_task.h"
 
+#ifdef __wasm__
+/// Defined by the page: tells that a step of what the renderer prepares is done.
+extern "C" __attribute__((import_module("page"), import_name("step"))) void page_step();
+#else
+static void page_step() {}
+#endif
+
 namespace {
 
 using bandsaw::worker::Answerer;
@@ -334,7 +341,8 @@ const BandsawAnswer* bandsaw_renderer_render(BandsawRenderer* renderer, const vo
       return absl::InvalidArgumentError("the lease is no message");
     }
     ASSIGN_OR_RETURN(renderer->task, bandsaw::worker::task_of(lease));
-    ASSIGN_OR_RETURN(renderer->pixels, renderer->renderer.render(renderer->task, {first, last}));
+    ASSIGN_OR_RETURN(renderer->pixels,
+                     renderer->renderer.render(renderer->task, {first, last}, page_step));
     return absl::OkStatus();
   };
   const absl::Status status = render();

@@ -118,7 +118,9 @@ absl::StatusOr<FinishedBand> Executor::render(Running& running) {
                                           *scene, task.settings, task.band, pool_, running.stop,
                                           [&](std::uint32_t rows_done) {
                                             events_.rendering(task.id, rows_done);
-                                            reach(running, Reached::kRows);
+                                            if (rows_done > 0) {
+                                              reach(running, Reached::kRows);
+                                            }
                                           },
                                           task.tiles));
   return FinishedBand{.task = task, .pixels = std::move(pixels), .cost = cost_since(began)};

@@ -18,7 +18,8 @@
 namespace bandsaw::worker {
 
 /// Callbacks, called from the executor's and the pool's threads; MUST be quick. For each task:
-/// preparing and rendering any number of times, then finished or failed once. A task that is
+/// preparing and rendering any number of times, then finished or failed once. `rows_done` is 0 when
+/// rendering begins and after each step of what the renderer prepares (RowsDone). A task that is
 /// stopped gets no further callbacks.
 struct ExecutorEvents {
   std::function<void(TaskId, std::uint64_t prepared)> preparing;

@@ -204,11 +204,18 @@ void Session::preparing(TaskId task, std::uint64_t prepared) {
   }
 }
 
-void Session::rendering(TaskId task, std::uint32_t rows_done) {
-  if (Held* held = find(task)) {
-    held->stage = Stage::kRendering;
-    held->rows_done = std::max(held->rows_done, rows_done);  // calls may arrive out of order
+bool Session::rendering(TaskId task, std::uint32_t rows_done) {
+  Held* held = find(task);
+  if (held == nullptr) {
+    return false;
   }
+  const bool first = held->stage != Stage::kRendering;
+  held->stage = Stage::kRendering;
+  if (rows_done == 0) {
+    ++held->prepared;
+  }
+  held->rows_done = std::max(held->rows_done, rows_done);  // calls may arrive out of order
+  return first;
 }
 
 bool Session::finished(TaskId task) {

@@ -71,8 +71,10 @@ class Session {
   // Rendering. Calls for a band that is not held have no effect.
   /// Notes progress of the preparation; `prepared` only increases (Heartbeat in farm.proto).
   void preparing(TaskId task, std::uint64_t prepared);
-  /// Notes that `rows_done` rows of the band are rendered.
-  void rendering(TaskId task, std::uint32_t rows_done);
+  /// Notes that `rows_done` rows of the band are rendered. With 0 rendering has begun, or the
+  /// renderer has done another step of what it prepares; that counts as progress of the
+  /// preparation. Returns true if it is the first call for this band.
+  bool rendering(TaskId task, std::uint32_t rows_done);
   /// Marks a band as finished. False: its lease was revoked, discard the pixels.
   bool finished(TaskId task);
   /// Removes a failed band. Returns the message to send, or std::nullopt if not connected. Then the

@@ -58,8 +58,7 @@ void SharedSession::preparing(TaskId task, std::uint64_t prepared) {
 
 void SharedSession::rendering(TaskId task, std::uint32_t rows_done) {
   MutexLock lock(mutex_);
-  session_.rendering(task, rows_done);
-  if (rows_done == 0) {
+  if (session_.rendering(task, rows_done)) {
     queue_->beat_now();
   }
 }

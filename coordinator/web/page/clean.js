@@ -8,7 +8,8 @@ const modes = {raw: "As rendered", clean: "Clean", both: "Side by side"};
 
 /// Returns true if the integrator computes light; other images have no noise to remove.
 const hasLight = (status) =>
-  [undefined, "INTEGRATOR_PATH", "INTEGRATOR_DIRECT", "INTEGRATOR_PATH_LIGHTS", "INTEGRATOR_PATH_SCATTERING", "INTEGRATOR_PATH_GUIDED"].includes(status.settings.integrator);
+  [undefined, "INTEGRATOR_PATH", "INTEGRATOR_DIRECT", "INTEGRATOR_PATH_LIGHTS", "INTEGRATOR_PATH_SCATTERING", "INTEGRATOR_PATH_GUIDED",
+    "INTEGRATOR_PATH_PLAIN"].includes(status.settings.integrator);
 
 function words(state) {
   switch (state.state) {

@@ -1,5 +1,6 @@
 // A worker that renders rows of bands, one core. It answers each message {id, call, …} with {id, value} or {id, error};
-// `fatal`: the instance cannot be used any more, because it had no memory left or is wrong.
+// `fatal`: the instance cannot be used any more, because it had no memory left or is wrong. While it prepares what it needs
+// before the first row, it sends {step: true} now and then.
 
 import {Program} from "/join_wasm.js";
 
@@ -8,7 +9,7 @@ let renderer;
 
 const calls = {
   async start({module}) {
-    program = await Program.start(module);
+    program = await Program.start(module, () => postMessage({step: true}));
     renderer = program.run("renderer_new");
   },
   /// Returns the blobs that the scene needs: [{digest, size}…].

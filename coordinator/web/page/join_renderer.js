@@ -25,6 +25,7 @@ export class Renderer {
     this.lastId = 0;
     this.busy = false;
     this.leaving = false;
+    this.step = () => {};     // called after each step of what is prepared before the first row
     this.worker = new Worker("/join_render.js", {type: "module"});
     this.worker.onmessage = ({data}) => this.answer(data);
     this.worker.onerror = (event) => {
@@ -36,7 +37,11 @@ export class Renderer {
     this.ready.catch((error) => this.end(error.message));
   }
 
-  answer({id, value, error, fatal}) {
+  answer({id, value, error, fatal, step}) {
+    if (step) {
+      this.step();
+      return;
+    }
     if (fatal) {
       this.end(error);
       return;

@@ -360,6 +360,9 @@ async function renderRows(renderer, task) {
   }
   task.rowsGiven = last;
   look();
+  renderer.step = () => {
+    if (tasks.get(task.id) === task) program.bytes("session_rendering", session, task.id, 0, new Uint8Array(0));
+  };
   const {sums, counters, seconds, rgb} = await renderer.ask("render", {lease: task.lease, first, last, picture: true});
   const samples = task.samples * (last - first) / (task.last - task.first);
   const now = performance.now() / 1000;

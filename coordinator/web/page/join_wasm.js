@@ -46,8 +46,8 @@ function system(memory) {
 }
 
 /// Returns what the module imports. A function that is not known fails when it is called.
-function imports(module, memory) {
-  const known = system(memory);
+function imports(module, memory, step) {
+  const known = {...system(memory), step};
   const out = {};
   for (const {module: from, name, kind} of WebAssembly.Module.imports(module)) {
     if (kind !== "function") throw new Error(`bandsaw.wasm wants ${from}.${name}, which a page does not have`);
@@ -58,9 +58,10 @@ function imports(module, memory) {
 
 /// One instance of the module.
 export class Program {
-  static async start(module) {
+  /// `step`: called by the renderer after each step of what it prepares before the first row.
+  static async start(module, step = () => {}) {
     const program = new Program();
-    const instance = await WebAssembly.instantiate(module, imports(module, () => program.memory));
+    const instance = await WebAssembly.instantiate(module, imports(module, () => program.memory, step));
     program.functions = instance.exports;
     program.memory = instance.exports.memory;
     program.functions._initialize?.();

@@ -30,8 +30,8 @@ std::shared_ptr<const TracedMap> map_of(const Scene& scene, const Casters& caste
                                         std::uint32_t number, std::uint64_t photons,
                                         int threads = 2) {
   Pool pool(threads);
-  return make_caustic_map(scene, casters, {.seed = 3, .number = number, .photons = photons}, pool,
-                          kGoOn);
+  return make_caustic_map(scene, casters, {.seed = 3, .number = number, .photons = photons},
+                          {pool, kGoOn});
 }
 
 /// The radiance that a surface of reflectance 1/2 should scatter from this point to the eye.
@@ -48,7 +48,7 @@ void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expe
   std::vector<test::Moments> moments(expected.size());
   for (std::uint64_t seed = 0; seed < 48; ++seed) {
     const auto map =
-        make_caustic_map(scene, casters, {.seed = seed, .photons = 1 << 15}, pool, kGoOn);
+        make_caustic_map(scene, casters, {.seed = seed, .photons = 1 << 15}, {pool, kGoOn});
     CausticMaps caustics(casters);
     caustics.use_for_all(map->map);
     const PathOptions options{.max_depth = 2, .caustics = &caustics};
@@ -221,7 +221,7 @@ TEST(CausticMaps, TakeAlignedRangesOfSamples) {
 void expect_same_mean(const Scene& scene, const Ray& ray, std::uint32_t max_depth) {
   const Casters casters(scene);
   Pool pool(2);
-  const auto guiding = train_guiding(scene, {64, 64, max_depth}, pool, kGoOn);
+  const auto guiding = train_guiding(scene, {64, 64, max_depth}, {pool, kGoOn});
   test::Moments with;
   test::Moments without;
   PathCounts counts;
@@ -324,12 +324,12 @@ TEST(Caustics, MapsOfOtherSeedsAndNumbersDiffer) {
 TEST(Caustics, PayForSmallLampsOnly) {
   Pool pool(1);
   const auto casters_of = [&](const Scene& scene) {
-    return train_guiding(scene, {16, 16, 8}, pool, kGoOn, true)->casters;
+    return train_guiding(scene, {16, 16, 8}, {pool, kGoOn}, true)->casters;
   };
   EXPECT_NE(casters_of(*lamp_in_glass(1.5, 0.05).build()), nullptr);
   EXPECT_EQ(casters_of(*lamp_in_glass(1.5, 0.4).build()), nullptr);
   EXPECT_EQ(casters_of(*test::cornell_box().build()), nullptr);
-  EXPECT_EQ(train_guiding(*lamp_in_glass(1.5, 0.05).build(), {16, 16, 8}, pool, kGoOn)->casters,
+  EXPECT_EQ(train_guiding(*lamp_in_glass(1.5, 0.05).build(), {16, 16, 8}, {pool, kGoOn})->casters,
             nullptr);
 }
 

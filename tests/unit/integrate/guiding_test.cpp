@@ -22,7 +22,7 @@ using test::SceneMaker;
 std::shared_ptr<const TrainedGuiding> trained(const Scene& scene, int threads = 1) {
   Pool pool(threads);
   const std::atomic<bool> stop = false;
-  return train_guiding(scene, {64, 64, 8}, pool, stop);
+  return train_guiding(scene, {64, 64, 8}, {pool, stop});
 }
 
 /// Moments of one sample of each of many pixels along `ray`.
@@ -87,7 +87,7 @@ TEST(Guiding, KeepsTheFurnace) {
   const auto scene = maker.build();
   Pool pool(1);
   const std::atomic<bool> stop = false;
-  const auto guiding = train_guiding(*scene, {64, 64, 64}, pool, stop);
+  const auto guiding = train_guiding(*scene, {64, 64, 64}, {pool, stop});
   const Ray ray{.origin = {-1.5, 0, 0}, .direction = normalize(Vec3{1, 1.5, 0.2})};
   const test::Moments with = moments_of(*scene, ray, &guiding->field, 20'000, 64);
   EXPECT_LE(std::abs(with.z(2)), 4) << with.mean();
@@ -137,7 +137,7 @@ TEST(Guiding, TrainingStops) {
   const auto scene = lamp_in_glass(1.5, 0.2, 0.5f).build();
   Pool pool(1);
   const std::atomic<bool> stop = true;
-  EXPECT_EQ(train_guiding(*scene, {64, 64, 8}, pool, stop), nullptr);
+  EXPECT_EQ(train_guiding(*scene, {64, 64, 8}, {pool, stop}), nullptr);
 }
 
 TEST(Guiding, WithoutCastersThereAreNoPhotons) {

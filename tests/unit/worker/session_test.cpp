@@ -93,6 +93,21 @@ TEST(Session, StartsLeasesAndReportsTheirRows) {
   EXPECT_EQ(beat.doing(), "rendering");
 }
 
+// A training that takes longer than the progress timeout does not end the lease.
+TEST(Session, StepsOfThePreparationBeforeTheFirstRowAreProgress) {
+  Session session(worker_info());
+  session.receive(welcome("e1"));
+  const TaskId task = session.receive(lease(10, 0)).start.at(0).id;
+  session.preparing(task, 1000);
+  EXPECT_TRUE(session.rendering(task, 0));
+  const std::uint64_t begun = session.heartbeat().heartbeat().lease(0).prepared();
+  EXPECT_FALSE(session.rendering(task, 0));
+  EXPECT_GT(session.heartbeat().heartbeat().lease(0).prepared(), begun);
+  EXPECT_FALSE(session.heartbeat().heartbeat().lease(0).preparing());
+  EXPECT_FALSE(session.rendering(task, 1));
+  EXPECT_FALSE(session.rendering(task + 1, 0));  // not held
+}
+
 TEST(Session, ATaskHasTheSamplesOfItsHalfTiles) {
   Session session(worker_info());
   session.receive(welcome("e1"));

@@ -1,0 +1,154 @@
+#include "renderlib/integrate/guiding_gain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "renderlib/camera/camera.h"
+#include "renderlib/integrate/path_steps.h"
+#include "renderlib/material/albedo.h"
+#include "renderlib/math/constants.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::uint32_t kPixels = 512;
+constexpr std::uint64_t kSamples = 8;
+
+/// Pixels that are darker than this part of the mean count as if they had it: the noise of black
+/// pixels is not seen.
+constexpr double kDarkest = 1.0 / 16;
+
+/// Below these shares of the variance, the cells of paths, photon maps, and the cells of photons
+/// cost more than they gain (NOTES.md, "Whether it pays").
+constexpr double kMinShareOfPaths = 0.15;
+/// Where the variance is above this, paths find light so rarely that the pilot has too few records
+/// to tell, and guiding pays.
+constexpr double kRareLight = 1.5;
+constexpr double kMinShareOfMaps = 0.08;
+constexpr double kMinShareOfPhotons = 0.2;
+
+/// The second moment of photons' light is at least this many times what their cells tell: a cone is
+/// wider than the lamp that is seen in it.
+constexpr double kMomentOfLamp = 2;
+
+/// Sums over the samples of a pixel.
+struct PixelStatistics {
+  double sum = 0;
+  double squares = 0;
+  double by_paths = 0;
+  double by_photons = 0;
+  double expected = 0;  ///< what the cells tell of the sum
+};
+
+/// Adds what the cells at the surface tell, for a path that reaches it with this throughput.
+void add_cells(const GuidingCells& cells, double reflected, PixelStatistics& to) {
+  double expected = 0;
+  if (cells.paths != nullptr && cells.paths->count > 0) {
+    const double radiance = reflected * cells.paths->irradiance;
+    expected = radiance;
+    to.by_paths += radiance * radiance * (cells.paths->moment - cells.paths->guided_moment);
+  }
+  if (cells.photons != nullptr && cells.photons->count > 0) {
+    const double radiance = reflected * cells.photons->irradiance;
+    expected = std::max(expected, radiance);  // the light of the paths may include it
+    to.by_photons += radiance * radiance * (kMomentOfLamp * cells.photons->moment - 1);
+  }
+  to.expected += expected;
+}
+
+/// Follows the path to the first surface that can be guided, and adds its cells.
+void follow(const PathContext& context, const GuidingField& field, const Ray& camera_ray,
+            PixelStatistics& to) {
+  PathState path(camera_ray);
+  for (std::uint32_t depth = 0; depth < context.options.max_depth; ++depth) {
+    const std::optional<SurfacePoint> hit = next_surface(context, depth, path);
+    const std::optional<Bsdf> bsdf = hit ? make_bsdf(context, *hit, depth, path) : std::nullopt;
+    if (!bsdf) {
+      return;
+    }
+    if (can_be_guided(*bsdf)) {
+      const Vec3 normal = dot(path.ray.direction, hit->geometric_normal) <= 0
+                              ? hit->geometric_normal
+                              : -hit->geometric_normal;
+      const Scene& scene = context.scene;
+      const Rgb albedo = albedo_at(scene.material(hit->material), scene.textures(), *hit);
+      add_cells(field.find(hit->position, normal), luminance(path.throughput * albedo) * kInvPi,
+                to);
+      return;
+    }
+    if (!scatter(context, *hit, *bsdf, {}, depth, path)) {
+      return;
+    }
+  }
+}
+
+/// Takes the samples of a pixel that is chosen at random.
+PixelStatistics statistics_of(const Scene& scene, const RayGenerator& camera, const GuidingKey& key,
+                              const GuidingField& field, const PathOptions& options,
+                              std::uint32_t pixel) {
+  constexpr std::uint64_t kSeed = 0x3c6ef372fe94f82b;
+  const Sample4 place = PixelSampler(kSeed, pixel, 0).group(0, kGroupCamera);
+  const double x = std::floor(place[0] * key.width);
+  const double y = std::floor(place[1] * key.height);
+  const PixelSampler sampler(kSeed, pixel, 1);
+  PixelStatistics of;
+  PathCounts counts;
+  for (std::uint64_t sample = 0; sample < kSamples; ++sample) {
+    const Sample4 at = sampler.group(sample, kGroupCamera);
+    const double when = scene.features().motion ? sampler.group(sample, kGroupTime)[0] : 0;
+    const Ray ray = camera.ray(x + at[0], y + at[1], at[2], at[3], when);
+    const double value = luminance(path_radiance(scene, ray, sampler, sample, options, counts));
+    if (std::isfinite(value)) {
+      of.sum += value;
+      of.squares += value * value;
+    }
+    follow({scene, sampler, sample, options, counts.rays}, field, ray, of);
+  }
+  return of;
+}
+
+}  // namespace
+
+double GuidingGain::share_of(double part) const { return part > 0 ? part / (variance + part) : 0; }
+
+bool GuidingGain::paths_pay() const {
+  return share_of(by_paths) > kMinShareOfPaths || variance > kRareLight;
+}
+
+bool GuidingGain::maps_pay() const { return share_of(by_photons) > kMinShareOfMaps; }
+
+bool GuidingGain::photons_pay() const { return share_of(by_photons) > kMinShareOfPhotons; }
+
+GuidingGain expected_gain(const Scene& scene, const GuidingKey& key, const GuidingField& field,
+                          const CausticMaps* caustics, Pool& pool) {
+  const PathOptions options{.max_depth = key.max_depth, .caustics = caustics};
+  const RayGenerator camera(scene.camera(), static_cast<int>(key.width),
+                            static_cast<int>(key.height), scene.camera_at_close());
+  std::vector<PixelStatistics> pixels(kPixels);
+  pool.parallel_for(kPixels, [&](std::int64_t number) {
+    const auto pixel = static_cast<std::uint32_t>(number);
+    pixels[pixel] = statistics_of(scene, camera, key, field, options, pixel);
+  });
+  constexpr double kAll = kSamples;
+  double mean = 0;
+  for (const PixelStatistics& pixel : pixels) {
+    mean += pixel.sum / kAll / kPixels;
+  }
+  GuidingGain gain;
+  for (const PixelStatistics& pixel : pixels) {
+    const double of_pixel = pixel.sum / kAll;
+    const double unit = std::max({of_pixel, pixel.expected / kAll, kDarkest * mean});
+    if (unit > 0) {
+      const double variance = (pixel.squares - kAll * of_pixel * of_pixel) / (kAll - 1);
+      const double part = 1 / (unit * unit * kPixels);
+      gain.variance += std::max(0.0, variance) * part;
+      gain.by_paths += pixel.by_paths / kAll * part;
+      gain.by_photons += pixel.by_photons / kAll * part;
+    }
+  }
+  return gain;
+}
+
+}  // namespace bandsaw

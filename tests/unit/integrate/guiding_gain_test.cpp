@@ -1,0 +1,111 @@
+// The pilot that decides whether the integrator `path` uses guiding and photon maps.
+
+#include "renderlib/integrate/guiding_gain.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "renderlib/integrate/guiding_training.h"
+#include "renderlib/render/render_band.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+const std::atomic<bool> kGoOn = false;
+constexpr std::uint32_t kWidth = 24;
+constexpr std::uint32_t kHeight = 16;
+constexpr std::uint32_t kDepth = 6;
+
+GuidingGain gain_of(const Scene& scene, int threads = 2) {
+  Pool pool(threads);
+  const GuidingKey key{kWidth, kHeight, kDepth};
+  return expected_gain(scene, key, train_guiding(scene, key, {pool, kGoOn})->field, nullptr, pool);
+}
+
+BandPixels pixels_of(const Scene& scene, Integrator integrator) {
+  Pool pool(2);
+  return *render_band(
+      scene, {.width = kWidth, .height = kHeight, .max_depth = kDepth, .integrator = integrator},
+      {{0, 16}, {0, kHeight}}, pool, kGoOn, {});
+}
+
+/// A wall at a distance of 2, seen from where the lamp is not in view, and lit by a lamp of radius
+/// `lamp` in glass that does not refract, so that all of its light is a caustic.
+std::shared_ptr<const Scene> wall_lit_through_glass(double lamp) {
+  test::SceneMaker maker;
+  maker.quad({-0.2, -0.2, -2}, {0.4, 0, 0}, {0, 0.4, 0}, maker.diffuse(0.5f));
+  maker.sphere({0, 0, 0}, lamp, maker.lamp(10));
+  maker.sphere({0, 0, 0}, 0.5, maker.glass(1.00001));
+  maker.camera({0, 0, -1}, {0, 0, -2}, 15);
+  return maker.build();
+}
+
+// Directions by the cosine reach a lamp of solid angle w in front of the wall with probability
+// w / pi, and all that do carry the same light: the second moment is pi / w squared means.
+TEST(GuidingGain, OfPhotonsMeetsTheClosedForm) {
+  for (const double lamp : {0.05, 0.1, 0.2, 0.3, 0.4}) {
+    const double solid_angle = kPi * lamp * lamp / 4;
+    const auto scene = wall_lit_through_glass(lamp);
+    const GuidingGain gain = gain_of(*scene);
+    const double expected = kPi / solid_angle - 1;
+    EXPECT_GT(gain.by_photons, 0.5 * expected) << lamp;
+    EXPECT_LT(gain.by_photons, 1.3 * expected) << lamp;
+    EXPECT_TRUE(gain.photons_pay());
+  }
+}
+
+TEST(GuidingGain, IsTheSameForAnyThreads) {
+  const auto scene = test::lamp_in_glass(1.5, 0.05).build();
+  const GuidingGain one = gain_of(*scene, 1);
+  const GuidingGain three = gain_of(*scene, 3);
+  EXPECT_EQ(one.variance, three.variance);
+  EXPECT_EQ(one.by_paths, three.by_paths);
+  EXPECT_EQ(one.by_photons, three.by_photons);
+}
+
+TEST(GuidingGain, IsNoneWhereNothingIsNoisy) {
+  test::SceneMaker maker;
+  maker.quad({-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, maker.lamp(1));
+  maker.camera({0, 0, 0}, {0, 0, -1}, 40);
+  const GuidingGain gain = gain_of(*maker.build());
+  EXPECT_EQ(gain.variance, 0);
+  EXPECT_EQ(gain.by_paths, 0);
+  EXPECT_FALSE(gain.paths_pay() || gain.maps_pay() || gain.photons_pay());
+  EXPECT_EQ(gain.share_of(0), 0);
+  EXPECT_EQ(gain.share_of(1), 1);
+}
+
+// The light of a lamp under the ceiling is found by light sampling; that of a lamp in glass is not.
+TEST(GuidingGain, DecidesWhatTheIntegratorPathDoes) {
+  const auto easy = test::cornell_box().build();
+  EXPECT_EQ(pixels_of(*easy, Integrator::kPath).sums,
+            pixels_of(*easy, Integrator::kPathPlain).sums);
+  EXPECT_NE(pixels_of(*easy, Integrator::kPath).sums,
+            pixels_of(*easy, Integrator::kPathGuided).sums);
+  const auto hard = test::lamp_in_glass(1.5, 0.05).build();
+  EXPECT_NE(pixels_of(*hard, Integrator::kPath).sums,
+            pixels_of(*hard, Integrator::kPathPlain).sums);
+}
+
+TEST(GuidingGain, AStoppedPilotReturnsNothing) {
+  Pool pool(2);
+  const std::atomic<bool> stop = true;
+  const auto scene = test::cornell_box().build();
+  EXPECT_EQ(train_guiding(*scene, {kWidth, kHeight, kDepth, true}, {pool, stop}, true), nullptr);
+}
+
+TEST(GuidingGain, ThePilotTellsThatItGoesOn) {
+  Pool pool(2);
+  std::atomic<int> steps = 0;
+  const auto scene = test::cornell_box().build();
+  const auto trained =
+      train_guiding(*scene, {kWidth, kHeight, kDepth, true}, {pool, kGoOn, [&] { ++steps; }}, true);
+  EXPECT_EQ(trained->field.cells(), 0u);
+  EXPECT_GT(trained->rays, 0u);
+  EXPECT_GE(steps, 64);
+}
+
+}  // namespace
+}  // namespace bandsaw
