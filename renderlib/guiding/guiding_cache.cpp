@@ -34,6 +34,12 @@ GuidingCache::Trained GuidingCache::get(const GuidingKey& key, absl::FunctionRef
   return trained;
 }
 
+void GuidingCache::clear() {
+  const MutexLock lock(mutex_);
+  fields_.clear();
+  maps_.clear();
+}
+
 GuidingCache::Map GuidingCache::get_map(const PhotonMapKey& key, absl::FunctionRef<Map()> make) {
   const MutexLock lock(mutex_);
   Map map = get_or_make(maps_, key, make);

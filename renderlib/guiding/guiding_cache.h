@@ -61,7 +61,9 @@ class GuidingCache {
   /// Returns the field of `key`. If it is not kept yet, calls `make`; other threads that call get()
   /// wait meanwhile. If `make` returns nullptr (it was stopped), returns that and keeps nothing.
   Trained get(const GuidingKey& key, absl::FunctionRef<Trained()> make) EXCLUDES(mutex_);
-  /// The same for the map of `key`.
+  /// Forgets all fields and maps, so that the next image makes its own. For measurements.
+  void clear() EXCLUDES(mutex_);
+  /// The same as get() for the map of `key`.
   Map get_map(const PhotonMapKey& key, absl::FunctionRef<Map()> make) EXCLUDES(mutex_);
 
  private:

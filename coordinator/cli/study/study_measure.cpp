@@ -19,6 +19,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/compare/error_metrics.h"
 #include "renderlib/geometry/placement.h"
+#include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/render/render_image.h"
 
 namespace bandsaw::coordinator {
@@ -91,9 +92,20 @@ class Seeds {
 };
 
 Integrator integrator_of(Method method, Integrator standard) {
-  return method == Method::kNoMis      ? Integrator::kPathLights
-         : method == Method::kNoLights ? Integrator::kPathScattering
-                                       : standard;
+  switch (method) {
+    case Method::kNoMis:
+      return Integrator::kPathLights;
+    case Method::kNoLights:
+      return Integrator::kPathScattering;
+    case Method::kNoGuiding:
+      return Integrator::kPathPlain;
+    case Method::kIndependent:
+    case Method::kPixelStops:
+      // Each sample has its own seed, and each seed its own photon map.
+      return standard == Integrator::kPath ? Integrator::kPathPlain : standard;
+    default:
+      return standard;
+  }
 }
 
 class Study {
@@ -160,6 +172,9 @@ class Study {
     return line;
   }
 
+  /// Returns true if guiding or photon maps were used in a line so far.
+  bool guides() const { return guides_; }
+
  private:
   static constexpr std::uint64_t kMinCleanSamples = 4;
 
@@ -168,6 +183,7 @@ class Study {
     JobSpec spec;
     spec.settings = settings_;
     spec.settings.seed = seed;
+    scene_.guiding().clear();  // each image pays for its own training
     const double start = process_cpu_seconds();
     ASSIGN_OR_RETURN(const RenderedImage rendered,
                      render_image(scene_, spec.settings, samples, pool_, stop_, {}, ""));
@@ -205,6 +221,7 @@ class Study {
     RenderSettings settings = settings_;
     settings.seed = seed;
     settings.integrator = integrator_of(method, settings.integrator);
+    scene.guiding().clear();  // each image pays for its own training
     const double start = process_cpu_seconds();
     const auto n = static_cast<double>(samples);
     if (method == Method::kIndependent) {
@@ -225,6 +242,7 @@ class Study {
                      render_image(scene, settings, samples, pool_, stop_, {}, ""));
     seeds.add(rendered.film.snapshot().image, n, process_cpu_seconds() - start,
               static_cast<double>(rendered.counters.rays));
+    guides_ = guides_ || rendered.counters.techniques != 0;
     return absl::OkStatus();
   }
 
@@ -233,6 +251,7 @@ class Study {
     for (std::uint64_t seed = 0; seed < plan_.seeds; ++seed) {
       RenderSettings settings = settings_;
       settings.seed = settings_.seed + seed;
+      settings.integrator = integrator_of(Method::kPixelStops, settings.integrator);
       const double start = process_cpu_seconds();
       ASSIGN_OR_RETURN(const StoppedImages stopped,
                        stop_by_pixels(scene_, settings, plan_.samples, pool_, stop_));
@@ -260,6 +279,7 @@ class Study {
   Image reference_;
   double mean_ = 0;
   ErrorEstimate reference_error_;
+  bool guides_ = false;
 };
 
 }  // namespace
@@ -268,6 +288,8 @@ const char* method_name(Method method) {
   switch (method) {
     case Method::kFull:
       return "all techniques";
+    case Method::kNoGuiding:
+      return "no guiding, no photon maps";
     case Method::kNoMis:
       return "light sampling without MIS";
     case Method::kNoLights:
@@ -323,6 +345,9 @@ absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& s
     return out;
   }
   for (const Method method : kMethods) {
+    if (method == Method::kNoGuiding && !study.guides()) {
+      continue;
+    }
     doing(absl::StrCat(name, " · ", method_name(method)));
     ASSIGN_OR_RETURN(StudyLine line, study.line(method, scene));
     out.lines.push_back(std::move(line));

@@ -21,12 +21,14 @@ namespace bandsaw::coordinator {
 
 /// Technique with which the image is made. All except kPixelStops have the same expected value.
 enum class Method {
-  kFull,         ///< as in `bandsaw render`
-  kNoMis,        ///< light sampling only, without MIS, for lights that have a pdf
-  kNoLights,     ///< BSDF sampling only: no next-event estimation
-  kAdaptive,     ///< samples distributed by noise, with about the same total
-  kIndependent,  ///< independent random numbers instead of Owen-scrambled nets
-  /// Independent random numbers; each pixel stops at the first multiple of 8 samples at which 1.96
+  kFull,       ///< as in `bandsaw render`
+  kNoGuiding,  ///< neither path guiding nor photon maps; only where kFull uses one of them
+  kNoMis,      ///< light sampling only, without MIS, for lights that have a pdf
+  kNoLights,   ///< BSDF sampling only: no next-event estimation
+  kAdaptive,   ///< samples distributed by noise, with about the same total
+  /// Independent random numbers instead of Owen-scrambled nets; neither guiding nor maps.
+  kIndependent,
+  /// As kIndependent; each pixel stops at the first multiple of 8 samples at which 1.96
   /// standard errors of its mean are within a tolerance of it, as in many ray tracers. The result
   /// is biased, because the samples determine their own number; the method is included to show the
   /// amount of bias.
@@ -36,8 +38,9 @@ enum class Method {
   /// kFull with its noise removed (renderlib/denoise). Biased. Only if requested.
   kClean,
 };
-inline constexpr Method kMethods[] = {Method::kFull,     Method::kNoMis,       Method::kNoLights,
-                                      Method::kAdaptive, Method::kIndependent, Method::kPixelStops};
+inline constexpr Method kMethods[] = {Method::kFull,      Method::kNoGuiding, Method::kNoMis,
+                                      Method::kNoLights,  Method::kAdaptive,  Method::kIndependent,
+                                      Method::kPixelStops};
 const char* method_name(Method method);
 
 /// Means over the seeds.
