@@ -8,6 +8,7 @@
 
 #include "renderlib/base/split_mix.h"
 #include "renderlib/guiding/guiding_record.h"
+#include "renderlib/sampling/sampler.h"
 
 namespace bandsaw {
 namespace {
@@ -16,6 +17,8 @@ constexpr std::uint32_t kPhotonsOfLeaf = 8;
 /// Fewer photons do not tell the area of one.
 constexpr std::uint32_t kEnough = 16;
 constexpr int kMaxTreeDepth = 48;
+/// The least part of a place at which it is divided.
+constexpr double kFirstPart = 3.0 / 8;
 /// A place with this many photons or fewer has disks of this part of its photons if they are even
 /// there: if the halves of each part of it have the same power up to so many standard deviations
 /// and this part of the whole, and its normals add up to this part of their number.
@@ -81,12 +84,13 @@ struct Place {
   std::uint32_t count() const { return last - first; }
 };
 
-/// Divides the photons at the middle of the longest side of their box. Returns the first photon of
+/// Divides the photons at this part of the longest side of their box. Returns the first photon of
 /// the second half; std::nullopt if there are few photons, or if they are in one point.
 std::optional<std::uint32_t> divide(std::vector<CausticPhoton>& photons, std::uint32_t first,
-                                    std::uint32_t last, int depth, const Box& box) {
+                                    std::uint32_t last, int depth, const Box& box,
+                                    float part = 0.5f) {
   const std::size_t axis = box.longest_axis();
-  const float middle = box.low[axis] / 2 + box.high[axis] / 2;
+  const float middle = box.low[axis] * (1 - part) + box.high[axis] * part;
   if (last - first <= kPhotonsOfLeaf || depth >= kMaxTreeDepth || !(middle > box.low[axis])) {
     return std::nullopt;
   }
@@ -98,9 +102,10 @@ std::optional<std::uint32_t> divide(std::vector<CausticPhoton>& photons, std::ui
 }
 
 /// Adds the place of photons [first, last) and its descendants, in depth-first order, and sorts the
-/// photons accordingly. `area` is that of the parent.
+/// photons accordingly. `area` is that of the parent. Where a place is divided is random, by
+/// `seed`: radii jump there, and over several maps the jumps must not add up to a line.
 void add_places(std::vector<CausticPhoton>& photons, std::uint32_t first, std::uint32_t last,
-                int depth, double area, std::vector<Place>& places) {
+                int depth, double area, std::uint64_t seed, std::vector<Place>& places) {
   const absl::Span<const CausticPhoton> own(photons.data() + first, last - first);
   const Box box = box_of(own);
   Place place{.first = first, .last = last, .area = area, .normal = {}};
@@ -110,17 +115,19 @@ void add_places(std::vector<CausticPhoton>& photons, std::uint32_t first, std::u
   }
   const std::size_t number = places.size();
   places.push_back(place);
-  if (const auto half = divide(photons, first, last, depth, box)) {
-    add_places(photons, first, *half, depth + 1, place.area, places);
+  const double part =
+      kFirstPart + (1 - 2 * kFirstPart) * NumberStream(seed ^ split_mix(number + 1)).next();
+  if (const auto half = divide(photons, first, last, depth, box, static_cast<float>(part))) {
+    add_places(photons, first, *half, depth + 1, place.area, seed, places);
     const std::size_t second = places.size();
-    add_places(photons, *half, last, depth + 1, place.area, places);
+    add_places(photons, *half, last, depth + 1, place.area, seed, places);
     const Place& a = places[number + 1];
     const Place& b = places[second];
     place.power = a.power + b.power;
     place.squares = a.squares + b.squares;
     place.normal = a.normal + b.normal;
     place.even = a.even && b.even && length(place.normal) >= kFlat * place.power &&
-                 std::abs(a.power - b.power) <=
+                 2 * std::abs(a.power - part * place.power) <=
                      kDeviations * std::sqrt(place.squares) + kSlope * place.power;
   } else {
     for (const CausticPhoton& photon : own) {
@@ -155,7 +162,8 @@ CausticPhoton stand_in(absl::Span<const CausticPhoton> photons, std::uint64_t se
 
 /// Sets the radii of the photons, and replaces photons that are close to each other compared with
 /// their disks.
-std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double radius_factor) {
+std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double radius_factor,
+                                      std::uint64_t seed) {
   std::vector<Place> places;
   // The walls of a corner are apart.
   auto from = photons.begin();
@@ -165,7 +173,7 @@ std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double
     });
     if (from != to) {
       add_places(photons, static_cast<std::uint32_t>(from - photons.begin()),
-                 static_cast<std::uint32_t>(to - photons.begin()), 0, kInfinity, places);
+                 static_cast<std::uint32_t>(to - photons.begin()), 0, kInfinity, seed, places);
     }
     from = to;
   }
@@ -199,7 +207,7 @@ std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double
     const absl::Span<const CausticPhoton> own(photons.data() + place.first, place.count());
     const std::size_t first = out.size();
     if (even && place.count() <= together) {
-      out.push_back(stand_in(own, place.first));
+      out.push_back(stand_in(own, seed + place.first));
     } else {
       out.insert(out.end(), own.begin(), own.end());
     }
@@ -213,12 +221,12 @@ std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double
 
 }  // namespace
 
-PhotonMap::PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, Pool& pool,
-                     absl::FunctionRef<double(const CausticPhoton&)> share_on_surface) {
+PhotonMap::PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, std::uint64_t seed,
+                     Pool& pool, absl::FunctionRef<double(const CausticPhoton&)> share_on_surface) {
   if (photons.empty()) {
     return;
   }
-  photons_ = with_disks(std::move(photons), radius_factor);
+  photons_ = with_disks(std::move(photons), radius_factor, seed);
   split(0, static_cast<std::uint32_t>(photons_.size()), 0);
   set_boxes();
   constexpr std::size_t kRun = 1024;

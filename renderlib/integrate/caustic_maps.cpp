@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "renderlib/base/split_mix.h"
 #include "renderlib/integrate/trace_photons.h"
 #include "renderlib/material/interiors.h"
 #include "renderlib/material/opacity.h"
@@ -57,10 +58,10 @@ std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Cast
   }
   traced.lamp_angle = power > 0 ? power_by_angle / power : 0;
   const double factor = pow(key.number + 1.0, -1.0 / 6);
-  traced.map =
-      PhotonMap(std::move(photons), factor, preparation.pool, [&](const CausticPhoton& photon) {
-        return preparation.stopped() ? 1 : share_on_surface(scene, photon);
-      });
+  traced.map = PhotonMap(std::move(photons), factor, split_mix(key.seed ^ key.number),
+                         preparation.pool, [&](const CausticPhoton& photon) {
+                           return preparation.stopped() ? 1 : share_on_surface(scene, photon);
+                         });
   if (preparation.step) {
     preparation.step();
   }

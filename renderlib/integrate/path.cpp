@@ -236,22 +236,22 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
 }
 
 /// Returns the caustics that a receiver scatters along the path. Beyond an earlier receiver they
-/// are looked up in one of four consecutive samples, which stands for all: they are a small part of
-/// the light there, and looking them up takes longer than the rest of the scattering.
+/// are looked up in every second sample of a pixel and count twice: they are a small part of the
+/// light there, and looking them up takes longer than the rest of the scattering.
 Rgb caustics_at(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
                 std::uint32_t depth, const PathState& path) {
-  constexpr std::uint64_t kSamplesOfOne = 4;
-  std::uint64_t stands_for = 1;
+  constexpr std::uint64_t kOneOf = 2;
+  std::uint64_t counts = 1;
   if (path.after_receiver) {
-    const double first = context.sampler.stream(0, group_bsdf(depth)).next() * kSamplesOfOne;
-    if ((context.sample + static_cast<std::uint64_t>(first)) % kSamplesOfOne != 0) {
+    const double first = context.sampler.stream(0, group_bsdf(depth)).next() * kOneOf;
+    if ((context.sample + static_cast<std::uint64_t>(first)) % kOneOf != 0) {
       return {};
     }
-    stands_for = kSamplesOfOne;
+    counts = kOneOf;
   }
   return caustic_radiance(context.options.caustics->of_sample(context.sample), point, bsdf,
                           -path.ray.direction, context.scatterings_left(path, depth)) *
-         static_cast<float>(stands_for);
+         static_cast<float>(counts);
 }
 
 bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
 #include <vector>
 
 #include "renderlib/sampling/sampler.h"
@@ -55,7 +56,7 @@ TEST(PhotonMap, TheDensityOfAPhotonIntegratesToOne) {
 
 TEST(PhotonMap, FindsThePhotonsThatAnExhaustiveSearchFinds) {
   Pool pool(2);
-  const PhotonMap map(on_floor(5000), 1, pool, whole);
+  const PhotonMap map(on_floor(5000), 1, 0, pool, whole);
   ASSERT_GT(map.size(), 500u);
   const PixelSampler sampler(4, 5, 6);
   for (std::uint64_t i = 0; i < 300; ++i) {
@@ -91,7 +92,7 @@ Totals totals_of(const PhotonMap& map, double from = 0, double to = 1) {
 TEST(PhotonMap, EstimatesTheDensityAndAdaptsTheDisks) {
   Pool pool(1);
   constexpr std::uint64_t kPhotons = 100'000;
-  const PhotonMap map(on_floor(kPhotons), 1, pool, whole);
+  const PhotonMap map(on_floor(kPhotons), 1, 0, pool, whole);
   for (const bool dense : {false, true}) {
     test::Moments moments;
     const PixelSampler sampler(7, 8, 9);
@@ -115,7 +116,7 @@ TEST(PhotonMap, KeepsAnEdgeOfLight) {
   std::vector<CausticPhoton> photons = on_floor(100'000);
   std::erase_if(photons, [](const CausticPhoton& photon) { return photon.position[0] > 0.25f; });
   Pool pool(1);
-  const PhotonMap map(photons, 1, pool, whole);
+  const PhotonMap map(photons, 1, 0, pool, whole);
   const double lit = static_cast<double>(photons.size()) * 4;
   EXPECT_NEAR(irradiance(map, {0.2, 0.5, 0}), lit, 0.4 * lit);
   EXPECT_EQ(irradiance(map, {0.3, 0.5, 0}), 0);
@@ -123,14 +124,14 @@ TEST(PhotonMap, KeepsAnEdgeOfLight) {
 
 TEST(PhotonMap, TheFactorScalesTheDisks) {
   Pool pool(1);
-  const PhotonMap one(on_floor(30'000), 1, pool, whole);
-  const PhotonMap half(on_floor(30'000), 0.5, pool, whole);
+  const PhotonMap one(on_floor(30'000), 1, 0, pool, whole);
+  const PhotonMap half(on_floor(30'000), 0.5, 0, pool, whole);
   EXPECT_NEAR(totals_of(half).radius, 0.5 * totals_of(one).radius, 1e-3 * totals_of(one).radius);
 }
 
 TEST(PhotonMap, DividesByTheShareOnTheSurface) {
   Pool pool(3);
-  const PhotonMap map(on_floor(3000), 1, pool,
+  const PhotonMap map(on_floor(3000), 1, 0, pool,
                       [](const CausticPhoton& photon) { return photon.radius > 0 ? 0.25 : 1; });
   EXPECT_NEAR(totals_of(map).power, 12'000, 1);
 }
@@ -138,13 +139,37 @@ TEST(PhotonMap, DividesByTheShareOnTheSurface) {
 TEST(PhotonMap, DependsNotOnThreads) {
   Pool one(1);
   Pool three(3);
-  const PhotonMap a(on_floor(5000), 1, one, whole);
-  const PhotonMap b(on_floor(5000), 1, three, whole);
+  const PhotonMap a(on_floor(5000), 1, 0, one, whole);
+  const PhotonMap b(on_floor(5000), 1, 0, three, whole);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_TRUE(a.photons()[i].position == b.photons()[i].position &&
                 a.photons()[i].power == b.photons()[i].power);
   }
+}
+
+// Where radii jump from one part of the photons to the next, an image would show lines if they were
+// at the same places in all maps. Here, twice as many photons lie on one half of the floor.
+TEST(PhotonMap, TheSeedDecidesWhereRadiiJump) {
+  Pool pool(1);
+  std::vector<CausticPhoton> photons = on_floor(4000);
+  std::erase_if(photons, [](const CausticPhoton& photon) {
+    return photon.position[0] < 0.5f && photon.position[1] < 0.5f;
+  });
+  const auto radius_at = [&](std::uint64_t seed, const Float3& position) {
+    const PhotonMap map(photons, 1, seed, pool, whole);
+    const auto near = std::min_element(map.photons().begin(), map.photons().end(),
+                                       [&](const auto& a, const auto& b) {
+                                         return length_squared(vec3(a.position) - vec3(position)) <
+                                                length_squared(vec3(b.position) - vec3(position));
+                                       });
+    return near->radius;
+  };
+  std::set<float> radii;
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    radii.insert(radius_at(seed, {0.52f, 0.3f, 0}));
+  }
+  EXPECT_GT(radii.size(), 8u);
 }
 
 TEST(PhotonMap, MayBeEmptyOrHaveAllPhotonsAtOnePoint) {
@@ -154,7 +179,7 @@ TEST(PhotonMap, MayBeEmptyOrHaveAllPhotonsAtOnePoint) {
   for (CausticPhoton& photon : photons) {
     photon.position = {1, 1, 0};
   }
-  const PhotonMap map(photons, 1, pool, whole);
+  const PhotonMap map(photons, 1, 0, pool, whole);
   EXPECT_EQ(irradiance(map, {0, 0, 0}), 0);
 }
 
