@@ -33,7 +33,7 @@ export function renderNatively(bin, scene, folder, {width, height, samples}) {
 /** Returns the settings and the sums of the one record of a file that bandsaw render --rows wrote (renderlib/render/band_file.h). */
 function readBand(path) {
   const bytes = readFileSync(path);
-  const record = bytes.subarray(bytes.indexOf('BSWBAND3'));
+  const record = bytes.subarray(bytes.indexOf('BSWBAND4'));
   const size = Number(record.readBigUInt64LE(8));
   const after = 16 + 64;
   const width = record.readUInt32LE(after);
