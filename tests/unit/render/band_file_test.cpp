@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <string>
 
 namespace bandsaw {
 namespace {
@@ -63,6 +66,16 @@ TEST(BandFile, RecordsRoundTripWithAKnownSize) {
   ASSERT_TRUE(decoded.ok()) << decoded.status();
   EXPECT_EQ(decoded->size, bytes.size());
   expect_equal(decoded->record, record());
+}
+
+// With a seed of an older format, the fuzzer would hardly ever get past the first bytes.
+TEST(BandFile, TheSeedOfTheFuzzerIsARecordOfThisFormat) {
+  std::ifstream file(BANDSAW_SOURCE "/tests/fuzz/corpus/band_file/record", std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto decoded = decode_band_record(
+      absl::MakeSpan(reinterpret_cast<const std::byte*>(text.data()), text.size()));
+  ASSERT_TRUE(decoded.ok()) << decoded.status();
+  EXPECT_EQ(decoded->size, text.size());
 }
 
 TEST(BandFile, RecordsFollowEachOther) {
