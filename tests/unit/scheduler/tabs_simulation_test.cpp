@@ -143,14 +143,18 @@ class TabSimulation : SimulatedFarm {
     });
   }
 
-  /// Half of the tabs are closed for good; the others are loaded again, stay and lie no more.
+  /// Half of the tabs are closed for good; the others are loaded again, stay and lie no more. A tab
+  /// that was not loaded again would not get a job of which it has failed three bands, and then a
+  /// job that fits into no other tab would wait for ever.
   void calm_down() {
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       SimWorker& worker = *workers_[i];
       worker.calm_down();
-      if (i >= weather_.natives && i % 2 == 0 && i != weather_.natives) {
+      const bool is_tab = i >= weather_.natives;
+      if (is_tab) {
         worker.kill();
-      } else {
+      }
+      if (!is_tab || i % 2 != 0 || i == weather_.natives) {
         reopen(worker);
         worker.cut_cable();  // a draining worker reconnects without draining
       }
