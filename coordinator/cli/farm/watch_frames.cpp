@@ -18,19 +18,18 @@
 namespace bandsaw::coordinator {
 namespace {
 
-ExitCode left_early(const absl::Status& status, JobId job, const Console& console) {
+ExitCode left_early(const absl::Status& status, JobId job, const WantedFrames& wanted,
+                    const Console& console) {
   const ExitCode code = exit_code_of(status);
-  const std::string come_back =
-      absl::StrCat("Come back with: bandsaw watch ", job, " -o NAME.####.png");
+  const std::string how = come_back(job, wanted.outputs, wanted.denoise, "NAME.####.png");
   if (code == ExitCode::kInterrupted) {
-    return console.fail(code, absl::StrCat("detached; job ", job, " continues. ", come_back));
+    return console.fail(code, absl::StrCat("detached; job ", job, " continues. ", how));
   }
   if (code == ExitCode::kNoFarm) {
     return console.fail(code, absl::StrCat(status.message(), "; job ", job,
-                                           " continues when it is started again. ", come_back));
+                                           " continues when it is started again. ", how));
   }
-  return console.fail(code,
-                      absl::StrCat(status.message(), "; the farm keeps the images. ", come_back));
+  return console.fail(code, absl::StrCat(status.message(), "; the farm keeps the images. ", how));
 }
 
 /// Follows the job, and fetches frames at each change. Returns the last status.
@@ -94,7 +93,7 @@ ExitCode watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
   const auto last = follow(client, job, fetcher, display);
   if (!last.ok()) {
     display.clear();
-    return left_early(last.status(), job, console);
+    return left_early(last.status(), job, wanted, console);
   }
   absl::Status made = fetcher.make_collections();
   std::vector<std::string> outputs = wanted.outputs;

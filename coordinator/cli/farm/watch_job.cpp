@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/base/ticker.h"
 #include "coordinator/cli/farm/call_with_retries.h"
@@ -78,11 +79,6 @@ void FollowedImage::look() {
   next_ = end + std::max(kInterval_s, (end - begin) / kMaxShare);
 }
 
-std::string come_back(JobId job, const std::vector<std::string>& outputs) {
-  return absl::StrCat("Come back with: bandsaw watch ", job, " -o ",
-                      outputs.empty() ? "FILE" : outputs.front());
-}
-
 class Watch {
  public:
   Watch(FarmClient& client, JobId job, ProgressDisplay& display,
@@ -144,26 +140,26 @@ class Watch {
 };
 
 // Prints why the command ends before the job's image was fetched, and returns the exit code.
-ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std::string>& outputs,
+ExitCode left_early(const absl::Status& status, JobId job, const Wanted& wanted,
                     const Console& console) {
   const ExitCode code = exit_code_of(status);
+  const std::string how = come_back(job, wanted.outputs, wanted.denoise, "FILE");
   if (code == ExitCode::kInterrupted) {
-    return console.fail(
-        code, absl::StrCat("detached; job ", job, " continues. ", come_back(job, outputs)));
+    return console.fail(code, absl::StrCat("detached; job ", job, " continues. ", how));
   }
   if (code == ExitCode::kNoFarm) {
-    return console.fail(
-        code, absl::StrCat(status.message(), "; job ", job, " continues when it is started again. ",
-                           come_back(job, outputs)));
+    return console.fail(code, absl::StrCat(status.message(), "; job ", job,
+                                           " continues when it is started again. ", how));
   }
   return console.fail(code, std::string(status.message()));
 }
 
 // Prints an error that occurred after the farm had finished the image.
-ExitCode not_fetched(const absl::Status& status, JobId job, const Console& console) {
-  return console.fail(
-      ExitCode::kFailed,
-      absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
+ExitCode not_fetched(const absl::Status& status, JobId job, const Wanted& wanted,
+                     const Console& console) {
+  return console.fail(ExitCode::kFailed,
+                      absl::StrCat(status.message(), "; the farm keeps the image. ",
+                                   come_back(job, {}, wanted.denoise, "FILE")));
 }
 
 /// Renders the layers and, if wanted, the guides of the clean image on the farm; shows both
@@ -202,6 +198,15 @@ absl::Status write_pictures(const JobPictures& pictures, const Wanted& wanted) {
   return write_reports(report_text(report), wanted.reports);
 }
 
+std::string come_back(JobId job, const std::vector<std::string>& outputs, Denoiser denoise,
+                      const std::string& otherwise) {
+  const char* const clean = denoise == Denoiser::kNone   ? ""
+                            : denoise == Denoiser::kOidn ? " --denoise=oidn"
+                                                         : " --denoise";
+  return absl::StrCat("Come back with: bandsaw watch ", job, clean, " -o ",
+                      outputs.empty() ? otherwise : absl::StrJoin(outputs, " -o "));
+}
+
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display,
                                     const std::function<void(const Progress&)>& on_status) {
   return Watch(client, job, display, on_status).to_the_end();
@@ -219,7 +224,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
   }();
   if (!last.ok()) {
     display.clear();
-    return left_early(last.status(), job, outputs, process.console);
+    return left_early(last.status(), job, wanted, process.console);
   }
   if (last->job.state != JobState::kDone) {
     display.ended(*last);
@@ -236,19 +241,19 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
     auto result = client.result(job);
     if (!result.ok()) {
       display.clear();
-      return left_early(result.status(), job, outputs, process.console);
+      return left_early(result.status(), job, wanted, process.console);
     }
     const auto pictures =
         with_layers(client, *std::move(result), *last, wanted, views, display, beside);
     if (!pictures.ok()) {
       display.clear();
       return exit_code_of(pictures.status()) == ExitCode::kFailed
-                 ? not_fetched(pictures.status(), job, process.console)
-                 : left_early(pictures.status(), job, outputs, process.console);
+                 ? not_fetched(pictures.status(), job, wanted, process.console)
+                 : left_early(pictures.status(), job, wanted, process.console);
     }
     if (const auto status = write_pictures(*pictures, wanted); !status.ok()) {
       display.clear();
-      return not_fetched(status, job, process.console);
+      return not_fetched(status, job, wanted, process.console);
     }
   }
   display.done(*last, outputs, wanted.reports);

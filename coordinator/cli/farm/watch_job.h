@@ -36,6 +36,11 @@ struct JobPictures {
   const Image& best() const { return clean ? clean->image : result.image; }
 };
 
+/// Returns a sentence with the command that follows the job again and writes the same files, or
+/// `otherwise` if there are none: "Come back with: bandsaw watch 7 --denoise -o walk.png".
+std::string come_back(JobId job, const std::vector<std::string>& outputs, Denoiser denoise,
+                      const std::string& otherwise);
+
 /// Writes the files of a job.
 absl::Status write_pictures(const JobPictures& pictures, const Wanted& wanted);
 
