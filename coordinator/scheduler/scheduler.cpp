@@ -52,7 +52,7 @@ Step Scheduler::finish_step() {
 }
 
 void Scheduler::on(const input::Tick&) {
-  context_.note_natives();
+  context_.note_natives();  // the time at which a native worker, not a browser, was last connected
   barrier_.expire();
   lifecycle_.revoke_from_held_jobs();
   sessions_.forget_refusals();
@@ -92,6 +92,7 @@ void Scheduler::on(const input::BandStored& in) {
   if (worker != nullptr) {
     measure(*worker, *job, in);
     worker->on_job[job->id].failures = 0;
+    // Suspect bands and browsers say nothing about how often native workers crash by chance.
     if (!job->is_suspect(in.band) && !worker->browser) {
       crashes_.count_band();
     }

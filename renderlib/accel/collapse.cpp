@@ -18,9 +18,9 @@ constexpr std::size_t kSlots = WideNode::kChildren;
 constexpr float kNodeCost = 1.0f;
 constexpr float kPackCost = 1.5f;
 
-/// Minimum costs of a subtree. Element i: the subtree has i + 1 slots of its parent's wide node, to
-/// which that many of its parts are attached. Element 7 is also the cost of the eight children if
-/// the subtree gets a wide node.
+/// Minimum costs of a subtree of the binary tree. Element i: it may fill at most i + 1 slots of the
+/// wide node above it, each with a part of the subtree; in element 0 it gets a wide node or a leaf
+/// of its own. Element 7 is therefore also the cost of the children of its own wide node.
 struct Costs {
   std::array<float, kSlots> slots;
 };

@@ -10,7 +10,7 @@
 
 namespace bandsaw {
 
-/// Contents of a leaf; all of one kind.
+/// Contents of a leaf; all of one kind. Flats are triangles and quads.
 enum class LeafKind : std::uint32_t { kFlats, kSpheres, kInstance, kDisks };
 
 /// Reference from a node: to another node or to a leaf, i.e. one pack of primitives or one

@@ -12,7 +12,7 @@ namespace bandsaw {
 /// Tone mapping of radiance above 1 in 8-bit files. The values are those of package.proto.
 enum class Tone {
   kNone = 0,  ///< clamped
-  /// X (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for each channel: a fit of the ACES film curve
+  /// x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for each channel: a fit of the ACES film curve
   /// (Narkowicz 2016, "ACES filmic tone mapping curve").
   kFilmic = 1,
 };

@@ -45,7 +45,8 @@ struct PathContext {
   std::uint64_t sample = 0;
   const PathOptions& options;
   std::uint64_t& rays;
-  /// Directions to split into at the next surface with a pdf: PathOptions::branches, then 1.
+  /// Number of directions into which the path splits at the next surface with a pdf:
+  /// PathOptions::branches until it has been split, then 1.
   std::uint32_t branches = 1;
 
   /// Returns the context of one of the directions of a split.

@@ -89,7 +89,8 @@ inline Rgb emitted(const Material& material, absl::Span<const Texture> textures,
 }
 
 /// Returns the expected value of the radiance emitted by material `id`, which may be a mixture and
-/// whose opacity is included.
+/// whose opacity is included. A hidden lamp (material/opacity.h) emits with opacity 1 although rays
+/// do not see it.
 inline Rgb emitted_if_present(absl::Span<const Material> materials, MaterialId id,
                               absl::Span<const Texture> textures, const SurfacePoint& point,
                               const Vec3& direction) {

@@ -1,4 +1,5 @@
-// Each brick is hashed, so that a brick equal to an earlier one is found and stored once.
+// Builds a grid of numbers in bricks of equal size. Each brick is hashed, so that a brick equal to
+// an earlier one is found and stored once.
 
 #include "renderlib/medium/brick_builder.h"
 
@@ -51,7 +52,7 @@ std::uint32_t BrickBuilder::place_of(absl::Span<const float> brick) {
   values_.insert(values_.end(), brick.begin(), brick.end());
   if (halves_) {
     for (const float number : brick) {
-      float_to_half(number, &halves_);
+      float_to_half(number, &halves_);  // sets halves_ to false unless the number is a half
     }
   }
   return place;

@@ -12,7 +12,8 @@
 
 namespace bandsaw {
 
-/// A band and the samples that its half tiles take. The rows of `tiles` are those of the band.
+/// A band and the samples that its half tiles (tile_samples.h) take. The rows of `tiles` are those
+/// of the band.
 struct BandPart {
   Band band;
   TileSamples tiles;
@@ -22,8 +23,9 @@ struct BandPart {
 /// order, each once.
 std::vector<std::uint32_t> maps_of(const BandPart& part);
 
-/// Divides a part that needs more than one map. The sum of a pixel is the sum of that in the first
-/// and that in the second part, to the bit.
+/// Divides the samples of a part that needs more than one map; both results have all of its rows.
+/// A pixel's sum is its sum in the first part plus its sum in the second, to the bit. `width`: of
+/// the image, pixels.
 std::pair<BandPart, BandPart> halves_of(const BandPart& part, std::uint32_t width);
 
 }  // namespace bandsaw

@@ -38,18 +38,19 @@ class Film {
 
   /// Adds rows of samples that are not covered. Returns FAILED_PRECONDITION, without changing
   /// anything, if some samples of a row are covered already; RESOURCE_EXHAUSTED if memory or disk
-  /// is full. `tiles` says which samples the half tiles of the band took; it MUST be whole for a
-  /// film of rows.
+  /// is full. `tiles` says which samples the half tiles of the band took. For a film of
+  /// rows it MUST be TileSamples::whole(): all pixels took the samples of the band.
   absl::Status add(const BandPixels& pixels, const TileSamples& tiles = {});
 
-  /// Returns true if samples [0, samples) of the passes are covered in every row: rendered or
-  /// skipped.
+  /// Returns true if the samples [0, samples) are covered in every row: rendered, or skipped by
+  /// half tiles that need no more.
   bool complete(std::uint64_t samples) const;
 
-  /// The image of the samples that are present. A pixel is the mean of its first n samples, where n
-  /// is the largest count whose maximal nodes are all present. The nodes are summed as the fixed
-  /// tree prescribes, and the mean is rounded to float once. Rows without samples are black and
-  /// counted in `missing_rows`.
+  /// The image of the samples that are present. A pixel is the mean of its first n samples. The
+  /// range [0, n) is divided into the largest nodes of the binary tree over the samples that fit; n
+  /// is the largest number for which all of them are present. They are summed as the tree
+  /// prescribes, and the mean is rounded to float once. Rows without samples are black and counted
+  /// in `missing_rows`.
   struct Snapshot {
     Image image;
     std::uint64_t least_samples = 0;  ///< minimum over the rows, in samples of the passes

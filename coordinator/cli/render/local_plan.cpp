@@ -1,5 +1,7 @@
 // next() returns the next pass of a local render: all passes up to the next checkpoint (a number of
-// samples) are planned at once, and the stop rule is checked when they are done.
+// samples) are planned at once, and the stop rule is checked when they are done. An adaptive render
+// goes to a looser error first. There wants_tiles() is true, and plan() sets the number of samples
+// of each half tile, once; schedule_ holds them.
 
 #include "coordinator/cli/render/local_plan.h"
 

@@ -246,7 +246,7 @@ void Context::apply(const record::QuarantineLifted& r) { quarantine.lift(r.name)
 
 void Context::apply(const record::SequenceAdded& r) {
   sequences.add(r.job, r.spec, r.pixel_version);
-  jobs.use(r.job);
+  jobs.never_reuse(r.job);
 }
 
 void Context::apply(const record::FrameWaits& r) {

@@ -24,7 +24,7 @@ void JobTable::add(JobId id, const JobSpec& spec, std::uint32_t pixel_version) {
   all_.emplace(id, Job(id, spec, pixel_version));
   by_request_[spec.request_id] = id;
   active_.insert(id);
-  use(id);
+  never_reuse(id);
 }
 
 void JobTable::remove(JobId id) {
@@ -33,7 +33,7 @@ void JobTable::remove(JobId id) {
     active_.erase(id);
     all_.erase(id);
   }
-  use(id);
+  never_reuse(id);
 }
 
 void JobTable::set_priority(Job& job, std::int32_t priority) {

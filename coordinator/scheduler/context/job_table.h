@@ -40,7 +40,7 @@ class JobTable {
 
   void add(JobId id, const JobSpec& spec, std::uint32_t pixel_version);
   /// Marks an id as used by something else than a job.
-  void use(JobId id) { next_id_ = next_id_ > id ? next_id_ : id + 1; }
+  void never_reuse(JobId id) { next_id_ = next_id_ > id ? next_id_ : id + 1; }
   /// Removes a job. If the job is unknown, only marks its id as used.
   void remove(JobId id);
   void set_priority(Job& job, std::int32_t priority);

@@ -19,7 +19,7 @@ namespace bandsaw::coordinator {
 
 class Sequence {
  public:
-  /// Number of jobs of a frame that fail before the frame has failed.
+  /// A frame has failed when this many of its jobs have failed.
   static constexpr std::uint32_t kTries = 2;
 
   struct Frame {
@@ -54,6 +54,8 @@ class Sequence {
   double elapsed(Time now) const;
 
   // Only Context::apply calls these three. They do nothing if there is no such frame.
+  /// The scene of the frame is known, or the frame is tried again: it waits to be rendered.
+  /// `failures`: number of its jobs that failed; `reason`: of the last failure.
   void wait(const FrameScene& scene, std::uint32_t failures, const std::string& reason);
   void start(FrameNumber number, JobId job);
   /// Ends the frame whose job this is. REQUIRES: is_final(job.state).

@@ -31,7 +31,8 @@ TEST(Bias, NoiseAloneIsNotBias) {
   EXPECT_EQ(test.suspicious_blocks, 0u);
 }
 
-// A thousandth of the light missing everywhere is far below the noise of any pixel.
+// Every pixel lacks 0.001: a hundredth of the range of its noise, and a fifth of a per cent of the
+// light, whose mean is 1/2.
 TEST(Bias, AHundredthOfTheNoiseIsFound) {
   Image darker = noisy(waves(512, 512), 0.1F, kSeed);
   for (Rgb& pixel : darker.pixels) {

@@ -109,8 +109,8 @@ TEST(EmulatedFma, HasTheBitsIfTheSumIsNearAMiddle) {
   for (int i = 0; i < 1'000'000; ++i) {
     const double c = numbers.near_one(3);
     const double half = std::ldexp(1.0, std::ilogb(c) - 53);
-    // Products of about half the last bit: 2^k (1 + x)(1 - x) with a small x, exactly 2^k (1 - x
-    // x).
+    // Products of about half the last bit: 2^k (1 + x)(1 - x) with a small x, which is exactly
+    // 2^k (1 - x^2).
     const double x = std::ldexp(1.0, -static_cast<int>(numbers.below(53)));
     expect_same(half * (1 + x), 1 - x, c);
     expect_same(half * (1 + x), 1 + x, c);

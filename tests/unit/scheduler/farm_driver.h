@@ -23,6 +23,7 @@ inline SchedulerOptions test_options() {
 
 /// Options with which even single rows of a small image take long, so that leases have one or two
 /// rows.
+/// Options with which a band is a row or a few.
 inline SchedulerOptions slow() {
   SchedulerOptions options = test_options();
   options.band_target_s = 1e-3;
@@ -92,6 +93,7 @@ class FarmDriver {
 
   JobId submit(JobSpec spec) { return send(input::Submit{std::move(spec)}).job; }
 
+  /// A worker joins that holds at most `max_bands` bands at once; `held`: those that it holds now.
   Step hello(SessionId session, const std::string& instance, std::uint32_t max_bands = 2,
              std::vector<WorkerHello::Held> held = {}) {
     return send(input::Hello{session, test_worker(instance, max_bands, std::move(held))});

@@ -141,7 +141,7 @@ TEST(Restart, KeepsTheErrorCurveOfARunningJob) {
   EXPECT_EQ(next.job(1).curve, farm.job(1).curve);
 }
 
-/// The jobs after a replay.
+/// Expects the same jobs in both.
 void expect_equal(const FarmDriver& one, const FarmDriver& other) {
   const std::vector<JobView> a = one.scheduler.jobs(one.now);
   const std::vector<JobView> b = other.scheduler.jobs(other.now);
@@ -249,7 +249,9 @@ TEST(Restart, AdoptsAHeldLeaseUnderItsId) {
     next.scheduler.replay(record);
   }
   next.take(next.scheduler.replayed(next.now));
-  const Step step = next.hello(7, "a", 1, {{1, lease.band, lease.lease, "one", false}});
+  const Step step = next.hello(
+      7, "a", 1,
+      {{.job = 1, .band = lease.band, .lease = lease.lease, .epoch = "one", .finished = false}});
   ASSERT_FALSE(in<action::Lease>(step).empty());
   EXPECT_EQ(in<action::Lease>(step)[0].lease, lease.lease);
   EXPECT_EQ(in<action::Lease>(step)[0].band, lease.band);
@@ -265,12 +267,16 @@ TEST(Restart, RevokesAHeldLeaseOfAnotherJobWithTheSameId) {
   const std::uint64_t right = work_hash(spec.manifest, spec.settings);
   spec.settings.seed += 1;
   const std::uint64_t wrong = work_hash(spec.manifest, spec.settings);
-  const Step refused = farm.hello(1, "a", 1, {{1, band, 77, "old", true, wrong}});
+  const Step refused = farm.hello(
+      1, "a", 1,
+      {{.job = 1, .band = band, .lease = 77, .epoch = "old", .finished = true, .work = wrong}});
   ASSERT_EQ(in<action::Revoke>(refused).size(), 1u);
   EXPECT_EQ(in<action::Revoke>(refused)[0].leases, std::vector<LeaseId>{77});
   FarmDriver other(slow());
   other.submit(test_job("r1", StopAtSamples{8}));
-  const Step taken = other.hello(1, "a", 1, {{1, band, 77, "old", true, right}});
+  const Step taken = other.hello(
+      1, "a", 1,
+      {{.job = 1, .band = band, .lease = 77, .epoch = "old", .finished = true, .work = right}});
   EXPECT_TRUE(in<action::Revoke>(taken).empty());
 }
 
