@@ -51,7 +51,8 @@ void SimWorker::connect() {
   stream_->id =
       coordinator_.open([this, stream = stream_](const Action& action) { down(stream, action); });
   WorkerHello hello;
-  hello.instance = absl::StrCat(name_, "/", process_);
+  const std::string number = nature_.number > 0 ? absl::StrCat(" ", nature_.number) : "";
+  hello.instance = absl::StrCat(name_, number, "/", process_);
   hello.name = name_;
   hello.protocol = 1;
   hello.pixel_version = 2;

@@ -17,6 +17,7 @@ struct Nature {
   double samples_per_s = 10'000;
   std::uint32_t threads = 1;
   std::uint32_t max_bands = 2;
+  std::uint32_t number = 0;        ///< tells workers of the same name apart
   double fails = 0;                ///< share of its bands
   double hangs = 0;                ///< share of its bands; it hangs until they are revoked
   double lies = 0;                 ///< share of its rows
