@@ -62,6 +62,24 @@ TEST_F(Survive, AKilledCoordinator) {
   job_.expect_nothing_rendered_again();
 }
 
+// All light has passed glass, so each worker makes photon maps. One is killed, and the coordinator
+// is killed while the one that joins in its place makes its own.
+TEST_F(Survive, AKilledWorkerAndCoordinatorWherePhotonMapsPay) {
+  Survival job(farm_, BANDSAW_GALLERY "/hard_light/lamp_in_glass.textproto");
+  farm_.add_worker("victim", 1);
+  farm_.add_worker("other", 1);
+  Process client = job.submit();
+  job.wait_until_stored("victim", 1);
+  farm_.worker("victim").signal(SIGKILL);
+  farm_.add_worker("late", 1);
+  farm_.coordinator().signal(SIGKILL);
+  ASSERT_EQ(farm_.coordinator().wait(), 128 + SIGKILL);
+  farm_.restart_coordinator();
+  job.expect_the_same_bytes(client);
+  job.expect_nothing_rendered_again("victim");
+  EXPECT_NE(file_bytes(farm_.path("farm.json")).find("\"photon_maps\":true"), std::string::npos);
+}
+
 TEST_F(Survive, ADrainedWorker) {
   farm_.add_worker("leaving", 1);
   farm_.add_worker("staying", 1);
