@@ -18,20 +18,6 @@
 namespace bandsaw::coordinator {
 namespace {
 
-ExitCode left_early(const absl::Status& status, JobId job, const WantedFrames& wanted,
-                    const Console& console) {
-  const ExitCode code = exit_code_of(status);
-  const std::string how = come_back(job, wanted.outputs, wanted.denoise, "NAME.####.png");
-  if (code == ExitCode::kInterrupted) {
-    return console.fail(code, absl::StrCat("detached; job ", job, " continues. ", how));
-  }
-  if (code == ExitCode::kNoFarm) {
-    return console.fail(code, absl::StrCat(status.message(), "; job ", job,
-                                           " continues when it is started again. ", how));
-  }
-  return console.fail(code, absl::StrCat(status.message(), "; the farm keeps the images. ", how));
-}
-
 /// Follows the job, and fetches frames at each change. Returns the last status.
 absl::StatusOr<Progress> follow(FarmClient& client, JobId job, FrameFetcher& fetcher,
                                 ProgressDisplay& display) {
@@ -93,7 +79,10 @@ ExitCode watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
   const auto last = follow(client, job, fetcher, display);
   if (!last.ok()) {
     display.clear();
-    return left_early(last.status(), job, wanted, console);
+    const std::string how = come_back(job, wanted.outputs, wanted.denoise, "NAME.####.png");
+    return left_early(last.status(), job, how,
+                      absl::StrCat(last.status().message(), "; the farm keeps the images. ", how),
+                      console);
   }
   absl::Status made = fetcher.make_collections();
   std::vector<std::string> outputs = wanted.outputs;

@@ -139,21 +139,6 @@ class Watch {
   std::optional<double> gone_since_;
 };
 
-// Prints why the command ends before the job's image was fetched, and returns the exit code.
-ExitCode left_early(const absl::Status& status, JobId job, const Wanted& wanted,
-                    const Console& console) {
-  const ExitCode code = exit_code_of(status);
-  const std::string how = come_back(job, wanted.outputs, wanted.denoise, "FILE");
-  if (code == ExitCode::kInterrupted) {
-    return console.fail(code, absl::StrCat("detached; job ", job, " continues. ", how));
-  }
-  if (code == ExitCode::kNoFarm) {
-    return console.fail(code, absl::StrCat(status.message(), "; job ", job,
-                                           " continues when it is started again. ", how));
-  }
-  return console.fail(code, std::string(status.message()));
-}
-
 // Prints an error that occurred after the farm had finished the image.
 ExitCode not_fetched(const absl::Status& status, JobId job, const Wanted& wanted,
                      const Console& console) {
@@ -207,6 +192,19 @@ std::string come_back(JobId job, const std::vector<std::string>& outputs, Denois
                       outputs.empty() ? otherwise : absl::StrJoin(outputs, " -o "));
 }
 
+ExitCode left_early(const absl::Status& status, JobId job, const std::string& how,
+                    const std::string& otherwise, const Console& console) {
+  const ExitCode code = exit_code_of(status);
+  if (code == ExitCode::kInterrupted) {
+    return console.fail(code, absl::StrCat("detached; job ", job, " continues. ", how));
+  }
+  if (code == ExitCode::kNoFarm) {
+    return console.fail(code, absl::StrCat(status.message(), "; job ", job,
+                                           " continues when it is started again. ", how));
+  }
+  return console.fail(code, otherwise);
+}
+
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display,
                                     const std::function<void(const Progress&)>& on_status) {
   return Watch(client, job, display, on_status).to_the_end();
@@ -215,6 +213,10 @@ absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDispl
 ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosity verbosity,
                    Process& process, const BesideImage& beside) {
   const std::vector<std::string>& outputs = wanted.outputs;
+  const auto left = [&](const absl::Status& status) {
+    return left_early(status, job, come_back(job, outputs, wanted.denoise, "FILE"),
+                      std::string(status.message()), process.console);
+  };
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
   ProgressDisplay display(process.console, verbosity);
   ImageViews views(display, wanted.display, wanted.tev, absl::StrCat("bandsaw job ", job));
@@ -224,7 +226,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
   }();
   if (!last.ok()) {
     display.clear();
-    return left_early(last.status(), job, wanted, process.console);
+    return left(last.status());
   }
   if (last->job.state != JobState::kDone) {
     display.ended(*last);
@@ -241,7 +243,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
     auto result = client.result(job);
     if (!result.ok()) {
       display.clear();
-      return left_early(result.status(), job, wanted, process.console);
+      return left(result.status());
     }
     const auto pictures =
         with_layers(client, *std::move(result), *last, wanted, views, display, beside);
@@ -249,7 +251,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
       display.clear();
       return exit_code_of(pictures.status()) == ExitCode::kFailed
                  ? not_fetched(pictures.status(), job, wanted, process.console)
-                 : left_early(pictures.status(), job, wanted, process.console);
+                 : left(pictures.status());
     }
     if (const auto status = write_pictures(*pictures, wanted); !status.ok()) {
       display.clear();

@@ -41,6 +41,12 @@ struct JobPictures {
 std::string come_back(JobId job, const std::vector<std::string>& outputs, Denoiser denoise,
                       const std::string& otherwise);
 
+/// Prints why a command ends before it has written the files of a job, and returns the exit code.
+/// `how`: of come_back(); `otherwise`: the text for an error that is neither an interruption nor a
+/// farm that is not reached.
+ExitCode left_early(const absl::Status& status, JobId job, const std::string& how,
+                    const std::string& otherwise, const Console& console);
+
 /// Writes the files of a job.
 absl::Status write_pictures(const JobPictures& pictures, const Wanted& wanted);
 
