@@ -205,7 +205,7 @@ TEST(TabSimulation, EveryJobEndsWithTheRightBytes) {
 }
 
 TEST(TabSimulation, TabsAloneRenderTheRightBytes) {
-  for_seeds(91'001, 4, [&](std::uint64_t seed) {
+  for_seeds(91'001, 10, [&](std::uint64_t seed) {
     const TabOutcome one = TabSimulation(seed, {.natives = 0}).run();
     EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
   });
