@@ -149,7 +149,7 @@ CausticPhoton stand_in(absl::Span<const CausticPhoton> photons, std::uint64_t se
   for (const CausticPhoton& photon : photons) {
     total += luminance(photon.power);
   }
-  double left = static_cast<double>(split_mix(seed + kSplitMixIncrement) >> 11) * 0x1p-53 * total;
+  double left = NumberStream(seed).next() * total;
   std::size_t chosen = 0;
   while (chosen + 1 < photons.size() && left >= luminance(photons[chosen].power)) {
     left -= luminance(photons[chosen].power);

@@ -35,10 +35,10 @@ class PhotonMap {
 
   PhotonMap() = default;
   /// Builds the map; `radius_factor` > 0 scales all radii, `seed` decides which photons have disks
-  /// of the same radius. `share_on_surface` returns the share of
-  /// the power of a photon, in (0, 1], that falls on the surface around it when its disk has its
-  /// radius; it is called on the threads of the pool, and the power is divided by it. The map
-  /// depends on the photons and their order only.
+  /// of the same radius. `share_on_surface` returns the share of the power of a photon, in (0, 1],
+  /// that falls on the surface around it when its disk has its radius; it is called on the threads
+  /// of the pool, and the power is divided by it. The map depends on its arguments and the order of
+  /// the photons, not on the threads.
   PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, std::uint64_t seed,
             Pool& pool, absl::FunctionRef<double(const CausticPhoton&)> share_on_surface);
 

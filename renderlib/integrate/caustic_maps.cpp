@@ -62,9 +62,7 @@ std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Cast
                          preparation.pool, [&](const CausticPhoton& photon) {
                            return preparation.stopped() ? 1 : share_on_surface(scene, photon);
                          });
-  if (preparation.step) {
-    preparation.step();
-  }
+  preparation.advance();
   return preparation.stopped() ? nullptr : std::make_shared<const TracedMap>(std::move(traced));
 }
 

@@ -121,16 +121,18 @@ bool GuidingGain::maps_pay() const { return share_of(by_photons) > kMinShareOfMa
 
 bool GuidingGain::photons_pay() const { return share_of(by_photons) > kMinShareOfPhotons; }
 
-GuidingGain expected_gain(const Scene& scene, const GuidingKey& key, const GuidingField& field,
-                          const CausticMaps* caustics, Pool& pool) {
+std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& key,
+                                         const GuidingField& field, const CausticMaps* caustics,
+                                         const Preparation& preparation) {
   const PathOptions options{.max_depth = key.max_depth, .caustics = caustics};
   const RayGenerator camera(scene.camera(), static_cast<int>(key.width),
                             static_cast<int>(key.height), scene.camera_at_close());
   std::vector<PixelStatistics> pixels(kPixels);
-  pool.parallel_for(kPixels, [&](std::int64_t number) {
-    const auto pixel = static_cast<std::uint32_t>(number);
-    pixels[pixel] = statistics_of(scene, camera, key, field, options, pixel);
-  });
+  if (!preparation.run(kPixels, [&](std::uint32_t pixel) {
+        pixels[pixel] = statistics_of(scene, camera, key, field, options, pixel);
+      })) {
+    return std::nullopt;
+  }
   constexpr double kAll = kSamples;
   double mean = 0;
   for (const PixelStatistics& pixel : pixels) {

@@ -1,13 +1,13 @@
 #pragma once
 
-// What path guiding and photon maps are expected to gain in a scene: whether the integrator `path`
-// uses them.
+// Estimates what path guiding and photon maps gain in a scene, to decide whether the integrator
+// `path` uses them.
 
-#include <atomic>
+#include <optional>
 
-#include "renderlib/base/pool.h"
 #include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/guiding/guiding_field.h"
+#include "renderlib/integrate/preparation.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
@@ -35,8 +35,10 @@ struct GuidingGain {
 /// Measures the variance with 8 samples in each of 512 pixels, and estimates the parts from what
 /// the cells of `field` tell about the first surface of the same samples that can be guided: the
 /// irradiance, and the second moment of a sampled direction's contribution (GuidingCell). The
-/// caustics come from `caustics` if it is not null. A pure function of the arguments but the pool.
-GuidingGain expected_gain(const Scene& scene, const GuidingKey& key, const GuidingField& field,
-                          const CausticMaps* caustics, Pool& pool);
+/// caustics come from `caustics` if it is not null. A pure function of the arguments but the
+/// preparation. Returns std::nullopt if it was stopped.
+std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& key,
+                                         const GuidingField& field, const CausticMaps* caustics,
+                                         const Preparation& preparation);
 
 }  // namespace bandsaw

@@ -86,7 +86,7 @@ std::optional<GuidingGain> pilot(const Scene& scene, const GuidingKey& key, cons
     return std::nullopt;
   }
   rays += trained->rays;
-  return expected_gain(scene, key, trained->field, caustics, preparation.pool);
+  return expected_gain(scene, key, trained->field, caustics, preparation);
 }
 
 }  // namespace

@@ -21,6 +21,13 @@ struct Preparation {
 
   bool stopped() const { return stop.load(std::memory_order_relaxed); }
 
+  /// Tells that a part is done.
+  void advance() const {
+    if (step) {
+      step();
+    }
+  }
+
   /// Calls `part` with each number in [0, parts) on the threads of the pool, until it is stopped.
   /// Returns false if it was.
   template <class Part>
@@ -28,9 +35,7 @@ struct Preparation {
     pool.parallel_for(parts, [&](std::int64_t number) {
       if (!stopped()) {
         part(static_cast<std::uint32_t>(number));
-        if (step) {
-          step();
-        }
+        advance();
       }
     });
     return !stopped();

@@ -21,7 +21,8 @@ constexpr std::uint32_t kDepth = 6;
 GuidingGain gain_of(const Scene& scene, int threads = 2) {
   Pool pool(threads);
   const GuidingKey key{kWidth, kHeight, kDepth};
-  return expected_gain(scene, key, train_guiding(scene, key, {pool, kGoOn})->field, nullptr, pool);
+  return *expected_gain(scene, key, train_guiding(scene, key, {pool, kGoOn})->field, nullptr,
+                        {pool, kGoOn});
 }
 
 BandPixels pixels_of(const Scene& scene, Integrator integrator) {
