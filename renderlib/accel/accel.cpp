@@ -1,6 +1,7 @@
-// Two levels: the BVHs of meshes and groups, and above them one tree of loose shapes and instances
-// that rest, and one of instances that move. A query traces the first tree, then the second if
-// there is one.
+// The BVHs have two levels. Each mesh and each group of shapes has a BVH (top_tree.h, Prototype).
+// Above them, one tree contains the loose shapes and the instances that rest, and another tree the
+// instances that move. A query (query.h) traces the first of these trees, then the second if there
+// is one.
 
 #include "renderlib/accel/accel.h"
 
@@ -19,6 +20,8 @@
 namespace bandsaw {
 namespace {
 
+/// Places the instance at the ray's time and traces the ray through it. Returns true if the query
+/// is finished.
 template <class Query>
 bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometry, const Ray& ray,
                            Query& query) {
@@ -61,13 +64,15 @@ template <class Query>
   });
 }
 
-/// Larger meshes are built one after another by all threads, smaller ones in parallel, each by one
-/// thread.
+/// BVHs of meshes with at least this many triangles are built one after another, each by all
+/// threads. Those of smaller meshes are built in parallel, each by one thread. The trees do not
+/// depend on this number.
 constexpr std::size_t kLargeMesh = std::size_t{1} << 15;
 
 /// BVHs of meshes, keyed by the mesh.
 using KnownTrees = std::map<const Mesh*, std::shared_ptr<const MeshTree>>;
 
+/// If `culls` is false, rays will test all primitives (disable_culling.h).
 MeshTree build_tree_of(const Mesh& mesh, bool culls, Pool* pool) {
   MeshTree tree = build_mesh_tree(mesh, pool);
   if (!culls) {
@@ -76,6 +81,7 @@ MeshTree build_tree_of(const Mesh& mesh, bool culls, Pool* pool) {
   return tree;
 }
 
+/// Returns the BVH of each mesh: the one in `known` if there is one, otherwise a new one.
 std::vector<std::shared_ptr<const MeshTree>> build_meshes(const MeshList& meshes,
                                                           const KnownTrees& known, bool culls,
                                                           Pool& pool) {

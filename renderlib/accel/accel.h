@@ -1,8 +1,9 @@
 #pragma once
 
 // Ray intersection queries over all geometry, accelerated by BVHs. The answers do not depend on the
-// trees: boxes are conservative, the test of each primitive is one deterministic double-precision
-// function, and the closest hit is the lowest (t, instance, primitive).
+// trees: no box test rejects a box that contains a hit, the test of each primitive is one
+// deterministic double-precision function, and the closest hit is the lowest (t, instance,
+// primitive).
 
 #include <cstddef>
 #include <memory>
@@ -20,12 +21,14 @@ enum class Traversal {
   kBruteForce,  ///< tests all primitives: the same hits, slowly; for comparison
 };
 
+/// The BVHs of one Geometry. A Scene has one, and integrate/ traces its rays through it.
 class Accel {
  public:
   /// Builds the BVHs. `geometry` MUST outlive the result and not change. Moving instances are only
-  /// found by rays whose time is within Geometry::shutter. `earlier`: the BVHs of other geometries,
-  /// which MUST NOT be of kBruteForce; BVHs of meshes that `geometry` shares with one of them are
-  /// shared as well. kBruteForce shares none.
+  /// found by rays whose time is within Geometry::shutter. `earlier` are the BVHs of other
+  /// geometries, none of them built with kBruteForce. If one of those geometries shares a mesh with
+  /// `geometry`, the BVH of the mesh is shared as well and not built again. A result of kBruteForce
+  /// shares nothing.
   static Accel build(const Geometry& geometry, Pool& pool, Traversal traversal = Traversal::kBvh,
                      absl::Span<const Accel* const> earlier = {});
 
@@ -33,12 +36,13 @@ class Accel {
   Accel& operator=(Accel&&) noexcept;
   ~Accel();
 
-  /// Returns the closest hit; false (as a bool) if there is none.
+  /// Returns the closest hit. If there is none, the returned Hit converts to false.
   Hit closest(const Ray& ray) const;
-  /// Returns the closest hit beyond `after`, an earlier hit of the same ray, in the order (t,
-  /// instance, primitive). So coincident surfaces are all returned, one after the other.
+  /// Returns the closest hit beyond `after`, a hit that an earlier call returned for the same ray.
+  /// Hits are ordered by (t, instance, primitive), so repeated calls also return surfaces that
+  /// coincide, one after the other.
   Hit closest_after(const Ray& ray, const Hit& after) const;
-  /// Returns true if anything lies in (0, ray.t_max).
+  /// Returns true if the ray hits anything at a t in (0, ray.t_max).
   bool occluded(const Ray& ray) const;
 
   /// Returns the memory of the trees in bytes.

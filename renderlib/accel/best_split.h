@@ -1,6 +1,8 @@
 #pragma once
 
-// Binned SAH: selects the cheapest plane between bins of the items' centres.
+// Binned surface area heuristic (SAH): selects the plane at which a range of items is split while a
+// BVH is built (partition.h). Items (tree_item.h) are sorted by their centres into bins, and the
+// cheapest plane between two bins is selected.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +18,9 @@ namespace bandsaw {
 
 /// A split: items whose bin on `axis` is below `bin` go left.
 struct Split {
-  double cost = std::numeric_limits<double>::infinity();  ///< sum of area times number of packs
+  /// Sum over both sides of the area of the box times the number of packs. A pack is the content of
+  /// a leaf: up to eight primitives, which are tested together.
+  double cost = std::numeric_limits<double>::infinity();
   std::size_t axis = 0;
   std::uint32_t bin = 0;
 };
@@ -29,6 +33,7 @@ class Binning {
   /// `centres` is the bounding box of the items' twice_centre().
   explicit Binning(const LaneBox& centres);
 
+  /// Returns false if all centres have about the same coordinate, so that no plane separates them.
   bool has_extent(std::size_t axis) const { return has_extent_[axis]; }
   /// Returns in lanes 0 to 2 the bin plus a fraction, in [0, kBins - 1] for any centre.
   Float8 place(Float8 centre) const {
@@ -41,15 +46,16 @@ class Binning {
   Float8 scale_;
 };
 
-/// Bounding boxes and item counts of a range, by bin.
+/// Bounding boxes and item counts of a range, for each bin of each axis.
 class Bins {
  public:
   void add(absl::Span<const TreeItem> items, const Binning& binning);
+  /// Adds the items of other bins, which MUST have the same Binning.
   void add(const Bins& other);
   /// Returns the cheapest split; its cost is infinite if no plane has items on both sides.
   Split best_split(const Binning& binning) const;
   std::uint32_t left_count(const Split& split) const;
-  /// Returns the bounding boxes left and right of a plane.
+  /// Returns the bounding boxes of the items left and right of the plane.
   std::array<LaneBox, 2> boxes(const Split& split) const;
 
  private:
@@ -59,8 +65,8 @@ class Bins {
   Rows<std::uint32_t> count_ = {};
 };
 
-/// Copies `items` to their left or right destination, preserving their order. Returns the bounding
-/// boxes of the centres of both sides.
+/// Copies the items that go left to consecutive places from to[0] on, and the others from to[1] on,
+/// preserving their order. Returns for each side the bounding box of twice_centre() of its items.
 std::array<LaneBox, 2> part(absl::Span<const TreeItem> items, const Binning& binning,
                             const Split& split, std::array<TreeItem*, 2> to);
 

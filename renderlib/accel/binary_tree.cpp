@@ -15,7 +15,8 @@
 namespace bandsaw {
 namespace {
 
-/// Appends the subtree of `range` to `nodes`.
+/// Appends the subtree of `range` to `nodes`, and stores the items of its leaves in `leaves`
+/// (BinaryTree::items), at the positions of the range.
 void build_subtree(const TwoLists& lists, const Range& range, absl::Span<ItemRef> leaves,
                    std::vector<BinaryNode>& nodes) {
   const std::size_t index = nodes.size();
@@ -37,7 +38,8 @@ void build_subtree(const TwoLists& lists, const Range& range, absl::Span<ItemRef
   build_subtree(lists, right, leaves, nodes);
 }
 
-/// Larger ranges are binned and partitioned in pieces of this size.
+/// Ranges of the upper tree are cut into pieces of this many items, which the threads bin and move
+/// in parallel. The tree depends neither on this number nor on those of task_size().
 constexpr std::size_t kPieceSize = 1 << 12;
 
 /// Returns the size up to which a range is built by one thread.
@@ -50,14 +52,15 @@ std::uint32_t task_size(std::uint32_t count, Pool* pool) {
                         count / (kTasksOfAThread * static_cast<std::uint32_t>(pool->threads())));
 }
 
-/// A subtree that one thread builds, and the node of the upper tree that it replaces.
+/// A range and its node in the upper tree. If the range is small, one thread builds its subtree,
+/// whose root replaces that node.
 struct Task {
   Range range;
   std::uint32_t node;
-  std::vector<BinaryNode> nodes = {};
+  std::vector<BinaryNode> nodes = {};  ///< the subtree, once it is built
 };
 
-/// One level of the upper tree: large ranges and their nodes.
+/// One level of the upper tree: the large ranges, each with its node.
 class Level {
  public:
   Level(const TwoLists& lists, std::vector<Task> tasks) : tasks_(std::move(tasks)) {
@@ -114,7 +117,8 @@ class Level {
   std::vector<std::size_t> owner_;  ///< for each piece, the index of its partition
 };
 
-/// Divides ranges level by level until all are small enough to be tasks.
+/// Appends the upper tree to `nodes`: divides ranges, level by level, until each has at most `most`
+/// items. Returns these ranges. `pool` may be null if `all` has at most `most` items.
 std::vector<Task> build_upper(const TwoLists& lists, const Range& all, std::uint32_t most,
                               Pool* pool, std::vector<BinaryNode>& nodes) {
   nodes.push_back({all.box.box()});
@@ -156,6 +160,7 @@ BinaryTree build_binary_tree(TreeItems items, Pool* pool) {
   const auto count = static_cast<std::uint32_t>(items.size());
   TreeItems other(count);
   const TwoLists lists = {absl::MakeSpan(items), absl::MakeSpan(other)};
+  // The range [0, count) at depth 1, in list 0.
   std::vector<Task> tasks = build_upper(lists, bounded(lists, {0, count, 1, 0, {}, {}}),
                                         task_size(count, pool), pool, tree.nodes);
   // Largest tasks first, so that the threads finish together.

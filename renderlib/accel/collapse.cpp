@@ -1,7 +1,8 @@
-// A wide node has eight slots, each for a child: another wide node, or a leaf, whose shapes are
-// stored as a pack of up to eight. First computes for each subtree of the binary tree, from the
-// leaves up, the least cost of giving it 1 to 8 slots of a wide node; then builds the wide nodes
-// from the root down by these costs.
+// A wide node has eight slots, each for a child: another wide node or a leaf. A leaf is a pack,
+// i.e. up to eight shapes that are tested together, or an instance. The first step goes from the
+// leaves of the binary tree up. It computes for each subtree the least costs if the subtree gets 1,
+// 2, …, 8 slots of a wide node. The second step goes from the root down and builds the wide nodes
+// of least cost.
 
 #include "renderlib/accel/collapse.h"
 
@@ -18,9 +19,10 @@ constexpr std::size_t kSlots = WideNode::kChildren;
 constexpr float kNodeCost = 1.0f;
 constexpr float kPackCost = 1.5f;
 
-/// Minimum costs of a subtree of the binary tree. Element i: it may fill at most i + 1 slots of the
-/// wide node above it, each with a part of the subtree; in element 0 it gets a wide node or a leaf
-/// of its own. Element 7 is therefore also the cost of the children of its own wide node.
+/// Minimum costs of a subtree of the binary tree. Element i is the cost if the subtree may fill at
+/// most i + 1 slots of the wide node above it, each with a part of the subtree. For element 0 it
+/// fills one slot, so it becomes a leaf or a wide node of its own. Element 7 is used as the cost of
+/// all children of that wide node.
 struct Costs {
   std::array<float, kSlots> slots;
 };
@@ -35,15 +37,19 @@ class Collapse {
     }
   }
 
+  /// Appends the wide nodes of the subtree of binary node `index` to `wide`, and makes its leaves.
+  /// Returns the reference to its wide node or leaf. `depth` is 1 for the root.
   ChildRef build(std::uint32_t index, std::size_t depth, WideTree& wide);
 
  private:
+  /// The binary nodes whose subtrees become the children of one wide node.
   struct Members {
     std::array<std::uint32_t, kSlots> index;
     std::size_t count = 0;
   };
   void set_costs(std::size_t index);
-  /// Returns how many of `slots` (>= 2) the left child gets at minimum cost.
+  /// Returns how many of `slots` (>= 2) the left child gets at minimum cost, and sets `cost` to
+  /// that cost.
   std::size_t left_share(const BinaryNode& node, std::size_t slots, float& cost) const;
   void choose(std::uint32_t index, std::size_t slots, Members& members) const;
   float cost(std::uint32_t index, std::size_t slots) const {
@@ -53,7 +59,7 @@ class Collapse {
   const BinaryTree& tree_;
   absl::FunctionRef<ChildRef(const BinaryNode&)> make_leaf_;
   std::vector<Costs> costs_;
-  ChildRef any_leaf_;  // the first leaf, once it exists
+  ChildRef any_leaf_;  ///< the first leaf, once it exists; unused slots refer to it
 };
 
 std::size_t Collapse::left_share(const BinaryNode& node, std::size_t slots, float& least) const {
@@ -71,7 +77,7 @@ std::size_t Collapse::left_share(const BinaryNode& node, std::size_t slots, floa
 
 void Collapse::set_costs(std::size_t index) {
   const BinaryNode& node = tree_.nodes[index];
-  // Relative to the root's area, to stay within the range of float.
+  // Relative to the root's area, to stay within the range of float; 1e-300 prevents 0 / 0.
   const auto area =
       static_cast<float>(node.box.area() / std::max(tree_.nodes[0].box.area(), 1e-300));
   Costs& costs = costs_[index];
@@ -88,9 +94,12 @@ void Collapse::set_costs(std::size_t index) {
   }
 }
 
-/// Collects the subtrees that take `slots` (>= 1) slots in place of node `index`.
+/// Adds to `members` the subtrees into which node `index` is divided at minimum cost if it may fill
+/// `slots` (>= 1) slots.
 void Collapse::choose(std::uint32_t index, std::size_t slots, Members& members) const {
   const BinaryNode& node = tree_.nodes[index];
+  // Takes fewer slots if the cost is the same. `slots` is kSlots only for the children of the
+  // node's own wide node, which MUST be divided.
   while (slots > 1 && slots < kSlots && cost(index, slots) == cost(index, slots - 1)) {
     --slots;
   }

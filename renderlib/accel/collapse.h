@@ -1,6 +1,7 @@
 #pragma once
 
-// Second step of a build: collapses binary nodes into nodes with eight children.
+// Second step of the build of every BVH (mesh_tree, shapes_tree, top_tree, moving_tree): collapses
+// binary nodes into nodes with eight children.
 
 #include "absl/functional/function_ref.h"
 #include "renderlib/accel/binary_tree.h"
@@ -10,8 +11,9 @@ namespace bandsaw {
 
 /// Returns the cheapest wide tree that keeps the binary tree's leaves, by dynamic programming over
 /// how many of eight slots each subtree gets (Ylitie, Karras and Laine 2017, "Efficient Incoherent
-/// Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2). Calls make_leaf for each leaf
-/// in depth-first order, so that the leaves' data are stored in that order.
+/// Ray Traversal on GPUs Through Compressed Wide BVHs", section 3.2). make_leaf(leaf) stores the
+/// primitives of a leaf and returns the reference to it. It is called once for each leaf, in
+/// depth-first order.
 WideTree collapse(const BinaryTree& tree,
                   absl::FunctionRef<ChildRef(const BinaryNode& leaf)> make_leaf);
 

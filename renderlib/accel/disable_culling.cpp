@@ -1,5 +1,5 @@
 // Replaces the bounds of all children by boxes that every ray enters, so that a traversal visits
-// every node. Tests and `study --every-object` use such trees.
+// every node.
 
 #include "renderlib/accel/disable_culling.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Disables culling: all boxes become infinite, so that every ray visits every leaf. A reference for
-// tests.
+// Disables culling: all boxes become so large that every ray visits every leaf.
+// Traversal::kBruteForce uses such trees, for tests and for `bandsaw study --every-object`.
 
 #include "renderlib/accel/moving_nodes.h"
 #include "renderlib/accel/wide_tree.h"
@@ -11,7 +11,8 @@ namespace bandsaw {
 /// Makes a ray traced through the tree test all primitives in it. The hits stay the same, to the
 /// bit.
 void disable_culling(WideTree& tree);
-/// The same for nodes that move by `changes`; empty if they do not move.
+/// Does the same for nodes whose bounds move by `changes` (moving_nodes.h), which become zero.
+/// `changes` is empty if the nodes do not move.
 void disable_culling(WideTree& tree, NodeChanges& changes);
 
 }  // namespace bandsaw

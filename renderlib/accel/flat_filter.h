@@ -9,14 +9,16 @@
 
 namespace bandsaw {
 
-/// Bounds of the relative rounding errors: the first for the weights of the corners (barycentric
-/// coordinates times the volume), the second for the volume (normal times direction) and for the
-/// distance.
+/// Bound of the relative rounding error of a corner's weight, which is its barycentric coordinate
+/// times `volume` (normal times direction).
 inline constexpr float kWeightError = 26 * 0x1p-24f;
+/// The same for `volume` and for the distance times `volume`.
 inline constexpr float kDistanceError = 24 * 0x1p-24f;
 /// Share of a length that covers the rounding of the double test.
 inline constexpr float kDoubleError = 0x1p-27f;
 
+/// Eight vectors. about_fused(a, b, c) is a b + c, and about_fused_minus(a, b, c) is a b - c; both
+/// are rounded once or twice, depending on the machine (base/simd_plain.h).
 template <class Float>
 struct Vector8 {
   Float x;
@@ -35,13 +37,15 @@ struct Vector8 {
   }
 };
 
-/// `maybe`: lanes that may be hit before `bound` (in the ray's units, rounded up). `surely`: lanes
-/// among them that are certainly hit, at a t in (0, sure_bound) (rounded down; 0: not computed).
+/// Results of filter_flats(): bit i stands for the triangle in lane i of the pack.
 struct FlatLanes {
-  unsigned maybe = 0;
-  unsigned surely = 0;
+  unsigned maybe = 0;   ///< may be hit
+  unsigned surely = 0;  ///< is certainly hit; a subset of `maybe`
 };
 
+/// Finds the triangles that may be hit before `bound`, and those that are certainly hit at a t in
+/// (0, sure_bound). If `sure_bound` is 0, the latter are not computed. Both are in the ray's units:
+/// `bound` is FloatRay::above(), `sure_bound` FloatRay::below() of a distance.
 template <class Float = Float8>
 [[gnu::always_inline]] inline FlatLanes filter_flats(const FlatPack& pack, const FloatRay& ray,
                                                      float bound, float sure_bound) {
@@ -80,7 +84,7 @@ template <class Float = Float8>
   }
   const unsigned inside = ((error < least) | (most < minus_error)).bits();
 
-  // t = volume_t / volume. Its sign and value are used only where the weights are certain.
+  // t = volume_t / volume. It is used only where the weights are certain.
   const Float volume_t = flip_by_sign(dot(n, c), volume);
   const Float positive = abs(volume);
   const Float per_length =

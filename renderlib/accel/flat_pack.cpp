@@ -1,5 +1,5 @@
-// Fills a pack with triangles and keeps `size`, the bound of the edges' lengths on which the error
-// bound of the float filter depends.
+// Fills a pack with triangles and keeps `size`, the bound of the edges' components on which the
+// error bound of the float filter depends (README.md, "Triangles"; u is 2^-24).
 
 #include "renderlib/accel/flat_pack.h"
 
@@ -47,7 +47,7 @@ void FlatPacker::add(const Corners& corners, std::uint32_t primitive) {
   store(corners, lane, pack_.corner);
   pack_.primitive[lane] = primitive;
   pack_.lanes |= 1u << lane;
-  // The factor covers twice the rounding of the difference.
+  // The factor covers the rounding of the difference, u, with a reserve.
   pack_.size = std::max(pack_.size, longest(corners) * (1 + 0x1p-22f));
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// Eight triangles in float, in structure-of-arrays layout. Triangles of a mesh hold the vertices
-// exactly; a loose triangle is rounded, a quad is two triangles that share its diagonal and its id.
+// A leaf of a BVH: up to eight triangles in float, in structure-of-arrays layout. Corners of mesh
+// triangles are exact; those of loose triangles are rounded from double. A quad is two triangles
+// that share its diagonal and its number.
 
 #include <array>
 #include <cstddef>
@@ -18,28 +19,31 @@ struct FlatPack {
   /// [3 * corner + axis][lane]; unused lanes are zero.
   using Corners = std::array<std::array<float, kPackSize>, 9>;
   Corners corner;
-  std::array<std::uint32_t, kPackSize> primitive;
+  std::array<std::uint32_t, kPackSize> primitive;  ///< [lane]: as in PrimitiveId
   /// At least the absolute value of every component of every edge. If corners were rounded, four
   /// times their largest component is added (README.md, "Triangles"). If they move, it holds for
   /// all times.
   float size;
   std::uint32_t lanes;  ///< bit i: lane i is used
 
+  /// Returns corner `which` (0 to 2) of the triangle in a lane.
   std::array<float, 3> vertex(std::size_t lane, std::size_t which) const {
     return {corner[3 * which][lane], corner[3 * which + 1][lane], corner[3 * which + 2][lane]};
   }
 };
 
-/// Fills a pack, one triangle after another.
+/// Fills a pack, one triangle after another, at most kPackSize.
 class FlatPacker {
  public:
+  /// [corner][axis] of one triangle.
   using Corners = std::array<std::array<float, 3>, 3>;
 
   explicit FlatPacker(FlatPack& pack) : pack_(pack) { pack_ = {}; }
   void add(const Corners& corners, std::uint32_t primitive);
   /// Adds a triangle whose corners were rounded from double.
   void add_rounded(const Corners& corners, std::uint32_t primitive);
-  /// Adds a triangle that moves; its corners at the end of the interval are stored in `to`.
+  /// Adds a triangle of a mesh that deforms. The pack gets its corners at the beginning of the
+  /// shutter interval, `to` those at its end.
   void add_moving(const Corners& at_open, const Corners& at_close, std::uint32_t primitive,
                   FlatPack::Corners& to);
 

@@ -15,7 +15,7 @@ namespace bandsaw {
 struct FloatBox {
   static constexpr float kInf = std::numeric_limits<float>::infinity();
 
-  /// Empty by default: no ray hits it, no tree accepts it.
+  /// The box is empty by default: no ray hits it, and no tree accepts it.
   std::array<float, 3> lo{kInf, kInf, kInf};
   std::array<float, 3> hi{-kInf, -kInf, -kInf};
 
@@ -25,7 +25,8 @@ struct FloatBox {
       hi[k] = other.hi[k] > hi[k] ? other.hi[k] : hi[k];
     }
   }
-  /// Returns half the surface area, 0 if empty. In double, because products of floats may overflow.
+  /// Returns half the surface area, 0 if empty. It is computed in double, because products of
+  /// floats may overflow.
   double area() const {
     const double x = double{hi[0]} - double{lo[0]};
     const double y = double{hi[1]} - double{lo[1]};

@@ -1,6 +1,6 @@
 // Converts a ray to float for the tests of boxes and triangles. The direction is scaled by a power
-// of two; the planes of boxes are moved outwards by the rounding errors. Where float could
-// overflow, the box test lets everything pass.
+// of two; the planes of boxes are moved outwards by the rounding errors, which README.md, "Bounds",
+// derives. Where float could overflow, the box test lets everything pass.
 
 #include "renderlib/accel/float_ray.h"
 
@@ -37,6 +37,7 @@ FloatRay::FloatRay(const TracedRay& ray, float reach) {
   const double longest = std::abs(ray.direction[static_cast<std::size_t>(ray.kz)]);
   const std::uint64_t exponent = std::bit_cast<std::uint64_t>(longest) & 0x7ff0000000000000u;
   scale = std::bit_cast<double>(exponent);
+  // 1 / scale, exactly: the biased exponents of both add up to 2046, twice the bias.
   const double unscale = std::bit_cast<double>((std::uint64_t{2046} << 52) - exponent);
   double o1 = 0;
   double d1 = 0;

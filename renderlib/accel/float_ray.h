@@ -13,8 +13,9 @@
 namespace bandsaw {
 
 struct FloatRay {
-  /// Rows of WideNode::bounds through which the ray enters and leaves the slab of axis k, as byte
-  /// offsets (WideNode::plane). The distance is bound * factor + offset.
+  /// near[k] and far[k] are the rows of WideNode::bounds through which the ray enters and leaves
+  /// the slab of axis k, as byte offsets (WideNode::plane). The distance to a plane at coordinate b
+  /// is b * factor + offset.
   std::array<std::size_t, 3> near;
   std::array<std::size_t, 3> far;
   std::array<float, 3> near_factor;
@@ -41,7 +42,11 @@ struct FloatRay {
   float above(double t) const { return static_cast<float>(t * scale * (1 + 0x1p-20)); }
 
  private:
+  /// Sets the elements k of the arrays `near` to `far_offset`. `from` is component k of the origin,
+  /// `factor` the reciprocal of that of the scaled direction; `slack` is added to the margin for
+  /// rounding.
   void set_planes(std::size_t k, double from, float factor, double slack);
+  /// Lets the ray enter all boxes.
   void disable_culling();
 };
 

@@ -1,6 +1,6 @@
-// Makes an item (a box with the triangle's number) for each triangle that can be hit, builds a
-// binary tree of the items and collapses it to a tree with eight children per node, and copies the
-// corners of each leaf's triangles, at most eight, into a pack.
+// Makes an item (a box with the triangle's number) for each triangle that can be hit. Then builds a
+// binary tree of the items and collapses it to a tree with eight children per node. Each leaf is a
+// pack, into which the corners of its triangles, at most eight, are copied.
 
 #include "renderlib/accel/mesh_tree.h"
 
@@ -15,9 +15,10 @@
 namespace bandsaw {
 namespace {
 
+/// Number of triangles or leaves that a thread handles at a time; results do not depend on it.
 constexpr std::size_t kPieceSize = std::size_t{1} << 14;
 
-/// Calls body(first, end) for pieces of [0, count).
+/// Calls body(first, end) for pieces that cover [0, count), in parallel if there is a pool.
 void in_pieces(std::size_t count, Pool* pool,
                absl::FunctionRef<void(std::size_t, std::size_t)> body) {
   if (pool == nullptr) {
@@ -52,8 +53,8 @@ bool all_finite(const FlatPacker::Corners& corners) {
   });
 }
 
-/// Returns the box of a triangle that moves, at the middle of the interval; an empty box if it is
-/// omitted.
+/// Returns the box of a triangle of a mesh that deforms, at the middle of the shutter interval. The
+/// box is empty if build_mesh_tree() omits the triangle.
 FloatBox middle_bounds(const FlatPacker::Corners& open, const FlatPacker::Corners& close) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
@@ -72,7 +73,7 @@ FloatBox middle_bounds(const FlatPacker::Corners& open, const FlatPacker::Corner
   return all_finite(open) && all_finite(close) && all_finite(change) ? box_of(half) : FloatBox{};
 }
 
-/// Returns an empty box if the triangle is omitted.
+/// Returns the box of a triangle; it is empty if build_mesh_tree() omits the triangle.
 FloatBox bounds(const Mesh& mesh, std::size_t triangle) {
   const auto& indices = mesh.triangles[triangle];
   if (*std::max_element(indices.begin(), indices.end()) >= mesh.positions.size()) {
@@ -152,6 +153,7 @@ FlatPack pack_at(const MeshTree& mesh, std::uint32_t index, const ShutterTime& n
   FlatPack pack = mesh.packs[index];
   const FlatPack::Corners& at_close = mesh.corners_at_close[index];
   const Float8 factor(now.factor);
+  // The operations of ShutterTime::between(), so that the corners have the same bits.
   for (std::size_t row = 0; row < pack.corner.size(); ++row) {
     const Float8 open = Float8::load(pack.corner[row].data());
     const Float8 close = Float8::load(at_close[row].data());

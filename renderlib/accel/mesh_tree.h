@@ -1,6 +1,6 @@
 #pragma once
 
-// BVH of one mesh, in the mesh's own space.
+// BVH of one mesh, in the mesh's own space. Instances of the mesh share it (top_tree.h, trace.h).
 
 #include "renderlib/accel/flat_pack.h"
 #include "renderlib/accel/moving_nodes.h"
@@ -14,10 +14,12 @@ namespace bandsaw {
 
 struct MeshTree {
   WideTree tree;
-  HugeVector<FlatPack> packs;
-  Box box;  ///< at all times
-  /// For a mesh that deforms: changes of the nodes' bounds, and the corners of the packs at the end
-  /// of the shutter interval; `tree` and `packs` are those at its beginning. Otherwise empty.
+  HugeVector<FlatPack> packs;  ///< the leaves
+  Box box;                     ///< contains the mesh at all times of the shutter interval
+  /// `changes` and `corners_at_close` are empty unless the mesh deforms during the shutter
+  /// interval. If it does, they are the changes of the nodes' bounds from the beginning to the end
+  /// of the interval, and the corners of the packs at its end. `tree` and `packs` hold its
+  /// beginning.
   NodeChanges changes;
   HugeVector<FlatPack::Corners> corners_at_close;
 
@@ -32,11 +34,11 @@ struct MeshTree {
 /// Returns the pack number `pack` with its corners at the time `now`. The mesh MUST deform.
 FlatPack pack_at(const MeshTree& mesh, std::uint32_t pack, const ShutterTime& now);
 
-/// Builds the tree. Omits triangles with a corner that is not finite or does not exist, and
-/// triangles with two corners that are equal (at both ends, if the mesh deforms), which cover
-/// nothing that a neighbour does not cover. Triangles of three different collinear points are kept:
-/// they close T-junctions. (Scene::build has removed them, so this applies to geometry that is
-/// traced directly.) If `pool` is null, the build runs on this thread.
+/// Builds the tree. Omits triangles with a corner that is not finite or does not exist. Omits also
+/// triangles with two equal corners (equal at both ends, if the mesh deforms), because their
+/// neighbours cover the same points. Triangles of three different collinear points are kept: they
+/// close T-junctions. If `pool` is null, the build runs on this thread. (Scene::build has removed
+/// triangles that cannot be hit, so these rules matter for geometry that is traced without it.)
 MeshTree build_mesh_tree(const Mesh& mesh, Pool* pool);
 
 }  // namespace bandsaw

@@ -1,5 +1,6 @@
 // Sets the bounds of a tree for both ends of the shutter interval, leaves first. Between the ends
-// the bounds are interpolated, so they have a margin for the rounding of that.
+// the bounds are interpolated in float, so they have a margin for the rounding of the
+// interpolation.
 
 #include "renderlib/accel/moving_nodes.h"
 
@@ -12,11 +13,13 @@
 namespace bandsaw {
 namespace {
 
-/// Interpolating a bound in float, and a vertex within it, is off by at most 7u of the larger end
-/// (README.md, "Moving boxes").
+/// Interpolating a bound in float, and a vertex within it, is off by at most 7u of the larger end,
+/// where u is 2^-24 (README.md, "Moving boxes").
 constexpr double kLerpError = 8 * 0x1p-24;
+/// Covers the underflow of floats.
 constexpr double kTiny = 0x1p-120;
 
+/// Implements set_moving_bounds(); `changes` is the result.
 class Bounds {
  public:
   Bounds(absl::FunctionRef<MovingBox(ChildRef)> leaf_box, WideTree& tree)
@@ -29,6 +32,7 @@ class Bounds {
   NodeChanges changes;
 
  private:
+  /// Sets the bounds in the subtree `ref`, and returns those of its root.
   MovingBox set(ChildRef ref) {
     if (ref.is_leaf()) {
       return leaf_box_(ref);
@@ -54,6 +58,7 @@ class Bounds {
     }
   }
 
+  /// Sets the bound in `row` of child `i`. `outwards` is -1 for a lower and 1 for an upper bound.
   void set_plane(std::uint32_t node, std::size_t row, std::size_t i, double open, double close,
                  double outwards) {
     const double margin = kLerpError * std::max(std::abs(open), std::abs(close)) + kTiny;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Boxes whose sides move linearly during the shutter interval, for the nodes of a tree.
+// Boxes whose sides move linearly during the shutter interval, for the nodes of BVHs: that of
+// moving instances (moving_tree.h) and those of meshes that deform (mesh_tree.h).
 
 #include <array>
 #include <cstdint>
@@ -14,8 +15,9 @@
 
 namespace bandsaw {
 
-/// For each node of a tree, the difference of its bounds between the end and the beginning of the
-/// interval. Its tree has the bounds at the beginning, and a `reach` that covers all times.
+/// Element [node][row][child] is the change of WideNode::bounds[row][child] from the beginning to
+/// the end of the interval. The tree itself has the bounds at the beginning, and a `reach` that
+/// covers all times.
 using NodeChanges = HugeVector<std::array<std::array<float, WideNode::kChildren>, 6>>;
 
 /// Returns a box that contains both.

@@ -1,5 +1,5 @@
-// Builds the tree of the instances that move. It is built by the boxes in the middle of the motion;
-// then its nodes get moving bounds.
+// Builds the tree of the instances that move, from their boxes in the middle of the motion. Then
+// its nodes get moving bounds.
 
 #include "renderlib/accel/moving_tree.h"
 

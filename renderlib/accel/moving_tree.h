@@ -8,20 +8,20 @@
 
 namespace bandsaw {
 
-/// An instance that moves.
+/// An instance that moves with an animated frame (geometry/frame.h).
 struct MovingInstance {
   Prototype prototype;
   std::uint32_t instance = 0;  ///< as in PrimitiveId
-  /// True if it neither rotates nor scales: the linear part of its placement is constant, and so is
-  /// that of its inverse, which is stored in `to_object`.
+  /// True if the instance neither rotates nor scales. Then the linear part of its placement is
+  /// constant, and that of the inverse is the linear part of `to_object`.
   bool slides = false;
-  Transform to_object;
+  Transform to_object;  ///< from the world to the prototype when the shutter opens
 };
 
 struct MovingTree {
-  WideTree tree;        ///< bounds at the beginning; its `reach` covers all times
-  NodeChanges changes;  ///< how far each bound moves until the shutter closes
-  std::vector<MovingInstance> moving;
+  WideTree tree;                       ///< bounds at the beginning; its `reach` covers all times
+  NodeChanges changes;                 ///< how far each bound moves until the shutter closes
+  std::vector<MovingInstance> moving;  ///< by the index of the leaf
 
   std::size_t bytes() const {
     return tree.bytes() + changes.capacity() * sizeof(NodeChanges::value_type) +

@@ -11,7 +11,8 @@
 namespace bandsaw {
 namespace {
 
-/// A range that fits one pack is split only if the parts' area is below this share of its area.
+/// A range that fits one pack (a leaf, which is tested at once) is split only if the parts' area is
+/// below this share of its area (README.md, "Traversal and leaves").
 constexpr double kWorthSplitting = 0.7;
 
 bool one_kind(absl::Span<const TreeItem> items) {
@@ -25,8 +26,8 @@ bool must_split(absl::Span<const TreeItem> items) {
          (items.size() > 1 && items.front().kind == LeafKind::kInstance);
 }
 
-/// Returns true if halving must begin: it needs log2(count) levels, and two more to separate kinds,
-/// and no more are left.
+/// Returns true if the range must be halved because of the maximum depth: halving takes log2(count)
+/// levels, separating the kinds takes two more, and no more levels than these are left.
 bool is_deep(const Range& range) {
   return range.depth + static_cast<std::size_t>(std::bit_width(range.count())) + 2 >= kMaxTreeDepth;
 }
@@ -136,7 +137,8 @@ void Partition::parts(Range& left, Range& right) const {
   }
 }
 
-/// Divides by kind, or in halves.
+/// Divides a range that is not split at a plane: by kind if it would fit one pack, otherwise in
+/// halves.
 void Partition::part_without_plane(Range& left, Range& right) const {
   const absl::Span<TreeItem> all = items_of(lists_, range_);
   std::uint32_t middle = range_.first + range_.count() / 2;
@@ -154,6 +156,7 @@ void Partition::part_without_plane(Range& left, Range& right) const {
 
 bool partition_range(const TwoLists& lists, const Range& range, Range& left, Range& right) {
   const absl::Span<const TreeItem> items = items_of(lists, range);
+  // One or two primitives of one kind are not worth splitting.
   if (items.size() < 3 && !must_split(items)) {
     return false;
   }

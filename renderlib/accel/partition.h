@@ -1,6 +1,7 @@
 #pragma once
 
-// One step of a build: partitions a range of items in two, or makes it a leaf.
+// One step of the build of a binary BVH (binary_tree.cpp): partitions a range of items (boxes with
+// an index, tree_item.h) in two, or decides that it becomes a leaf.
 
 #include <array>
 #include <cstddef>
@@ -16,8 +17,8 @@ namespace bandsaw {
 struct Range {
   std::uint32_t first;
   std::uint32_t end;
-  std::size_t depth;
-  std::size_t list;  ///< index of the list that holds it
+  std::size_t depth;  ///< 1 for the root
+  std::size_t list;   ///< 0 or 1: the one of TwoLists that holds the items
   LaneBox box;
   LaneBox centres;  ///< bounding box of twice_centre()
 
@@ -30,7 +31,7 @@ using TwoLists = std::array<absl::Span<TreeItem>, 2>;
 inline absl::Span<TreeItem> items_of(const TwoLists& lists, const Range& range) {
   return lists[range.list].subspan(range.first, range.count());
 }
-/// Returns `range` with both boxes set.
+/// Returns `range` with `box` and `centres` computed from its items.
 Range bounded(const TwoLists& lists, Range range);
 
 /// Partition of a range in steps: bin() for each piece, choose(), move() for each piece, parts().
@@ -40,19 +41,22 @@ class Partition {
  public:
   struct Piece {
     absl::Span<const TreeItem> items;
-    Bins bins = {};
-    std::array<TreeItem*, 2> to = {};     ///< left and right destination
-    std::array<LaneBox, 2> centres = {};  ///< left and right
+    Bins bins = {};                       ///< set by bin()
+    std::array<TreeItem*, 2> to = {};     ///< left and right destination; set by choose()
+    std::array<LaneBox, 2> centres = {};  ///< left and right, as Range::centres; set by move()
   };
 
   /// The items of all pieces, in order, MUST be those of the range.
   Partition(const TwoLists& lists, const Range& range, absl::Span<Piece> pieces);
 
+  /// Computes the bins of the piece.
   void bin(Piece& piece) const;
   /// Selects the split. Returns false if the range becomes a leaf; then nothing else is to be
   /// called.
   bool choose();
+  /// Copies the items of the piece to the other list, if they are split at a plane.
   void move(Piece& piece) const;
+  /// Sets the two ranges into which the range was split.
   void parts(Range& left, Range& right) const;
 
  private:
@@ -63,13 +67,14 @@ class Partition {
   const TwoLists& lists_;
   const Range& range_;
   absl::Span<Piece> pieces_;
-  bool must_;
-  bool deep_;
+  bool must_;  ///< the range cannot be a leaf
+  bool deep_;  ///< the range must be halved because of the maximum depth
   Binning binning_;
   Split split_;
 };
 
-/// Partitions a range on this thread; returns false if it becomes a leaf.
+/// Partitions a range on this thread and sets `left` and `right`; returns false if it becomes a
+/// leaf.
 bool partition_range(const TwoLists& lists, const Range& range, Range& left, Range& right);
 
 }  // namespace bandsaw

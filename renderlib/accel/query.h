@@ -1,7 +1,7 @@
 #pragma once
 
-// Queries: the closest hit, or whether there is any. Traversal passes to them every hit that the
-// double tests find, in any order.
+// Queries: the closest hit, or whether there is any. They are the template parameter `Query` of the
+// functions of trace.h, which pass to found() every hit that the double tests find, in any order.
 
 #include "renderlib/geometry/intersect.h"
 #include "renderlib/geometry/ray.h"
@@ -10,6 +10,7 @@ namespace bandsaw {
 
 class ClosestQuery {
  public:
+  /// True if any hit finishes the query, so that boxes need not be visited in order.
   static constexpr bool kAny = false;
   /// True if the far intersection of a sphere is reported in addition to the near one.
   static constexpr bool kBothSides = false;
@@ -53,6 +54,7 @@ class AfterQuery {
   Hit after_;
 };
 
+/// Finds out whether there is any hit.
 class AnyQuery {
  public:
   static constexpr bool kAny = true;

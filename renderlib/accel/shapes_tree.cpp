@@ -1,6 +1,6 @@
-// A BVH is built from items: boxes with a number. Makes an item for each sphere, triangle and disk,
-// and for each half of a quad. Each leaf is a pack: up to eight shapes of one kind, stored side by
-// side as floats.
+// A BVH is built from items, which are boxes with a number. ShapeItems makes an item for each
+// sphere, triangle and disk, and for each half of a quad. Each leaf is a pack: up to eight shapes
+// of one kind, stored side by side as floats.
 
 #include "renderlib/accel/shapes_tree.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// BVH over loose shapes in one space: the shapes of a group, or the shapes of the world together
-// with its instances (top_tree.h).
+// BVH over loose shapes, i.e. spheres, quads, triangles and disks that belong to no mesh. They are
+// the shapes of a group in its own space, or the shapes of the world together with its instances
+// (top_tree.h).
 
 #include <cstdint>
 #include <vector>
@@ -15,7 +16,7 @@ namespace bandsaw {
 
 struct ShapesTree {
   WideTree tree;
-  std::vector<FlatPack> flats;
+  std::vector<FlatPack> flats;  ///< leaves of triangles and quads
   std::vector<SpherePack> spheres;
   std::vector<SpherePack> disks;  ///< bounding spheres of the disks
   Box box;                        ///< bounds of all shapes
@@ -27,20 +28,22 @@ struct ShapesTree {
   }
 };
 
-/// Items and leaves of a tree over shapes. The item index of a sphere or disk is its index within
-/// its kind. The item index of a triangle or of half a quad is twice its primitive number
-/// (geometry/shapes.h), plus one for the second half of a quad.
+/// Makes the items and leaves of a tree over shapes. The item index of a sphere or disk is its
+/// index within its kind. The item index of a triangle or of half a quad is twice its primitive
+/// number (geometry/shapes.h), plus one for the second half of a quad.
 class ShapeItems {
  public:
   /// Both MUST outlive this object.
   ShapeItems(const Shapes& shapes, ShapesTree& tree) : shapes_(shapes), tree_(tree) {}
 
+  /// Appends an item for each shape that can be hit, and enlarges the tree's box by it.
   void add_all(TreeItems& items);
-  /// Stores a leaf of shapes, which are all of one kind.
+  /// Stores a leaf of shapes, which are all of one kind, as a pack and returns the reference to it.
   ChildRef make_leaf(const BinaryTree& tree, const BinaryNode& leaf);
 
  private:
   void add(const Box& box, std::uint32_t index, LeafKind kind, TreeItems& items);
+  /// Returns the triangle, or half of a quad, with this item index.
   Triangle flat(std::uint32_t item) const;
 
   const Shapes& shapes_;
@@ -50,7 +53,8 @@ class ShapeItems {
 /// Appends an item. Returns false if its box cannot be hit and the item is left out.
 bool add_item(const Box& box, std::uint32_t index, LeafKind kind, TreeItems& items);
 
-/// Builds the tree of a group. `shapes` MUST outlive the result and not be moved in memory.
+/// Builds the tree of a group. `shapes` MUST outlive the result and not be moved in memory. If
+/// `pool` is null, the build runs on this thread.
 ShapesTree build_shapes_tree(const Shapes& shapes, Pool* pool);
 
 }  // namespace bandsaw

@@ -1,7 +1,8 @@
 #pragma once
 
-// Eight spheres in float, and a conservative test of a ray against them: a sphere that it rejects
-// would be rejected by the double test as well. README.md, "Spheres", derives the bounds.
+// A leaf of a BVH: up to eight spheres in float, or the bounding spheres of up to eight disks. The
+// float test of a ray against them is conservative: what it rejects, the double test would reject
+// as well. README.md, "Spheres", derives the bounds.
 
 #include <array>
 #include <cmath>
@@ -14,15 +15,17 @@ namespace bandsaw {
 
 struct SpherePack {
   std::array<std::array<float, kPackSize>, 3> center;
-  std::array<float, kPackSize> radius;  ///< rounded up
-  std::array<std::uint32_t, kPackSize> primitive;
-  float reach = 0;          ///< at least |center|_1 + radius of every sphere
-  std::uint32_t lanes = 0;  ///< bit i: lane i is used
+  std::array<float, kPackSize> radius;             ///< rounded up
+  std::array<std::uint32_t, kPackSize> primitive;  ///< index of the sphere or disk in its kind
+  float reach = 0;                                 ///< at least |center|_1 + radius of every sphere
+  std::uint32_t lanes = 0;                         ///< bit i: lane i is used
 
+  /// Adds a sphere; the pack MUST have fewer than eight.
   void add(const Sphere& sphere, std::uint32_t index);
 };
 
-/// Returns the lanes that may be hit before `bound` (in the ray's units, rounded up).
+/// Returns a mask of the lanes that may be hit before `bound`, which is FloatRay::above() of a
+/// distance.
 template <class Float = Float8>
 inline unsigned filter_spheres(const SpherePack& pack, const FloatRay& ray, float bound) {
   constexpr float kError = 16 * 0x1p-24f;

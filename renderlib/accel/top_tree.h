@@ -1,6 +1,7 @@
 #pragma once
 
-// Top-level BVH of the scene: loose shapes and instances.
+// Top-level BVH of the scene. It contains the loose shapes (those of no mesh and no group) and the
+// instances of meshes and groups that have no animated frame; moving_tree.h contains the others.
 
 #include <cstdint>
 #include <memory>
@@ -13,10 +14,11 @@
 
 namespace bandsaw {
 
-/// BVH of a mesh or of a group; one of the pointers is not null.
+/// What an instance places: the BVH of a mesh or of a group. Exactly one of the pointers is not
+/// null.
 struct Prototype {
-  const MeshTree* mesh = nullptr;  ///< a mesh that does not deform
-  const MeshTree* deforming = nullptr;
+  const MeshTree* mesh = nullptr;       ///< a mesh that does not deform
+  const MeshTree* deforming = nullptr;  ///< a mesh that deforms during the shutter interval
   const ShapesTree* group = nullptr;
 
   const Box& box() const { return group != nullptr ? group->box : any_mesh().box; }
@@ -29,7 +31,7 @@ struct Prototype {
 /// BVHs of all meshes and groups. They and the geometry MUST outlive everything built from them,
 /// and MUST NOT be moved in memory.
 struct Prototypes {
-  /// One for each mesh of the geometry. Those of meshes that scenes share are shared as well.
+  /// One for each mesh of the geometry. If scenes share a mesh, they share its BVH as well.
   std::vector<std::shared_ptr<const MeshTree>> meshes;
   std::vector<ShapesTree> groups;  ///< one for each group
 
@@ -37,7 +39,7 @@ struct Prototypes {
   std::optional<Prototype> of(const Instance& instance) const;
 };
 
-/// An instance that can be hit.
+/// An instance that has no animated frame and can be hit.
 struct Placed {
   Prototype prototype;
   std::uint32_t instance = 0;  ///< as in PrimitiveId
@@ -46,7 +48,7 @@ struct Placed {
 };
 
 struct TopTree : ShapesTree {
-  std::vector<Placed> placed;
+  std::vector<Placed> placed;  ///< by the index of the leaf
 
   std::size_t bytes() const { return ShapesTree::bytes() + placed.capacity() * sizeof(Placed); }
 };

@@ -1,7 +1,10 @@
 #pragma once
 
-// Traces a ray through the BVHs: packs are filtered in float, the remaining primitives tested in
-// double.
+// Traces a ray through the BVHs. Leaves are packs of up to eight primitives: a pack is filtered in
+// float, and the primitives that remain are tested in double. `Query` is a class of query.h. Every
+// function that returns a bool returns true if the query is finished. Primitive and instance
+// numbers are those of PrimitiveId. A float `bound` is the query's bound in the units of the
+// FloatRay.
 
 #include <bit>
 #include <cstdint>
@@ -17,7 +20,8 @@ namespace bandsaw {
 
 inline constexpr std::uint32_t kNoneSkipped = 0xffffffffu;
 
-/// The instance whose primitives are tested, and the primitive in it on which the ray starts.
+/// The instance whose primitives are tested, and the primitive in it on which the ray starts
+/// (kNoneSkipped if the ray starts elsewhere).
 struct Started {
   Started(std::uint32_t of, const PrimitiveId& from)
       : instance(of), on(from.instance == of ? from.primitive : kNoneSkipped) {}
@@ -25,8 +29,9 @@ struct Started {
   std::uint32_t on;
 };
 
-/// Tests the triangles of a pack except `skipped`; test(lane, crossing) is the double test. Updates
-/// `bound` from the query. Returns true if the query is finished.
+/// Tests the triangles of a pack except primitive `skipped`. test(lane, crossing) is the double
+/// test: it returns true and sets `crossing` if the triangle in that lane is hit. Updates `bound`
+/// from the query.
 template <class Query, class Test>
 inline bool test_flats(const FlatPack& pack, const FloatRay& ray, std::uint32_t instance,
                        std::uint32_t skipped, float& bound, Query& query, Test&& test) {
@@ -53,6 +58,7 @@ inline bool test_flats(const FlatPack& pack, const FloatRay& ray, std::uint32_t 
   return false;
 }
 
+/// Traces a mesh that does not deform.
 template <class Query>
 inline bool trace_mesh(const MeshTree& mesh, const TracedRay& ray, std::uint32_t instance,
                        const PrimitiveId& from, Query& query) {
@@ -71,6 +77,7 @@ inline bool trace_mesh(const MeshTree& mesh, const TracedRay& ray, std::uint32_t
   });
 }
 
+/// Tests a leaf of loose triangles and quads.
 template <class Query>
 inline bool trace_loose_flats(const FlatPack& pack, const Shapes& shapes, const TracedRay& ray,
                               const FloatRay& floats, const Started& started, float& bound,
@@ -87,6 +94,7 @@ inline bool trace_loose_flats(const FlatPack& pack, const Shapes& shapes, const 
                     });
 }
 
+/// Tests a leaf of spheres.
 template <class Query>
 inline bool trace_spheres(const SpherePack& pack, const Shapes& shapes, const TracedRay& ray,
                           const FloatRay& floats, const Started& started, float& bound,
@@ -128,7 +136,7 @@ template <class Query>
   return false;
 }
 
-/// Tests a leaf of shapes.
+/// Tests a leaf of loose shapes.
 template <class Query>
 inline bool trace_leaf(ChildRef leaf, const ShapesTree& tree, const Shapes& shapes,
                        const TracedRay& ray, const FloatRay& floats, const Started& started,
@@ -177,7 +185,7 @@ template <class Query>
   });
 }
 
-/// Traces a mesh or group. `ray` is the ray `world` in the space of the mesh or group.
+/// Traces a mesh or group. `ray` is the ray `world` transformed to the space of the mesh or group.
 template <class Query>
 inline bool trace_prototype(const Prototype& prototype, const Interval& shutter,
                             const TracedRay& ray, std::uint32_t instance, const Ray& world,
@@ -204,6 +212,7 @@ inline bool trace_placed(const Prototype& prototype, const Transform& to_object,
                          ray, query);
 }
 
+/// Traces an instance of the top-level tree. `world` is `ray`, prepared for the primitive tests.
 template <class Query>
 inline bool trace_instance(const Placed& placed, const Interval& shutter, const TracedRay& world,
                            const Ray& ray, Query& query) {
@@ -213,7 +222,7 @@ inline bool trace_instance(const Placed& placed, const Interval& shutter, const 
                             query);
 }
 
-/// Traces all geometry that does not move. Returns true if the query is finished.
+/// Traces all geometry except moving instances (accel.cpp traces these).
 template <class Query>
 inline bool trace(const TopTree& top, const Geometry& geometry, const Ray& ray, Query& query) {
   if (!is_traceable(ray) || top.tree.empty) {

@@ -15,8 +15,8 @@
 
 namespace bandsaw {
 
-/// Returns the mask of the children that the ray enters before `bound`; `enter` gets the entry
-/// distances.
+/// Returns the mask of the children that the ray enters before `bound` (in the ray's units). Sets
+/// `enter` to the distances at which it enters them.
 template <class Float = Float8>
 inline unsigned enter_children(const WideNode& node, const FloatRay& ray, float bound,
                                Float& enter) {
@@ -35,15 +35,17 @@ inline unsigned enter_children(const WideNode& node, const FloatRay& ray, float 
   return (first <= last).bits();
 }
 
-/// Each level pushes at most seven children.
+/// Of the eight children of a node, one is visited next and at most seven are pushed.
 inline constexpr std::size_t kStackSize = 7 * kMaxTreeDepth + 1;
 
-/// Traversal stack. The high half of an entry is its entry distance (non-negative floats order as
-/// integers do), the low half is the child.
+/// Traversal stack. The high half of an entry is the distance at which the ray enters the child's
+/// box, the low half is the child. The bits of non-negative floats, read as integers, have the same
+/// order as the floats, so entries can be compared as integers.
 class TraversalStack {
  public:
   void push(std::uint64_t entry) { entries_[size_++] = entry; }
-  /// Pops the top entry that is entered before `bound`; returns false if there is none.
+  /// Pops entries until one is entered before `bound`, and sets `next` to its child. Returns false
+  /// if there is none.
   bool pop(float bound, ChildRef& next) {
     const auto limit = std::uint64_t{std::bit_cast<std::uint32_t>(bound)} << 32 | 0xffffffffu;
     while (size_ > 0) {
@@ -73,7 +75,8 @@ class TraversalStack {
   std::array<std::uint64_t, kStackSize> entries_;  // uninitialised on purpose: 3.5 KB per ray
 };
 
-/// Returns the nearest of the children in `hits` (not 0) and pushes the others, nearest on top.
+/// Returns the nearest of the children in the mask `hits` (not 0) and pushes the others, nearest on
+/// top. `enter` are the entry distances.
 [[gnu::always_inline]] inline ChildRef nearest_child(const WideNode& node, unsigned hits,
                                                      const Float8& enter, TraversalStack& stack) {
   auto i = static_cast<std::size_t>(std::countr_zero(hits));
@@ -91,7 +94,8 @@ class TraversalStack {
     hits &= hits - 1;
     return entry(i);
   };
-  // The order is unpredictable, so there is no branch.
+  // Exchanges both if they are in the wrong order; without a branch, because it would be
+  // unpredictable.
   const auto order = [](std::uint64_t& low, std::uint64_t& high) {
     const std::uint64_t change = (low ^ high) & (std::uint64_t{0} - std::uint64_t{high < low});
     low ^= change;
@@ -136,8 +140,8 @@ class TraversalStack {
   return nearest;
 }
 
-/// Returns any of the children hit and pushes the others: for any-hit traversal, which needs no
-/// order.
+/// Returns any of the children in the mask `hits` and pushes the others: for any-hit traversal,
+/// which needs no order.
 inline ChildRef some_child(const WideNode& node, unsigned hits, TraversalStack& stack) {
   auto i = static_cast<std::size_t>(std::countr_zero(hits));
   for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
@@ -148,8 +152,8 @@ inline ChildRef some_child(const WideNode& node, unsigned hits, TraversalStack& 
 }
 
 /// Calls leaf(child) for each leaf that the ray enters before `bound`, a float that leaf() may
-/// lower. Stops and returns true as soon as leaf() does. kSorted visits nearer boxes first.
-/// enter(index, at) is enter_children() for a node.
+/// lower. Stops and returns true as soon as leaf() returns true. If kSorted, nearer boxes are
+/// visited first. enter(index, at) does what enter_children() does, for the node with that index.
 template <bool kSorted, class Enter, class Leaf>
 [[gnu::always_inline]] inline bool traverse(const WideTree& tree, const float& bound,
                                             const Enter& enter, Leaf&& leaf) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// The items of a build: boxes with an index, each as eight floats.
+// A BVH is built from items: boxes with an index, each as eight floats. An item stands for a
+// triangle, another shape, half of a quad, or an instance.
 
 #include <array>
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace bandsaw {
 
-/// The caller's identification of an item.
+/// Names what an item stands for. The caller of the build defines the meaning of `index`.
 struct ItemRef {
   std::uint32_t index;
   LeafKind kind;
@@ -35,11 +36,12 @@ struct TreeItem {
 using TreeItems = HugeVector<TreeItem>;
 
 /// A box as -lo in lanes 0 to 2 and hi in lanes 4 to 6, so that a union is a single max. Lanes 3
-/// and 7 are unspecified, e.g. an index; as floats they may be denormal, which would be slow in
-/// products.
+/// and 7 are unspecified: they may hold the bits of an index. Read as a float, these may be
+/// denormal and would make products slow.
 class LaneBox {
  public:
   LaneBox() : lanes_(-FloatBox::kInf) {}
+  /// `item` has lo in lanes 0 to 2 and hi in lanes 4 to 6, as TreeItem and twice_centre() have.
   static LaneBox of(Float8 item) { return LaneBox(flip_by_sign(item, low())); }
 
   void add(const LaneBox& other) { lanes_ = max(lanes_, other.lanes_); }
@@ -48,8 +50,8 @@ class LaneBox {
     // Adding zero removes the sign of a zero, which depends on the order of unions.
     return {{0 - v[0], 0 - v[1], 0 - v[2]}, {v[4] + 0, v[5] + 0, v[6] + 0}};
   }
-  /// Returns half the surface area; infinite or NaN if empty. In double, because products of floats
-  /// may overflow.
+  /// Returns half the surface area; infinite or NaN if empty. It is computed in double, because
+  /// products of floats may overflow.
   double area() const {
     const Lanes size = stored(lanes_ + swap_halves(lanes_));
     const double x = size[0];
@@ -74,7 +76,7 @@ class LaneBox {
   Float8 lanes_;
 };
 
-/// Returns twice the centre, in lanes 0 to 2 and again in 4 to 6.
+/// Returns twice the centre of a TreeItem's box, in lanes 0 to 2 and again in 4 to 6.
 inline Float8 twice_centre(Float8 item) { return item + swap_halves(item); }
 
 }  // namespace bandsaw

@@ -1,6 +1,7 @@
 #pragma once
 
-// A BVH with eight children per node; bounds in float, rounded outwards.
+// A BVH with eight children per node, and bounds in float, rounded outwards. All BVHs of this
+// folder have this form; traverse.h traverses them.
 
 #include <array>
 #include <cstddef>
@@ -10,7 +11,7 @@
 
 namespace bandsaw {
 
-/// Contents of a leaf; all of one kind. Flats are triangles and quads.
+/// What a leaf contains. All its contents are of one kind. Flats are triangles and quads.
 enum class LeafKind : std::uint32_t { kFlats, kSpheres, kInstance, kDisks };
 
 /// Reference from a node: to another node or to a leaf, i.e. one pack of primitives or one
