@@ -8,6 +8,7 @@
 
 namespace bandsaw {
 
+/// A box, empty by default.
 struct Box {
   Vec3 lo{kInfinity, kInfinity, kInfinity};
   Vec3 hi{-kInfinity, -kInfinity, -kInfinity};

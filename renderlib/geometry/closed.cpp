@@ -1,5 +1,5 @@
-// Counts the edges of a mesh that are open: each edge must be passed equally often in both
-// directions. Vertices at the same position count as one.
+// Counts the edges of a mesh that are open, i.e. not passed equally often in both directions.
+// Vertices at the same position count as one.
 
 #include "renderlib/geometry/closed.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Check that a mesh is closed.
+// Check that a mesh is closed. A mesh that bounds a medium must be closed (scene/media.cpp).
 
 #include <cstddef>
 
@@ -8,10 +8,10 @@
 
 namespace bandsaw {
 
-/// Returns the number of edges without a match: a closed mesh contains each edge equally often in
-/// both directions. Vertices at equal positions count as one, whatever their index. If the mesh
-/// deforms, positions must be equal at both ends, so that the mesh is closed at all times. Indices
-/// MUST be valid and positions finite.
+/// Returns the number of edges that the triangles do not pass equally often in both directions; it
+/// is 0 for a closed mesh. Vertices at equal positions count as one, whatever their index. If the
+/// mesh deforms, vertices count as one only if their positions are equal at both ends, so that the
+/// result holds at all times. Indices MUST be valid and positions finite.
 std::size_t open_edges(const Mesh& mesh);
 
 }  // namespace bandsaw

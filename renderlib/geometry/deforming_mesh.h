@@ -1,8 +1,8 @@
 #pragma once
 
-// The vertices of a mesh at a time of the shutter interval. At each time, a mesh that deforms is an
-// ordinary mesh with float positions. Tracing, shading and sampling get the same positions, bit for
-// bit.
+// Computes the vertices of a mesh at a time of the shutter interval. At each time, a mesh that
+// deforms is an ordinary mesh with float positions. Tracing, shading and light sampling all use
+// these functions, so they get the same positions, bit for bit.
 
 #include <array>
 #include <cstddef>
@@ -17,8 +17,8 @@ namespace bandsaw {
 
 /// A time within the shutter interval, prepared for the interpolation of numbers between its ends.
 struct ShutterTime {
-  /// Times outside the interval count as its nearest end. If the interval is one instant, that is
-  /// its beginning.
+  /// A time outside the interval counts as its nearest end. If the interval is one instant, `share`
+  /// is 0.
   ShutterTime(const Interval& shutter, double time) {
     const double u = (time - shutter.open) / (shutter.close - shutter.open);
     share = u > 0 ? u < 1 ? static_cast<float>(u) : 1.0f : 0.0f;
@@ -26,9 +26,9 @@ struct ShutterTime {
     factor = from_close ? share - 1 : share;
   }
 
-  /// Interpolates linearly between two numbers. The result is exact at both ends, never outside of
-  /// them, and constant if they are equal, because a part of the change is added to the nearer end
-  /// and the sum is rounded once.
+  /// Interpolates linearly between two numbers. A part of the change is added to the number at the
+  /// nearer end, and the sum is rounded once. So the result is exact at both ends, never outside of
+  /// them, and constant if they are equal.
   float between(float at_open, float at_close) const {
     return fused(at_close - at_open, factor, from_close ? at_close : at_open);
   }
@@ -45,8 +45,8 @@ struct ShutterTime {
 
 inline bool deforms(const Mesh& mesh) { return !mesh.positions_at_close.empty(); }
 
-/// Returns the values of a triangle's corners at a time. If `at_close` is empty, they do not
-/// change.
+/// Returns the values of a triangle's corners, e.g. positions or normals, at a time. `corner` holds
+/// the indices of the corners. If `at_close` is empty, the values do not change.
 inline std::array<std::array<float, 3>, 3> corners_at(
     const std::vector<std::array<float, 3>>& at_open,
     const std::vector<std::array<float, 3>>& at_close, const std::array<std::uint32_t, 3>& corner,

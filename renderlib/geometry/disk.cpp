@@ -1,5 +1,5 @@
 // Intersects the plane of the disk and checks the distance from its centre. The hit is then moved
-// into the disk's box, in which the BVH looks for it.
+// into the disk's box (box.h, clip_to_box).
 
 #include "renderlib/geometry/disk.h"
 
@@ -9,7 +9,8 @@
 namespace bandsaw {
 namespace {
 
-/// Margin of the box around the disk, relative to the largest number involved.
+/// Margin of the box around the disk, relative to the largest number involved: 2^9 units of
+/// rounding (2^-53), far more than the rounding errors of the test.
 constexpr double kMargin = 0x1p-44;
 
 }  // namespace
@@ -24,7 +25,8 @@ DiskAxes axes_of(const Disk& disk) {
 
 Box bounds(const Disk& disk) {
   const double margin = kMargin * (disk.radius + max_abs(disk.center));
-  // For a normal almost along an axis, 1 - n^2 would lose the precision of the other components.
+  // Along x the disk extends to radius sqrt(1 - n.x^2) = radius sqrt(n.y^2 + n.z^2). The second
+  // form does not cancel if the normal is almost along x.
   const auto reach = [&](double a, double b) {
     return disk.radius * std::sqrt(a * a + b * b) + margin;
   };

@@ -1,5 +1,5 @@
-// A frame has keys with placements. Between two keys, translation, rotation and scale are
-// interpolated separately; decompose() finds them, and refuses placements with shear.
+// An animated frame has keys: transforms at times. Between two keys, translation, rotation and
+// scale are interpolated separately; decompose() finds them, and refuses transforms with shear.
 
 #include "renderlib/geometry/frame.h"
 
@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-/// Tolerance of decompose(), relative to the size of the map.
+/// Tolerance of decompose(), relative to the largest element of the linear part.
 constexpr double kDecomposed = 1e-9;
 
 double largest(const Transform& t) {
@@ -26,6 +26,7 @@ Transform compose(const Pose& pose) {
   return translation(pose.translate) * rotation(pose.rotate) * scaling(pose.scale);
 }
 
+/// Interpolates between consecutive keys; `time` is between theirs.
 Transform between(const Key& a, const Key& b, double time) {
   const double u = (time - a.time) / (b.time - a.time);
   const Vec3 moved = a.pose.translate + u * (b.pose.translate - a.pose.translate);

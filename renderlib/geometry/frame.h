@@ -1,7 +1,7 @@
 #pragma once
 
-// Animated coordinate frames. Instances that are placed in a frame move with it; frames can be
-// nested.
+// Animated coordinate frames (not images of a sequence). Instances that are placed in a frame move
+// with it; frames can be nested.
 //
 // Between two keys, translation and scale are interpolated linearly and the rotation along the
 // shortest arc at constant speed (Shoemake 1985, "Animating Rotation with Quaternion Curves",
@@ -19,19 +19,18 @@ namespace bandsaw {
 
 inline constexpr FrameId kNoFrame{0xffffffffu};
 
-/// Translation after rotation after scale. If the placement is mirrored, all three scales are
-/// negative.
+/// The map p -> translate + rotate (scale p). If the map mirrors, all three scales are negative.
 struct Pose {
   Vec3 translate;
   Quaternion rotate;
   Vec3 scale{1, 1, 1};
 };
 
-/// Returns std::nullopt if the map is not such a product within 1e-9 of its size: it shears or is
-/// singular.
+/// Returns the pose that equals `t`. Returns std::nullopt if there is none: `t` is singular, or it
+/// shears, i.e. the pose found differs from `t` by more than 1e-9 of its largest element.
 std::optional<Pose> decompose(const Transform& t);
 
-/// The transform of a frame at one time.
+/// The motion of a frame at one time; Frame::placement is applied after it.
 struct Key {
   Key() = default;
   /// If `where` cannot be decomposed, `pose` stays Pose{}; validation refuses such keys.
@@ -43,13 +42,13 @@ struct Key {
 };
 
 struct Frame {
-  FrameId parent = kNoFrame;  ///< an earlier frame, in which this one moves
+  FrameId parent = kNoFrame;  ///< an earlier frame, in which this one moves; kNoFrame: the world
   /// Placement of this frame in its parent, applied after its motion; invertible.
   Transform placement;
   std::vector<Key> keys;  ///< at least one; times strictly increase
 };
 
-/// Returns the motion alone, without parent and placement. `frame` MUST have a key.
+/// Returns the transform that the keys give, without parent and placement. `frame` MUST have a key.
 Transform motion_at(const Frame& frame, double time);
 
 /// Returns the transform from the frame to the world. `id` MUST name one of the frames, whose

@@ -1,5 +1,5 @@
-// Exact intersection tests in double. A quad is two triangles that share the diagonal. The formulas
-// for spheres avoid cancellation.
+// The intersection tests in double, which decide every hit. A quad is two triangles that share the
+// diagonal. The formulas for spheres avoid cancellation.
 
 #include "renderlib/geometry/intersect.h"
 
@@ -15,6 +15,7 @@ Point point(const Vec3& p) { return {p.x, p.y, p.z}; }
 }  // namespace
 
 Box bounds(const Sphere& sphere) {
+  // 2^-44 is 2^9 units of rounding (2^-53), far more than the rounding errors of the test.
   const double reach = sphere.radius + 0x1p-44 * (sphere.radius + max_abs(sphere.center));
   const Vec3 half = {reach, reach, reach};
   return {sphere.center - half, sphere.center + half};
@@ -67,8 +68,9 @@ bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing) {
   return hit_second;
 }
 
-// Solves a t^2 - 2 b t + c = 0 with c = |f|^2 - r^2, which is `product`. The discriminant, over a,
-// is r^2 minus the squared distance of the centre from the ray's line, so it does not cancel.
+// Solves a t^2 - 2 b t + c = 0 with c = |f|^2 - r^2, which is `product`. The discriminant (b^2 - a
+// c) / a is r^2 minus the squared distance of the centre from the ray's line; this form does not
+// cancel.
 bool intersect(const TracedRay& ray, const Sphere& sphere, bool starts_on_it, Crossing& crossing) {
   const Vec3 f = Vec3{ray.origin[0], ray.origin[1], ray.origin[2]} - sphere.center;
   const Vec3 d = {ray.direction[0], ray.direction[1], ray.direction[2]};

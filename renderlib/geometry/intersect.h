@@ -1,7 +1,8 @@
 #pragma once
 
 // Ray-primitive intersection: for each kind of primitive one deterministic function of (ray,
-// primitive) in double. Determinism, not exactness, makes the closest hit independent of the BVH.
+// primitive) in double. Because every hit is decided by the same function, the closest hit does not
+// depend on the BVH.
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +14,7 @@
 
 namespace bandsaw {
 
-/// An intersection: t in (0, t_max), and the coordinates that `Hit` describes.
+/// An intersection: t in (0, t_max), and the members of Hit (geometry/ray.h) with the same names.
 struct Crossing {
   double t;
   double u;
@@ -21,8 +22,8 @@ struct Crossing {
   const float* corners = nullptr;
 };
 
-/// Returns a b - c d with the exact sign, within 1.5 units in the last place (Kahan). So the sign
-/// of an edge function is the same for two triangles that share the edge.
+/// Returns a b - c d with the exact sign, within 1.5 units in the last place (Kahan). So two
+/// triangles that share an edge agree on which side of the edge the ray passes.
 inline double difference_of_products(double a, double b, double c, double d) {
   const double cd = c * d;
   const double error = product_error(-c, d, -cd);
@@ -35,7 +36,7 @@ inline Vec3 exact_cross(const Vec3& a, const Vec3& b) {
           difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-/// A point in the ray's space: the ray is the z axis, its origin the origin.
+/// A point in the ray's space, in which the ray starts at the origin and is the z axis.
 struct Sheared {
   double x;
   double y;
@@ -56,7 +57,8 @@ template <class Point>
 /// Intersects a triangle, from both sides and including its edges: a ray through an edge that
 /// triangles share hits at least one of them (Woop, Benthin, Wald 2013, "Watertight Ray/Triangle
 /// Intersection", JCGT 2(1)). `a`, `b` and `c` are the corners in the triangle's space; `at_a`,
-/// `at_b` and `at_c` are the same corners in the ray's space.
+/// `at_b` and `at_c` are the same corners in the ray's space. Returns true and sets `crossing`,
+/// except its `corners`, if the triangle is hit.
 template <class Point>
 [[gnu::always_inline]] inline bool intersect_sheared(const TracedRay& ray, const Point& a,
                                                      const Point& b, const Point& c,
@@ -89,6 +91,7 @@ template <class Point>
   return true;
 }
 
+/// Does the same with the corners in the triangle's space only.
 template <class Point>
 inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point& b, const Point& c,
                                Crossing& crossing) {
@@ -96,16 +99,17 @@ inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point
                            crossing);
 }
 
-/// These functions return the box to which hits are confined (clip_to_box), and which the boxes of
-/// a BVH must contain. The box of a sphere is larger than the sphere by more than the rounding of
-/// center and radius.
+/// These functions return the box to which hits are confined (clip_to_box). The boxes of a BVH must
+/// contain it. The box of a sphere is larger than the sphere by more than the rounding of center
+/// and radius.
 Box bounds(const Sphere& sphere);
 Box bounds(const Quad& quad);
 Box bounds(const Triangle& triangle);
 
 bool intersect(const TracedRay& ray, const Triangle& triangle, Crossing& crossing);
 
-/// Intersects the quad as two triangles that share the diagonal from `corner`.
+/// Intersects the quad as two triangles that share the diagonal from `corner`. Like the functions
+/// above and below, it returns true and sets `crossing` if the primitive is hit.
 bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing);
 
 /// Intersects a sphere (Haines, Günther, Akenine-Möller 2019, "Precision Improvements for

@@ -1,6 +1,7 @@
 #pragma once
 
-// Triangle meshes: float32 positions in a space of their own.
+// Triangle meshes: float32 positions in a space of their own. Instances (geometry/shapes.h) place
+// them in the world.
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
 // The meshes of a geometry. Copies of the list share the meshes, so that a mesh that is the same in
-// all frames of a sequence is stored only once.
+// all frames of a sequence (the images of an animation) is stored only once.
 
 #include <cstddef>
 #include <initializer_list>
@@ -56,13 +56,13 @@ class MeshList {
   const_iterator end() const { return const_iterator(meshes_.data() + meshes_.size()); }
 
   void push_back(Mesh mesh) { meshes_.push_back(std::make_shared<Mesh>(std::move(mesh))); }
-  /// Adds a mesh of another list: it is shared.
+  /// Appends a mesh that another list returned by shared(); both lists then share it.
   void share(std::shared_ptr<const Mesh> mesh) {
     meshes_.push_back(std::const_pointer_cast<Mesh>(std::move(mesh)));
   }
   std::shared_ptr<const Mesh> shared(std::size_t i) const { return meshes_[i]; }
-  /// Returns the mesh for changes. If others share it, this list gets a copy of its own first.
-  /// Others MUST NOT begin to share it at the same time.
+  /// Returns the mesh so that the caller can change it. If other lists share it, this list gets a
+  /// copy of its own first. No other list may begin to share it during the call.
   Mesh& change(std::size_t i) {
     if (meshes_[i].use_count() > 1) {
       meshes_[i] = std::make_shared<Mesh>(*meshes_[i]);

@@ -14,19 +14,21 @@
 namespace bandsaw {
 namespace {
 
-/// Maximum deviation of a corner's path from a chord, relative to the box; intervals between keys
-/// are cut into pieces accordingly, at most kMaxPieces.
+/// Wanted maximum deviation of a corner's path from a chord, relative to the size of the box. The
+/// interval between two keys is cut into as many pieces as this needs, but at most kMaxPieces. The
+/// bounds are correct for any values of both.
 constexpr double kBend = 0x1p-6;
 constexpr double kMaxPieces = 64;
-/// Rounding margin: between the sampled times rounding errors may be larger than at them.
+/// Factor on the rounding margin of placed_bounds(), because between the sampled times rounding
+/// errors may be larger than at them.
 constexpr double kTrips = 8;
 
-/// Bounds of a point's distance from the origin, and of its first and second derivative with
-/// respect to time.
+/// Upper bounds for a point that moves: of its distance from the origin, and of the lengths of its
+/// first and second derivative with respect to time.
 struct Course {
   double distance = 0;
-  double speed = 0;
-  double bend = 0;
+  double speed = 0;  ///< first derivative
+  double bend = 0;   ///< second derivative
 };
 
 double norm(const Transform& t) {
@@ -39,15 +41,17 @@ double norm(const Transform& t) {
   return std::sqrt(sum);
 }
 
+/// Returns the length of the translation.
 double moved(const Transform& t) { return length(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]}); }
 
+/// Returns the bounds after a placement that does not change with time.
 Course through(const Transform& placement, const Course& c) {
   const double n = norm(placement);
   return {n * c.distance + moved(placement), n * c.speed, n * c.bend};
 }
 
-/// Returns the bounds after the motion T + R S between two keys. With p = S q: |(R p)''| <= w^2 |p|
-/// + 2 w |p'| + |p''|, where the rotation has angular speed w; S and T change linearly.
+/// Returns the bounds after the motion T + R S between two keys, where S and T change linearly and
+/// the rotation R has the angular speed w. With p = S q, |(R p)''| <= w^2 |p| + 2 w |p'| + |p''|.
 Course through(const Key& a, const Key& b, const Course& c) {
   const double duration = b.time - a.time;
   const double scale = std::max(max_abs(a.pose.scale), max_abs(b.pose.scale));
@@ -61,7 +65,8 @@ Course through(const Key& a, const Key& b, const Course& c) {
           turning * turning * p.distance + 2 * turning * p.speed + p.bend};
 }
 
-/// Returns the bounds after the motion of a frame, in an interval that contains no key.
+/// Returns the bounds after the motion of a frame, in an interval between keys that contains
+/// `time`.
 Course through(const Frame& frame, double time, const Course& c) {
   const auto after = std::upper_bound(frame.keys.begin(), frame.keys.end(), time,
                                       [](double t, const Key& key) { return t < key.time; });
@@ -71,7 +76,8 @@ Course through(const Frame& frame, double time, const Course& c) {
   return through(frame.placement, within);
 }
 
-/// Returns the bounds for the points of a box in an interval that contains no key.
+/// Returns the bounds, in the world, for the points of a box in the instance's own space, in an
+/// interval between keys that contains `time`.
 Course course_of(const Geometry& geometry, const Instance& instance, const Box& box, double time) {
   const Vec3 far = {std::max(std::abs(box.lo.x), std::abs(box.hi.x)),
                     std::max(std::abs(box.lo.y), std::abs(box.hi.y)),
@@ -105,7 +111,7 @@ class Stops {
   Stops(const Geometry& geometry, const Instance& instance, const Box& box)
       : geometry_(geometry), instance_(instance), box_(box) {}
 
-  /// Returns false if the placement is singular.
+  /// Adds the box at a time. Returns false if the placement is singular.
   bool add(double time, double margin) {
     const Transform to_world = to_world_at(geometry_, instance_, time);
     const std::optional<Transform> to_object = inverse(to_world);
@@ -120,9 +126,9 @@ class Stops {
     return true;
   }
 
-  /// Returns the boxes at both ends, enlarged until their linear interpolation contains every
-  /// sampled box. Between samples the motion deviates from the chord by at most `margin`, so the
-  /// result bounds all of it.
+  /// Returns the boxes at both ends of the interval, enlarged until their linear interpolation
+  /// contains every sampled box. Between two samples the motion deviates from the chord by at most
+  /// the `margin` of their boxes, so the result bounds the whole motion.
   MovingBox around(const Interval& interval) const {
     MovingBox result = {boxes_.front(), boxes_.back()};
     Vec3 below;
@@ -164,6 +170,8 @@ Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to
     moved = std::max(moved, std::abs(to_world.m[i][3]));
   }
   const double largest = std::max(max_abs(box.lo), max_abs(box.hi));
+  // The rounding error grows with the condition number (grown * shrunk) and with the largest number
+  // in the transforms (the last factor). 2^-46 is 128 units of rounding (2^-53).
   const double slack = trips * 0x1p-46 * (grown * shrunk) * (3 * grown * largest + moved);
   const Vec3 margin = {slack, slack, slack};
   Box result;

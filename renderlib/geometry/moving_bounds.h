@@ -11,20 +11,23 @@
 
 namespace bandsaw {
 
-/// Returns the world box of a placed box, enlarged by `trips` times the rounding error of a ray
-/// that is transformed to the instance and back.
+/// Returns the box in the world of a box in an instance's own space, enlarged by `trips` times the
+/// rounding error of a ray that is transformed to that space and back. `to_object` is the inverse
+/// of `to_world`.
 Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to_object,
                   double trips = 1);
 
-/// At a share u of the interval, everything lies within (1 - u) at_open + u at_close.
+/// Bounds of something that moves: at the share u of the interval, it lies within the box (1 - u)
+/// at_open + u at_close.
 struct MovingBox {
   Box at_open;
   Box at_close;
 };
 
-/// Returns the bounds of `box`, given in the instance's own space, enlarged for the rounding error
-/// of rays that are transformed to the instance and back, during Geometry::shutter. The instance
-/// MUST have a frame. Returns std::nullopt if a placement during the interval is singular.
+/// Returns the bounds in the world, during Geometry::shutter, of `box`, which is in the instance's
+/// own space. They are enlarged for the rounding error of rays that are transformed to that space
+/// and back. The instance MUST have a frame. Returns std::nullopt if its placement is singular at
+/// one of the times that are examined.
 std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance& instance,
                                        const Box& box);
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Placement of instances at a time.
+// Placement of instances (of a mesh or of a group of shapes) at a time, and their primitives.
+// Tracing, surfaces and light sampling all use it, so that they see an instance at the same place.
 
 #include <optional>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rays and hits. Distances t are in units of |direction|; the direction need not be a unit vector.
+// Rays and hits. Distances t are in units of |direction|; the direction can have any length.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,9 @@
 
 namespace bandsaw {
 
-/// Identifies a primitive of the scene (geometry/shapes.h, Geometry).
+/// Identifies a primitive of the scene. Instance 0 stands for the loose shapes of the world,
+/// instance i + 1 for Geometry::instances[i]. `primitive` numbers the triangles of its mesh, or the
+/// shapes in the order of geometry/shapes.h, Shapes.
 struct PrimitiveId {
   std::uint32_t instance = 0xffffffffu;
   std::uint32_t primitive = 0xffffffffu;
@@ -42,7 +44,8 @@ struct Hit {
   double u = 0;
   double v = 0;
   /// For a triangle of a mesh, the corners in the BVH's pack: component k of corner c is at [(3 c +
-  /// k) kCornerStride], with the mesh's own bits. Null if only the mesh has them.
+  /// k) kCornerStride], with the mesh's own bits. Null for other primitives, for meshes that
+  /// deform, and in hits that come from no BVH.
   const float* corners = nullptr;
 
   explicit operator bool() const { return id != kNoPrimitive; }

@@ -1,7 +1,8 @@
-// Computes the surface at a hit in the space of the shape, then transforms it to the world (placed)
-// with an offset for rays that leave it: their origin is moved by the offset, so that they do not
-// hit the same surface again because of rounding. A placement squashes if its condition number is
-// above kMaxPlainCondition; then the origin is moved along the normal in the space of the shape.
+// on_shape() computes the surface at a hit in the space of the shape, and placed() transforms it to
+// the world. The origins of rays that leave the surface are moved by an offset, so that they do not
+// hit the same surface again because of rounding. A placement squashes space if its condition
+// number is above kMaxPlainCondition; then the origin is moved along the normal in the space of the
+// shape.
 
 #include "renderlib/geometry/shape_surface.h"
 
@@ -15,11 +16,13 @@
 namespace bandsaw {
 namespace {
 
+/// Offset of ray origins, relative to the largest number from which the position was computed. This
+/// and the next two numbers are derived in README.md, "Squashed space".
 constexpr double kOffset = 0x1p-40;
 /// Up to this condition number of a placement, kOffset is far above the rounding of rays that are
-/// transformed back.
+/// transformed back to the primitive's own space.
 constexpr double kMaxPlainCondition = 0x1p8;
-/// Share of kOffset that suffices in the primitive's own space above that condition number.
+/// Above that condition number, this share of kOffset suffices in the primitive's own space.
 constexpr double kSquashedShare = 0x1p-5;
 
 double norm(const std::array<Vec3, 3>& m) {
@@ -42,8 +45,8 @@ SurfacePoint on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit, boo
   return p;
 }
 
-/// Returns the surface of a triangle or quad. `ready` is its precomputed unit normal or nullptr;
-/// the normal is zero if the shape has no area.
+/// Returns the surface of a triangle or quad with corner `a` and edges `e1` and `e2`. `ready` is
+/// its precomputed unit normal, which is zero if the shape has no area; nullptr if there is none.
 SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, const Vec3* ready,
                      MaterialId material, const Ray& ray, const Hit& hit) {
   SurfacePoint p;
@@ -95,7 +98,8 @@ Placement::Placement(const Transform& t) {
     cofactors[i] = cross(rows[(i + 1) % 3], rows[(i + 2) % 3]);
   }
   determinant = dot(rows[0], cofactors[0]);
-  // This is above the limit even if the determinant is nothing but rounding error.
+  // The condition number is |M| |M^-1| = norm(rows) norm(cofactors) / |determinant|. It is above
+  // the limit even if the determinant is nothing but rounding error.
   squashes = !(norm(rows) * norm(cofactors) <= kMaxPlainCondition * std::abs(determinant));
   if (squashes) {
     for (std::size_t i = 0; i < 3; ++i) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Parts of surface.cpp: surfaces of loose shapes in their own space, and the effect of placements
-// on normals.
+// Parts of surface.cpp: surfaces of loose shapes (of no mesh) in their own space, and the effect of
+// placements on normals.
 
 #include <algorithm>
 #include <array>
@@ -33,6 +33,7 @@ inline Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
 inline Vec3 unit_normal(const Vec3& v, const Ray& ray) {
   return has_direction(v) ? unit(v) : unit_or(-ray.direction, {0, 0, 1});
 }
+/// Returns n or -n, whichever is in the hemisphere of `reference`.
 inline Vec3 same_side(const Vec3& n, const Vec3& reference) {
   return dot(n, reference) < 0 ? -n : n;
 }
@@ -48,10 +49,10 @@ inline Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray) {
 /// Implements prepare_surfaces() for the shapes of one space.
 void prepare_normals(Shapes& shapes);
 
-/// Effect of the linear part of a placement on normals and lengths.
+/// Effect of a placement p -> M p + t on normals and lengths.
 struct Placement {
   explicit Placement(const Transform& t);
-  /// Returns M^-T n times |det M|: normals stay outside in mirrored placements too.
+  /// Returns M^-T n times |det M|, so that normals point outside in mirrored placements too.
   Vec3 normal(const Vec3& n) const {
     const Vec3 c = {dot(cofactors[0], n), dot(cofactors[1], n), dot(cofactors[2], n)};
     return determinant < 0 ? -c : c;
@@ -60,9 +61,9 @@ struct Placement {
   /// be set; `local` is the same surface before the placement.
   void set_offset(const SurfacePoint& local, SurfacePoint& placed) const;
 
-  std::array<Vec3, 3> rows;
-  std::array<Vec3, 3> cofactors;
-  double determinant;
+  std::array<Vec3, 3> rows;       ///< of M
+  std::array<Vec3, 3> cofactors;  ///< rows of the cofactor matrix of M
+  double determinant;             ///< of M
   /// True if the condition number of the placement is so large that rounding matters in rays that
   /// are transformed back to the primitive's own space (README.md, "Squashed space").
   bool squashes;

@@ -1,7 +1,8 @@
 #pragma once
 
-// Geometry as plain values. Meshes keep float32 positions in their own space; placements stay
-// double and are never baked into the vertices.
+// Geometry as plain values: the description of a scene contains it, and Accel traces it. Meshes
+// keep float32 positions in their own space; placements stay double and are never applied to the
+// vertices in advance.
 
 #include <array>
 #include <cstdint>
@@ -46,7 +47,8 @@ struct Disk {
   MaterialId material{};
 };
 
-/// Loose shapes in one space. Primitives are numbered in the order of these members.
+/// Loose shapes, i.e. shapes that belong to no mesh, in one space. Primitives are numbered in the
+/// order of these members.
 struct Shapes {
   std::vector<Sphere> spheres;
   std::vector<Quad> quads;
@@ -94,14 +96,14 @@ inline MaterialId material_of(const Shapes& shapes, std::size_t primitive) {
 }
 
 inline constexpr GroupId kNoGroup{0xffffffffu};
-/// For an instance of a group: each shape keeps its own material.
+/// Instance::material of an instance of a group whose shapes keep their own materials.
 inline constexpr MaterialId kOwnMaterial{0xffffffffu};
 
-/// Placement of a mesh or a group.
+/// Placement of a mesh or of a group of shapes.
 struct Instance {
   MeshId mesh{};  ///< unspecified if there is a group
   MaterialId material{};
-  Transform to_world;  ///< regular (math/transform.h, inverse); relative to `frame` if there is one
+  Transform to_world;  ///< invertible (math/transform.h); to `frame` if there is one
   GroupId group = kNoGroup;
   FrameId frame = kNoFrame;  ///< the frame it moves with (geometry/frame.h)
 };
@@ -113,7 +115,7 @@ struct Geometry : Shapes {
   MeshList meshes;
   std::vector<Instance> instances;
   std::vector<Shapes> groups;  ///< loose shapes in spaces of their own; hit only through instances
-  std::vector<Frame> frames;   ///< animated frames
+  std::vector<Frame> frames;   ///< animated frames; Instance::frame and Frame::parent refer to them
   /// The times of rays: moving instances are bounded within this interval, and meshes deform from
   /// its beginning to its end. Scene::build sets it from the camera's shutter.
   Interval shutter;

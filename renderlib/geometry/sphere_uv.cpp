@@ -1,4 +1,5 @@
-// The formulas of sphere_uv.h, with rounding at the seam and the poles kept inside [0, 1].
+// The formulas of sphere_uv.h. Clamping keeps the results in range where u wraps around and at the
+// poles.
 
 #include "renderlib/geometry/sphere_uv.h"
 

@@ -15,13 +15,14 @@
 namespace bandsaw {
 namespace {
 
-/// A mesh triangle in the mesh's space.
+/// A mesh triangle in the mesh's space: corner a, and the edges from a to b and to c.
 struct Corners {
   Vec3 a;
   Vec3 e1;
   Vec3 e2;
 };
 
+/// Returns the triangle that was hit, at the time of the ray.
 Corners corners(const Mesh& mesh, const Interval& shutter, double time, const Hit& hit) {
   std::array<Vec3, 3> at;
   if (hit.corners != nullptr) {
@@ -36,6 +37,7 @@ Corners corners(const Mesh& mesh, const Interval& shutter, double time, const Hi
   return {at[0], at[1] - at[0], at[2] - at[0]};
 }
 
+/// Interpolates the values `at` the corners of a triangle.
 Vec3 interpolate(const std::array<std::array<float, 3>, 3>& at, const Hit& hit) {
   return vec3(at[0]) * (1 - hit.u - hit.v) + vec3(at[1]) * hit.u + vec3(at[2]) * hit.v;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-// The surface at a hit, in world space, to full double precision.
+// The surface at a hit, in world space, to full double precision, and the rays that leave it or
+// lead to it.
 
 #include "renderlib/geometry/ray.h"
 #include "renderlib/geometry/shapes.h"
@@ -14,13 +15,14 @@ struct SurfacePoint {
                           ///< mirrored instances)
   Vec3 shading_normal;    ///< unit; interpolated if the mesh has normals, otherwise the geometric
                           ///< one; in the same hemisphere
-  /// Spheres: as a globe with the seam at -x and v = 0 at the pole -y, u in [0, 1), u = 1/2 at +x,
-  /// 3/4 at -z. Quads: (a, b). Disks: the square around them. Triangles: the weights of b and c.
-  /// Meshes: their own uv, else weights.
+  /// Spheres: as sphere_uv() (geometry/sphere_uv.h), i.e. u is 1/2 at +x and 3/4 at -z, and v is 0
+  /// at the pole -y. Quads: the coordinates along their edges. Disks: the square around them, [0,
+  /// 1]^2. Triangles: the weights of corners b and c. Meshes: their own uv; the weights if they
+  /// have none.
   Vec2 uv;
   Vec2 uv2;              ///< second uv set of a mesh; uv if there is none
-  Vec3 object_position;  ///< meshes and groups: before their placement; spheres: relative to the
-                         ///< centre; otherwise the position
+  Vec3 object_position;  ///< the position before the placement of a mesh or group; on spheres,
+                         ///< relative to the centre
   Rgb color{1, 1, 1};    ///< interpolated vertex colour; white if there is none
   /// Directions in which u and v grow, of any length; zero unless set by add_uv_directions().
   Vec3 along_u;
@@ -31,9 +33,10 @@ struct SurfacePoint {
   PrimitiveId id;
   /// True if an instance squashes space so much that rounding in the primitive's own space matters.
   bool squashed = false;
-  /// Distance along the normal at which ray origins are certainly off the surface: 2^-40
-  /// max(|position|, size of the primitive), in the larger of object and world space scale. If an
-  /// instance squashes space, it depends on how much it squashes along this normal.
+  /// Distance along the normal at which ray origins are certainly off the surface. It is 2^-40 of
+  /// the largest number from which the position was computed, in the world or in the primitive's
+  /// own space (README.md, "Squashed space"). If an instance squashes space, it also depends on how
+  /// much the instance squashes along this normal.
   double offset = 0;
   /// Vector from the position to the origin of rays that leave outwards; those that leave inwards
   /// start on the other side. It is geometric_normal times `offset`, except if an instance squashes
@@ -44,22 +47,22 @@ struct SurfacePoint {
   double time = 0;  ///< time of the ray that hit it; rays from here have the same time
 };
 
-/// Precomputes what surface_at() would otherwise compute at each hit: 24 bytes for each loose quad
-/// or triangle. The surfaces are the same to the bit. Quads and triangles MUST NOT be added,
-/// removed or changed afterwards.
+/// Precomputes the normals of loose quads and triangles (24 bytes each), which surface_at() would
+/// otherwise compute at each hit. The surfaces are the same to the bit. Quads and triangles MUST
+/// NOT be added, removed or changed afterwards.
 void prepare_surfaces(Geometry& geometry);
 
-/// Returns the surface at a hit. If `sphere_uv` is false, the uvs of spheres are zero; computing
-/// their angles is much of the work.
+/// Returns the surface at a hit of `ray`. If `sphere_uv` is false, the uvs of spheres are zero,
+/// which saves the computation of two angles.
 SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit,
                         bool sphere_uv = true);
 
-/// Sets along_u and along_v, or those of the second uv set; they stay zero if the uvs of a triangle
-/// have no area.
+/// Sets along_u and along_v, or those of the second uv set if `second`. They stay zero if the uvs
+/// of a mesh's triangle have no area.
 void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point);
 
-/// Sets along_u and along_v, or those of the second uv set, to dp/du and dp/dv in world space, with
-/// their lengths; of spheres too.
+/// Does the same, but with the lengths of the derivatives dp/du and dp/dv in world space, for every
+/// kind of shape.
 void add_uv_derivatives(const Geometry& geometry, bool second, SurfacePoint& point);
 
 /// Returns the distance along `ray`, whose direction is a unit vector, to the surface that it hit.
@@ -69,24 +72,26 @@ inline double distance_along(const Ray& ray, const SurfacePoint& hit) {
   return hit.squashed ? hit.t : length(hit.position - ray.origin);
 }
 
-/// Returns a ray that leaves the surface: it starts off the surface on the side of `direction` and
-/// cannot hit the flat primitive again. (Inline, so that the caller has the ray in registers.)
+/// Returns a ray that leaves the surface: it starts off the surface on the side of `direction`, and
+/// it cannot hit the same primitive again if that is flat. (Inline, so that the caller has the ray
+/// in registers.)
 inline Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, double t_max = kInfinity) {
   const bool inwards = dot(direction, from.geometric_normal) < 0;
   return {inwards ? from.position - from.away : from.position + from.away, direction, t_max,
           from.id, from.time};
 }
 
-/// Returns a shadow ray from `from` to `target`. Its t is in (0, 1); it ends before the target
-/// surface by `target_offset` (SurfacePoint::offset of the target; 0 for a point in space).
+/// Returns a shadow ray from `from` to `target`. Its direction is the vector to the target, so t =
+/// 1 is the target; it ends before that by the length `target_offset` (SurfacePoint::offset of the
+/// target, or 0 for a point in space).
 Ray spawn_ray_to(const SurfacePoint& from, const Vec3& target, double target_offset);
 
 /// Returns a shadow ray to another surface. The ray ends beside that surface, on the side that
 /// faces `from`, so that the surface never occludes it, even if seen edge-on.
 Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& target);
 
-/// Returns SurfacePoint::offset of a point at `position` on a primitive of `size` in world space,
-/// without instances.
+/// Returns SurfacePoint::offset of a point at `position` on a primitive of no instance. `size` is
+/// the largest number from which the position was computed.
 double surface_offset(const Vec3& position, double size);
 
 }  // namespace bandsaw

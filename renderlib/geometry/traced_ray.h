@@ -1,7 +1,7 @@
 #pragma once
 
-// A ray with precomputed values for the primitive tests: axes and shear of the triangle test, and
-// reciprocals for boxes.
+// A ray with precomputed values for the primitive tests of intersect.h: axes and shear of the
+// triangle test (Woop, Benthin, Wald 2013), and reciprocals for boxes.
 
 #include <array>
 #include <cmath>
@@ -20,9 +20,9 @@ struct TracedRay {
   int kx;
   int ky;
   int kz;
-  double shear_x;
-  double shear_y;
-  double shear_z;
+  double shear_x;  ///< direction[kx] / direction[kz]
+  double shear_y;  ///< direction[ky] / direction[kz]
+  double shear_z;  ///< 1 / direction[kz]
 };
 
 /// Prepares a ray, which MUST be traceable (is_traceable).

@@ -1,5 +1,6 @@
-// The directions in which u and v increase: for triangles from the map between uvs and corners, for
-// other shapes in closed form.
+// Implements add_uv_directions() and add_uv_derivatives() of surface.h: the directions in which u
+// and v increase, for triangles from the map between uvs and corners, for other shapes in closed
+// form.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,8 @@ struct Directions {
   Vec3 v;
 };
 
-/// Returns dp/du and dp/dv of the affine map from the triangle's uvs to its corners.
+/// Returns dp/du and dp/dv, in the world, of the affine map from the triangle's uvs to its corners;
+/// zero if the uvs have no area.
 Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool second,
                       const SurfacePoint& point) {
   const Instance& instance = geometry.instances[point.id.instance - 1];
@@ -42,6 +44,7 @@ Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool 
   const double dv2 = uv(2, 1);
   const double area = du1 * dv2 - du2 * dv1;
   const double size = std::max({std::abs(du1), std::abs(dv1), std::abs(du2), std::abs(dv2)});
+  // A smaller area of the uvs may be rounding error.
   if (!(std::abs(area) > 1e-12 * size * size)) {
     return {};
   }
@@ -50,7 +53,8 @@ Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool 
   return is_finite(u) && is_finite(v) ? Directions{u, v} : Directions{};
 }
 
-/// Returns the directions in the space of the shapes; `normal` is the normal of a sphere there.
+/// Returns the directions, of any length, in the space of the shapes. If the shape is a sphere,
+/// `normal` is its normal there.
 Directions along_shape(const Shapes& shapes, const Vec3& normal, const SurfacePoint& point) {
   const auto [kind, index] = shape_ref(shapes, point.id.primitive);
   switch (kind) {
@@ -72,7 +76,9 @@ Directions along_shape(const Shapes& shapes, const Vec3& normal, const SurfacePo
   return {};
 }
 
-/// Returns the factors on the directions of along_shape() that make them derivatives.
+/// Returns the factors on the directions of along_shape() that make them derivatives. On a sphere,
+/// u = 1 is a full turn and v = 1 half a turn; both directions have the sine of the angle from the
+/// pole as their length.
 Vec2 lengths_of(const Shapes& shapes, const SurfacePoint& point, const Directions& along) {
   const auto [kind, index] = shape_ref(shapes, point.id.primitive);
   switch (kind) {
