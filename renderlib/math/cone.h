@@ -4,7 +4,7 @@
 
 namespace bandsaw {
 
-/// The directions within an angle below 90 degrees of an axis.
+/// The directions within an angle below 90 degrees of an axis, e.g. those from a point to a lens.
 struct Cone {
   Vec3 axis;       ///< unit
   double sin = 0;  ///< sine of the angle

@@ -2,7 +2,7 @@
 
 // Elementary functions with the same bits on every CPU and C library: built only from + - * / sqrt
 // and fma. (glibc selects variants of its double functions by CPU, which differ in the last
-// bits.) In double, with an error of at most 2 units in the last place over the stated domain.
+// bits.) Except for pow(), their error is at most 2 units in the last place over the stated domain.
 // renderlib never calls the <cmath> functions of the same names.
 
 namespace bandsaw {

@@ -8,9 +8,10 @@
 #include "renderlib/math/fused.h"
 #include "renderlib/math/polynomial.h"
 
-// exp: x = k log 2 + r with |r| <= log(2) / 2, Taylor series of exp(r) - 1.
-// log: x = 2^k m with m in [sqrt(1/2), sqrt(2)), s = (m - 1) / (m + 1), log m = 2 s + 2 s^3 / 3 + 2
-// s^5 / 5 + …
+// exp() and expm1() write x as k log 2 + r with |r| <= log(2) / 2, and evaluate the Taylor series
+// of exp(r) - 1. log() and log1p() write their argument as 2^k m with m in [sqrt(1/2), sqrt(2));
+// with s = (m - 1) / (m + 1), log m is 2 s + 2 s^3 / 3 + 2 s^5 / 5 + … pow() is exp(y log x), in
+// which log x is a sum of two doubles.
 
 namespace bandsaw {
 namespace {
@@ -97,6 +98,7 @@ TwoDoubles log_parts(int k, double f, double extra) {
 
 }  // namespace
 
+// The logarithm of the largest double is 709.78…, that of half the smallest one -745.13…
 double exp(double x) {
   if (!(x < 709.8)) {
     return std::isnan(x) ? x : kInfinity;
@@ -114,14 +116,14 @@ double expm1(double x) {
     return std::isnan(x) ? x : kInfinity;
   }
   if (x < -40) {
-    return -1;
+    return -1;  // exp(-40) < 2^-57 is less than half a unit in the last place of 1.
   }
   const ReducedExp r = reduce_exp(x);
   const TwoDoubles e = expm1_reduced(r.hi, r.lo);
   if (r.k == 0) {
     return e.hi + e.lo;
   }
-  if (r.k > 60) {
+  if (r.k > 60) {  // The -1 is less than half a unit in the last place.
     return scale_by_power(1 + (e.hi + e.lo), static_cast<int>(r.k));
   }
   const double scale = power_of_two(static_cast<int>(r.k));
@@ -142,7 +144,7 @@ double log1p(double x) {
   if (!(x > -1) || x == kInfinity) {
     return x == -1 ? -kInfinity : x == kInfinity ? x : kNan;
   }
-  if (-0.25 < x && x < 0.4) {
+  if (-0.25 < x && x < 0.4) {  // in the domain of log_rest()
     return x + log_rest(x);
   }
   const TwoDoubles u = two_sum(1, x);
@@ -165,7 +167,7 @@ double pow(double x, double y) {
   const Normalised n = normalise(x);
   const TwoDoubles l = log_parts(n.k, n.m - 1, 0);
   const TwoDoubles product = two_product(y, l.hi);
-  if (!(std::abs(product.hi) < 800)) {
+  if (!(std::abs(product.hi) < 800)) {  // exp() overflows or underflows.
     return product.hi > 0 ? kInfinity : 0;
   }
   const double power = exp(product.hi);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Fused multiplication and addition: std::fma where processors have the instruction, which is
-// everywhere except in WebAssembly; there an emulation of the same bits.
+// Fused multiplication and addition: std::fma where processors have the instruction. WebAssembly
+// has none, so there the functions are emulated, with the same bits.
 
 #include <bit>
 #include <cmath>
@@ -35,7 +35,8 @@ namespace emulated {
 /// If a product is smaller than this, its rounding error may not be representable as a double.
 inline constexpr double kLeastProduct = 0x1p-900;
 
-/// Returns x as the sum of two numbers of at most 26 bits; a large x becomes infinity and NaN.
+/// Returns x as the sum of two numbers of at most 26 bits. If x is close to the largest double, the
+/// result is infinity and NaN.
 inline TwoDoubles halves(double x) {
   constexpr std::uint64_t kLow = (std::uint64_t{1} << 27) - 1;
   const auto bits = std::bit_cast<std::uint64_t>(x);
@@ -71,7 +72,7 @@ inline double error_of_product(double a, double b, double product) {
 }
 
 /// Returns a b + c, rounded once. The exact sum is head.hi + (head.lo + error), and `rest` is
-/// head.lo + error, rounded. If head.lo is 0, `rest` is exact, and the sum is rounded once.
+/// head.lo + error, rounded. If head.lo is 0, `rest` is exact, and the sum is rounded only once.
 /// Otherwise nothing was cancelled, and `rest` is below two units in the last place of head.hi.
 /// Then the rounding of `rest` changes the result only if head.hi + rest lies in the middle between
 /// two doubles, which implies that `rest` has only a few bits. In that case careful_fma() rounds

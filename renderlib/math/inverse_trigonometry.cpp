@@ -12,6 +12,7 @@
 namespace bandsaw {
 namespace {
 
+/// pi / 2 as the sum of two doubles.
 constexpr TwoDoubles kHalfPi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 
 /// atan(k / 8).

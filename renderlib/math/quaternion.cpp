@@ -12,14 +12,15 @@
 namespace bandsaw {
 namespace {
 
-/// Below this angle, in radians, the sine in the denominator would lose precision; the chord is
-/// accurate to 1e-17 there.
+/// Below this angle, in radians, slerp() interpolates linearly: the two sines are nearly zero, and
+/// the chord deviates from the arc by less than 1e-17.
 constexpr double kMinAngle = 1e-8;
 
 double dot(const Quaternion& a, const Quaternion& b) {
   return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// Returns of_a a + of_b b.
 Quaternion mix(const Quaternion& a, double of_a, const Quaternion& b, double of_b) {
   return {a.w * of_a + b.w * of_b, a.x * of_a + b.x * of_b, a.y * of_a + b.y * of_b,
           a.z * of_a + b.z * of_b};

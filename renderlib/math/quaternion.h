@@ -1,6 +1,7 @@
 #pragma once
 
-// Rotations as unit quaternions, for interpolation.
+// Rotations as unit quaternions w + x i + y j + z k, for the interpolation of animated placements
+// (geometry/frame.h).
 
 #include "renderlib/math/transform.h"
 

@@ -13,8 +13,8 @@ struct Transform {
   /// Rows of the 3 x 4 matrix (M | t).
   std::array<std::array<double, 4>, 3> m = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
-  Vec3 point(const Vec3& p) const;
-  Vec3 direction(const Vec3& d) const;
+  Vec3 point(const Vec3& p) const;      ///< returns M p + t
+  Vec3 direction(const Vec3& d) const;  ///< returns M d
   friend bool operator==(const Transform&, const Transform&) = default;
 };
 
@@ -22,19 +22,21 @@ struct Transform {
 Transform operator*(const Transform& a, const Transform& b);
 
 Transform translation(const Vec3& by);
+/// Scales each axis by its component of `by`.
 Transform scaling(const Vec3& by);
 /// Returns the rotation by an angle in degrees about `axis` (not zero), counter-clockwise when seen
 /// against the axis.
 Transform rotation(const Vec3& axis, double degrees);
 
+/// Returns the determinant of M.
 double determinant(const Transform& t);
 
-/// Returns std::nullopt if the map is singular to working precision: a non-finite entry,
-/// determinant 0, or a condition number above 1e12.
+/// Returns the inverse map. Returns std::nullopt if the map is singular to working precision: it
+/// has an element that is not finite, determinant 0, or a condition number above 1e12.
 std::optional<Transform> inverse(const Transform& t);
 
-/// Transforms a normal by a map whose inverse is `inverse`: the transpose of its linear part times
-/// n, not normalised.
+/// Transforms a normal by a map whose inverse is `inverse`. Returns the transpose of the linear
+/// part of `inverse` times n, which is not a unit vector in general.
 Vec3 normal_to_world(const Transform& inverse, const Vec3& n);
 
 }  // namespace bandsaw

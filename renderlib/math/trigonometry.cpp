@@ -6,9 +6,9 @@
 #include "renderlib/math/fused.h"
 #include "renderlib/math/polynomial.h"
 
-// sin and cos: exact reduction to an eighth of a turn, then Taylor series of an angle in
-// double-double precision. The first omitted term is below 2^-58 of the result; rounding errors
-// dominate.
+// sin and cos: the angle is reduced exactly to at most an eighth of a turn, and represented as the
+// sum of two doubles; then Taylor series are evaluated. The first omitted term is below 2^-58 of
+// the result, which is less than the rounding errors.
 
 namespace bandsaw {
 namespace {
