@@ -1,6 +1,7 @@
 #pragma once
 
-// Right-handed orthonormal bases around a direction.
+// Orthonormal bases around a direction, with which directions sampled around z (sampling/warp.h)
+// are turned into the world.
 
 #include "renderlib/math/vec.h"
 
@@ -15,8 +16,9 @@ struct Basis {
   Vec3 to_local(const Vec3& world) const { return {dot(x, world), dot(y, world), dot(z, world)}; }
 };
 
-/// Returns a basis whose z is the unit vector n. Only the sign of n.z is a special case (Duff et
-/// al. 2017, "Building an Orthonormal Basis, Revisited", JCGT 6(1), listing 3).
+/// Returns a right-handed basis whose z is the unit vector n (Duff et al. 2017, "Building an
+/// Orthonormal Basis, Revisited", JCGT 6(1), listing 3: there is no special case except for the
+/// sign of n.z).
 inline Basis orthonormal_basis(const Vec3& n) {
   const double sign = std::copysign(1.0, n.z);
   const double a = -1.0 / (sign + n.z);

@@ -1,5 +1,5 @@
-// Cumulative sums of rows, and of the columns in each row. Sampling searches the row, then the
-// column.
+// Stores the cumulative sums of the rows, and of the columns in each row. Sampling searches the
+// row, then the column.
 
 #include "renderlib/sampling/grid_distribution.h"
 
@@ -12,12 +12,14 @@
 namespace bandsaw {
 namespace {
 
+/// A step of a cumulative sum, and the place within it, in [0, 1).
 struct Step {
   std::size_t index;
   double rest;
 };
 
-/// Finds the step of the cumulative sum that contains number * its total.
+/// Finds the step of the cumulative sum `ends` that contains `number` times the total; `number` is
+/// in [0, 1).
 Step invert(absl::Span<const double> ends, double number) {
   const double target = number * ends.back();
   auto end = std::upper_bound(ends.begin(), ends.end(), target);

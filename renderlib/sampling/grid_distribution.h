@@ -1,9 +1,9 @@
 #pragma once
 
-// Piecewise-constant 2D distribution: samples a cell of a grid in proportion to its weight, first
-// the row by its marginal, then the column. Both invert the cumulative sum, which preserves
-// stratification (Pharr, Jakob and Humphreys, "Physically Based Rendering", A.5.3). Sums are
-// double, so that a tail of small weights keeps its probability.
+// Piecewise-constant 2D distribution, used for environment maps: samples a cell of a grid in
+// proportion to its weight, first the row by its marginal, then the column. Both invert the
+// cumulative sum, which preserves stratification (Pharr, Jakob and Humphreys, "Physically Based
+// Rendering", A.5.3). Sums are double, so that a tail of small weights keeps its probability.
 
 #include <cstdint>
 #include <vector>
@@ -17,8 +17,8 @@ class GridDistribution {
   struct Cell {
     std::uint32_t column = 0;
     std::uint32_t row = 0;
-    double u = 0;  ///< remainders of the random numbers, rescaled to [0, 1)
-    double v = 0;
+    double u = 0;  ///< remainder of the random number for the column, rescaled to [0, 1)
+    double v = 0;  ///< the same for the row
   };
 
   GridDistribution() = default;

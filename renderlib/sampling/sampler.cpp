@@ -1,6 +1,6 @@
-// A group of four dimensions is computed at once: shuffle the sample's index by an Owen scramble,
-// look up the Sobol' point in a table, and scramble each coordinate. All are done on bit-reversed
-// numbers, for which scrambling is cheap.
+// The four dimensions of a group are computed at once: the sample's index is shuffled by an Owen
+// scramble, the Sobol' point of that index is looked up in a table, and each coordinate is
+// scrambled. All this is done on bit-reversed numbers, for which scrambling is cheap.
 
 #include "renderlib/sampling/sampler.h"
 
@@ -47,11 +47,11 @@ UInt scramble_reversed(UInt x, UInt seed) {
   return x;
 }
 
-/// Recurrence of a Sobol' dimension (Joe and Kuo 2008): direction number v[i] from the previous
-/// `degree` ones.
+/// Recurrence of a Sobol' dimension (Joe and Kuo 2008), which computes each direction number from
+/// the `degree` previous ones: the primitive polynomial, and the first direction numbers.
 struct Polynomial {
   int degree;
-  std::uint32_t coefficients;
+  std::uint32_t coefficients;  ///< bits of the inner coefficients
   std::array<std::uint32_t, 3> initial;
 };
 constexpr std::array<Polynomial, 3> kPolynomials = {{
@@ -82,8 +82,9 @@ constexpr std::array<std::uint32_t, 32> reversed_directions(const Polynomial& p)
   return direction;
 }
 
-/// For each group of four bits of a bit-reversed index, the xor contribution to all four
-/// dimensions, bit-reversed; 2 KB in all. Dimension 0 is the index itself.
+/// The table has a row for each four bits of a bit-reversed index, and in it an entry for each of
+/// their 16 values: the bits that they flip in each dimension, bit-reversed. It has 2 KB. Dimension
+/// 0 is the index itself.
 using Points = std::array<std::uint32_t, 4>;
 using PointTable = std::array<std::array<Points, 16>, 8>;
 

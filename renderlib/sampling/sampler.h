@@ -1,11 +1,11 @@
 #pragma once
 
 // The random numbers of samples: a pure function of (seed, pixel, sample index, dimension), so that
-// any machine can render any sample. Owen-scrambled Sobol' points in groups of four dimensions,
-// each group with its own shuffle and scrambling (padding): Burley 2020, "Practical Hash-based Owen
-// Scrambling", JCGT 9(4), section 4; scramble constants of Vegdahl 2021. Each group has a fixed
-// meaning (kGroup... below); there is no "next number", so that paths of different length stay
-// stratified.
+// any machine can render any sample. They are Owen-scrambled Sobol' points in groups of four
+// dimensions, each group with its own shuffle and scrambling (padding): Burley 2020, "Practical
+// Hash-based Owen Scrambling", JCGT 9(4), section 4; scramble constants of Vegdahl 2021. Each group
+// has a fixed meaning (kGroupCamera and the functions group_... below); there is no "next number",
+// so that paths of different length stay stratified.
 
 #include <array>
 #include <cstdint>
@@ -47,6 +47,7 @@ class NumberStream {
 class PixelSampler {
  public:
   PixelSampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y);
+  /// Returns the four numbers of a group (see below) for sample number `sample` of the pixel.
   Sample4 group(std::uint64_t sample, std::uint32_t group) const;
   /// Returns the stream of a sample and group; different from the numbers of `group()`.
   NumberStream stream(std::uint64_t sample, std::uint32_t group) const;
@@ -59,11 +60,13 @@ class PixelSampler {
 Sample4 sample4(const SampleKey& key, std::uint32_t group);
 
 inline constexpr std::uint32_t kGroupCamera = 0;  ///< pixel x, pixel y, lens u, lens v
-/// Time; light sampling through the lens: choice, u, v.
+/// Time of the sample; then three numbers for light sampling through the lens: choice, u, v.
 inline constexpr std::uint32_t kGroupTime = 1;
-/// Scattering `bounce` (0 at the camera ray's hit): direction u, v, lobe, Russian roulette.
+/// Scattering number `bounce` (0 at the camera ray's hit): direction u, v, the choice of the BSDF's
+/// lobe, Russian roulette.
 constexpr std::uint32_t group_bsdf(std::uint32_t bounce) { return 2 + 2 * bounce; }
-/// Light sampling at scattering `bounce`: light choice, light u, v, low bits of the choice.
+/// Light sampling at scattering `bounce`: light choice, light u, v, low bits of the choice (which
+/// needs more than 32 bits if there are many lights).
 constexpr std::uint32_t group_light(std::uint32_t bounce) { return 3 + 2 * bounce; }
 /// Alpha test of surface number `passed` (below 2^20) on the ray towards scattering `bounce` (below
 /// 2^11): opacity, part of a mixture, unused, unused.
@@ -73,14 +76,16 @@ constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) 
 /// Media segment number `segment` (below 2^17) on the ray towards scattering `bounce` (below 2^11).
 /// `which` selects a group. Group 0 has four numbers: the choice between scattering and passing
 /// together with the colour channel, the free-flight distance, the strategy of light sampling, and
-/// its distance. Group 1: pivots of equiangular sampling (choice, u, v). Group 2: light sampling
+/// its distance. Group 1: the point on a light around which equiangular sampling is done
+/// (medium/equiangular.h; choice, u, v). Group 2: light sampling
 /// (choice, u, v, low bits of the choice). In media that vary in space, group 0 is the first
 /// collision (choice, distance), and group 3 is the stream of all further numbers.
 constexpr std::uint32_t group_medium(std::uint32_t bounce, std::uint32_t segment,
                                      std::uint32_t which) {
   return 0x40000000u | (bounce & 0x7ffu) << 19 | (segment & 0x1ffffu) << 2 | which;
 }
-/// Uses of the streams with which the transmittance along a shadow ray is estimated.
+/// Uses of the streams with which the transmittance along a shadow ray is estimated, so that each
+/// use has a stream of its own.
 enum class ShadowUse : std::uint32_t {
   kLight,          ///< light sampling at a surface or, in a medium that varies, at a collision
   kLightBehind,    ///< light sampling on the far side of a surface

@@ -42,9 +42,9 @@ std::optional<SphereSample> sample_sphere_light(const Vec3& center, double radiu
   const double sin2_max = radius * radius / distance2;
   const double spread = one_minus_cos_from_sin2(sin2_max);
   const Vec3 local = sample_cone(u, v, spread);
-  // Angle alpha at the centre between the axis to the point and the normal at the first
-  // intersection of the direction (at angle theta to the axis): cos alpha = (d sin^2 theta + cos
-  // theta sqrt(r^2 - d^2 sin^2 theta)) / r.
+  // Let theta be the angle between the direction and the axis, and alpha the angle at the centre
+  // between the axis towards the point and the normal where the direction first meets the sphere:
+  // cos alpha = (d sin^2 theta + cos theta sqrt(r^2 - d^2 sin^2 theta)) / r.
   const double sin2 = local.x * local.x + local.y * local.y;
   const double chord2 = std::max(0.0, 1 - sin2 / sin2_max);
   const double sin_max = radius / distance;

@@ -12,6 +12,7 @@
 namespace bandsaw {
 namespace {
 
+/// Largest cosine of an angle that counts as right.
 constexpr double kRightAngle = 1e-9;
 /// Below this the inversion loses precision, and area sampling is equally good. Steradians.
 constexpr double kMinSolidAngle = 1e-9;
@@ -54,8 +55,8 @@ std::optional<SphericalRectangle> SphericalRectangle::seen_from(const Vec3& poin
 }
 
 Vec2 SphericalRectangle::sample(double u, double v) const {
-  // Section 4 of the paper, with phi_u = pi + phi: the part of the rectangle up to x has solid
-  // angle u S.
+  // Section 4 of the paper, with phi_u = pi + phi: x is chosen so that the part of the rectangle up
+  // to x has the share u of the solid angle.
   const SinCos phi = sincos_turns((u * solid_angle_ - angle_) * (0.5 * kInvPi));
   const double f = (phi.cos * b0_ + b1_) / phi.sin;
   // x = |z0| c / sqrt(1 - c^2) with c = 1 / sqrt(f^2 + b0^2), and 1 - b0^2 = g^2.

@@ -2,7 +2,7 @@
 
 // Samples a rectangle as seen from a point, uniformly in solid angle: Urena, Fajardo and King 2013,
 // "An Area-Preserving Parametrization for Spherical Rectangles". The solid angle is a sum of asin,
-// as in Cycles, instead of acos, which keeps the precision for small rectangles.
+// as in Cycles. The paper's sum of acos would lose its precision for small rectangles.
 
 #include <array>
 #include <optional>

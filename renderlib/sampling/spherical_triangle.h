@@ -31,6 +31,8 @@ class SphericalTriangle {
 
  private:
   SphericalTriangle() = default;
+  /// Returns the coordinates (s, t) of the triangle's point in this direction, clamped to the
+  /// triangle.
   Vec2 on_plane(const Vec3& direction) const;
 
   Vec3 to_a_;  ///< from the point to vertex a

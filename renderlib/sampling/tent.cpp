@@ -1,5 +1,5 @@
-// A tent is sampled as one of its two sides. In latitude the density has a factor sin(theta), and
-// its distribution is inverted by Newton's method.
+// One of the two sides of a tent is chosen, and then a point on it. In latitude the density has a
+// factor sin(theta), and its distribution is inverted by Newton's method.
 
 #include "renderlib/sampling/tent.h"
 
@@ -40,7 +40,8 @@ struct Side {
     const double target = u * mass();
     double low = 0;
     double high = width;
-    double s = width * (1 - std::sqrt(1 - u));  // Exact where the sine is constant.
+    // This start would be exact if the sine were constant, so a few steps suffice.
+    double s = width * (1 - std::sqrt(1 - u));
     constexpr int kMaxSteps = 12;
     for (int i = 0; i < kMaxSteps; ++i) {
       const At here = at(s);
@@ -57,7 +58,8 @@ struct Side {
   }
 };
 
-/// The tent of a row, with both sides. At a pole the row is constant from its centre to the pole.
+/// The tent of a row: one side above and one below its centre. In the first and the last row, the
+/// side towards the pole is a constant 1.
 struct LatitudeTent {
   LatitudeTent(std::uint32_t row, std::uint32_t rows)
       : width(kPi / rows),
@@ -73,14 +75,15 @@ struct LatitudeTent {
     const double half = sincos_turns(width * (0.25 * kTurnsPerRadian)).sin;
     return 2 * half * half;
   }
+  /// above() and below() return the integral over a side, per radian of longitude.
   double above() const { return first ? cap() : side(-1).mass(); }
   double below() const { return last ? cap() : side(1).mass(); }
 
-  double width;
-  double theta;
-  SinCos centre;
-  bool first;
-  bool last;
+  double width;   ///< of a row, in radians
+  double theta;   ///< angle of the row's centre from the top
+  SinCos centre;  ///< of theta
+  bool first;     ///< the row touches the pole at theta = 0
+  bool last;      ///< the row touches the other pole
 };
 
 }  // namespace

@@ -1,8 +1,8 @@
 #pragma once
 
-// Tent-shaped interpolation kernel of a texel: 1 at its centre, falling to 0 at the centres of its
-// neighbours. To sample the pdf of a linearly interpolated image, sample a texel by its weight and
-// then a point from its tent.
+// Tent-shaped interpolation kernel of a texel: it is 1 at the texel's centre and falls linearly to
+// 0 at the centres of its neighbours. To sample a linearly interpolated image exactly, one samples
+// a texel by its weight and then a point from its tent (light/environment_light.h).
 
 #include <cstdint>
 
@@ -18,7 +18,7 @@ double sample_tent(std::uint32_t index, std::uint32_t texels, Ends ends, double 
 /// Returns the integral of tent * sin(theta) over a full turn: the solid angle of the tent of a row
 /// of a latitude-longitude image with `rows` rows, where theta in [0, pi] is measured from its top.
 double latitude_tent_solid_angle(std::uint32_t row, std::uint32_t rows);
-/// Samples theta with the pdf tent * sin(theta); v in [0, 1).
+/// Samples theta, in radians, with a pdf proportional to tent * sin(theta); v in [0, 1).
 double sample_latitude_tent(std::uint32_t row, std::uint32_t rows, double v);
 
 }  // namespace bandsaw

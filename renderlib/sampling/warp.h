@@ -1,9 +1,9 @@
 #pragma once
 
-// Maps from [0, 1)^2 (or ^3) to points and directions, each with its pdf. All are closed forms, so
-// every sample uses the same number of dimensions and stratification is preserved. Directions are
-// unit vectors in a local frame with z up (sampling/basis.h). Pdfs are with respect to area, solid
-// angle or volume, as their names say.
+// Maps from [0, 1)^2 or [0, 1)^3 to points and directions, each with its pdf. All are closed forms,
+// so every sample uses the same number of dimensions and stratification is preserved. Directions
+// are unit vectors in a local frame with z up (sampling/basis.h). Pdfs are with respect to area,
+// solid angle or volume, as their names say.
 
 #include <algorithm>
 #include <cmath>
