@@ -8,7 +8,7 @@
 namespace bandsaw {
 namespace {
 
-/// For larger x, exp(-x) is 0 in float and in double.
+/// For larger x, exp(-x) underflows to 0 in double.
 constexpr double kOpaque = 800;
 
 /// Returns sigma * length, and 0 if sigma is 0, even for an infinite length.

@@ -8,7 +8,7 @@
 
 namespace bandsaw {
 
-/// Returns the extinction coefficient of one channel. In double, because the sum of two large
+/// Returns the extinction coefficient of one channel. It is a double, because the sum of two large
 /// floats may overflow.
 inline double extinction(float absorption, float scattering) {
   return double{absorption} + scattering;
@@ -17,7 +17,8 @@ inline double extinction(float absorption, float scattering) {
 /// Returns the mean extinction coefficient over the channels.
 double mean_extinction(const Medium& medium);
 
-/// Returns the transmittance exp(-sigma length); exactly 1 if sigma is 0, for any length.
+/// Returns the transmittance exp(-sigma length), where sigma (>= 0) is an extinction coefficient;
+/// exactly 1 if sigma is 0, for any length.
 double transmittance(double sigma, double length);
 
 /// Returns the integral of exp(-sigma s) over s in [0, length], i.e. an effective length. Infinite

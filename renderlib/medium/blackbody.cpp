@@ -36,6 +36,7 @@ constexpr double kFirstNm = 380;
 constexpr double kStepNm = 10;
 /// The second radiation constant, nm K (CODATA 2018).
 constexpr double kSecond = 1.438776877e7;
+/// The hue of lower and higher temperatures is that of these (blackbody.h).
 constexpr double kMinHue_K = 500;
 constexpr double kMaxHue_K = 1e5;
 
@@ -53,7 +54,8 @@ double relative_planck(double nm, double kelvin) {
   return fifth * expm1(kPeak) / expm1(kPeak * ratio);
 }
 
-/// Returns the colour of a spectrum whose maximum is 1; a constant spectrum of 1 has luminance 1.
+/// Returns the colour of a spectrum whose maximum is 1, scaled so that a constant spectrum of 1 has
+/// luminance 1. Negative channels become 0; the others are scaled to keep the luminance.
 Color peak_color(double kelvin) {
   std::array<double, 3> xyz{};
   double white = 0;
@@ -66,7 +68,7 @@ Color peak_color(double kelvin) {
   }
   const auto [x, y, z] = xyz;
   const double all = xyz[1] / white;
-  // IEC 61966-2-1.
+  // From XYZ to linear sRGB (IEC 61966-2-1).
   Color rgb = {3.2406 * x - 1.5372 * y - 0.4986 * z, -0.9689 * x + 1.8758 * y + 0.0415 * z,
                0.0557 * x - 0.2040 * y + 1.0570 * z};
   for (double& channel : rgb) {

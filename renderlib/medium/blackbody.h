@@ -1,6 +1,6 @@
 #pragma once
 
-// Colour of a black body's light.
+// Colour of a black body's light, for media with a grid of temperatures (fire).
 
 #include <vector>
 
@@ -10,17 +10,17 @@ namespace bandsaw {
 
 /// Scales of the light of black bodies of different temperature.
 enum class BlackbodyScale {
-  kPower,  ///< the luminance is (T / 1000 K)^4 / 1000: as Stefan and Boltzmann's law
-  kPeak,   ///< the spectrum's maximum is 1, as in pbrt-v4: hardly brighter with T
+  kPower,  ///< the luminance is (T / 1000 K)^4 / 1000, as the law of Stefan and Boltzmann has T^4
+  kPeak,   ///< the spectrum's maximum is 1, as in pbrt-v4; the brightness hardly depends on T
 };
 
 /// Below this temperature a black body counts as black.
 inline constexpr double kDarkKelvin = 100;
 
-/// Returns linear sRGB of a black body at `kelvin` (>= 0, finite): Planck's spectrum by the colour
-/// matching functions of CIE 1931. Colours outside of the gamut (below 1900 K) lose their negative
-/// channel and keep their luminance. Black below 100 K. Below 500 K the hue is that of 500 K, which
-/// is pure red; above 100,000 K it is that of 100,000 K.
+/// Returns linear sRGB of a black body at `kelvin` (>= 0, finite): Planck's spectrum, weighted by
+/// the colour matching functions of CIE 1931. In colours outside of the gamut (below 1900 K) the
+/// negative channel becomes 0, and the luminance is kept. Below 100 K the result is black. Below
+/// 500 K the hue is that of 500 K, which is pure red; above 100,000 K it is that of 100,000 K.
 Rgb blackbody(double kelvin, BlackbodyScale scale);
 
 /// A table of blackbody(). Its temperatures are 1/256 of a power of 2 apart, and it is interpolated

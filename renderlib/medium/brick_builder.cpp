@@ -1,5 +1,5 @@
-// Builds a grid of numbers in bricks of equal size. Each brick is hashed, so that a brick equal to
-// an earlier one is found and stored once.
+// Builds a grid of numbers in bricks of 8 x 8 x 8 cells. Each brick is hashed, so that a brick that
+// is equal to an earlier one is found and not stored again.
 
 #include "renderlib/medium/brick_builder.h"
 

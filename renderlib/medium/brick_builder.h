@@ -1,6 +1,7 @@
 #pragma once
 
-// Makes a VolumeGrid of dense or sparse numbers.
+// Makes a VolumeGrid (a grid of numbers, stored in bricks of 8 x 8 x 8 cells) of dense or sparse
+// numbers. Importers of volumes use it.
 
 #include <array>
 #include <cstddef>
@@ -15,21 +16,24 @@
 namespace bandsaw {
 
 /// Collects bricks: bricks of zeros are left out and equal ones are stored once. The numbers are
-/// stored as halves if every one of them is a half.
+/// stored as 16-bit floats (halves) if each of them can be, otherwise as floats.
 class BrickBuilder {
  public:
   /// Begins with zeros. `cells` and `channels` MUST be in the ranges of VolumeGrid, and the bricks
   /// at most kMaxGridBricks.
   BrickBuilder(const std::array<std::uint32_t, 3>& cells, std::uint32_t channels);
 
-  /// Sets a brick of the box: the numbers of its cells, x fastest, the channels of a cell together
-  /// (kBrickCells * channels of them, each finite and >= 0). Numbers outside of the box become 0.
+  /// Sets the numbers of the brick whose first cell is (8 x, 8 y, 8 z). `numbers` holds those of
+  /// its cells, x fastest, the channels of a cell together: kBrickCells * channels numbers, each
+  /// finite and >= 0. Numbers of cells outside of the box of `cells` become 0.
   void set(std::uint32_t x, std::uint32_t y, std::uint32_t z, absl::Span<const float> numbers);
 
-  /// Returns the grid, with the other members as in a new VolumeGrid. Ends the use of this object.
+  /// Returns the grid: cells, channels, format, index and values are set, the other members are as
+  /// in a new VolumeGrid. This object MUST NOT be used afterwards.
   VolumeGrid build() &&;
 
  private:
+  /// Returns the place of a brick in `values_`; appends the brick if it is new.
   std::uint32_t place_of(absl::Span<const float> brick);
 
   std::array<std::uint32_t, 3> cells_;
@@ -39,12 +43,12 @@ class BrickBuilder {
   std::vector<float> values_;
   std::vector<float> brick_;                                      ///< the one that is being set
   std::unordered_multimap<std::uint64_t, std::uint32_t> places_;  ///< keyed by the brick's hash
-  bool halves_ = true;
+  bool halves_ = true;  ///< all numbers up to now are halves
 };
 
-/// Returns the grid of all cells' numbers; the other members as in a new VolumeGrid. `number(i)`
-/// returns number i, x fastest, the channels of a cell together; it is called once for each and
-/// MUST return a finite number >= 0.
+/// Returns a grid as BrickBuilder::build() does. `number(i)` returns number i of the box, x
+/// fastest, the channels of a cell together. It is called once for each i and MUST return a finite
+/// number >= 0.
 VolumeGrid dense_grid(const std::array<std::uint32_t, 3>& cells, std::uint32_t channels,
                       absl::FunctionRef<float(std::size_t)> number);
 

@@ -18,6 +18,7 @@ Equiangular::Equiangular(const Vec3& origin, const Vec3& direction, double lengt
   const double nearest = dot(to_pivot, direction);
   start_ = -nearest;
   const double around = std::isfinite(length) ? length : 0;
+  // 1e-94 keeps the squares of `aside_` above underflow if the other lengths are 0.
   const double least = 1e-6 * std::max({around, std::abs(nearest), 1e-94});
   aside_ = std::max(bandsaw::length(to_pivot - direction * nearest), least);
   // The difference of two arctangents as a single one, without cancellation.
@@ -30,7 +31,8 @@ double Equiangular::sample(double u) const {
   const SinCos turn = sincos_turns(u * angle_ / (2 * kPi));
   const double divisor = aside_ * turn.cos - start_ * turn.sin;
   const double distance = (aside_ * aside_ + start_ * start_) * turn.sin / divisor;
-  // Rounding at the far end may make the divisor 0 or negative.
+  // Rounding at the far end may make the divisor 0 or negative. kFarthest stands for infinity,
+  // because the result must be finite.
   constexpr double kFarthest = 1e30;
   const double farthest = std::min(length_, kFarthest);
   return divisor > 0 && distance <= farthest ? std::max(distance, 0.0) : farthest;

@@ -1,8 +1,9 @@
 #pragma once
 
-// Equiangular sampling of distances along a ray: the pdf is proportional to 1 / r^2, where r is the
-// distance to a pivot point on a light (Kulla and Fajardo 2012, "Importance Sampling Techniques for
-// Path Tracing in Participating Media", section 4.1).
+// Equiangular sampling of distances along a ray, for light sampling in homogeneous media: the pdf
+// is proportional to 1 / r^2, where r is the distance to the pivot, a point on a light (Kulla and
+// Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media",
+// section 4.1).
 
 #include "renderlib/math/vec.h"
 
@@ -12,8 +13,8 @@ class Equiangular {
  public:
   Equiangular() = default;
   /// Samples [0, length] (> 0, may be infinite) along the unit direction `direction` from `origin`,
-  /// for the finite point `pivot`. The distance of the pivot from the ray is clamped to at least a
-  /// millionth of the other lengths, so that the pdf is finite everywhere.
+  /// for the finite point `pivot`. The distance of the pivot from the ray counts as at least a
+  /// millionth of `length` and of the pivot's distance along the ray, so that the pdf is finite.
   Equiangular(const Vec3& origin, const Vec3& direction, double length, const Vec3& pivot);
 
   /// Returns a finite distance in [0, length]; u in [0, 1).

@@ -1,7 +1,7 @@
 #pragma once
 
-// Free-flight sampling in one segment of a medium: whether light is scattered there, and at which
-// distance.
+// Free-flight sampling in one segment of a homogeneous medium: whether light is scattered there,
+// and at which distance. tracking.h does the same in media that vary in space.
 //
 // Light has three channels with three extinction coefficients. A distance is drawn for one channel
 // and weighted by the mean of all channels' pdfs (balance heuristic over wavelengths: Wilkie,
@@ -53,9 +53,9 @@ class FreeFlight {
 
   double length_;
   Channels extinction_;
-  Channels entering_;  ///< throughput times scattering
-  Channels all_scattered_;
-  Channels passing_;
+  Channels entering_;       ///< throughput times the scattering coefficient
+  Channels all_scattered_;  ///< as all_scattered()
+  Channels passing_;        ///< as passing()
 };
 
 }  // namespace bandsaw

@@ -1,5 +1,5 @@
-// Bounds of each brick, and of its outer layers, which also count for the neighbouring bricks
-// because values are interpolated across the border.
+// Computes the bounds of each brick and of its outer layers of cells. The latter also count for the
+// neighbouring bricks, because values are interpolated across the border.
 
 #include "renderlib/medium/grid_bounds.h"
 
@@ -20,8 +20,9 @@ ValueBounds both(const ValueBounds& a, const ValueBounds& b) {
   return {std::min(a.least, b.least), std::max(a.most, b.most)};
 }
 
-/// Part of a brick along one axis.
+/// Part of a brick along one axis: all layers of cells, or only the first or the last.
 enum Part : std::uint32_t { kAll, kFirstLayer, kLastLayer };
+/// Number of combinations of three such parts, one for each axis.
 constexpr std::size_t kParts = 27;
 
 constexpr std::size_t part_number(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
@@ -36,7 +37,7 @@ PartBounds bounds_of_parts(const GridReader& reader, std::uint32_t brick,
                            const std::array<std::uint32_t, 3>& inside) {
   PartBounds parts;
   parts.fill(kNothing);
-  // The parts that contain a layer: all layers are kAll, and the outer ones a part of their own.
+  // Returns the parts that contain a layer: kAll, and for an outer layer also that layer alone.
   const auto parts_with = [](std::uint32_t layer) {
     const Part own = layer == 0 ? kFirstLayer : layer == kBrickSide - 1 ? kLastLayer : kAll;
     return std::array<Part, 2>{kAll, own};
@@ -78,8 +79,9 @@ GridBounds::GridBounds(const VolumeGrid& grid)
     return (std::size_t{z} * bricks_[1] + y) * bricks_[0] + x;
   };
   std::fill(of_brick_.begin(), of_brick_.end(), kNothing);
-  // Adds the bounds of each brick's layers to those of its neighbours: there, values between cell
-  // centres depend on them. Bounds of empty bricks are those of a brick of zeros.
+  // Adds the bounds of each brick to its own and, if values are interpolated, the bounds of its
+  // outer layers to those of its neighbours: near the border, a neighbour's values depend on these
+  // layers.
   PartBounds zeros;
   zeros.fill(kZero);
   for (std::uint32_t z = 0; z < bricks_[2]; ++z) {
@@ -91,7 +93,8 @@ GridBounds::GridBounds(const VolumeGrid& grid)
                 ? zeros
                 : bounds_of_parts(reader, brick, {inside(0, x), inside(1, y), inside(2, z)});
         for (std::uint32_t i = 0; i < (linear ? kParts : 1); ++i) {
-          // A brick's first layer matters to the brick before it, its last to the one after it.
+          // A brick's first layer matters to the brick before it, its last layer to the one after
+          // it.
           const auto neighbour = [](std::uint32_t at, std::uint32_t part) {
             return part == kAll ? at : part == kFirstLayer ? at - 1 : at + 1;
           };

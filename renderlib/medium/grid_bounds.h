@@ -1,6 +1,7 @@
 #pragma once
 
-// Bounds of the values of a grid, brick by brick.
+// Bounds of the values of a grid, brick by brick (a brick is 8 x 8 x 8 cells, volume_grid.h).
+// Tracking needs them (grid_medium.h).
 
 #include <cstdint>
 #include <vector>
@@ -16,14 +17,15 @@ struct ValueBounds {
   float most = 0;
 };
 
-/// Bounds of the first channel of a grid, or of all channels if it has three.
+/// Bounds of the values of a grid; if it has three channels, each bound holds for all of them.
 class GridBounds {
  public:
   /// `grid` MUST be valid.
   explicit GridBounds(const VolumeGrid& grid);
 
   /// Returns bounds of the values in the box from `low` to `high` of cell space (low <= high). They
-  /// are tight if the box is one brick, or its part inside of the grid's box.
+  /// are as tight as possible if the box is one brick, or the part of a brick that is in the grid's
+  /// box; otherwise they are those of all bricks that the box touches.
   ValueBounds over(const Vec3& low, const Vec3& high) const;
 
  private:

@@ -47,9 +47,10 @@ Box box_of(const VolumeGrid& grid) {
            static_cast<double>(grid.cells[2])}};
 }
 
+/// `regular` is invertible, because the grid is valid.
 Transform inverse_of(const Transform& regular) { return inverse(regular).value_or(Transform{}); }
 
-/// A grid seen from the space of the regions.
+/// The bounds of a grid in the space of the regions, which is the cell space of one of the grids.
 struct Bounded {
   GridBounds bounds;
   std::optional<Transform>
@@ -130,7 +131,7 @@ void GridMedium::find_regions(const MediumGrids& uses, const std::vector<VolumeG
   const std::optional<Bounded> emission = bounded(uses.emission);
   const std::optional<Bounded> temperature = bounded(uses.temperature);
 
-  // `at` returns the bounds of one of the grids.
+  // Returns the region in which each grid has the bounds that `at(grid)` returns.
   const auto region = [&](const auto& at) {
     Region to;
     const ValueBounds of_density = density ? at(*density) : ValueBounds{1, 1};

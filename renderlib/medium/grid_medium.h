@@ -1,7 +1,7 @@
 #pragma once
 
-// A medium that varies in space, prepared for tracking: its grids, and the bounds of its density in
-// regions of space, most of them one brick of a grid.
+// A medium that varies in space, prepared for tracking (tracking.h): its grids, and the bounds of
+// its density in regions of space. In general a region is one brick of a grid, 8 x 8 x 8 cells.
 
 #include <array>
 #include <cstdint>
@@ -17,14 +17,15 @@
 
 namespace bandsaw {
 
-/// A box of space in which the density lies between two bounds, in every channel.
+/// A part of space in which the density lies between two bounds, in every channel.
 struct Region {
   float least = 0;
   float most = 0;
   bool emits = false;  ///< false: the medium emits nowhere in the region
 };
 
-/// The regions of a medium: a block of cubes, and everything around it.
+/// The regions of a medium: a block of cubes, and everything around it. The space of the regions is
+/// the cell space (volume_grid.h) of the density grid, or of another grid if there is none.
 struct Regions {
   Transform from_medium;  ///< from the medium's space to that of the regions
   /// The block, in the space of the regions; its last cubes may reach out of it.
@@ -36,13 +37,14 @@ struct Regions {
   Region around;                ///< outside of the block
 };
 
-/// Coefficients at a point, per scene unit and channel. Not Rgb: a product of a density and a
-/// coefficient may be larger than a float.
+/// Coefficients at a point, per scene unit and channel. They are not Rgb, because a product of a
+/// density and a coefficient may be larger than the largest float.
 struct Coefficients {
   std::array<double, 3> extinction{};
   std::array<double, 3> scattering{};
 };
 
+/// Points are given in the medium's space (scene/media.h).
 class GridMedium {
  public:
   /// `medium` has grids, which are entries of `grids`; all MUST be valid, and the grids MUST
@@ -50,14 +52,15 @@ class GridMedium {
   GridMedium(const Medium& medium, const std::vector<VolumeGrid>& grids);
 
   const Regions& regions() const { return regions_; }
+  /// Returns the mean cosine of the phase function.
   double g() const { return g_; }
-  /// Returns extinction where the density is 1.
+  /// Returns the extinction coefficients where the density is 1.
   const std::array<double, 3>& extinction() const { return extinction_; }
   double max_extinction() const { return max_extinction_; }
   bool scatters() const { return scatters_; }
   bool emits() const { return emits_; }
 
-  /// Returns the density at a point of the medium's space, by channel; at most `most`.
+  /// Returns the density at a point, by channel, or `most` where it is larger.
   std::array<double, 3> density(const Vec3& at, double most) const;
   /// Returns the coefficients at a point with this density.
   Coefficients coefficients(const Vec3& at, const std::array<double, 3>& density) const;
@@ -65,9 +68,10 @@ class GridMedium {
   std::array<double, 3> emission(const Vec3& at, const std::array<double, 3>& density) const;
 
  private:
+  /// Reads a grid at points of the medium's space, and multiplies its numbers by `scale`.
   struct Lookup {
     GridReader reader;
-    Transform from_medium;  ///< to the grid's cells
+    Transform from_medium;  ///< to the grid's cell space
     double scale;
     double value(const Vec3& at) const { return scale * reader.value(from_medium.point(at)); }
     std::array<double, 3> color(const Vec3& at) const;

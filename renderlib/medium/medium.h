@@ -21,11 +21,12 @@ struct GridUse {
   friend bool operator==(const GridUse&, const GridUse&) = default;
 };
 
-/// Grids by which a medium varies in space; outside of its box the value of a grid is 0. At a point
+/// Grids by which a medium varies in space; outside of its box the value of a grid is 0. At a
+/// point, where absorption, scattering and emission on the right are those of struct Medium:
 ///
-///   density     = that of the grid, by channel if it has three; 1 without one
+///   density     = value of the density grid, by channel if it has three; 1 without one
 ///   extinction  = density (absorption + scattering)
-///   scattering  = density scattering, or with an albedo grid extinction times its value, at most 1
+///   scattering  = density scattering; with an albedo grid, extinction times min(its value, 1)
 ///   emission    = emission times the value of the emission grid, or without one times the density,
 ///                 and with a temperature grid times blackbody(value + temperature_offset)
 struct MediumGrids {
@@ -53,7 +54,7 @@ struct Medium {
 
 /// Maximum of |g|; closer to 1, scattering would degenerate to a beam.
 inline constexpr double kMaxG = 0.999;
-/// Maximum coefficient: at this value 1e-12 scene units are already opaque.
+/// Maximum coefficient: at this value, 1e-12 scene units have an optical depth of 1.
 inline constexpr float kMaxPerUnit = 1e12f;
 
 /// Returns true if a channel emits and has no extinction: an infinite medium would be infinitely

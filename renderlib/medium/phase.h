@@ -8,7 +8,8 @@
 
 namespace bandsaw {
 
-/// Returns the pdf by solid angle of directions at this cosine to the previous direction. |g| < 1.
+/// Returns the pdf, by solid angle, of each direction that has this cosine to the previous
+/// direction. |g| < 1.
 double phase(double g, double cosine);
 
 /// Samples a unit direction of travel after scattering, with that pdf. `direction` is the unit

@@ -1,7 +1,7 @@
 #pragma once
 
-// The regions of a medium along a ray, one after the other (Amanatides and Woo 1987, "A Fast Voxel
-// Traversal Algorithm for Ray Tracing").
+// Finds the regions of a medium (grid_medium.h) along a ray, one after the other (Amanatides and
+// Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing").
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ struct GridRay {
   Vec3 at(double distance) const { return origin + direction * distance; }
 };
 
-/// A part of a ray in one region.
+/// The part of a ray in one region, from distance `begin` to `end`.
 struct RegionSpan {
   double begin = 0;
   double end = 0;
@@ -87,6 +87,7 @@ class RegionWalk {
   }
 
  private:
+  /// Finds the cube in which the ray enters the block.
   void begin_block() {
     for (std::size_t k = 0; k < 3; ++k) {
       const double inside = (origin_[k] + direction_[k] * enter_ - low_[k]) / regions_.side;
@@ -103,6 +104,7 @@ class RegionWalk {
     const double to = low_[k] + regions_.side * (cube_[k] + (direction_[k] > 0 ? 1.0 : 0.0));
     return (to - origin_[k]) / direction_[k];
   }
+  /// Goes to the end of the current cube, and makes the next one the current cube.
   void step() {
     const std::size_t k =
         next_[0] < next_[1] ? (next_[0] < next_[2] ? 0 : 2) : (next_[1] < next_[2] ? 1 : 2);
@@ -123,11 +125,11 @@ class RegionWalk {
   std::array<double, 3> origin_{};
   std::array<double, 3> direction_{};
   std::array<double, 3> low_{};
-  double enter_ = 0;  ///< the part in the block
-  double leave_ = 0;
-  double at_ = 0;
-  std::array<std::uint32_t, 3> cube_{};
-  std::array<double, 3> next_{};  ///< where the ray leaves the cube, by axis
+  double enter_ = 0;                     ///< where the ray enters the block of cubes
+  double leave_ = 0;                     ///< where it leaves the block
+  double at_ = 0;                        ///< where the next span begins
+  std::array<std::uint32_t, 3> cube_{};  ///< the current cube
+  std::array<double, 3> next_{};         ///< where the ray leaves the cube, by axis
 };
 
 }  // namespace bandsaw

@@ -1,6 +1,7 @@
 // visit_collisions() finds the tentative collisions of null-collision tracking along a ray; fly(),
-// pass() and estimate_transmittance() differ in what they do at each. The space is divided into
-// regions with bounds of the density, `least` and `most`; a span is the part of a ray in a region.
+// pass() and estimate_transmittance() differ in what they do at each of them. The space is divided
+// into regions with bounds of the density, `least` and `most`; a span is the part of a ray in a
+// region.
 
 #include "renderlib/medium/tracking.h"
 
@@ -47,7 +48,7 @@ class Roulette {
  public:
   explicit Roulette(const Channels& first) : low_(kLowWeight * max_of(first)) {}
 
-  /// Scales the weight if the flight goes on; returns false if it ends.
+  /// Called at each collision. Scales the weight if the flight goes on; returns false if it ends.
   bool survives(Channels& weight, NumberStream& numbers) {
     double survival = ++collisions_ > kManyCollisions ? kSurvivalOfMany : 1;
     const double most = max_of(weight);
@@ -74,9 +75,10 @@ class Roulette {
 };
 
 /// Calls `collide(distance, span, rate)` for each tentative collision along the ray, in order,
-/// until it returns false. `rate(region, speed)` returns how many there are per scene unit
-/// (`speed`: RegionWalk::speed()). `enter(span)` is called before the collisions of each span.
-/// `free_paths` is the distance to the first collision, in mean free paths.
+/// until it returns false; `rate` is the number of such collisions per scene unit there. The
+/// parameter `rate(region, speed)` returns this number for a region (`speed` is
+/// RegionWalk::speed()). `enter(span)` is called before the collisions of each span. `free_paths`
+/// is the distance to the first collision, in mean free paths.
 template <class Rate, class Enter, class Collide>
 void visit_collisions(const GridMedium& medium, const GridRay& ray, double length,
                       double free_paths, NumberStream& numbers, const Rate& rate,
@@ -107,7 +109,7 @@ void visit_collisions(const GridMedium& medium, const GridRay& ray, double lengt
   }
 }
 
-/// The rate of tentative collisions of flights.
+/// The rate of tentative collisions in fly() and pass(), per scene unit.
 struct FlightRate {
   const GridMedium& medium;
 
@@ -130,7 +132,8 @@ struct Collision {
         density(medium.density(at, region.most)),
         coefficients(medium.coefficients(at, density)) {}
 
-  /// Adds the emission that the collision stands for.
+  /// Adds to `to` the emission that the collision stands for: collisions are 1 / rate apart on
+  /// average.
   void emit(const GridMedium& medium, const Channels& weight, double rate, Channels& to) const {
     const Channels emission = medium.emission(at, density);
     for (std::size_t c = 0; c < 3; ++c) {
@@ -163,6 +166,8 @@ Flight fly(const GridMedium& medium, const GridRay& ray, double length, const Rg
       scatters[c] = weight[c] * here.coefficients.scattering[c];
       passes[c] = weight[c] * (rate - here.coefficients.extinction[c]);
     }
+    // The weights are divided by the rate and by the probability of the outcome, which is its share
+    // of `both`.
     const double both = sum(scatters) + sum(passes);
     if (choice * both < sum(scatters)) {
       flight.scattered = true;

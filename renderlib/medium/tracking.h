@@ -1,8 +1,8 @@
 #pragma once
 
-// Transport through media that vary in space, without bias: tentative collisions at the rate of a
-// local majorant of the extinction (delta tracking: Woodcock et al. 1965), of which a random part
-// are real ones.
+// Transport through media that vary in space, without bias (delta tracking: Woodcock et al. 1965).
+// Tentative collisions are sampled at the rate of a majorant of the extinction in each region of
+// the medium (grid_medium.h), and a random part of them are real ones.
 //
 // - A flight carries a weight for each of the three channels. Let s be the light that a tentative
 //   collision would scatter, and p the light that would pass, each summed over the channels. The
@@ -28,7 +28,7 @@ namespace bandsaw {
 /// Outcome of a flight through a segment.
 struct Flight {
   bool scattered = false;
-  double distance = 0;  ///< where, if scattered
+  double distance = 0;  ///< where the light was scattered, if it was
   Rgb throughput;       ///< weight of the light that is scattered there, or that passes the segment
   Rgb emitted;          ///< emission towards the start of the segment, times the weight before it
 };
@@ -41,7 +41,7 @@ struct FirstCollision {
 };
 
 /// Sends light of weight `throughput` (>= 0, finite) through the first `length` (> 0, may be
-/// infinite) of the ray.
+/// infinite) of the ray; it is scattered there or passes.
 Flight fly(const GridMedium& medium, const GridRay& ray, double length, const Rgb& throughput,
            const FirstCollision& first, NumberStream& numbers);
 
@@ -51,12 +51,12 @@ struct ScatteringPoint {
   Rgb weight;  ///< black: there is none
 };
 
-/// Light that passes a segment, where no path is to be scattered.
+/// Light that passes a segment in which the path itself is not scattered.
 struct Passage {
   Rgb throughput;  ///< estimate of the weight that passes
   Rgb emitted;     ///< as Flight::emitted
-  /// A random point, distributed as the light that is scattered in the segment. Its weight is an
-  /// estimate of all of that light.
+  /// A random point with a pdf proportional to the light that is scattered there. Its weight is an
+  /// estimate of all light that is scattered in the segment.
   ScatteringPoint scattered;
 };
 

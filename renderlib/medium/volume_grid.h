@@ -1,8 +1,9 @@
 #pragma once
 
-// A grid of numbers over a box in space, stored sparsely: only bricks of 8 x 8 x 8 cells that are
-// not 0, and equal bricks once (as the leaves of OpenVDB: Museth 2013, "VDB: High-Resolution Sparse
-// Volumes with Dynamic Topology").
+// A grid of numbers over a box in space, by which a medium varies (medium.h). It is stored
+// sparsely: only bricks of 8 x 8 x 8 cells that are not all 0, and equal bricks once. (Bricks are
+// like the leaves of OpenVDB: Museth 2013, "VDB: High-Resolution Sparse Volumes with Dynamic
+// Topology".)
 //
 // Cell space: cell (i, j, k) is the unit cube from (i, j, k) to (i + 1, j + 1, k + 1), and its
 // number is the value at its centre.
@@ -30,9 +31,9 @@ inline constexpr std::uint64_t kMaxGridBricks = std::uint64_t{1} << 26;  ///< en
 struct VolumeGrid {
   enum class Format { kFloat32, kFloat16 };  ///< IEEE 754, little-endian
   enum class Filter { kLinear, kNearest };   ///< between cell centres, or constant in each cell
-  /// Numbers beyond the outermost cell centres, up to the faces of the box: as if there were
-  /// further cells with 0, or with the numbers of the outermost cells. Outside of the box the value
-  /// is always 0.
+  /// How values are interpolated between the outermost cell centres and the faces of the box: as if
+  /// the cells beyond the faces had the number 0, or the numbers of the outermost cells. Outside of
+  /// the box the value is always 0.
   enum class Border { kZero, kClamp };
 
   std::array<std::uint32_t, 3> cells = {};  ///< size of the box, each in [1, kMaxGridSide]
@@ -40,7 +41,7 @@ struct VolumeGrid {
   Format format = Format::kFloat32;
   Filter filter = Filter::kLinear;
   Border border = Border::kZero;
-  /// From cell space to the space of the medium (scene/media.h); regular.
+  /// From cell space to the space of the medium (scene/media.h); invertible.
   Transform to_medium;
   /// A uint32 for each brick of the box, x fastest: its place in `values`, or kEmptyBrick.
   SharedBytes index;
@@ -73,10 +74,10 @@ constexpr std::uint64_t brick_bytes(std::uint32_t channels, VolumeGrid::Format f
 /// message begins with the field: ".index: …".
 absl::StatusOr<float> check_grid(const VolumeGrid& grid);
 
-/// Returns the number that a half of 16 bits has; exact.
+/// Returns the number that a half (IEEE 754, 16 bits) has; exact.
 float half_to_float(std::uint16_t half);
-/// Returns the half with this number, if there is one: `*exact` is set to false if the number is no
-/// half, and otherwise left as it is.
+/// Returns the half with this number. If there is none, sets `*exact` to false, and the result has
+/// another number; otherwise leaves `*exact` as it is.
 std::uint16_t float_to_half(float value, bool* exact);
 
 /// Reads the numbers of a grid, which MUST be valid and outlive this object.
@@ -95,14 +96,18 @@ class GridReader {
 
   std::uint32_t channels() const { return channels_; }
   const std::array<std::uint32_t, 3>& bricks() const { return bricks_; }
-  /// Returns the place of a brick, kEmptyBrick if it is 0.
+  /// Returns the place in VolumeGrid::values of the brick whose first cell is (8 x, 8 y, 8 z);
+  /// kEmptyBrick if all its numbers are 0.
   std::uint32_t brick(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
-  /// Returns a number of a stored brick.
+  /// Returns a number of the brick at the place `brick`, which brick() returned: cell number *
+  /// channels
+  /// + channel, with cells counted x fastest.
   float stored(std::uint32_t brick, std::uint32_t number) const;
 
  private:
   template <std::uint32_t kChannels>
   std::array<float, kChannels> interpolate(const Vec3& at) const;
+  /// Returns the numbers of a cell. For a cell outside of the box they are those of Border.
   template <std::uint32_t kChannels>
   std::array<float, kChannels> cell_or_zero(const std::array<std::int32_t, 3>& at) const;
 
