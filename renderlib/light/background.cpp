@@ -11,7 +11,7 @@ Rgb radiance(const Background& background, absl::Span<const Texture> textures,
     return radiance(*background.environment, textures, unit_direction);
   }
   if (background.bottom == background.top) {
-    return background.top;  // Returned exactly: a lerp between equal colours may round.
+    return background.top;  // An interpolation between equal colours might round.
   }
   return lerp(background.bottom, background.top, static_cast<float>((unit_direction.y + 1) / 2));
 }

@@ -1,6 +1,8 @@
 #pragma once
 
-// Radiance seen by rays that leave the scene.
+// The radiance of the background, which rays that leave the scene see. Path tracing adds it
+// (integrate/path.cpp); light sampling covers only its non-uniform part
+// (light/environment_light.h).
 
 #include <optional>
 

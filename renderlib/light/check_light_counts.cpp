@@ -1,5 +1,5 @@
-// Counts the primitives that Lights would number: all loose shapes and instances, and all
-// primitives of instances that emit light.
+// Counts the primitives that Lights would number: all loose shapes, and all primitives of instances
+// that emit light.
 
 #include "renderlib/light/check_light_counts.h"
 
@@ -53,8 +53,8 @@ absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Mater
   if (numbered(geometry, emits) + delta_lights <= kMaxLights) {
     return absl::OkStatus();
   }
-  // Completely black textures are detected only if that can change the result, because it takes
-  // long.
+  // An emission whose texture is black everywhere does not count. This is examined only if it can
+  // change the result, because it takes long.
   for (std::size_t i = 0; i < materials.size(); ++i) {
     const auto mean_of = [&](TextureId texture) { return mean(textures, texture); };
     emits[i] = emits[i] && !is_black(mean_emission(materials, id(i), mean_of).radiance);

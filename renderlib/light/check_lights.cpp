@@ -14,6 +14,8 @@ namespace {
 
 /// Within this bound, squares of distances do not overflow a double.
 constexpr double kMaxCoordinate = 1e30;
+/// Tolerances of the squared length of unit vectors, and of their dot products. They admit vectors
+/// that were normalised in double and rounded a few times.
 constexpr double kUnit = 1e-9;
 constexpr double kOrthonormal = 1e-9;
 
@@ -52,6 +54,7 @@ absl::Status check_position(const std::string& field, const Vec3& p) {
                                      ", ", p.z, "]"));
 }
 
+/// Checks one delta light.
 struct Check {
   absl::Span<const Texture> textures;
 
@@ -137,7 +140,7 @@ absl::Status check_environment(const Environment& environment, absl::Span<const 
                                          image->width, " x ", image->height, ", the first is ",
                                          side, " wide"));
     }
-    // Material textures may hold anything that their use allows; light must be finite.
+    // Textures are also used for materials, so they may hold numbers that no light can have.
     const float most = max_value(textures, environment.images[i]);
     if (!std::isfinite(most * environment.strength)) {
       return invalid(field, absl::StrCat("must be finite, times strength reaches ",

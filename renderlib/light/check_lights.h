@@ -1,6 +1,6 @@
 #pragma once
 
-// Validation of environment maps and delta lights.
+// Validation of environment maps and delta lights, a part of the validation of scenes.
 
 #include <vector>
 

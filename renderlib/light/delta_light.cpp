@@ -14,7 +14,8 @@ namespace {
 /// Upper bound of an irradiance relative to the intensity, so that products stay finite.
 constexpr double kMaxShare = 1e30;
 
-/// Returns 1 / length^2, at most kMaxShare; 0 at the light itself, which receives no light from it.
+/// Returns 1 / length^2, at most kMaxShare; 0 if the length is 0, i.e. at the position of the
+/// light.
 float over_distance2(const Vec3& to_light) {
   const double distance2 = length_squared(to_light);
   return distance2 > 0 ? static_cast<float>(std::min(1 / distance2, kMaxShare)) : 0.0f;
@@ -49,10 +50,11 @@ double falloff_at(const SpotLight& light, double cosine) {
   return light.falloff == SpotLight::Falloff::kSmooth ? ramp * ramp * (3 - 2 * ramp) : ramp * ramp;
 }
 
+/// Transforms the axis of a light and the image that it projects.
 void place(const Transform& to, Vec3& axis, ProjectedImage& image) {
   axis = normalize(to.direction(axis));
-  // Perpendicular again, whatever the transform does to angles; a mirrored light shows a mirrored
-  // image.
+  // `right` and `up` are made perpendicular again, whatever the transform does to angles. If it
+  // mirrors, so does the image.
   const Vec3 right = to.direction(image.right);
   image.right = normalize(right - axis * dot(axis, right));
   const Vec3 up = cross(axis, image.right);

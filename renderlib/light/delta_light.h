@@ -2,7 +2,8 @@
 
 // Delta lights: directional, point and spot lights, as defined by glTF's KHR_lights_punctual, and
 // projectors. They illuminate surfaces and cast hard shadows, but no sampled direction ever hits
-// them, so they are invisible to the camera and in mirrors. A closed set.
+// them, so they are invisible to the camera and in mirrors, and only light sampling finds them
+// (light/lights.h). README.md of renderlib lists what a further kind of light needs.
 
 #include <cstddef>
 #include <cstdint>
@@ -55,7 +56,7 @@ struct SpotLight {
   Vec3 direction{0, 0, -1};  ///< unit, the cone's axis, the direction in which the light travels
   Rgb intensity{1, 1, 1};    ///< radiant intensity on the axis; >= 0, finite
   double cos_inner = 1;      ///< cosines of the angles to the axis; cos_inner >= cos_outer >= 0
-  double cos_outer = 0.70710678118654752440;
+  double cos_outer = 0.70710678118654752440;  ///< by default of 45 degrees, as in glTF
   Falloff falloff = Falloff::kSquare;
   /// An image that multiplies the intensity. Beyond the edges of its rectangle, the texture's value
   /// there (repeated or clamped) is used.
@@ -75,12 +76,12 @@ struct ProjectorLight {
 
 using DeltaLight = std::variant<DirectionalLight, PointLight, SpotLight, ProjectorLight>;
 
-/// Returns the light transformed by `to`, which MUST be regular. Only position and directions
+/// Returns the light transformed by `to`, which MUST be invertible. Only position and directions
 /// change; intensity, irradiance and angles are not scaled.
 DeltaLight placed(const DeltaLight& light, const Transform& to);
 
-/// Maximum number of directional lights in a scene: all of them are evaluated at every point that
-/// samples light.
+/// Maximum number of directional lights in a scene. It is small, because all of them are evaluated
+/// at every point that samples light.
 inline constexpr std::size_t kMaxDirectionalLights = 8;
 
 /// Unoccluded illumination at a point.

@@ -11,8 +11,8 @@
 namespace bandsaw {
 namespace {
 
-/// Cofactors of the map. They transform normals; the length of a transformed normal is the map's
-/// local area scale.
+/// Cofactors of the affine map from the unit sphere to the ellipsoid. They transform normals; the
+/// length of a transformed unit normal is the factor by which the map scales areas there.
 struct Cofactors {
   explicit Cofactors(const ShapeView& shape)
       : x(exact_cross(shape.v, shape.w)),
@@ -51,8 +51,9 @@ double ellipsoid_area_pdf(const ShapeView& shape, const Vec3& position) {
 
 double ellipsoid_area(const ShapeView& shape) {
   const Cofactors cofactors(shape);
-  // The mean over the sphere of the map's local area scale, by the cubature of degree 5 on the
-  // corners and faces of a cube (weights 1/15 and 3/40).
+  // The mean over the sphere of the map's local area scale, by the cubature of degree 5 on the 6
+  // face centres and 8 corners of a cube (weights 1/15 and 3/40). Opposite points have equal
+  // values, so half of them are evaluated.
   double sum = 0;
   for (const Vec3& face : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
     sum += 2 * length(cofactors.times(face)) / 15;

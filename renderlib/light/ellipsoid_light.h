@@ -1,8 +1,8 @@
 #pragma once
 
-// Sampling of ellipsoids as area lights. An ellipsoid is a unit sphere under an affine map: a
-// uniform point of the sphere is mapped, so the area pdf is that of the sphere divided by the map's
-// local area scale.
+// Sampling of ellipsoids as area lights. An ellipsoid is the image of the unit sphere under an
+// affine map. A uniform point of the sphere is mapped, so the area pdf is that of the sphere
+// divided by the factor by which the map scales areas there.
 
 #include <optional>
 
@@ -16,6 +16,7 @@ std::optional<ShapeSample> sample_ellipsoid(const ShapeView& shape, const Vec3& 
                                             double v);
 /// Returns the pdf with respect to area at `position`, a point on the ellipsoid.
 double ellipsoid_area_pdf(const ShapeView& shape, const Vec3& position);
+/// Returns the area, accurate to a few percent.
 double ellipsoid_area(const ShapeView& shape);
 
 }  // namespace bandsaw

@@ -1,6 +1,7 @@
 #pragma once
 
-// Radiance emitted by surfaces.
+// Radiance emitted by surfaces: at a point, for path tracing and light sampling, and its mean over
+// a material, for the selection of lights.
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,7 @@
 
 namespace bandsaw {
 
-/// Returns std::nullopt if the material emits nothing, or is a mixture.
+/// Returns the emission of a material; std::nullopt if it emits nothing or is a mixture.
 inline std::optional<Emission> emission_of(const Material& material) {
   if (const auto* emissive = std::get_if<Emissive>(&material.kind); emissive != nullptr) {
     return Emission{{emissive->radiance, {1, 1, 1}}, emissive->one_sided};
@@ -30,7 +31,7 @@ inline std::optional<Emission> emission_of(const Material& material) {
 /// The emission of a material as a whole, which may be a mixture.
 struct MeanEmission {
   Rgb radiance;            ///< a mean over the surface; an estimate for most textures
-  bool one_sided = false;  ///< all that emits does so only to the side of the geometric normal
+  bool one_sided = false;  ///< no part emits to the side opposite to the geometric normal
 };
 
 /// Returns true if material `id` or a part of it emits.
@@ -58,9 +59,9 @@ MeanEmission mean_emission(absl::Span<const Material> materials, MaterialId id,
                   : MeanEmission{};
 }
 
-/// Returns the share of the emission that leaves through a clear coat along the unit vector
-/// `direction` (KHR_materials_clearcoat, "Emission"). The normal is the mesh's shading normal,
-/// without normal maps.
+/// Returns the share of the emission, in [0, 1], that leaves through a clear coat along the unit
+/// vector `direction` (KHR_materials_clearcoat, "Emission"). The coat's normal is the interpolated
+/// shading normal, without normal maps.
 inline double through_coat(const MetallicRoughness& material, absl::Span<const Texture> textures,
                            const SurfacePoint& point, const Vec3& direction) {
   if (material.coat.factor == 0) {
@@ -71,9 +72,9 @@ inline double through_coat(const MetallicRoughness& material, absl::Span<const T
   return 1 - std::clamp(coat, 0.0, 1.0) * (kCoatF0 + (1 - kCoatF0) * rim);
 }
 
-/// Returns the radiance emitted from `point` along `direction`, which points away from it; black
-/// unless the material emits. Opacity (material/opacity.h) is not included. The material is not a
-/// mixture.
+/// Returns the radiance emitted from `point` along the unit vector `direction`, which points away
+/// from it; black if the material does not emit. Opacity (material/opacity.h) is not included. The
+/// material MUST NOT be a mixture.
 inline Rgb emitted(const Material& material, absl::Span<const Texture> textures,
                    const SurfacePoint& point, const Vec3& direction) {
   const std::optional<Emission> emission = emission_of(material);
@@ -88,9 +89,9 @@ inline Rgb emitted(const Material& material, absl::Span<const Texture> textures,
              : radiance * static_cast<float>(through_coat(*coated, textures, point, direction));
 }
 
-/// Returns the expected value of the radiance emitted by material `id`, which may be a mixture and
-/// whose opacity is included. A hidden lamp (material/opacity.h) emits with opacity 1 although rays
-/// do not see it.
+/// Returns the expected value of the radiance emitted by material `id`, for light sampling. The
+/// material may be a mixture, and its opacity is included. A hidden lamp (material/opacity.h),
+/// which rays do not see, emits with opacity 1.
 inline Rgb emitted_if_present(absl::Span<const Material> materials, MaterialId id,
                               absl::Span<const Texture> textures, const SurfacePoint& point,
                               const Vec3& direction) {

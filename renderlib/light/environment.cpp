@@ -27,6 +27,7 @@ struct Face {
   Vec3 right;
   Vec3 up;
 };
+/// OpenGL 4.6 specification, table 8.19.
 constexpr std::array<Face, 6> kFaces = {{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
                                          {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
                                          {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}},

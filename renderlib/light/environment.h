@@ -1,7 +1,7 @@
 #pragma once
 
-// Environment maps: images around the scene, seen by rays that leave it. Looked up by direction
-// with bilinear interpolation between texels.
+// Environment maps: images around the scene, seen by rays that leave it. They are looked up by
+// direction, with bilinear interpolation between texels.
 
 #include <cstdint>
 #include <vector>
@@ -39,9 +39,11 @@ struct EnvironmentPlace {
   double y = 0;
 };
 
-/// Converts between unit directions in world space and positions in the images.
+/// Returns the position in the images of a unit direction in world space. `textures` are those of
+/// the scene, here and below.
 EnvironmentPlace place_of(const Environment& environment, absl::Span<const Texture> textures,
                           const Vec3& unit_direction);
+/// Returns the unit direction, in world space, of a position in the images.
 Vec3 direction_of(const Environment& environment, absl::Span<const Texture> textures,
                   const EnvironmentPlace& place);
 
@@ -58,6 +60,7 @@ struct FourTexels {
 FourTexels texels_around(const Environment& environment, const ImageTexture& image,
                          const EnvironmentPlace& place);
 
+/// Returns the interpolated radiance, times `strength`, in a unit direction in world space.
 Rgb radiance(const Environment& environment, absl::Span<const Texture> textures,
              const Vec3& unit_direction);
 

@@ -1,5 +1,6 @@
-// Builds a table of the texels' luminance above the mean times solid angle. A sample chooses a
-// texel from the table, then a direction from the texel's interpolation kernel.
+// The constructor builds a table with a weight for each texel: its luminance above the mean, times
+// its solid angle. A sample chooses a texel from the table, then a direction from the texel's
+// interpolation kernel.
 
 #include "renderlib/light/environment_light.h"
 
@@ -33,7 +34,8 @@ double luminance_of(const ImageTexture& image, std::uint32_t x, std::uint32_t y)
   return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
 }
 
-/// Returns the solid angle per area of a cube map face at a position; both in texels.
+/// Returns the solid angle per area of a cube map's face at the position (x, y). Position, area and
+/// `side`, the width of the face, are in texels.
 double cube_solid_angle(double x, double y, double side) {
   const double s = 2 * x / side - 1;
   const double t = 2 * y / side - 1;
@@ -102,7 +104,7 @@ double EnvironmentLight::weight(const ImageTexture& image, std::uint32_t x, std:
 double EnvironmentLight::weight_at(const EnvironmentPlace& place) const {
   const ImageTexture& image = image_of(environment_, textures_, place.image);
   const FourTexels four = texels_around(environment_, image, place);
-  // On a cube map face, the pdf of the tents is by area.
+  // On the face of a cube map, the pdf of the tents is by area; it is converted to solid angle.
   const auto of = [&](std::uint32_t x, std::uint32_t y) {
     const double w = weight(image, x, y);
     return is_cube(environment_) && w > 0 ? w * cube_solid_angle(x + 0.5, y + 0.5, image.width) : w;

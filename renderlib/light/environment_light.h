@@ -1,6 +1,6 @@
 #pragma once
 
-// Importance sampling of an environment map.
+// Importance sampling of an environment map, as one of the lights of a scene (light/lights.h).
 //
 // The pdf is proportional to the bilinearly interpolated luminance minus its mean over all
 // directions, clamped at zero. The uniform part is left to BSDF sampling (MIS compensation: Karlik
@@ -23,14 +23,14 @@ class EnvironmentLight {
     double pdf = 0;  ///< by solid angle; > 0, finite
   };
 
-  /// Without an environment, or with a uniform one: empty, never sampled.
+  /// Is empty, as for a uniform environment: it is never sampled.
   EnvironmentLight() = default;
   /// `textures` MUST outlive this object and not change.
   EnvironmentLight(Environment environment, absl::Span<const Texture> textures);
 
   bool empty() const { return !(excess_ > 0); }
-  /// Returns the luminance above the mean times solid angle: the irradiance of a surface that would
-  /// face all of it.
+  /// Returns the integral over all directions of the luminance above the mean: the irradiance of a
+  /// surface that would face all directions.
   double excess() const { return excess_; }
 
   /// Samples a direction; u, v in [0, 1). MUST NOT be empty. At the border of the sampled region
@@ -40,6 +40,7 @@ class EnvironmentLight {
   double pdf(const Vec3& unit_direction) const;
 
  private:
+  /// Returns the luminance of a texel above the mean; 0 if it is below.
   double weight(const ImageTexture& image, std::uint32_t x, std::uint32_t y) const;
   /// Returns the unnormalised pdf by solid angle at a position whose direction is known.
   double weight_at(const EnvironmentPlace& place) const;
@@ -48,7 +49,7 @@ class EnvironmentLight {
   absl::Span<const Texture> textures_;
   double mean_ = 0;  ///< mean luminance over all directions
   double excess_ = 0;
-  GridDistribution texels_;  ///< the images, stacked vertically
+  GridDistribution texels_;  ///< weight() times solid angle; the images are stacked vertically
 };
 
 }  // namespace bandsaw

@@ -12,12 +12,12 @@
 namespace bandsaw {
 namespace {
 
-/// Cosine of the emission angle of a spot light: nothing is emitted beyond its cone, up to rounding
-/// at the rim.
+/// LightBound::cos_reach of a spot light and a projector: nothing is emitted beyond the cone,
+/// except for rounding at its rim.
 constexpr double kJustFacing = 1 - 0x1p-40;
 
-/// Minimum distance of a light from a ray, relative to the distance to the light
-/// (medium/equiangular.h).
+/// Minimum distance of a light from a ray, relative to the distance to the light; the same as in
+/// medium/equiangular.cpp.
 constexpr double kMinAside = 1e-6;
 
 /// Upper bound of an importance, so that sums and ratios stay finite.
@@ -44,6 +44,8 @@ Angle reduced(const Angle& a, const Angle& b) {
 
 }  // namespace
 
+// The intensity is the radiance times the largest projected area. That of a convex body, such as an
+// ellipsoid, is at most half its surface.
 LightBound bound_of(const ShapeView& shape, double radiance, bool one_sided) {
   if (shape.kind == ShapeView::Kind::kSphere) {
     return {.ball = bounds(shape), .intensity = radiance * kPi * shape.radius * shape.radius};
@@ -77,8 +79,9 @@ LightBound bound_of(const SpotLight& light, const std::vector<Texture>& textures
 LightBound bound_of(const ProjectorLight& light, const std::vector<Texture>& textures) {
   const double width2 = light.image.half_width * light.image.half_width;
   const double height2 = light.image.half_height * light.image.half_height;
-  // The power is intensity times the area of the image at distance 1, because the intensity over
-  // cos^3 cancels the cos^3 of its solid angle.
+  // Radiant intensity is image * intensity / cos^3, and a part of the image at distance 1 has the
+  // solid angle area * cos^3. So the power is intensity times the area of the image; divided by the
+  // solid angle of the whole image, it gives the mean radiant intensity.
   const double area = 4 * light.image.half_width * light.image.half_height;
   const double sine =
       light.image.half_width * light.image.half_height / std::sqrt((1 + width2) * (1 + height2));
@@ -110,6 +113,8 @@ double importance(const LightBound& bound, const Receiver& receiver) {
     return given;
   }
   const double distance = std::sqrt(distance2);
+  // `seen` is half the angle under which the ball is seen. Angles to the ball's centre are reduced
+  // by it, which gives the largest cosine for any point of the ball.
   const double sin_seen = radius / distance;
   const Angle seen{sin_seen, std::sqrt((1 - sin_seen) * (1 + sin_seen))};
   if (receiver.within != nullptr) {

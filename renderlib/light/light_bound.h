@@ -1,11 +1,13 @@
 #pragma once
 
 // Importance of a light, or of a group of lights, at a point: an approximate upper bound of its
-// contribution, from which selection probabilities are computed.
+// contribution. Lights are selected with probabilities in proportion to it (light/light_choice.h,
+// light/light_tree.h).
 //
-// Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting",
-// sections 4.1 and 4.2, with the bounds of Pharr, Jakob and Humphreys, "Physically Based
-// Rendering", 4th ed., 12.6.3: a sphere around the lights and a cone around their emission normals.
+// It is that of Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive
+// Tree Splitting", sections 4.1 and 4.2, with the bounds of Pharr, Jakob and Humphreys, "Physically
+// Based Rendering", 4th ed., 12.6.3: a sphere around the lights and a cone around their emission
+// normals.
 
 #include <vector>
 
@@ -20,15 +22,15 @@ struct LightBound {
   /// Radiant intensity in the brightest direction, averaged over the channels: the irradiance at
   /// distance 1 of a surface that faces the light.
   double intensity = 0;
-  Vec3 axis{0, 0, 1};      ///< unit; axis of the cone of emission normals
+  Vec3 axis{0, 0, 1};      ///< unit; axis of the cone that contains the normals of the emitters
   double cos_spread = -1;  ///< cosine of the cone's half-angle (theta_o in the paper)
-  /// Cosine of the emission angle around each normal, beyond which nothing is emitted (theta_e).
+  /// Cosine of the angle to each normal beyond which nothing is emitted (theta_e in the paper).
   double cos_reach = 0;
   bool two_sided = false;  ///< the cone around -axis emits the same
   bool flat = false;       ///< all emitters lie in one plane perpendicular to the axis
 };
 
-/// Returns the bound of a shape whose mean radiance is `radiance`.
+/// Returns the bound of a shape. `radiance` is the mean of its radiance over surface and channels.
 LightBound bound_of(const ShapeView& shape, double radiance, bool one_sided);
 LightBound bound_of(const PointLight& light);
 /// `textures` are those of the scene.
@@ -38,10 +40,10 @@ LightBound bound_of(const ProjectorLight& light, const std::vector<Texture>& tex
 /// Returns intensity * cosines / distance^2 with each factor at its maximum over the bound; zero
 /// only if no light can arrive.
 double importance(const LightBound& bound, const Receiver& receiver);
-/// Returns the approximate integral of intensity / distance^2 along the segment, which is treated
-/// as if it were centred on its point closest to the light; attenuated by the medium along the path
-/// through that point to the light. Orientation is ignored, because the segment may cross a spot
-/// light's cone anywhere.
+/// Returns the approximate integral of intensity / distance^2 along the segment, as if the segment
+/// were centred on its point closest to the light. The light is attenuated by the medium along the
+/// path from the segment's origin over that point to the light. Orientation is ignored, because the
+/// segment may cross a spot light's cone anywhere.
 double importance(const LightBound& bound, const ReceiverSegment& segment);
 
 /// Returns the mean of the channels.

@@ -1,6 +1,6 @@
 #pragma once
 
-// Selection of one of a scene's lights for light sampling.
+// Selection of one of a scene's lights for light sampling (light/lights.h).
 
 #include <cstddef>
 #include <optional>
@@ -17,12 +17,15 @@ struct DistantBound {
   /// Unit vector to the light; std::nullopt for light from all directions.
   std::optional<Vec3> direction;
 };
+/// Returns an upper bound of the irradiance at the receiver; 0 if the receiver has a cone, in which
+/// distant lights are not sampled.
 double importance(const DistantBound& bound, const Receiver& receiver);
+/// Returns the irradiance times an upper bound of the length along which it is scattered.
 double importance(const DistantBound& bound, const ReceiverSegment& segment);
 
 /// Up to kMaxIndividualLights lights are evaluated individually at every point. If there are more,
-/// the local lights are selected through a light tree; only the tree as a whole and the distant
-/// lights are evaluated individually.
+/// the local lights (those that are not infinitely distant) are selected through a light tree; only
+/// the tree as a whole and the distant lights are evaluated individually.
 class LightChoice {
  public:
   static constexpr std::size_t kMaxIndividualLights = 16;
@@ -39,9 +42,9 @@ class LightChoice {
 
   /// Returns true if any light may reach the receiver.
   bool any_for(const Receiver& receiver) const;
-  /// Selects a light. `number` is in [0, 1) and should have the resolution of a double: selection
-  /// frequencies are right down to the spacing of the numbers. Returns std::nullopt if no light
-  /// reaches the receiver. `From` is `Receiver` or `ReceiverSegment`.
+  /// Selects a light. `number` is in [0, 1) and should have the resolution of a double, because
+  /// selection frequencies are right only down to the spacing of the numbers. Returns std::nullopt
+  /// if no light reaches the receiver. `From` is `Receiver` or `ReceiverSegment`.
   template <typename From>
   std::optional<Choice> choose(const From& receiver, double number) const;
   /// Returns the probability with which `choose()` selects the light.
@@ -51,12 +54,13 @@ class LightChoice {
   /// Returns the number of candidates: the few lights or the tree as a whole, and the distant
   /// lights.
   std::size_t candidates() const;
+  /// Returns the importance of a candidate.
   template <typename From>
   double weight(std::size_t candidate, const From& receiver) const;
 
-  std::vector<LightBound> few_;
-  LightTree tree_;
-  std::size_t in_tree_ = 0;
+  std::vector<LightBound> few_;  ///< the local lights, if they are evaluated individually
+  LightTree tree_;               ///< the local lights otherwise
+  std::size_t in_tree_ = 0;      ///< number of lights in the tree; 0: there is no tree
   std::vector<DistantBound> distant_;
 };
 

@@ -1,11 +1,12 @@
 #pragma once
 
-// Light tree: selects one of many lights by descending a binary tree, at each node in proportion to
-// the importance of its two children.
+// Light tree: selects one of many lights by descending a binary tree. At each node, a child is
+// selected with a probability in proportion to its importance (light/light_bound.h).
 //
-// Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting".
-// The tree is built with the surface area orientation heuristic (sections 4.3 and 4.4). The path
-// from the root to a given light is known, so its probability can be computed as the same product.
+// The method is that of Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with
+// Adaptive Tree Splitting". The tree is built with the surface area orientation heuristic
+// (sections 4.3 and 4.4). The path from the root to a given light is known, so its probability can
+// be computed as the same product.
 
 #include <cstdint>
 #include <optional>

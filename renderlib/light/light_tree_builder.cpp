@@ -1,5 +1,6 @@
-// Divides the lights recursively at the split with the lowest cost among bins on each axis, with
-// the cost of Conty Estevez and Kulla: intensity, directions and extent of both halves.
+// Builds a LightTree: divides the lights recursively at the cheapest split between bins on each
+// axis. The cost is that of Conty Estevez and Kulla 2018 (light_tree.h), and depends on intensity,
+// directions and extent of both halves.
 
 #include <algorithm>
 #include <array>
@@ -81,9 +82,10 @@ double orientation_measure(const LightCone& cone) {
               2 * cone.spread * spread.sin + spread.cos);
 }
 
+/// Number of bins on each axis. It affects only how good the tree is.
 constexpr std::size_t kBins = 12;
 
-/// The lights of a bin or of one half of a split, with the data for its cost.
+/// The lights of a bin or of one half of a split, with the numbers on which the cost depends.
 struct Group {
   Box box = {};
   LightCone cone = {};
@@ -122,6 +124,7 @@ struct Split {
 
 }  // namespace
 
+/// The constructor does all the work.
 class LightTreeBuilder {
  public:
   LightTreeBuilder(const std::vector<LightBound>& lights, LightTree& tree)
@@ -139,15 +142,17 @@ class LightTreeBuilder {
   }
 
  private:
+  /// A subtree to be built: its root, and the range of `order_` that holds its lights.
   struct Task {
     std::uint32_t node;
     std::size_t begin;
     std::size_t end;
-    std::uint32_t depth;
+    std::uint32_t depth;  ///< of the node; 0 for the root
   };
 
   const Vec3& center(std::uint32_t light) const { return lights_[light].ball.center; }
 
+  /// Builds one node and appends the tasks of its children.
   void build(const Task& task, std::vector<Task>& tasks) {
     const auto range = absl::MakeSpan(order_).subspan(task.begin, task.end - task.begin);
     if (range.size() == 1) {
@@ -192,7 +197,7 @@ class LightTreeBuilder {
 
   /// Partitions the lights into two non-empty halves; returns the size of the first.
   std::size_t divide(absl::Span<std::uint32_t> range, std::uint32_t depth) const {
-    // Median splits from this depth on bound the tree's depth for any input.
+    // If only 32 levels are left, lights are halved: that is enough for the at most 2^31 lights.
     constexpr std::uint32_t kHalvings = 32;
     const bool deep = depth + kHalvings >= LightTree::kMaxDepth;
     const Split split = deep || range.size() == 2 ? Split{} : best_split(range);
@@ -232,13 +237,14 @@ class LightTreeBuilder {
       for (const std::uint32_t light : range) {
         bins[bin_of(light, axis, box)].add(group_of(lights_[light]));
       }
-      // Returns the regularisation factor K_r of Conty Estevez and Kulla: it makes thin slices more
-      // expensive.
+      // longest / extent is the regularisation factor K_r of Conty Estevez and Kulla, which makes
+      // splits along short axes more expensive.
       try_splits(bins, axis, longest / extent, best);
     }
     return best;
   }
 
+  /// Replaces `best` if a split between two of the bins is cheaper. `factor` multiplies the costs.
   static void try_splits(const std::array<Group, kBins>& bins, int axis, double factor,
                          Split& best) {
     std::array<double, kBins> above;
@@ -259,7 +265,7 @@ class LightTreeBuilder {
 
   const std::vector<LightBound>& lights_;
   LightTree& tree_;
-  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> order_;  ///< the lights; each subtree has a range of them
 };
 
 LightTree::LightTree(const std::vector<LightBound>& lights) { LightTreeBuilder(lights, *this); }

@@ -18,6 +18,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the position of a delta light.
 LightPivot pivot_of(const DeltaLight& light) {
   return std::visit(
       [](const auto& kind) -> LightPivot {

@@ -2,7 +2,8 @@
 
 // The lights of a scene and how they are sampled: which light, which point on it, and with which
 // pdf. Lights are emissive surfaces, delta lights and the non-uniform part of an environment map.
-// Constant and gradient backgrounds are not sampled; only BSDF sampling finds them.
+// Constant and gradient backgrounds are not sampled; only BSDF sampling finds them. A receiver is
+// the point that receives the light (light/receiver.h).
 
 #include <cstdint>
 #include <map>
@@ -38,7 +39,7 @@ struct LightSample {
   bool delta = false;    ///< no other sampling technique can find it
 };
 
-/// A point on a light, used as pivot of equiangular sampling.
+/// A point on a light, around which distances along a ray are sampled (medium/equiangular.h).
 struct LightPivot {
   Vec3 position = {};    ///< unspecified for distant lights
   bool distant = false;  ///< infinitely far away
@@ -68,8 +69,9 @@ class Lights {
   std::optional<LightSample> sample(const Receiver& receiver, double choice, double u,
                                     double v) const;
 
-  /// Samples a point on a light that is selected by its contribution along a segment of a medium.
-  /// Returns std::nullopt if no light contributes.
+  /// Samples a point on a light that is selected by its contribution along a segment of a medium,
+  /// at the given time. `choice`, u and v are as in sample(). Returns std::nullopt if no light
+  /// contributes.
   std::optional<LightPivot> sample_pivot(const ReceiverSegment& segment, double time, double choice,
                                          double u, double v) const;
 
@@ -86,13 +88,20 @@ class Lights {
  private:
   static constexpr std::uint32_t kNoLight = 0xffffffffu;
 
+  /// Collects the emissive primitives, and returns their bounds.
   std::vector<LightBound> add_surfaces();
+  /// Returns true if a shape in the group of this instance emits. `radiance` is the mean radiance
+  /// of each material; `known` holds the earlier results.
   bool group_emits(std::uint32_t instance, const std::vector<double>& radiance,
                    std::map<GroupId, bool>& known) const;
+  /// Numbers a primitive; if it is a light, appends its bound to `to`.
   void add_surface(PrimitiveId id, const std::vector<double>& radiance,
                    std::vector<LightBound>& to);
+  /// Collects the delta lights. Appends the bounds of those with a position to `local`, and returns
+  /// those of the others.
   std::vector<DistantBound> add_delta_lights(const std::vector<DeltaLight>& delta_lights,
                                              std::vector<LightBound>& local);
+  /// Returns the number of the light; kNoLight if the primitive is none.
   std::uint32_t index_of_light(PrimitiveId id) const;
 
   std::optional<LightSample> sample_surface(PrimitiveId id, const Receiver& receiver, double u,
@@ -108,7 +117,7 @@ class Lights {
   bool uses_uv_ = true;  ///< true if some texture depends on the uv coordinates of light points
   /// Lights are numbered: surfaces first, then delta lights (those with a position before
   /// directional ones), then the environment.
-  std::vector<PrimitiveId> ids_;
+  std::vector<PrimitiveId> ids_;  ///< the surfaces
   std::vector<DeltaLight> delta_;
   EnvironmentLight environment_;
   LightChoice choice_;

@@ -1,5 +1,7 @@
 #pragma once
 
+// Where light is received: what light sampling (light/lights.h) has to know about the place.
+
 #include <algorithm>
 #include <optional>
 
@@ -8,8 +10,8 @@
 
 namespace bandsaw {
 
-/// A ray segment in a scattering medium, for which lights are weighted by their contribution along
-/// all of it.
+/// A ray segment in a scattering medium. Lights are weighted by their contribution along the whole
+/// segment.
 struct ReceiverSegment {
   Vec3 origin;
   Vec3 direction;         ///< unit
@@ -23,8 +25,9 @@ struct ReceiverSegment {
 };
 
 /// A point that receives light. With a normal, it is on a surface and receives light on one side.
-/// Without, it is in a medium and receives light from all directions, or it is the point in focus
-/// of a lens, through which the light beyond is seen.
+/// Without a normal, it is in a medium and receives light from all directions; or, if `within` is
+/// set, it is the point on which the camera's lens is focused, and the light beyond it passes
+/// through it to the lens (integrate/through_lens.h).
 struct Receiver {
   Vec3 position;
   /// Unit; light arrives only from directions with a positive cosine to it.

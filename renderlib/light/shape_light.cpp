@@ -1,4 +1,5 @@
-// For each kind of shape: area, a sampled point, and the pdf of a direction to a point.
+// Computes the area of each kind of shape, samples a point on it, and returns the pdf of the
+// direction to a point.
 
 #include "renderlib/light/shape_light.h"
 

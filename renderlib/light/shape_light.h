@@ -1,8 +1,8 @@
 #pragma once
 
-// Samples points on shapes as seen from a receiver: by solid angle where a closed form exists
-// (spheres from outside, rectangles, triangles that are not small), otherwise uniformly over the
-// area.
+// Samples points on emissive shapes as seen from a receiver (light/lights.h): by solid angle where
+// a closed form exists (spheres from outside, rectangles, triangles that are not small), otherwise
+// uniformly over the area.
 
 #include <optional>
 
@@ -23,7 +23,7 @@ struct ShapeView {
   Vec3 v{};
   Vec3 w{};               ///< ellipsoid
   double radius = 0;      ///< sphere
-  bool mirrored = false;  ///< by its placement; then the outward normal is v x u
+  bool mirrored = false;  ///< true if the placement mirrors; then the outward normal is v x u
 };
 
 /// Returns the primitive at the given time. `id` MUST name a primitive of the geometry.
@@ -34,8 +34,8 @@ inline bool is_flat(const ShapeView& shape) {
   return shape.kind != ShapeView::Kind::kSphere && shape.kind != ShapeView::Kind::kEllipsoid;
 }
 
-/// Returns the area of one side. For an ellipsoid accurate only to a few percent, which is enough
-/// for selecting lights.
+/// Returns the area of one side. For an ellipsoid it is accurate only to a few percent, which is
+/// enough for the selection of lights.
 double area(const ShapeView& shape);
 /// Returns u x v oriented to the outside, not normalised. For flat shapes only.
 Vec3 flat_normal(const ShapeView& shape);
@@ -50,11 +50,12 @@ Ball bounds(const ShapeView& shape);
 /// the whole of Geometry::shutter.
 Ball moving_ball(const Geometry& geometry, PrimitiveId id);
 
+/// A point sampled on a shape.
 struct ShapeSample {
   Vec3 position;
   Vec3 normal;     ///< unit, outward
   Vec2 on_shape;   ///< `Hit::u`, `Hit::v` of the position
-  double pdf = 0;  ///< pdf of the direction to it by solid angle; > 0, finite
+  double pdf = 0;  ///< pdf of the direction to the position, by solid angle; > 0, finite
 };
 
 /// Samples a point of the shape as seen from `from`; u, v in [0, 1). Returns std::nullopt if the

@@ -1,5 +1,6 @@
-// Transforms a primitive to world space at a time. A sphere whose axes are no longer equal becomes
-// an ellipsoid.
+// Implements shape_view(), moving_ball() and material_of() of shape_light.h: transforms a primitive
+// to world space at a time, and bounds it while it moves. A sphere whose axes are no longer equal
+// becomes an ellipsoid.
 
 #include <array>
 #include <cmath>
@@ -105,7 +106,7 @@ Box local_box(const Geometry& geometry, const Instance& instance, std::uint32_t 
   return {ball.center - half, ball.center + half};
 }
 
-/// Returns bounds of a box that moves with its instance; std::nullopt if they cannot be computed.
+/// Returns bounds of a box that moves with its instance; std::nullopt if its placement is singular.
 std::optional<Box> swept(const Geometry& geometry, const Instance& instance, const Box& box) {
   if (instance.frame == kNoFrame) {
     const std::optional<Transform> to_object = inverse(instance.to_world);
@@ -127,7 +128,7 @@ std::optional<Box> swept(const Geometry& geometry, const Instance& instance, con
 Ball moving_ball(const Geometry& geometry, PrimitiveId id) {
   const Instance& instance = geometry.instances[id.instance - 1];
   const Box local = local_box(geometry, instance, id.primitive);
-  // A primitive whose bounds cannot be computed cannot be hit.
+  // A primitive whose placement is singular cannot be hit, so any bounds are right.
   const Box box = swept(geometry, instance, local).value_or(local);
   return {0.5 * (box.lo + box.hi), length(box.hi - box.lo) / 2};
 }
