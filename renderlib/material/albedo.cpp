@@ -1,5 +1,5 @@
-// For each kind of material, its colour as a denoiser or a user expects to see it; not the exact
-// share of reflected light.
+// Returns for each kind of material its colour as a denoiser or a user expects to see it. This is
+// not the exact share of reflected light.
 
 #include "renderlib/material/albedo.h"
 

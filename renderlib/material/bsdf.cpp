@@ -1,5 +1,5 @@
-// bsdf_at() evaluates the material's parameters at the point. sample() and evaluate() are here for
-// the simple BSDFs, and in files of their own for the others.
+// bsdf_at() evaluates the material's parameters at the point. sample() and evaluate() of the simple
+// BSDFs are here; those of the others are in files of their own and are called from here.
 
 #include "renderlib/material/bsdf.h"
 
@@ -33,8 +33,8 @@ SidedNormals for_mirror(const SidedNormals& normal, const Vec3& wo) {
   return {normal.geometric, usable ? normal.shading : normal.geometric};
 }
 
-/// Returns the normals for specular reflection and refraction: those of for_mirror(), but also with
-/// the geometric normal in place of the shading normal where the latter would put the refracted
+/// Returns the normals for specular reflection and refraction: those of for_mirror(), except that
+/// the geometric normal also replaces the shading normal where the latter would put the refracted
 /// direction on wo's side of the surface.
 SidedNormals for_glass(const SidedNormals& normal, const Vec3& wo, double eta) {
   const SidedNormals sided = for_mirror(normal, wo);
@@ -58,9 +58,9 @@ std::optional<BsdfSample> sample_diffuse(const DiffuseBsdf& bsdf, double u, doub
   return sample;
 }
 
-/// Returns the pdf of the direction of mirror + fuzz * (uniform point of the unit ball): the ball's
-/// density, integrated with t^2 along the chord that the direction cuts out of the ball around the
-/// mirror direction: (t1^3 - t0^3) / (4 pi fuzz^3).
+/// Returns the pdf of the direction of mirror + fuzz * (uniform point of the unit ball). A ray
+/// along wi is inside the ball around `mirror` from t0 to t1; the ball's density, integrated with
+/// t^2 along this chord, is (t1^3 - t0^3) / (4 pi fuzz^3).
 double fuzz_pdf(const Vec3& mirror, double fuzz, const Vec3& wi) {
   const double c = dot(mirror, wi);
   const double half_chord2 = fuzz * fuzz - length_squared(cross(mirror, wi));
@@ -74,7 +74,7 @@ double fuzz_pdf(const Vec3& mirror, double fuzz, const Vec3& wi) {
 std::optional<BsdfSample> sample_fuzzy(const FuzzyMetalBsdf& bsdf, double u, double v, double w) {
   const Vec3 direction = bsdf.mirror + bsdf.fuzz * sample_ball(u, v, w);
   const double size = length(direction);
-  if (size < 1e-100) {
+  if (size < 1e-100) {  // no direction: only possible if fuzz is 1
     return std::nullopt;
   }
   BsdfSample sample;
@@ -116,7 +116,8 @@ Bsdf metal_at(const Rgb& reflectance, double fuzz, const SidedNormals& normal, c
   return FuzzyMetalBsdf{sided, reflectance, mirror, fuzz};
 }
 
-/// Returns the facets of glass: by its surface, or by its roughness.
+/// Returns the facets of glass, from its `surface` if that is set, otherwise from its roughness;
+/// std::nullopt where it is smooth.
 std::optional<Facets> facets_of(const Dielectric& glass, absl::Span<const Texture> textures,
                                 const SurfacePoint& point) {
   if (glass.surface) {
@@ -129,7 +130,8 @@ std::optional<Facets> facets_of(const Dielectric& glass, absl::Span<const Textur
                                                   Microfacets::Masking::kCorrelated});
 }
 
-/// `index` is the value at the point.
+/// `index` and `facets` are those at the point. `outside` is true if wo is on the side of the
+/// geometric normal; `outside_index` is the index of refraction there.
 Bsdf glass_at(double index, const std::optional<Facets>& facets, const SurfacePoint& point,
               const SidedNormals& normal, bool outside, const Vec3& wo, double outside_index) {
   const double relative = outside_index == 1 ? index : index / outside_index;

@@ -1,7 +1,8 @@
 #pragma once
 
-// BSDFs: a material at a point, seen from one direction. A closed set; each member has a sampling
-// routine, a value and a pdf that agree.
+// BSDFs: a material at a point, seen from one direction. Each member of this closed set (a
+// std::variant) has a sampling routine, a value and a pdf that agree. integrate/ scatters paths by
+// it.
 //
 // All directions are unit vectors that point away from the surface. `wo` is the outgoing direction
 // of the light (towards the camera), `wi` the incoming one. Values include the cosine: f(wo, wi)
@@ -65,13 +66,14 @@ using Bsdf =
 /// Smaller fuzz is treated as a mirror: it would spread light by less than a thousandth of a pixel.
 inline constexpr double kMinFuzz = 1e-6;
 
-/// Returns the BSDF of `material`, which is not a mixture, at `point`, seen along `wo`.
-/// `outside_index` is the index of refraction on the side of the normal (nested dielectrics;
-/// material/interiors.h).
+/// Returns the BSDF of `material`, which MUST NOT be a mixture, at `point`, seen along `wo`.
+/// `outside_index` is the index of refraction on the side of the geometric normal (nested
+/// dielectrics; material/interiors.h).
 Bsdf bsdf_at(const Material& material, absl::Span<const Texture> textures,
              const SurfacePoint& point, const Vec3& wo, double outside_index = 1);
 
-/// Samples a direction; u, v, lobe in [0, 1). Returns std::nullopt if the light is absorbed.
+/// Samples a direction wi. u, v and lobe are random numbers in [0, 1); `lobe` chooses the lobe if
+/// the BSDF has several. Returns std::nullopt if the light is absorbed.
 std::optional<BsdfSample> sample(const Bsdf& bsdf, double u, double v, double lobe);
 
 /// Returns value and pdf; zero for the delta directions of mirrors and smooth dielectrics.

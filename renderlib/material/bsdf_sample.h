@@ -7,8 +7,8 @@
 
 namespace bandsaw {
 
-/// The two normals on the side of wo. Light passes from one side of `geometric` to the other only
-/// through transmissive materials, whatever the shading normal is.
+/// The geometric and the shading normal, both unit vectors on the side of wo. Light passes from one
+/// side of `geometric` to the other only through transmissive materials, whatever `shading` is.
 struct SidedNormals {
   Vec3 geometric;
   Vec3 shading;
@@ -23,7 +23,8 @@ struct BsdfSample {
   /// `weight`; otherwise 1. Refraction compresses radiance in the denser medium: L / index^2 is
   /// invariant along a ray.
   double compression = 1;
-  bool counts = true;  ///< whether it counts towards max_depth (ThinDielectric::free_passage)
+  /// Whether the scattering counts towards max_depth (ThinDielectric::free_passage).
+  bool counts = true;
 };
 
 struct BsdfValue {

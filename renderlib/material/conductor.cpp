@@ -1,5 +1,5 @@
-// A metal with microfacets: a visible facet is sampled and reflects the direction; the Fresnel term
-// is that of eta and k.
+// A metal with microfacets: a facet visible from wo is sampled and reflects the direction. The
+// Fresnel term is computed from eta and k.
 
 #include "renderlib/material/conductor.h"
 

@@ -15,17 +15,19 @@ namespace bandsaw {
 
 struct RoughConductorBsdf {
   Vec3 geometric;  ///< geometric normal on the side of wo
-  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along u
+  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along the uv coordinate u
   Vec3 wo;
   Facets facets;
-  std::optional<ConductorIndex> index;
-  Rgb specular;
+  std::optional<ConductorIndex> index;  ///< as Conductor::index
+  Rgb specular;                         ///< factor of the reflection
 };
 
-/// Returns the reflectance of a facet; white without an index.
+/// Returns the reflectance of a facet; white without an index. cos_i, in [0, 1], is the cosine of
+/// the angle between the direction and the facet's normal.
 Rgb conductor_reflectance(const std::optional<ConductorIndex>& index, double cos_i);
 
-/// u and v select the facet. Returns std::nullopt if the light is lost between facets.
+/// sample() and evaluate() are those of material/bsdf.h for this kind. u and v select the facet.
+/// Returns std::nullopt if the light is lost between facets.
 std::optional<BsdfSample> sample(const RoughConductorBsdf& bsdf, double u, double v);
 BsdfValue evaluate(const RoughConductorBsdf& bsdf, const Vec3& wi);
 

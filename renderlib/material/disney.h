@@ -1,7 +1,9 @@
 #pragma once
 
-// The parts that the two principled BSDFs share: diffuse light with retro-reflection, flatness and
-// sheen, and Schlick's Fresnel reflectance with a tint (Burley 2012 and 2015, as in Mitsuba 3).
+// The parts that the two principled BSDFs share (principled_bsdf.h, thin_principled_bsdf.h):
+// diffuse light with retro-reflection, flatness and sheen, and Schlick's Fresnel reflectance with a
+// tint (Burley 2012, "Physically Based Shading at Disney"; 2015, "Extending the Disney BRDF to a
+// BSDF"). The constants are those of Mitsuba 3.
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +19,7 @@
 
 namespace bandsaw {
 
+/// Returns the value of a textured number at the point.
 inline double number_at(const Number& number, absl::Span<const Texture> textures,
                         const SurfacePoint& point) {
   return mapped_number(textures, number.value, number.map, point);
@@ -48,12 +51,13 @@ inline Rgb schlick(const Rgb& f0, double cos_i) {
 struct DisneyDiffuse {
   Rgb base;
   double roughness = 0.5;
-  double flatness = 0;
-  Rgb sheen;  ///< the weight of the sheen times its colour
+  double flatness = 0;  ///< weight of the approximation of subsurface scattering, [0, 1]
+  Rgb sheen;            ///< the weight of the sheen times its colour
 };
 
 /// Returns the value of the diffuse light, cosine included; `diffuse` is the weight of everything
-/// except the sheen. o and i are above the surface, h is their half vector.
+/// except the sheen. o and i are the directions in the frame of the surface, both with z > 0; h is
+/// their half vector.
 inline Rgb disney_diffuse(const DisneyDiffuse& d, double diffuse, const Vec3& o, const Vec3& i,
                           const Vec3& h) {
   const double rim_o = schlick_rim(o.z);
@@ -63,6 +67,7 @@ inline Rgb disney_diffuse(const DisneyDiffuse& d, double diffuse, const Vec3& o,
   double factor =
       (1 - 0.5 * rim_i) * (1 - 0.5 * rim_o) + retro * (rim_o + rim_i + rim_o * rim_i * (retro - 1));
   if (d.flatness > 0) {
+    // Burley's approximation of subsurface scattering, after Hanrahan and Krueger 1993.
     const auto toward = [&](double rim) { return 1 + (0.5 * retro - 1) * rim; };
     const double flat = toward(rim_o) * toward(rim_i);
     const double below = 1.25 * (flat * (1 / (o.z + i.z) - 0.5) + 0.5);

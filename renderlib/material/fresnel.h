@@ -26,8 +26,8 @@ inline std::optional<double> refracted_cos(double cos_i, double eta) {
   return std::sqrt(std::min(1.0, cos2_t));
 }
 
-/// Returns the refracted direction of w (unit, away from the surface, on the side of n); cos_t is
-/// from refracted_cos. A unit vector up to rounding.
+/// Returns the refracted direction of w (unit, away from the surface, on the side of n), a unit
+/// vector up to rounding. cos_t is the result of refracted_cos().
 inline Vec3 refracted(const Vec3& w, const Vec3& n, double cos_t, double eta) {
   return (dot(w, n) / eta - cos_t) * n - w / eta;
 }
@@ -58,9 +58,9 @@ inline double conductor_fresnel(double cos_i, double eta, double k) {
   return 0.5 * (perpendicular + parallel);
 }
 
-/// Returns the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h): the pdf of wi
-/// by refraction at a facet, divided by facet_pdf_over_cos() of that facet and by its transmittance
-/// 1 - F. i_h is negative.
+/// Returns the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h). Multiplied by
+/// facet_pdf_over_cos() of the facet and by its transmittance 1 - F, it gives the pdf of wi by
+/// refraction at that facet. o_h and i_h are dot(o, h) > 0 and dot(i, h) < 0.
 inline double refraction_jacobian(double o_h, double i_h, double eta) {
   const double along_half = o_h + eta * i_h;
   return eta * eta * std::abs(i_h) * o_h / (along_half * along_half);
@@ -77,7 +77,7 @@ inline double schlick_rim(double cos_i) {
 /// Reflectance of a clear coat at normal incidence, for an index of 1.5.
 inline constexpr double kCoatF0 = 0.04;
 
-/// Returns the reflectance at normal incidence.
+/// Returns the reflectance at normal incidence; eta is the ratio of the two indices of refraction.
 inline double normal_reflectance(double eta) {
   const double r = (eta - 1) / (eta + 1);
   return r * r;

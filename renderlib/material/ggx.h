@@ -3,7 +3,8 @@
 // The GGX microfacet distribution with height-correlated Smith masking-shadowing (Walter et al.
 // 2007, "Microfacet Models for Refraction through Rough Surfaces"; Heitz 2014, "Understanding the
 // Masking-Shadowing Function", JCGT 3(2), section 6.3), in the local frame of the surface: z is the
-// normal, directions are unit vectors with z > 0. alpha is in [kMinAlpha, 1].
+// normal, directions are unit vectors with z > 0. alpha, in [kMinAlpha, 1], is the width of
+// the distribution. microfacets.h has anisotropic facets and Beckmann's distribution.
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +15,12 @@
 
 namespace bandsaw {
 
-/// Minimum alpha, for smoother surfaces too: it spreads light by a hundredth of a degree.
+/// Minimum alpha; smaller ones are raised to it, or count as smooth where the material says so. It
+/// spreads light by a hundredth of a degree.
 inline constexpr double kMinAlpha = 1e-4;
 
-/// Returns D(h). Computed from x and y, which are precise where z is nearly 1: no cancellation for
-/// small alpha.
+/// Returns the density D(h) of facet normals. It is computed from x and y, which are precise where
+/// z is nearly 1, so nothing cancels for small alpha.
 inline double ggx_distribution(const Vec3& h, double alpha) {
   const double t = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z;
   return 1 / (kPi * alpha * alpha * t * t);

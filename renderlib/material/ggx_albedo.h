@@ -1,7 +1,7 @@
 #pragma once
 
-// Directional albedo of GGX reflection. Layers below a reflection receive the remaining light, so
-// that energy is conserved.
+// Directional albedo of GGX reflection, for glTF's metallic-roughness material: layers below a
+// reflection receive the light that it leaves, so that energy is conserved.
 
 #include <array>
 
@@ -19,8 +19,8 @@ struct GgxAlbedo {
 class GgxAlbedoTable {
  public:
   GgxAlbedoTable();
-  /// Returns the albedo for a direction with this cosine, in [0, 1]; roughness = sqrt(alpha) in [0,
-  /// 1].
+  /// Returns the albedo for a direction with this cosine to the normal. Both are in [0, 1];
+  /// roughness is the square root of alpha.
   GgxAlbedo at(double cos_theta, double roughness) const;
   /// Returns the cosine-weighted mean over all directions.
   GgxAlbedo mean(double roughness) const;
@@ -32,7 +32,7 @@ class GgxAlbedoTable {
   std::array<GgxAlbedo, kRoughnesses + 1> means_;
 };
 
-/// Returns the table; computed on the first call, identical in every process.
+/// Returns the table. It is computed on the first call, and has the same bits in every process.
 const GgxAlbedoTable& ggx_albedo_table();
 
 }  // namespace bandsaw

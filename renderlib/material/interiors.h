@@ -27,7 +27,7 @@ class Interiors {
   /// Maximum number of nested glasses; further ones are ignored.
   static constexpr std::size_t kMaxNested = 8;
 
-  // Most paths never enter one, so unused entries are neither initialised nor copied.
+  // Most paths never enter a nested glass, so unused entries are neither initialised nor copied.
   Interiors() {}
   Interiors(const Interiors& other) { *this = other; }
   Interiors& operator=(const Interiors& other) {
@@ -36,8 +36,8 @@ class Interiors {
     return *this;
   }
 
-  /// Returns true if crossing a boundary of `glass` changes nothing: a glass of higher priority is
-  /// present, or another body of the same material.
+  /// Returns true if crossing a boundary of `glass`, whose material is `id`, changes nothing: a
+  /// glass of higher priority is present, or the path is in another body of the same material.
   bool hides(MaterialId id, const Dielectric& glass, bool inwards) const {
     const auto bodies = std::count_if(entries_.begin(), entries_.begin() + size_,
                                       [id](const Entry& entry) { return entry.id == id; });
@@ -57,7 +57,8 @@ class Interiors {
     return top != nullptr ? top->id : kNothing;
   }
 
-  /// Crosses a boundary of `glass`.
+  /// Crosses a boundary of `glass`, whose material is `id`; `inwards` is true if the path enters
+  /// it.
   void pass(MaterialId id, const Dielectric& glass, bool inwards) {
     if (inwards) {
       if (size_ < kMaxNested) {
@@ -80,10 +81,11 @@ class Interiors {
     double index;
   };
 
+  /// Returns the glass of highest priority except material `id`; null if there is none.
   const Entry* highest_but(MaterialId id) const {
     const Entry* top = nullptr;
     for (std::size_t i = 0; i < size_; ++i) {
-      // Among equal priorities the lower material wins: the order of entering must not matter.
+      // Among equal priorities the lower id wins, so that the order of entering does not matter.
       if (entries_[i].id != id &&
           (top == nullptr || entries_[i].priority > top->priority ||
            (entries_[i].priority == top->priority && entries_[i].id < top->id))) {

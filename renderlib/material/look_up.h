@@ -29,7 +29,8 @@ inline Rgb tinted(const Rgb& reflectance, const Rgb& vertices) {
   return {std::min(c.r, 1.0f), std::min(c.g, 1.0f), std::min(c.b, 1.0f)};
 }
 
-/// Returns a material parameter times the luminance of its map, if it has one; in [0, 1].
+/// Returns the parameter `number` times the luminance of its map, clamped to [0, 1]; `number`
+/// itself if there is no map.
 inline double mapped_number(absl::Span<const Texture> textures, double number,
                             const std::optional<TextureId>& map, const SurfacePoint& point) {
   return map ? std::clamp(number * double{luminance(look_up(textures, *map, point))}, 0.0, 1.0)

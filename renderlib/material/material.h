@@ -70,7 +70,8 @@ struct Emissive {
   bool hidden = false;
 };
 
-/// A number that may vary over a surface: one channel of the texture times `factor`.
+/// A number that may vary over a surface: one channel of the texture times `factor`. Each member of
+/// this type says which channel.
 struct Channel {
   TextureId texture{};
   double factor = 0;
@@ -83,8 +84,8 @@ struct Tint {
 };
 
 /// The metallic-roughness material of glTF 2.0 (appendix B) with KHR_materials_ior, _clearcoat and
-/// _transmission (thin). GGX's alpha is the square of a roughness. Emission lies below the coat; a
-/// normal map is that of the layer below the coat.
+/// _transmission (thin). GGX's alpha is the square of a roughness. The coat covers the emission,
+/// and Relief bends the normal of the layer below the coat only.
 struct MetallicRoughness {
   Tint base_color;                   ///< [0, 1]; vertex colours multiply it
   Channel metallic;                  ///< channel b; [0, 1]
@@ -122,6 +123,7 @@ struct ConductorIndex {
   Rgb k;    ///< imaginary part, [0, 100]
 };
 
+/// A metal, given by its index of refraction.
 struct Conductor {
   std::optional<ConductorIndex> index = std::nullopt;  ///< without it, everything is reflected
   Microfacets surface = {};
@@ -150,8 +152,9 @@ struct Number {
 };
 
 /// The principled BSDF of Mitsuba 3 for solid bodies (Burley 2012, "Physically Based Shading at
-/// Disney"; 2015, "Extending the Disney BRDF to a BSDF"). If `spec_trans` is 0, both sides reflect;
-/// otherwise the side opposite to the normal is inside.
+/// Disney"; 2015, "Extending the Disney BRDF to a BSDF"). Members have the names and meanings of
+/// Mitsuba's parameters. If `spec_trans` is 0, both sides reflect; otherwise the side opposite to
+/// the normal is inside.
 struct Principled {
   TextureId base_color{};            ///< [0, 1]; vertex colours multiply it
   double index_of_refraction = 1.5;  ///< [1, 5]
@@ -167,7 +170,7 @@ struct Principled {
   Number clearcoat_gloss = {};
 };
 
-/// The principled BSDF of Mitsuba 3 for thin sheets.
+/// The principled BSDF of Mitsuba 3 for thin sheets; members are as in Principled.
 struct ThinPrincipled {
   TextureId base_color{};            ///< [0, 1]; vertex colours multiply it
   double index_of_refraction = 1.5;  ///< [1, 5]

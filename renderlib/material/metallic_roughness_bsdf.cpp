@@ -1,5 +1,6 @@
-// Four lobes: coat, reflection, diffuse light and transmission. sample() chooses one by its
-// estimated contribution; evaluate() adds up all of them, so the pdf is that of the mixture.
+// The BSDF has four lobes: coat, reflection, diffuse light and transmission. sample() chooses one
+// by its estimated contribution; evaluate() adds up all of them, so the pdf is that of all lobes
+// together.
 
 #include "renderlib/material/metallic_roughness_bsdf.h"
 
@@ -37,6 +38,7 @@ struct Reflection {
   double rim = 0;
 };
 
+/// o and i are in the frame of the normal.
 Reflection reflection(const Vec3& o, const Vec3& i, double alpha) {
   const Vec3 sum = o + i;
   const double size = length(sum);
@@ -63,6 +65,7 @@ double below_coat(const MetallicRoughnessBsdf& bsdf, const Vec3& wi) {
 
 Rgb scaled(const Rgb& color, double by) { return color * static_cast<float>(by); }
 
+/// The functions add_...() add value and pdf of their lobes to `sum`. `through` is below_coat().
 void add_coat(const MetallicRoughnessBsdf& bsdf, const Vec3& wi, BsdfValue& sum) {
   const Local directions = local(bsdf.coat_normal, bsdf.wo, wi);
   const Reflection coat = reflection(directions.o, directions.i, bsdf.coating.alpha);
@@ -71,6 +74,7 @@ void add_coat(const MetallicRoughnessBsdf& bsdf, const Vec3& wi, BsdfValue& sum)
   sum.pdf += bsdf.chances[kCoat] * coat.pdf;
 }
 
+/// Adds reflection and diffuse light, for wi on the side of wo.
 void add_above(const MetallicRoughnessBsdf& bsdf, const Local& directions, double through,
                BsdfValue& sum) {
   const Reflection mirror = reflection(directions.o, directions.i, bsdf.surface.alpha);
@@ -88,6 +92,8 @@ void add_above(const MetallicRoughnessBsdf& bsdf, const Local& directions, doubl
   sum.pdf += bsdf.chances[kDiffuse] * pdf;
 }
 
+/// Adds transmission, for wi on the other side: it is computed as a reflection of wi mirrored to
+/// the side of wo.
 void add_below(const MetallicRoughnessBsdf& bsdf, const Local& directions, double through,
                BsdfValue& sum) {
   const Reflection straight = reflection(
@@ -98,7 +104,8 @@ void add_below(const MetallicRoughnessBsdf& bsdf, const Local& directions, doubl
   sum.pdf += bsdf.chances[kTransmission] * straight.pdf;
 }
 
-/// Sets the lobes' selection probabilities to their maximum contributions towards wo, normalised.
+/// Sets the lobes' selection probabilities in proportion to estimates of their contributions
+/// towards wo.
 void choose_chances(MetallicRoughnessBsdf& bsdf, const GgxAlbedo& albedo) {
   const double through = 1 - bsdf.coat_albedo;
   const double base = max_component(bsdf.base);

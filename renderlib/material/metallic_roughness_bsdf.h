@@ -23,8 +23,8 @@ namespace bandsaw {
 
 /// Parameters of a GGX lobe.
 struct GgxLobe {
-  double roughness = 1;
-  double alpha = 1;
+  double roughness = 1;  ///< [0, 1]
+  double alpha = 1;      ///< square of the roughness, at least kMinAlpha (material/ggx.h)
 };
 
 struct MetallicRoughnessBsdf {
@@ -32,14 +32,14 @@ struct MetallicRoughnessBsdf {
   /// Shading normal of the coat: with its own normal map, without that of the layer below.
   Vec3 coat_normal;
   Vec3 wo;
-  Rgb base;
-  double metallic = 0;
-  double transmission = 0;
-  double f0 = 0.04;  ///< reflectance of the dielectric part at normal incidence
-  GgxLobe surface;
-  double coat = 0;
-  GgxLobe coating;
-  double coat_albedo = 0;  ///< albedo of the coat seen along wo, times `coat`
+  Rgb base;                 ///< base colour
+  double metallic = 0;      ///< [0, 1]
+  double transmission = 0;  ///< share of the light below the reflection that is transmitted, [0, 1]
+  double f0 = 0.04;         ///< reflectance of the dielectric part at normal incidence
+  GgxLobe surface;          ///< of reflection and transmission
+  double coat = 0;          ///< weight of the coat, [0, 1]
+  GgxLobe coating;          ///< of the coat
+  double coat_albedo = 0;   ///< albedo of the coat seen along wo, times `coat`
   /// Share that the reflection leaves along wo, divided by its mean over all directions.
   double matte_share = 1;
   /// Selection probabilities of the lobes: coat, reflection, diffuse, transmission. They sum to 1,

@@ -2,9 +2,10 @@
 
 // Microfacet distributions at a point: GGX (Walter et al. 2007) and Beckmann (Beckmann and
 // Spizzichino 1963), isotropic or not, in the local frame of the surface: z is the normal, x lies
-// along u, directions are unit vectors with z > 0. Normals are sampled by the visible normals of
-// GGX for both distributions: with x = tan^2 / alpha^2, Beckmann's density over GGX's is exp(-x) (1
-// + x)^2, at most 4 / e, so sampled weights stay bounded and no error function is needed.
+// along the uv coordinate u, directions are unit vectors with z > 0. For both distributions, facet
+// normals are sampled from the visible normals of GGX. With x = tan^2 / alpha^2, Beckmann's density
+// over GGX's is exp(-x) (1 + x)^2, which is at most 4 / e. So the weights of samples stay bounded,
+// and no error function is needed.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@
 
 namespace bandsaw {
 
-/// The facets at a point.
+/// The facets at a point: class Microfacets (material/material.h) with its maps looked up.
 struct Facets {
   double alpha_u = 1;  ///< >= kMinAlpha
   double alpha_v = 1;
@@ -30,7 +31,7 @@ struct Facets {
   bool isotropic() const { return alpha_u == alpha_v; }
 };
 
-/// Returns std::nullopt where the surface is smooth.
+/// Returns the facets of `surface` at the point; std::nullopt where it is smooth.
 inline std::optional<Facets> facets_at(const Microfacets& surface,
                                        absl::Span<const Texture> textures,
                                        const SurfacePoint& point) {
@@ -101,7 +102,7 @@ inline double facet_pdf_over_cos(const Vec3& o, const Vec3& h, const Facets& f) 
   return 2 * density / (std::abs(o.z) + facet_stretched(o, f));
 }
 
-/// Returns D(h) G1(o) over the same of GGX, which sample_facet() samples; 1 for GGX.
+/// Returns D(h) G1(o) divided by D(h) G1(o) of GGX, from which sample_facet() samples; 1 for GGX.
 inline double facet_ratio(const Vec3& o, const Vec3& h, const Facets& f) {
   if (f.distribution == Microfacets::Distribution::kGgx) {
     return 1;
@@ -118,7 +119,8 @@ inline double facet_ratio(const Vec3& o, const Vec3& h, const Facets& f) {
   return of_ggx > 0 ? exp(-t) * (1 + t) * (1 + t) * facet_masking(o, f) / of_ggx : 0;
 }
 
-/// Samples a facet visible from o; u, v in [0, 1). Dupuy and Benyoub 2023, listing 3.
+/// Samples the normal of a facet visible from o; u, v in [0, 1) (Dupuy and Benyoub 2023, "Sampling
+/// Visible GGX Normals with Spherical Caps", listing 3).
 inline Vec3 sample_facet(const Vec3& o, const Facets& f, double u, double v) {
   if (f.isotropic()) {
     return sample_ggx_visible(o, f.alpha_u, u, v);

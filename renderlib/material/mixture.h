@@ -13,8 +13,8 @@
 
 namespace bandsaw {
 
-/// Maximum number of materials that a mixture is made of, itself included, each counted as often as
-/// it occurs.
+/// Maximum number of materials that a mixture is made of, nested mixtures and itself included. A
+/// material that occurs several times counts several times.
 inline constexpr std::uint64_t kMaxMixtureParts = 256;
 
 /// Returns the probability of the second part at the point.
@@ -23,8 +23,8 @@ inline double amount_at(const Mix& mix, absl::Span<const Texture> textures,
   return std::clamp(double{luminance(look_up(textures, mix.amount, point))}, 0.0, 1.0);
 }
 
-/// Returns the material that is present at the point of a surface of material `id`, which is not a
-/// mixture. u in [0, 1) selects it, for nested mixtures as well.
+/// Returns the material that is present at a point of a surface of material `id`. The result is
+/// never a mixture; if `id` is one, u in [0, 1) selects a part, through nested mixtures as well.
 inline MaterialId part_at(absl::Span<const Material> materials, absl::Span<const Texture> textures,
                           MaterialId id, const SurfacePoint& point, double u) {
   // The parts of a mixture precede it, so there are fewer steps than materials.

@@ -1,6 +1,8 @@
 #pragma once
 
-// Opacity of a surface at a point: its alpha, and 0 for glass that does not refract.
+// Opacity of a surface at a point: its alpha, and 0 for glass that does not refract and for hidden
+// lamps. Camera and bounce rays are stopped with this probability; shadow rays are attenuated by
+// it.
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +20,8 @@ namespace bandsaw {
 inline constexpr double kMinRefraction = 1e-6;
 
 /// Returns true for glass with the same index as its surroundings and for panes that reflect
-/// nothing, through which light goes straight on. Glass with a priority excludes other glass and
-/// therefore counts as present.
+/// nothing: light goes straight through both. It is false for glass with a priority, which may have
+/// an effect because it excludes other glass.
 inline bool bends_nothing(const Material& material) {
   if (const auto* pane = std::get_if<ThinDielectric>(&material.kind)) {
     return pane->transmission == Rgb{1, 1, 1} &&
@@ -42,7 +44,8 @@ inline bool has_alpha(const Material& material) {
          is_hidden_lamp(material);
 }
 
-/// Returns the probability that a ray is stopped here, in [0, 1]. The material is not a mixture.
+/// Returns the probability that a ray is stopped here, in [0, 1]. The material MUST NOT be a
+/// mixture.
 inline double opacity(const Material& material, absl::Span<const Texture> textures,
                       const SurfacePoint& point) {
   if (!has_alpha(material)) {
@@ -61,8 +64,8 @@ inline double opacity(const Material& material, absl::Span<const Texture> textur
   return value;
 }
 
-/// Returns the opacity of material `id`, which may be a mixture: then the mean over its parts,
-/// weighted by the amount.
+/// Returns the opacity of material `id`; that of a mixture is the mean over its parts, weighted by
+/// the amount.
 inline double opacity(absl::Span<const Material> materials, MaterialId id,
                       absl::Span<const Texture> textures, const SurfacePoint& point) {
   const Material& material = materials[index_of(id)];

@@ -1,5 +1,5 @@
-// Two lobes: the reflection of the coat, smooth or rough, and the diffuse light that passes through
-// the coat twice.
+// The BSDF has two lobes: the reflection of the coat, smooth or rough, and the diffuse light, which
+// passes through the coat twice.
 
 #include "renderlib/material/plastic.h"
 
@@ -16,7 +16,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the reflectance of the diffuse surface with the light that the coat reflects back to it.
+/// Returns the reflectance of the diffuse surface, divided by eta^2, including the light that the
+/// coat reflects back to it. `internal` is the coat's internal reflectance.
 Rgb with_internal(const Rgb& reflectance, double internal, bool nonlinear, double eta) {
   const auto channel = [&](float r) {
     const double back = nonlinear ? internal * r : internal;
@@ -30,6 +31,7 @@ bool leaves(const PlasticBsdf& bsdf, const Vec3& wi) {
   return dot(wi, bsdf.normal.geometric) > 0 && dot(wi, bsdf.normal.shading) > 0;
 }
 
+/// Adds value and pdf of the reflection of a rough coat.
 void add_coat(const PlasticBsdf& bsdf, const Vec3& wi, BsdfValue& sum) {
   const Basis frame = orthonormal_basis(bsdf.normal.shading);
   const Vec3 o = frame.to_local(bsdf.wo);
@@ -64,7 +66,7 @@ PlasticBsdf plastic_at(const Plastic& material, absl::Span<const Texture> textur
       with_internal(reflectance, bsdf.coat.internal_reflectance(), material.nonlinear, bsdf.eta);
   bsdf.passing = bsdf.coat.passing(std::min(1.0, dot(wo, bsdf.normal.shading)));
   const double coat = (1 - bsdf.passing) * max_component(bsdf.specular);
-  // The mean transmittance towards all directions, by the reciprocity of the coat.
+  // The mean transmittance of the coat over all outgoing directions, which its reciprocity gives.
   const double out = (1 - bsdf.coat.internal_reflectance()) * bsdf.eta * bsdf.eta;
   const double below = bsdf.passing * out * max_component(bsdf.diffuse);
   bsdf.specular_chance = coat + below > 0 ? coat / (coat + below) : 0;

@@ -21,16 +21,17 @@ namespace bandsaw {
 struct PlasticBsdf {
   SidedNormals normal;  ///< dot(wo, shading) > 0
   Vec3 wo;
-  Rgb diffuse;  ///< r / (1 - c r') / eta^2
-  Rgb specular;
-  double eta = 1.5;
-  PlasticCoat::At coat{};
+  Rgb diffuse;                   ///< r / (1 - c r') / eta^2
+  Rgb specular;                  ///< factor of the coat's reflection
+  double eta = 1.5;              ///< index of refraction of the coat
+  PlasticCoat::At coat{};        ///< T and c
   std::optional<Facets> facets;  ///< absent if the coat is smooth: a delta reflection
   double passing = 0;            ///< T(wo)
   double specular_chance = 0;    ///< probability with which the coat's reflection is sampled
 };
 
-/// Returns the BSDF; `normal` is on the side of wo. The material MUST be prepared.
+/// Returns the BSDF; `normal` is on the side of wo. prepare_materials() (plastic_coat.h) MUST have
+/// set the coat of the material.
 PlasticBsdf plastic_at(const Plastic& material, absl::Span<const Texture> textures,
                        const SurfacePoint& point, const SidedNormals& normal, const Vec3& wo);
 /// sample() and evaluate() are those of material/bsdf.h for this kind.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Transmittance of the dielectric coat of Plastic. It is computed once for each material, when its
-// scene is built.
+// Transmittance of the dielectric coat of the material Plastic. It is computed once for each coat,
+// when the scene is built.
 
 #include <vector>
 
@@ -22,9 +22,9 @@ class PlasticCoat {
   /// The coat at a point where its alpha is `alpha`.
   struct At {
     const PlasticCoat* coat;
-    std::size_t row;  ///< row of the next smaller alpha
-    double next = 0;  ///< weight of the row after it
-    bool smooth = false;
+    std::size_t row;      ///< row of the next smaller alpha
+    double next = 0;      ///< weight of the row after it
+    bool smooth = false;  ///< the coat is smooth here; no row is used
 
     /// Returns the share of light that passes into the coat; the cosine is in [0, 1].
     double passing(double cos_theta) const;
@@ -35,11 +35,13 @@ class PlasticCoat {
 
  private:
   static constexpr std::size_t kCosines = 64;
+  /// The table for one alpha.
   struct Row {
-    double internal = 0;
-    std::vector<double> passing;
+    double internal = 0;          ///< At::internal_reflectance()
+    std::vector<double> passing;  ///< At::passing() for cosine i / (kCosines - 1)
   };
   Row row_of(const Microfacets& surface, double alpha) const;
+  /// Interpolates Row::passing of a row.
   double between(std::size_t row, double cos_theta) const;
 
   double index_;

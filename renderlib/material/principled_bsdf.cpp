@@ -1,5 +1,6 @@
-// Three groups of lobes: specular (reflection or refraction), diffuse and clear coat. sample()
-// chooses one; evaluate() adds up value and pdf of all.
+// The BSDF has three groups of lobes: specular (reflection or refraction), diffuse and clear coat.
+// sample() chooses one; evaluate() adds up value and pdf of all. The numbers of the formulas are
+// those of Mitsuba 3, after Burley 2012, "Physically Based Shading at Disney".
 
 #include "renderlib/material/principled_bsdf.h"
 
@@ -22,6 +23,7 @@ double gtr1(double cos_theta, double alpha) {
   return (a2 - 1) / (kPi * log(a2) * (1 + (a2 - 1) * cos_theta * cos_theta));
 }
 
+/// Samples a facet normal with the pdf gtr1() times its cosine.
 Vec3 sample_gtr1(double alpha, double u, double v) {
   const double a2 = alpha * alpha;
   const double cos2 = (1 - exp((1 - v) * log(a2))) / (1 - a2);
@@ -36,6 +38,8 @@ double reflecting(const PrincipledBsdf& bsdf, double f) {
   return bsdf.inside ? f : 1 - bsdf.refracting * (1 - f);
 }
 
+/// Returns the reflectance of the specular lobe at a facet of dielectric reflectance `f`; o_h is
+/// the cosine between wo and the facet's normal.
 Rgb specular_reflectance(const PrincipledBsdf& bsdf, double f, double o_h) {
   if (bsdf.inside) {
     return gray(static_cast<float>(bsdf.refracting * f));
@@ -47,6 +51,8 @@ Rgb specular_reflectance(const PrincipledBsdf& bsdf, double f, double o_h) {
          schlick(f0, o_h) * static_cast<float>(dielectric * bsdf.spec_tint);
 }
 
+/// The functions add_...() add value and pdf of a lobe to `sum`. i is wi in the frame, h the half
+/// vector of wo and wi.
 void add_specular(const PrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValue& sum) {
   const double o_h = std::min(1.0, dot(bsdf.o, h));
   const double f = fresnel(o_h, bsdf.eta);

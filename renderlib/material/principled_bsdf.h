@@ -20,11 +20,12 @@
 namespace bandsaw {
 
 struct PrincipledBsdf {
-  Vec3 geometric;       ///< geometric normal on the side of wo
-  Basis frame;          ///< z is the shading normal, dot(wo, z) > 0; x lies along u
-  Vec3 o;               ///< wo in the frame
-  bool inside = false;  ///< only the specular reflection and the refraction are present
-  double eta = 1.5;     ///< index beyond the surface over index on this side
+  Vec3 geometric;  ///< geometric normal on the side of wo
+  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along the uv coordinate u
+  Vec3 o;          ///< wo in the frame
+  bool inside =
+      false;         ///< wo is inside the body: only specular reflection and refraction are present
+  double eta = 1.5;  ///< index beyond the surface over index on this side
   Facets facets;
   DisneyDiffuse diffuse;
   double metallic = 0;
@@ -38,8 +39,8 @@ struct PrincipledBsdf {
   std::array<double, 3> chances{};
 };
 
-/// Returns the BSDF. `normal` is on the side of wo; `outside`: whether that is the side of the
-/// geometric normal.
+/// Returns the BSDF. `normal` is on the side of wo; `outside` is true if that is the side of the
+/// surface's geometric normal.
 PrincipledBsdf principled_at(const Principled& material, absl::Span<const Texture> textures,
                              const SurfacePoint& point, const SidedNormals& normal, bool outside,
                              const Vec3& wo);

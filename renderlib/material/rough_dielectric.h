@@ -13,14 +13,15 @@ namespace bandsaw {
 
 struct RoughDielectricBsdf {
   Vec3 geometric;  ///< geometric normal on the side of wo
-  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along u
+  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along the uv coordinate u
   Vec3 wo;
   double eta = 1;  ///< index beyond the surface over index on this side; not 1
   Facets facets;
 };
 
-/// u and v select the microfacet, `lobe` reflection or refraction. Returns std::nullopt if the
-/// light is lost between microfacets.
+/// sample() and evaluate() are those of material/bsdf.h for this kind. u and v select the
+/// microfacet, `lobe` reflection or refraction. Returns std::nullopt if the light is lost between
+/// microfacets.
 std::optional<BsdfSample> sample(const RoughDielectricBsdf& bsdf, double u, double v, double lobe);
 BsdfValue evaluate(const RoughDielectricBsdf& bsdf, const Vec3& wi);
 

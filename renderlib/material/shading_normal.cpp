@@ -1,5 +1,5 @@
-// Normal maps are looked up in the frame of the uvs; height maps are differentiated along the uvs.
-// Both return a new shading normal.
+// A texel of a normal map is a direction in the frame of the uvs; a height map is differentiated
+// along the uvs. Both give a new shading normal.
 
 #include "renderlib/material/shading_normal.h"
 
@@ -24,8 +24,9 @@ struct Directions {
   Vec3 v;
 };
 
-/// Returns the directions in which the map's own coordinates increase, of any length: the inverse
-/// of the map's transform, without the division by its determinant.
+/// Returns the directions, of any length, in which the map's own coordinates increase: the inverse
+/// of the map's transform, without the division by its determinant, applied to the directions of
+/// the uvs.
 Directions along_map(const Directions& uv, const UvTransform& placed) {
   const auto& [a, b, x, d, e, y] = placed.m;
   const double sign = a * e - b * d < 0 ? -1 : 1;
@@ -47,7 +48,8 @@ UvSet set_of(absl::Span<const Texture> textures, TextureId map) {
   return image == nullptr ? UvSet::kFirst : image->uv_set;
 }
 
-/// Returns the frame of the uvs, made orthonormal around the normal; mirrored where the uvs are.
+/// Returns the frame of the uvs, made orthonormal around the normal n; it is left-handed where the
+/// uvs are mirrored. Returns any frame around n if u has no direction or is almost parallel to n.
 Basis uv_basis(const Vec3& n, const Directions& uv) {
   const double size = max_abs(uv.u);
   if (!(size > 0) || !std::isfinite(size)) {
@@ -70,6 +72,7 @@ Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
                    const UvTransform& placed, UvSet set) {
   const Directions uv = set == UvSet::kSecond ? Directions{point.along_u2, point.along_v2}
                                               : Directions{point.along_u, point.along_v};
+  // The normal stays above the surface, even if the texel points below it.
   const Vec3 local{(2.0 * texel.r - 1) * scale, (2.0 * texel.g - 1) * scale,
                    std::max(2.0 * texel.b - 1, 1e-3)};
   const Basis frame = uv_basis(point.shading_normal, along_map(uv, placed));
@@ -146,6 +149,8 @@ Vec3 facing_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo) {
 }
 
 Vec3 visible_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo) {
+  // Minimum cosine of the mirror image to the geometric normal: 0.01, or less where wo itself is
+  // close to the surface.
   const double least = std::min(0.01, 0.9 * dot(geometric, wo));
   const Vec3 mirror = mirrored(wo, n);
   const double above = dot(mirror, geometric);

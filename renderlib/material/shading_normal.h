@@ -1,6 +1,7 @@
 #pragma once
 
-// The normal that a surface is shaded with.
+// The normal that a surface is shaded with: the interpolated normal of the mesh, bent by a normal
+// map or a height map, and kept visible from the viewer.
 
 #include "absl/types/span.h"
 #include "renderlib/geometry/surface.h"
@@ -11,15 +12,14 @@
 
 namespace bandsaw {
 
-/// Returns the unit shading normal on the outside, bent by a texel of a normal map (0.5 + 0.5 n in
-/// the frame of the uvs and the shading normal; glTF 2.0, 3.9.3). If the uvs define no frame, any
-/// frame around the normal is used. `placed`: the map's transform of uvs; the frame is that of the
-/// map. `set`: the uvs of the map.
+/// Returns the unit shading normal on the outside, bent by `texel` of a normal map (0.5 + 0.5 n in
+/// the frame of the map's uvs and the shading normal; glTF 2.0, 3.9.3). `scale` multiplies the
+/// tangential part of n. `placed` is the map's transform of the uvs, and `set` the set of uvs that
+/// it uses. If the uvs define no frame, any frame around the normal is used.
 Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
                    const UvTransform& placed = {}, UvSet set = UvSet::kFirst);
 
-/// Returns the unit shading normal bent by the texel of `map` at the point, where the map's own
-/// transform and set of uvs place it.
+/// Does the same with the texel of `map` at the point, and the map's own transform and set of uvs.
 Vec3 mapped_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
                    double scale);
 
@@ -37,23 +37,26 @@ inline bool bends(const Relief& relief) { return relief.normal || relief.height;
 Vec3 bent_normal(const Relief& relief, absl::Span<const Texture> textures,
                  const SurfacePoint& point);
 
-/// The sets of uvs of which a material needs the directions in SurfacePoint.
+/// The sets of uvs whose directions (SurfacePoint::along_u and so on) a material needs.
 struct UvSets {
   bool first = false;
   bool second = false;
 };
+/// Returns the sets of uvs of the material's normal maps and height map; the first set also for
+/// anisotropic facets.
 UvSets uv_sets_of(const Material& material, absl::Span<const Texture> textures);
 
 /// Returns the frame of the facets of a rough surface: z is the shading normal n; x lies along the
 /// point's u where that has a direction, unless the surface is isotropic.
 Basis facet_frame(const SurfacePoint& point, const Vec3& n, bool isotropic);
 
-/// Returns n, or visible_normal() where wo is behind n and would see no surface at all.
+/// Returns n, or visible_normal() where wo is behind n. The parameters are those of
+/// visible_normal().
 Vec3 facing_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo);
 
-/// Returns `n`, bent towards `geometric` just so far that wo and its mirror image lie above the
-/// surface. This avoids black rims and light from behind. All are unit vectors, dot(wo, geometric)
-/// >= 0. Continuous in all of them.
+/// Returns the shading normal `n`, bent towards the geometric normal `geometric` just so far that
+/// wo and its mirror image lie above the surface. This avoids black rims and light from behind. All
+/// are unit vectors, and dot(wo, geometric) MUST be >= 0. The result is continuous in all of them.
 Vec3 visible_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo);
 
 }  // namespace bandsaw

@@ -13,7 +13,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the probability of the first of two lobes: its share of the brightest channels.
+/// Returns the probability with which the first of two lobes is sampled: in proportion to the
+/// brightest channel of each.
 double chance_of(const Rgb& first, const Rgb& second) {
   const double a = max_component(first);
   const double sum = a + double{max_component(second)};

@@ -15,8 +15,8 @@ namespace bandsaw {
 struct ThinDielectricBsdf {
   SidedNormals normal;
   Vec3 wo;
-  Rgb reflected;  ///< reflected share of the light times the colour
-  Rgb transmitted;
+  Rgb reflected;              ///< reflected share of the light times ThinDielectric::specular
+  Rgb transmitted;            ///< transmitted share times ThinDielectric::transmission
   double reflection = 0;      ///< probability with which the reflection is sampled
   bool free_passage = false;  ///< light that passes does not count towards max_depth
 };
@@ -33,7 +33,9 @@ struct DiffuseTransmissionBsdf {
   double reflection = 0;  ///< probability with which the reflection is sampled
 };
 
-/// Scales both so that their sum is at most 1 in each channel.
+/// Returns the BSDF; `normal` is on the side of wo. Where the sum of reflectance and transmittance
+/// exceeds 1 in a channel, both are scaled so that it is 1. sample() and evaluate() are those of
+/// material/bsdf.h.
 DiffuseTransmissionBsdf diffuse_transmission(const SidedNormals& normal, const Rgb& reflectance,
                                              const Rgb& transmittance);
 std::optional<BsdfSample> sample(const DiffuseTransmissionBsdf& bsdf, double u, double v,

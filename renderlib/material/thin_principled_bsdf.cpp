@@ -1,5 +1,6 @@
-// Four lobes: specular and diffuse, reflected and transmitted. Transmission is computed as a
-// reflection mirrored to the other side.
+// The BSDF has four lobes: specular and diffuse, each reflected and transmitted. Transmission is
+// computed as a reflection that is mirrored to the other side. sample() chooses a lobe; evaluate()
+// adds up value and pdf of all.
 
 #include "renderlib/material/thin_principled_bsdf.h"
 
@@ -14,9 +15,10 @@ namespace {
 
 enum Lobe : std::size_t { kReflection, kTransmission, kDiffuse, kDiffuseTransmission };
 
-/// Minimum albedo that the selection of lobes assumes.
+/// Minimum albedo that the selection of lobes assumes, so that no lobe that is present is rare.
 constexpr double kMinThinAlbedo = 0.1;
 
+/// Adds value and pdf of the specular reflection. i is wi in the frame, h the half vector.
 void add_reflection(const ThinPrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValue& sum) {
   const double o_h = std::min(1.0, dot(bsdf.o, h));
   const Rgb f0 = hue_of(bsdf.diffuse.base) * static_cast<float>(normal_reflectance(bsdf.eta));
@@ -32,7 +34,8 @@ void add_reflection(const ThinPrincipledBsdf& bsdf, const Vec3& i, const Vec3& h
 /// Mitsuba's definition, only if that direction is behind the facet.
 bool transmits_to(const Vec3& h, const Vec3& i) { return h.x * i.x + h.y * i.y - h.z * i.z < 0; }
 
-/// `i` is the direction mirrored to the side of wo, `h` the half vector with it.
+/// Adds value and pdf of the specular transmission. `i` is wi mirrored to the side of wo, `h` the
+/// half vector of wo and `i`.
 void add_transmission(const ThinPrincipledBsdf& bsdf, const Vec3& i, const Vec3& h,
                       BsdfValue& sum) {
   if (!transmits_to(h, i)) {
@@ -46,8 +49,7 @@ void add_transmission(const ThinPrincipledBsdf& bsdf, const Vec3& i, const Vec3&
   sum.pdf += bsdf.chances[kTransmission] * pdf;
 }
 
-/// Sets the selection probabilities to rough estimates of the lobes' albedos. No lobe that is
-/// present is rare.
+/// Sets the selection probabilities in proportion to rough estimates of the lobes' albedos.
 void choose_chances(ThinPrincipledBsdf& bsdf) {
   const double base = max_component(bsdf.diffuse.base);
   const double f = fresnel(std::min(1.0, bsdf.o.z), bsdf.eta);

@@ -18,16 +18,16 @@
 namespace bandsaw {
 
 struct ThinPrincipledBsdf {
-  Vec3 geometric;  ///< geometric normal on the side of wo
-  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along u
-  Vec3 o;          ///< wo in the frame
-  double eta = 1.5;
-  Facets facets;    ///< facets of the reflection
-  Facets straight;  ///< facets of the transmission
+  Vec3 geometric;    ///< geometric normal on the side of wo
+  Basis frame;       ///< z is the shading normal, dot(wo, z) > 0; x lies along the uv coordinate u
+  Vec3 o;            ///< wo in the frame
+  double eta = 1.5;  ///< index of refraction of the sheet
+  Facets facets;     ///< facets of the reflection
+  Facets straight;   ///< facets of the transmission
   DisneyDiffuse diffuse;
-  double spec_trans = 0;
-  double spec_tint = 0;
-  double diff_trans = 0;  ///< share of the diffuse light, in [0, 1]
+  double spec_trans = 0;  ///< share of the specular lobes, [0, 1]; the rest is diffuse
+  double spec_tint = 0;   ///< [0, 1]
+  double diff_trans = 0;  ///< share of the diffuse light that is transmitted, [0, 1]
   /// Selection probabilities: specular reflection, specular transmission, diffuse reflection,
   /// diffuse transmission. They sum to 1, or to 0 if the BSDF is black.
   std::array<double, 4> chances{};

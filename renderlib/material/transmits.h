@@ -1,12 +1,14 @@
 #pragma once
 
+// Which materials light can pass. Such materials cannot be one-sided (Material::one_sided).
+
 #include "renderlib/base/overloaded.h"
 #include "renderlib/material/material.h"
 
 namespace bandsaw {
 
-/// Returns true if light can pass the surface from one side to the other. The material is not a
-/// mixture.
+/// Returns true if light can pass the surface from one side to the other. The material MUST NOT be
+/// a mixture.
 inline bool transmits(const Material& material) {
   return std::visit(
       Overloaded{
