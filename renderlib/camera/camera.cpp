@@ -15,8 +15,8 @@
 namespace bandsaw {
 namespace {
 
-/// Minimum sine of the angle between view direction and `up`; the sideways direction then still has
-/// ten digits.
+/// Minimum sine of the angle between view direction and `up`. At this angle the direction to the
+/// right, their cross product, still has ten correct digits.
 constexpr double kMinUpSine = 1e-6;
 
 absl::Status invalid(absl::string_view field, absl::string_view why) {
@@ -219,14 +219,17 @@ RayGenerator::Projection RayGenerator::between(double share) const {
     out.dy = at(a.dy, b.dy);
     return out;
   }
-  // The axes turn and stay perpendicular, so that image and lens belong to one view direction.
+  // The interpolated axes are made perpendicular again, so that image and lens belong to one view
+  // direction.
   out.forward = normalize(at(a.forward, b.forward));
   const Vec3 aside = at(normalize(a.dx), normalize(b.dx));
   const Vec3 right = normalize(aside - out.forward * dot(aside, out.forward));
   const Vec3 across = cross(out.forward, right);
+  // A mirrored image stays mirrored.
   const Vec3 down = dot(cross(a.forward, a.dx), a.dy) > 0 ? across : -across;
   out.dx = right * at(length(a.dx), length(b.dx));
   out.dy = down * at(length(a.dy), length(b.dy));
+  // column() and row() return the corner's coordinates along the image's axes, in pixels.
   const auto column = [](const Projection& p) { return dot(p.corner, p.dx) / dot(p.dx, p.dx); };
   const auto row = [](const Projection& p) { return dot(p.corner, p.dy) / dot(p.dy, p.dy); };
   out.corner = out.forward + out.dx * at(column(a), column(b)) + out.dy * at(row(a), row(b));
@@ -259,12 +262,12 @@ Ray RayGenerator::ray_now(const Projection& now, double x, double y, double lens
     return {.origin = now.origin, .direction = normalize(at)};
   }
   if (kind_ == Kind::kParallel) {
-    return {.origin = at, .direction = now.origin};  // project() says why
+    return {.origin = at, .direction = now.origin};  // Projection::origin holds the direction.
   }
   const Vec2 on_lens = sample_disk(lens_u, lens_v);
   const Vec3 from = now.lens_x * on_lens.x + now.lens_y * on_lens.y;
-  // The ray passes through the point in focus. Vectors are in units of the focus distance, which
-  // may be huge.
+  // The ray passes through the point in focus, origin + focus_distance at. Its direction is
+  // computed in units of the focus distance, which may be huge.
   return {.origin = now.origin + from, .direction = normalize(at - from / now.focus_distance)};
 }
 

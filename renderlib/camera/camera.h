@@ -1,6 +1,7 @@
 #pragma once
 
-// Cameras: generation of primary rays. A closed set.
+// Cameras: generation of primary rays. `Camera` is a closed set (a std::variant) of perspective and
+// orthographic cameras; RayGenerator makes the rays of an image.
 
 #include <optional>
 #include <variant>
@@ -19,8 +20,8 @@ struct View {
   Vec3 up{0, 1, 0};        ///< not parallel to the view direction
 };
 
-/// Exposure interval: the times of rays are uniformly distributed from open to close. Equal values:
-/// one instant.
+/// Exposure interval: the times of rays are uniformly distributed from open to close. If both are
+/// equal, all rays have this time. The unit is that of the scene's animation.
 struct Shutter {
   double open = 0;
   double close = 0;  ///< >= open
@@ -37,9 +38,9 @@ struct ImageWindow {
   friend bool operator==(const ImageWindow&, const ImageWindow&) = default;
 };
 
-/// A pinhole camera, or a thin lens (Potmesil and Chakravarty 1981): a point at distance z along
-/// the view direction is spread over a disk on the plane of focus, at distance f, of radius
-/// aperture / 2 |z - f| / z.
+/// A pinhole camera, or a thin lens (Potmesil and Chakravarty 1981). With a lens that is focused at
+/// the distance f, a point at distance z along the view direction is spread over a disk on the
+/// plane of focus, whose radius is aperture / 2 |z - f| / z.
 struct PerspectiveCamera {
   Vec3 position{0, 0, 0};
   Vec3 look_at{0, 0, -1};
@@ -50,7 +51,7 @@ struct PerspectiveCamera {
   double focus_distance = 1;
   Shutter shutter = {};
   bool mirrored = false;  ///< left and right are exchanged
-  /// std::nullopt: the whole height and square pixels.
+  /// The visible part of the image plane; std::nullopt: the whole height, and square pixels.
   std::optional<ImageWindow> window = std::nullopt;
 };
 
@@ -58,10 +59,11 @@ constexpr double middle_of(const Shutter& shutter) {
   return shutter.open + (shutter.close - shutter.open) / 2;
 }
 
-inline constexpr double kMaxTime = 1e9;
-inline constexpr double kMinFocus = 1e-9;
-inline constexpr double kMaxLens = 1e30;
-inline constexpr double kMaxWindow = 1e6;  ///< largest magnitude of a side
+// Ranges that validate() accepts.
+inline constexpr double kMaxTime = 1e9;    ///< largest magnitude of a shutter time
+inline constexpr double kMinFocus = 1e-9;  ///< of focus_distance
+inline constexpr double kMaxLens = 1e30;   ///< of aperture, focus_distance and height
+inline constexpr double kMaxWindow = 1e6;  ///< largest magnitude of a side of ImageWindow
 
 /// Parallel rays from the plane through `position`, which is the centre of the image.
 struct OrthographicCamera {
@@ -82,6 +84,7 @@ struct MovingCamera {
   std::optional<Camera> at_close = std::nullopt;  ///< of the same kind; absent: it does not move
 };
 
+// Members that both kinds of camera have.
 View view_of(const Camera& camera);
 bool is_mirrored(const Camera& camera);
 const std::optional<ImageWindow>& window_of(const Camera& camera);
@@ -94,10 +97,9 @@ absl::Status validate(const Camera& camera);
 /// shutter, one has a lens and the other is a pinhole, or the second one is not valid.
 absl::Status validate_motion(const Camera& at_open, const Camera& at_close);
 
-/// A camera prepared for an image of a given size: a ray costs a few multiplications. If the camera
-/// moves, its position, its focus and the size of a pixel change linearly from the opening of the
-/// shutter to its closing, and the view direction turns from that at the opening to that at the
-/// closing.
+/// A camera prepared for an image of a given size, so that a ray costs only a few multiplications.
+/// If the camera moves, its position, its focus and the size of a pixel change linearly while the
+/// shutter is open, and the view direction turns.
 class RayGenerator {
  public:
   /// `camera` MUST be valid, and `at_close` too (validate_motion); sizes are in pixels, >= 1.
@@ -107,8 +109,9 @@ class RayGenerator {
   /// lens_v) in [0, 1)^2 selects the point on the lens. The direction is a unit vector. `share` in
   /// [0, 1] is the position of the ray's time in the shutter interval.
   Ray ray(double x, double y, double lens_u, double lens_v, double share = 0) const;
-  /// Returns the view through the lens at this image position and share of the shutter interval;
-  /// std::nullopt if there is no lens, or it is too wide.
+  /// Returns the view through the lens (camera/lens_view.h) at this image position and share of the
+  /// shutter interval; std::nullopt if there is no lens, or its radius is not less than the
+  /// distance to the point in focus.
   std::optional<LensView> lens_view(double x, double y, double share = 0) const;
 
  private:
@@ -134,12 +137,14 @@ class RayGenerator {
   static void set_image(const Vec3& centre, const Vec3& right, const Vec3& up, double half,
                         const std::optional<ImageWindow>& window, int width, int height,
                         Projection& to);
+  /// Returns the camera at a share of the shutter interval; at_close_ MUST be set.
   Projection between(double share) const;
+  /// Returns the ray of the camera `now`, without its time.
   Ray ray_now(const Projection& now, double x, double y, double lens_u, double lens_v) const;
 
   Kind kind_;
-  Projection now_;  ///< when the shutter opens, if the camera moves
-  std::optional<Projection> at_close_;
+  Projection now_;                      ///< when the shutter opens
+  std::optional<Projection> at_close_;  ///< when it closes; std::nullopt: the camera does not move
   Shutter shutter_;
 };
 

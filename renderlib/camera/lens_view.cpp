@@ -1,6 +1,6 @@
-// A lens, seen from a point in focus. The directions under which the lens is seen lie within a
-// cone, because the lens fits into a sphere of its radius. The pdf is that of directions to a
-// uniformly chosen point of the lens.
+// The directions in which the lens is seen from the point in focus lie within a cone, because the
+// lens fits into a sphere of its radius. The pdf is that of the directions of rays from a uniformly
+// chosen point of the lens through the point in focus.
 
 #include "renderlib/camera/lens_view.h"
 

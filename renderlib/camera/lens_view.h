@@ -1,8 +1,9 @@
 #pragma once
 
-// The view from a point on a thin lens' plane of focus: the rays through the lens and that point.
-// Each point of the lens sees the scene beyond the point in one direction, so directions away from
-// the point correspond to points on the lens.
+// The rays that pass through a thin lens and through one point on its plane of focus, the point in
+// focus. Each point of the lens is the start of one of these rays, so the directions in which the
+// rays continue beyond the point in focus correspond to points of the lens. Light sampling through
+// the lens uses this (integrate/through_lens.h).
 
 #include <optional>
 
@@ -14,22 +15,24 @@ namespace bandsaw {
 class LensView {
  public:
   /// Describes a round lens of `radius` > 0 around `middle`, perpendicular to the unit vector
-  /// `forward`, focused at `distance` > 0 along it. `direction` leads from `middle` towards the
-  /// point in focus; its component along `forward` is 1, i.e. it is in units of `distance`. Returns
-  /// std::nullopt if the radius is not less than the distance to the point.
+  /// `forward`, whose plane of focus is at `distance` > 0. The point in focus is middle + distance
+  /// * direction, so the component of `direction` along `forward` MUST be 1. Returns std::nullopt
+  /// if the radius is not less than the distance from `middle` to that point.
   static std::optional<LensView> make(const Vec3& middle, const Vec3& forward, double radius,
                                       double distance, const Vec3& direction);
 
+  /// Returns the point in focus.
   const Vec3& focus() const { return focus_; }
-  /// Returns a cone that contains all directions in which rays continue beyond the point.
+  /// Returns a cone that contains all directions in which rays continue beyond the point in focus.
   const Cone& beyond() const { return beyond_; }
 
   /// Returns the point on the lens of the ray that continues in this unit direction; std::nullopt
   /// if the ray misses the lens.
   std::optional<Vec3> on_lens(const Vec3& direction) const;
-  /// Returns the pdf by solid angle of the directions of rays from a uniformly sampled point on the
-  /// lens; > 0 for the direction of such a ray. With the lens' area A and the angle a to its axis,
-  /// it is distance^2 / (A cos^3 a).
+  /// Returns the pdf, by solid angle, of the direction of the ray from a uniformly sampled point of
+  /// the lens through the point in focus. `direction` MUST be a unit vector that such a ray has.
+  /// With the lens' area A and the angle a between direction and `forward`, it is distance^2 / (A
+  /// cos^3 a).
   double pdf(const Vec3& direction) const;
 
  private:
@@ -37,7 +40,7 @@ class LensView {
 
   Vec3 middle_;
   Vec3 forward_;
-  Vec3 to_focus_;  ///< from `middle_`
+  Vec3 to_focus_;  ///< from `middle_` to `focus_`
   Vec3 focus_;
   double radius_ = 1;
   double distance_ = 1;

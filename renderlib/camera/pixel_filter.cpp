@@ -13,8 +13,8 @@ namespace {
 /// Returns the inverse of the cumulative distribution of 1 - |x| on [-1, 1].
 double tent(double u) { return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u)); }
 
-/// Samples a normal distribution in units of the standard deviation, truncated at three of them
-/// (Box and Muller 1958, with the radial distribution rescaled to end there).
+/// Samples a normal distribution of standard deviation 1, truncated at the radius 3 (Box and Muller
+/// 1958, with the radial distribution rescaled to end there).
 Vec2 gaussian(double u, double v) {
   constexpr double kCut = 3;
   const double r = std::sqrt(-2 * log1p(u * expm1(-kCut * kCut / 2)));

@@ -20,7 +20,7 @@ struct PixelFilter {
   friend bool operator==(const PixelFilter&, const PixelFilter&) = default;
 };
 
-inline constexpr double kMaxFilterRadius = 16;
+inline constexpr double kMaxFilterRadius = 16;  ///< pixels
 
 /// Returns the radius that is used if none is given.
 double default_radius(PixelFilter::Kind kind);
