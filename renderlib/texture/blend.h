@@ -1,5 +1,7 @@
 #pragma once
 
+// Interpolation between colours, for the filters of images and for procedural textures.
+
 #include "renderlib/math/rgb.h"
 
 namespace bandsaw {

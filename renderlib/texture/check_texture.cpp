@@ -30,10 +30,11 @@ absl::Status check_color(absl::string_view field, const Rgb& c) {
 }
 
 struct CheckParts {
-  std::size_t index;
-  const std::vector<std::uint64_t>& costs;
-  std::uint64_t& cost;
+  std::size_t index;                        ///< of the texture that is checked
+  const std::vector<std::uint64_t>& costs;  ///< of the textures before it
+  std::uint64_t& cost;                      ///< of this texture; the costs of its parts are added
 
+  /// Checks a reference to another texture.
   absl::Status part(absl::string_view field, TextureId id) const {
     if (index_of(id) >= index) {
       return invalid(field, absl::StrCat("must be below ", index, " (a texture before this), is ",

@@ -11,11 +11,12 @@ namespace bandsaw {
 /// Sets of uv coordinates of a surface.
 enum class UvSet : std::uint8_t { kFirst, kSecond };
 
-/// The space of a solid texture. World: scene units. Object: the mesh's own space, before its
-/// placement; for a sphere, scene units from its centre; for a quad and a triangle, which have no
-/// other space, the world.
+/// The space of a texture that varies through space. World: scene units. Object: the space of the
+/// mesh or group before its placement; for a sphere, positions relative to its centre; for other
+/// shapes of no mesh and no group, the world.
 enum class Space : std::uint8_t { kWorld, kObject };
 
+/// The place at which a texture is looked up.
 struct TextureCoordinates {
   Vec2 uv = {};               ///< first set
   Vec2 uv2 = {};              ///< second set; the first if the surface has no second

@@ -12,6 +12,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns a number of the image as a linear value; `index` counts channels.
 float value(const ImageTexture& image, std::size_t index) {
   if (image.format == ImageTexture::Format::kFloat32) {
     float value;
@@ -33,8 +34,8 @@ Rgb texel(const ImageTexture& image, std::uint32_t x, std::uint32_t y) {
 
 namespace {
 
-/// Maps a coordinate to [0, 1] by the wrap mode. x - floor(x) may round up to 1; the index is
-/// wrapped again later.
+/// Maps a coordinate to [0, 1] by the wrap mode. x - floor(x) may round up to 1, so wrapped_index()
+/// wraps the index of the texel again.
 double wrapped(double x, ImageTexture::Wrap wrap) {
   if (!std::isfinite(x)) {
     return 0;
@@ -52,8 +53,8 @@ double wrapped(double x, ImageTexture::Wrap wrap) {
   return std::clamp(x, 0.0, 1.0);
 }
 
-/// Maps an index that is at most one step outside to a texel's column or row. At the edge of a
-/// mirrored image the neighbour is the texel itself.
+/// Returns the column or row of a texel for an index in [-1, size]. Beyond the edge of a mirrored
+/// image the neighbour of a texel is the texel itself.
 std::uint32_t wrapped_index(std::int64_t i, std::uint32_t size, ImageTexture::Wrap wrap) {
   const std::int64_t last = std::int64_t{size} - 1;
   if (wrap == ImageTexture::Wrap::kRepeat) {
@@ -62,6 +63,7 @@ std::uint32_t wrapped_index(std::int64_t i, std::uint32_t size, ImageTexture::Wr
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, last));
 }
 
+/// x and y are in [0, 1], y from the top; so in bilinear().
 Rgb nearest(const ImageTexture& image, double x, double y) {
   const auto column = static_cast<std::int64_t>(std::floor(x * image.width));
   const auto row = static_cast<std::int64_t>(std::floor(y * image.height));

@@ -1,6 +1,7 @@
 #pragma once
 
-// Image textures: texels, wrapping, filtering.
+// Image textures: reads texels, wraps coordinates and filters. texture.h has the interface for all
+// textures; environment maps use texel() directly.
 
 #include "renderlib/texture/texture.h"
 
@@ -8,9 +9,11 @@ namespace bandsaw {
 
 /// Returns the linear colour of one texel; x < width from the left, y < height from the top.
 Rgb texel(const ImageTexture& image, std::uint32_t x, std::uint32_t y);
+/// Returns the filtered linear colour at the image's set of uvs.
 Rgb evaluate(const ImageTexture& image, const TextureCoordinates& at);
-/// Returns the largest value; 1 for 8-bit texels.
+/// Returns the largest value of any channel; always 1 for 8-bit texels.
 float max_value(const ImageTexture& image);
+/// Returns the mean linear colour of all texels.
 Rgb mean(const ImageTexture& image);
 
 }  // namespace bandsaw

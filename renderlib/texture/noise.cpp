@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kGradients = 256;
 using Gradients = std::array<Vec3, kGradients>;
 
-/// Directions uniform on the sphere, by rejection sampling from the cube.
+/// Returns directions that are uniform on the sphere, by rejection sampling from the cube. Very
+/// short vectors are rejected too, because their directions are imprecise.
 Gradients make_gradients() {
   Gradients gradients;
   std::uint64_t state = 0;
@@ -40,6 +41,7 @@ const Gradients& gradients() {
   return table;
 }
 
+/// A point of the lattice: its whole coordinates, modulo 2^64.
 struct Lattice {
   std::uint64_t x;
   std::uint64_t y;

@@ -13,14 +13,16 @@
 namespace bandsaw {
 namespace {
 
-/// Returns 0 or 1, alternating from cell to cell. The next cell begins `slack` early.
+/// Returns 0 or 1, alternating from cell to cell; 0 if x is not finite. Each cell begins early, by
+/// `slack`.
 double parity(double x, double slack) {
   const double cell = std::floor(x + slack);
   const double bit = cell - 2 * std::floor(cell / 2);
   return std::isfinite(bit) ? bit : 0;
 }
 
-/// Returns a bound above the rounding error of a coordinate, in cells.
+/// Returns the margin by which cells begin early, in cells: 2^-20, and above the rounding error of
+/// coordinates as large as `largest`.
 double slack_of(double largest) { return 0x1p-20 + 0x1p-40 * largest; }
 
 /// Returns t of NoiseTexture before clamping to [0, 1].

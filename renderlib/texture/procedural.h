@@ -1,6 +1,7 @@
 #pragma once
 
-// Procedural textures. Composite ones (mix, product) are in texture.cpp.
+// Procedural textures: checker, noise and ramp. texture.cpp, which evaluates all textures, calls
+// these functions.
 
 #include "renderlib/texture/texture.h"
 
@@ -9,9 +10,10 @@ namespace bandsaw {
 /// Returns true if the point lies in a cell of texture `even`.
 bool is_even(const CheckerTexture& checker, const TextureCoordinates& at);
 
+/// Returns the colour at the point.
 Rgb evaluate(const NoiseTexture& noise, const TextureCoordinates& at);
 
-/// Returns the coordinate that the ramp maps to a colour; not for kTexture.
+/// Returns the coordinate that the ramp maps to a colour. `ramp.over` MUST NOT be kTexture.
 double coordinate(const RampTexture& ramp, const TextureCoordinates& at);
 /// Returns the ramp's colour at `value`; NaN maps to the first stop.
 Rgb evaluate(const RampTexture& ramp, double value);

@@ -1,5 +1,6 @@
-// One visitor for each question about a texture: its value at a point, its maximum, its mean, and
-// whether it uses positions in object space.
+// Each function on a texture has a visitor of the variant: for its value at a point, its maximum,
+// its mean, and whether it uses positions in object space. Visitors follow references to other
+// textures.
 
 #include "renderlib/texture/texture.h"
 

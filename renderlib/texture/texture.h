@@ -1,7 +1,8 @@
 #pragma once
 
-// Textures: colours that may vary over a surface or through space. A closed set. Textures may refer
-// to others, which precede them in the scene's list, so there are no cycles.
+// Textures: colours that may vary over a surface or through space, as a closed set (a
+// std::variant). Textures may refer to others, which precede them in the scene's list, so there are
+// no cycles. Materials, environment maps and projectors use them (material/look_up.h, light/).
 
 #include <array>
 #include <cstddef>
@@ -32,9 +33,10 @@ struct UvTransform {
   friend bool operator==(const UvTransform&, const UvTransform&) = default;
 };
 
-/// Texels keep their original format: an 8-bit image takes a byte per channel and texel. They may
-/// lie in a mapped file.
+/// An image. Its texels keep their original format: an 8-bit image takes a byte per channel and
+/// texel. They may lie in a mapped file.
 struct ImageTexture {
+  /// 8 bits with the transfer function of sRGB; 8 bits, linear (255 is 1); linear floats.
   enum class Format : std::uint8_t { kSrgb8, kLinear8, kFloat32 };
   enum class Wrap : std::uint8_t { kRepeat, kClamp, kMirror };
   enum class Filter : std::uint8_t { kBilinear, kNearest };
@@ -45,10 +47,11 @@ struct ImageTexture {
   Wrap wrap = Wrap::kRepeat;
   Filter filter = Filter::kBilinear;
   SharedBytes texels;         ///< rows from the top (v = 1) down, without padding
-  std::uint8_t channels = 3;  ///< 3, or 1: grey
+  std::uint8_t channels = 3;  ///< 3; or 1 for a grey image
   UvSet uv_set = UvSet::kFirst;
   UvTransform uv_transform;
-  /// Vertical wrap mode if it differs from `wrap`: a map on a sphere repeats in u alone.
+  /// Vertical wrap mode if it differs from `wrap`, as for a map on a sphere, which repeats in u
+  /// alone.
   std::optional<Wrap> wrap_v = std::nullopt;
 
   Wrap v_wrap() const { return wrap_v.value_or(wrap); }
@@ -57,9 +60,9 @@ struct ImageTexture {
 /// Returns the size of the texels of an image, in bytes.
 std::uint64_t texel_bytes(const ImageTexture& image);
 
-/// Alternates two textures in squares of the uv plane or in boxes of space. A coordinate belongs to
-/// the next cell if it is closer to it than 2^-20 of a cell (or its rounding error), so that a
-/// plane on a border between cells has one texture.
+/// Alternates two textures in cells, which are rectangles of the uv plane or boxes of space. Each
+/// cell begins early, by 2^-20 of its size or more if rounding errors are larger, so that a plane
+/// on a border between cells has one texture.
 struct CheckerTexture {
   enum class Mapping : std::uint8_t { kUv, kPosition };
   TextureId even{};  ///< texture of the cell that begins at the origin
@@ -70,8 +73,8 @@ struct CheckerTexture {
   Space space = Space::kWorld;
 };
 
-/// low + (high - low) t, with t in [0, 1] from texture/noise.h, as in Shirley et al., "Ray Tracing:
-/// The Next Week", chapter 5.
+/// The colour low + (high - low) t, with t in [0, 1] from texture/noise.h at the point p, as in
+/// Shirley et al., "Ray Tracing: The Next Week", chapter 5.
 struct NoiseTexture {
   enum class Kind : std::uint8_t {
     kNoise,       ///< t = (1 + noise(scale p)) / 2
@@ -134,7 +137,7 @@ float max_value(absl::Span<const Texture> textures, TextureId id);
 /// they are black everywhere.
 Rgb mean(absl::Span<const Texture> textures, TextureId id);
 
-/// Returns true if the texture itself, not one that it refers to, uses uv coordinates.
+/// Returns true if the texture itself uses uv coordinates; textures that it refers to do not count.
 bool uses_uv(const Texture& texture);
 
 /// Returns true if textures[id] or one that it refers to uses positions in object space.
