@@ -1,6 +1,5 @@
-// run_child() starts a program with its output in a pipe, and looks every 20 ms whether the program
-// has ended, the time is over or the user has stopped it. A program that is still running then is
-// killed.
+// run_child() starts a program with its output in a pipe. Every 20 ms it tests whether the program
+// has ended. If it still runs when the time is over or the caller has set `stop`, it is killed.
 
 #include "coordinator/cli/base/child_process.h"
 
@@ -47,11 +46,11 @@ absl::StatusOr<Child> start(const std::vector<std::string>& arguments,
   return Child{*pid, ends[0]};
 }
 
-// Reads the child's output until it ends, `seconds` have passed or `stop` is set. The child has
-// ended when this returns.
+// Reads the child's output until the child has ended. Kills the child after `seconds`, or when
+// `stop` is set. When this returns, the child has ended and was waited for.
 ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool>* stop) {
   constexpr int kLookEveryMs = 20;
-  constexpr std::size_t kMaxOutput = 64 << 10;
+  constexpr std::size_t kMaxOutput = 64 << 10;  // bounds memory; further output is read and dropped
   ChildOutcome outcome;
   const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
   bool open = true;
@@ -64,7 +63,7 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
       break;
     }
     pollfd ready{open ? child.output : -1, POLLIN, 0};
-    // A child that closed its output normally exits within moments.
+    // A child that has closed its output usually exits at once, so the next look comes after 1 ms.
     if (poll(&ready, 1, open ? kLookEveryMs : 1) > 0) {
       std::array<char, 4096> buffer{};
       const ssize_t got = read(child.output, buffer.data(), buffer.size());
@@ -73,7 +72,8 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
       outcome.output.resize(std::min(outcome.output.size(), kMaxOutput));
     }
   }
-  // Reads the rest of the output. Grandchildren may keep the pipe open; they are not waited for.
+  // Reads what is left in the pipe. Processes that the child started may keep the pipe open after
+  // the child's end; they are not waited for.
   pollfd left{child.output, POLLIN, 0};
   std::array<char, 4096> rest{};
   while (outcome.output.size() < kMaxOutput && poll(&left, 1, 0) > 0) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Runs one child process to its end, with a time limit.
+// Runs one child process to its end, with a time limit. The importer, Blender, ssh and the command
+// of --then are run so.
 
 #include <atomic>
 #include <string>
@@ -10,15 +11,17 @@
 
 namespace bandsaw::coordinator {
 
+/// How a child process ended, and what it wrote.
 struct ChildOutcome {
   enum class End {
     kExited,    ///< ended by itself; see wait_status
     kTimedOut,  ///< killed because the time limit expired
-    kStopped,   ///< killed because `stop` was set
+    kStopped,   ///< killed because the caller set `stop`
   };
   End end = End::kExited;
-  int wait_status = 0;  ///< as returned by waitpid
-  /// Standard output of the child, at most 64 KiB.
+  int wait_status = 0;  ///< as returned by waitpid; read it with WIFEXITED and the like
+  /// Standard output of the child (with standard error, if the caller asked for it), at most 64
+  /// KiB.
   std::string output;
 };
 
@@ -28,9 +31,10 @@ struct ChildStreams {
 };
 
 /// Starts `arguments[0]` (a path, or a name on PATH) with posix_spawn, without a shell, and waits
-/// until it has ended. The child has the default dispositions of SIGINT and SIGTERM, whatever this
-/// process does with them, so Ctrl-C in a terminal ends it. `stop` may be nullptr; it is polled
-/// every 20 ms. Returns the system's error if the child could not be started.
+/// until it has ended. Kills it after `seconds`, or when another thread sets `stop`. `stop` may be
+/// nullptr; it is polled every 20 ms. The child has the default dispositions of SIGINT and SIGTERM,
+/// whatever this process does with them, so Ctrl-C in a terminal ends it. Returns the system's
+/// error if the child could not be started; a child that fails is no error, but an outcome.
 absl::StatusOr<ChildOutcome> run_child(const std::vector<std::string>& arguments, double seconds,
                                        const std::atomic<bool>* stop,
                                        const ChildStreams& streams = {});

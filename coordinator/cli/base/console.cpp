@@ -1,5 +1,5 @@
-// Console writes to standard output and standard error. Colours are used only on a terminal, and
-// not if NO_COLOR is set.
+// A Console writes to standard output and standard error. Colours are used only on a terminal, and
+// only if the environment variable NO_COLOR is not set.
 
 #include "coordinator/cli/base/console.h"
 
@@ -17,7 +17,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Errors are ignored: if the reader is gone, no one would see a message.
+// Write errors end it silently: if the reader is gone, no one would see a message.
 void write_all(int fd, absl::string_view text) {
   while (!text.empty()) {
     const ssize_t n = ::write(fd, text.data(), text.size());

@@ -1,6 +1,7 @@
 #pragma once
 
-// Standard output and standard error, and the properties of the terminal.
+// Commands write all text through a Console: to standard output, or to standard error. It also
+// knows whether standard output is a terminal, and the terminal's size and colours.
 
 #include <functional>
 #include <string>
@@ -10,13 +11,15 @@
 
 namespace bandsaw::coordinator {
 
+/// Size in characters. The defaults are used if standard output is no terminal.
 struct TerminalSize {
   std::size_t columns = 80;
   std::size_t rows = 24;
 };
 
-/// Ignores SIGPIPE, so that writing to a closed pipe no longer ends the process. Called by commands
-/// that write a file; other commands may end when their reader ends.
+/// Ignores SIGPIPE, so that writing to a closed pipe no longer ends the process. The commands that
+/// write images call it: the image must be written even if the reader of their standard output has
+/// ended. Other commands may end when that reader ends.
 void outlive_reader();
 
 class Console {
@@ -32,17 +35,18 @@ class Console {
 
   bool is_terminal() const { return is_terminal_; }
   bool colour() const { return colour_; }
-  /// Returns the terminal's present size: windows are resized.
+  /// Asks the terminal for its size at every call, because its window can be resized.
   TerminalSize size() const;
 
-  /// Writes the text unchanged and unbuffered.
+  /// Writes the text to standard output, unchanged and unbuffered.
   void write(absl::string_view text) const { out_(text); }
-  /// Writes the text and a line end.
+  /// Writes the text and a line end to standard output.
   void line(absl::string_view text) const;
 
-  /// Writes "bandsaw: text" to standard error, on one line even if the text contains line ends.
+  /// Writes "bandsaw: text" to standard error, on one line even if the text contains line ends:
+  /// control characters are replaced (printable in cli/base/text.h).
   void complain(absl::string_view text) const;
-  /// Calls complain() and returns `code`.
+  /// Calls complain() and returns `code`, so that a command can end with `return fail(…)`.
   ExitCode fail(ExitCode code, absl::string_view text) const;
 
  private:

@@ -1,6 +1,6 @@
-// The child's standard input and output are one end of a socket pair. exchange() writes a line to
-// the other end and reads until a line with the prefix has come, the child has exited, or the time
-// is over.
+// One end of a socket pair is both the child's standard input and its standard output. exchange()
+// writes a line to the other end. Then it reads until a line with the prefix has come, the child
+// has exited, the time is over or the caller has set `stop`.
 
 #include "coordinator/cli/base/coprocess.h"
 
@@ -25,13 +25,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A socket gives no SIGPIPE if the reader is gone.
+// Writes all bytes to the socket. MSG_NOSIGNAL: no SIGPIPE ends this process if the child is gone.
 void send_all(int stream, const std::string& bytes) {
   std::size_t sent = 0;
   while (sent < bytes.size()) {
     const ssize_t now = send(stream, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
     if (now < 0 && errno != EINTR) {
-      return;  // the child has ended, which the reader notices
+      return;  // the child has ended, which exchange() notices when it reads
     }
     sent += static_cast<std::size_t>(now < 0 ? 0 : now);
   }
@@ -114,7 +114,7 @@ std::variant<std::string, ChildOutcome> Coprocess::exchange(const std::string& l
       return killed(ChildOutcome::End::kTimedOut);
     }
     pollfd ready{open_ ? stream_ : -1, POLLIN, 0};
-    // A child that closed its end normally exits within moments.
+    // A child that has closed its end usually exits at once, so the next look comes after 1 ms.
     if (poll(&ready, 1, open_ ? kLookEveryMs : 1) > 0) {
       std::array<char, 4096> buffer{};
       const ssize_t got = read(stream_, buffer.data(), buffer.size());

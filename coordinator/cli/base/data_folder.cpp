@@ -1,4 +1,5 @@
-// Finds the coordinator's data folder by the XDG convention, and names the files in it.
+// Finds the coordinator's data folder by the XDG Base Directory Specification, in which a relative
+// path counts as not set, and names the files in it.
 
 #include "coordinator/cli/base/data_folder.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Locations of the coordinator's data folder and of its join strings.
+// States where the coordinator's data folder is, and the files in it that other commands read. A
+// join string is a line with the addresses of a farm, the digest of its certificate and a secret.
 
 #include <string>
 
@@ -9,13 +10,14 @@
 namespace bandsaw::coordinator {
 
 /// Returns the default data folder: $XDG_DATA_HOME/bandsaw or ~/.local/share/bandsaw.
-/// FAILED_PRECONDITION: neither variable is set.
+/// FAILED_PRECONDITION: neither XDG_DATA_HOME nor HOME is an absolute path.
 absl::StatusOr<std::string> default_data_folder();
 
-/// These functions return the paths of the files with the join strings of workers and of users.
+/// Returns the path of the file with the join string of workers.
 std::string worker_join_file(const std::string& data_folder);
+/// Returns the path of the file with the join string of users.
 std::string farm_join_file(const std::string& data_folder);
-/// Returns the file with the link to the dashboard, which contains the users' secret.
+/// Returns the path of the file with the link to the dashboard. The link has the users' secret.
 std::string dashboard_file(const std::string& data_folder);
 
 }  // namespace bandsaw::coordinator

@@ -1,5 +1,5 @@
 // SIGINT, SIGTERM and SIGHUP are blocked in all threads, and one thread reads them from a signalfd.
-// The first signal calls the function of the present Listener. Without a Listener, and at a second
+// The first signal calls the function of the newest Listener. Without a Listener, and at a second
 // signal, the program ends at once.
 
 #include "coordinator/cli/base/interrupts.h"
@@ -23,8 +23,8 @@ Interrupts::Interrupts() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
-  // SIGHUP of a closed terminal ends the program like the others, except if it was started with
-  // nohup.
+  // SIGHUP, which a terminal that is closed sends, is treated like the others. A program that was
+  // started with nohup ignores SIGHUP from its start, and continues to do so.
   struct sigaction hang_up {};
   if (sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) {
     sigaddset(&set, SIGHUP);
@@ -60,7 +60,8 @@ void Interrupts::read() {
 void Interrupts::took_signal(int signal) {
   MutexLock lock(mutex_);
   if (seen_ && signal == SIGHUP) {
-    // the shell and the kernel may both send SIGHUP; this is no user who wants to force the end
+    // When a terminal is closed, the shell and the kernel may both send SIGHUP. So a second one
+    // does not mean that the user wants to force the end.
     return;
   }
   if (seen_ || !first_) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Handles SIGINT, SIGTERM and SIGHUP without signal handlers: the signals are blocked in all
-// threads and read by one thread.
+// Receives SIGINT, SIGTERM and SIGHUP without signal handlers: the signals are blocked in all
+// threads, and one thread reads them. A command makes a Listener to say what a signal does.
 
 #include <functional>
 #include <thread>
@@ -10,9 +10,9 @@
 
 namespace bandsaw::coordinator {
 
-/// MUST be constructed first in main, before any other thread, because threads inherit the signal
-/// mask. Without a listener, a signal ends the process at once with status 130. A second signal
-/// always does, except a second SIGHUP.
+/// MUST be constructed in main before any other thread starts, because threads inherit the signal
+/// mask. Without a Listener, a signal ends the process at once with status 130. With a Listener the
+/// first signal calls its function, and the second ends the process, unless the second is SIGHUP.
 class Interrupts {
  public:
   Interrupts();
@@ -20,9 +20,10 @@ class Interrupts {
   Interrupts(const Interrupts&) = delete;
   Interrupts& operator=(const Interrupts&) = delete;
 
-  /// While it exists, the first signal calls `first` on the reading thread instead of ending the
-  /// process. If there are several listeners, only the newest is called. `first` MUST NOT call
-  /// Interrupts.
+  /// While a Listener exists, the first signal of the process calls `first` on the reading thread
+  /// instead of ending the process. If there are several, only the newest is called. `first` MUST
+  /// NOT call functions of Interrupts or Listener, because the mutex is held. A Listener MUST be
+  /// destroyed before those that are older.
   class Listener {
    public:
     Listener(Interrupts& interrupts, std::function<void()> first);
@@ -32,11 +33,12 @@ class Interrupts {
 
    private:
     Interrupts& interrupts_;
-    std::function<void()> before_;
+    std::function<void()> before_;  ///< function of the Listener before this one; may be empty
   };
 
-  /// Waits for a signal; returns at once if one has already been received with a listener.
+  /// Waits until a Listener has been called; returns at once if one was called before.
   void wait() EXCLUDES(mutex_);
+  /// Returns true if a Listener has been called.
   bool seen() const EXCLUDES(mutex_);
 
  private:
@@ -45,7 +47,7 @@ class Interrupts {
 
   mutable Mutex mutex_;
   CondVar changed_;
-  std::function<void()> first_ GUARDED_BY(mutex_);
+  std::function<void()> first_ GUARDED_BY(mutex_);  // of the newest Listener; empty: none
   bool seen_ GUARDED_BY(mutex_) = false;
   int signals_ = -1;  // signalfd
   int stop_ = -1;     // eventfd: ends the reading thread

@@ -1,5 +1,5 @@
-// Writes each field at once into a string. Text is escaped as JSON requires; bytes that are not
-// UTF-8 become U+FFFD.
+// A JsonObject turns each field into JSON text when it is added. Text is escaped as JSON requires;
+// each byte that is not UTF-8 becomes U+FFFD.
 
 #include "coordinator/cli/base/json.h"
 
@@ -14,12 +14,13 @@
 namespace bandsaw::coordinator {
 namespace {
 
+// Beyond the end it returns 0, which continues no UTF-8 sequence.
 unsigned byte_at(absl::string_view text, std::size_t i) {
   return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
 }
 
-// Returns the length of the UTF-8 sequence that begins at i (RFC 3629, section 4), or 0 if there is
-// none.
+// Returns the number of bytes of the UTF-8 sequence that begins at i, or 0 if the bytes there are
+// no valid sequence. The ranges of bytes are those of RFC 3629, section 4.
 std::size_t sequence_at(absl::string_view text, std::size_t i) {
   const unsigned a = byte_at(text, i);
   const unsigned b = byte_at(text, i + 1);

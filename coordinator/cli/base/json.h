@@ -1,6 +1,7 @@
 #pragma once
 
-// JSON objects (RFC 8259): one per line for --json, and reports.
+// Builds JSON objects (RFC 8259): the lines that commands print with --json, and the reports beside
+// images.
 
 #include <cstdint>
 #include <string>
@@ -17,14 +18,15 @@ class JsonObject {
  public:
   JsonObject& text(absl::string_view key, absl::string_view value);
   JsonObject& number(absl::string_view key, double value);
+  /// Adds an unsigned integer.
   JsonObject& whole(absl::string_view key, std::uint64_t value);
   JsonObject& flag(absl::string_view key, bool value);
-  /// Writes null if the value is negative, which means "unknown".
+  /// Adds a number that may be unknown: a negative value means "unknown" and becomes null.
   JsonObject& known_number(absl::string_view key, double value);
   JsonObject& texts(absl::string_view key, const std::vector<std::string>& values);
   JsonObject& objects(absl::string_view key, const std::vector<JsonObject>& values);
   JsonObject& object(absl::string_view key, const JsonObject& value);
-  /// Writes null.
+  /// Adds null.
   JsonObject& unknown(absl::string_view key);
 
   /// Returns "{…}" on one line, without a line end.
@@ -33,8 +35,9 @@ class JsonObject {
   std::string lines() const;
 
  private:
+  /// Adds a value that is already JSON.
   JsonObject& raw(absl::string_view key, absl::string_view value);
-  std::vector<std::string> fields_;
+  std::vector<std::string> fields_;  ///< each "key":value
 };
 
 }  // namespace bandsaw::coordinator

@@ -1,5 +1,5 @@
-// The child's standard input is a pipe, to which write() writes. Its standard error is a file in
-// memory, whose last line becomes the message if the child fails.
+// write() writes to a pipe, which is the child's standard input. The child's standard error is a
+// file in memory, whose last line becomes the message if the child fails.
 
 #include "coordinator/cli/base/piped_child.h"
 
@@ -80,7 +80,7 @@ absl::Status PipedChild::finish() {
 }
 
 std::string PipedChild::last_error_line() const {
-  constexpr std::size_t kMaxBytes = 4096;
+  constexpr std::size_t kMaxBytes = 4096;  // of the end of the file: more than one line needs
   const off_t size = lseek(errors_, 0, SEEK_END);
   std::string text(kMaxBytes, '\0');
   const ssize_t got =

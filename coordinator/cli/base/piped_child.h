@@ -1,6 +1,7 @@
 #pragma once
 
-// A child process that is fed through its standard input.
+// A child process that reads its input from a pipe, to which this program writes: ffmpeg, which
+// makes the video of a sequence (cli/image/video.h).
 
 #include <sys/types.h>
 
@@ -23,7 +24,8 @@ class PipedChild {
   PipedChild(PipedChild&& other) noexcept;
   PipedChild& operator=(PipedChild&& other) = delete;
 
-  /// Blocks while the child does not read. ABORTED: it reads no more.
+  /// Writes all bytes to the child's standard input; blocks while the child does not read. ABORTED:
+  /// the child has closed its input; the message is the last line of its standard error.
   absl::Status write(absl::Span<const std::byte> bytes);
   /// Closes the child's input and waits for its end. ABORTED: it did not exit with 0; the message
   /// is the last line of its standard error.

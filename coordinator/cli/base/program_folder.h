@@ -15,7 +15,8 @@ std::string program_folder();
 /// program's bin folder, both installed and in a build folder.
 std::string gallery_folder();
 
-/// Returns the folder of the renderer for browsers: share/bandsaw/browser, found in the same way.
+/// Returns the folder of the renderer that `serve` hands out to browsers (WebAssembly), which is
+/// share/bandsaw/browser beside the program's bin folder.
 std::string browser_folder();
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// Starts a child process.
+// Starts a child process. run_child(), Coprocess and PipedChild of this folder start theirs by it.
 
 #include <sys/types.h>
 

@@ -1,5 +1,5 @@
-// Formats numbers, times and lists for users. Lengths of texts are counted in characters of UTF-8,
-// so that columns of a table are aligned; characters that could control a terminal are replaced.
+// Formats numbers, times and lists for users. Bounds such as 0.995, 9.95 and 999.5 are the least
+// values that rounding would lift to the next power of ten: 9.95 with one decimal would be "10.0".
 
 #include "coordinator/cli/base/text.h"
 
@@ -23,6 +23,7 @@ std::string short_number(double value) {
   return std::string(absl::StripSuffix(text, ".0"));
 }
 
+// Returns true for the second and later bytes of a UTF-8 sequence.
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
 }  // namespace
@@ -42,6 +43,7 @@ std::string si_with(double value, absl::string_view unit) {
   return absl::StrCat(text, text.find(' ') == std::string::npos ? " " : "", unit);
 }
 
+// Here and in duration(), 1e9 s (32 years) only bounds the conversion to an integer.
 std::string clock_time(double seconds) {
   const auto whole = static_cast<std::uint64_t>(std::ceil(std::clamp(seconds, 0.0, 1e9)));
   const std::uint64_t hours = whole / 3600;
@@ -92,6 +94,7 @@ std::string printable(absl::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
+    // The control characters U+0080 to U+009F, in UTF-8 the byte C2 and one more.
     const bool c1 =
         c == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
     if (c == '\n' || c == '\r' || c == '\t') {

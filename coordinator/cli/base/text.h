@@ -1,6 +1,7 @@
 #pragma once
 
-// Formats numbers and text for display. UTF-8; pure functions.
+// Formats numbers and text for display. The functions are pure; text is UTF-8. Numbers, fractions
+// and times must not be negative.
 
 #include <cstdint>
 #include <string>
@@ -11,15 +12,15 @@
 
 namespace bandsaw::coordinator {
 
-/// Formats a number with two significant digits or as a whole number, with an SI prefix: "0",
-/// "950", "1.2 k", "5.2 M", "48 M".
+/// Formats a number with an SI prefix. A mantissa below 10 has one decimal, unless that is 0; any
+/// other is a whole number: "0", "950", "1.2 k", "5.2 M", "48 M".
 std::string si(double value);
 
 /// The same with a unit: "48 Msamples", "950 samples".
 std::string si_with(double value, absl::string_view unit);
 
-/// Formats a time as minutes and seconds, with hours if there are any: "1:05", "1:02:03". Rounded
-/// up, so that 0:00 means finished.
+/// Formats a time as minutes and seconds, with hours if there are any: "1:05", "1:02:03". It is
+/// rounded up to a second, so that a remaining time of 0:00 means finished.
 std::string clock_time(double seconds);
 
 /// Formats a time with its units: "0.42 s", "21.4 s", "3 min 20 s", "2 h 5 min".
@@ -31,21 +32,22 @@ std::string percent(double fraction);
 /// Describes the stop rule of a job: "64 samples", "error ≤ 1 %", "2 min".
 std::string stop_text(const StopRule& stop);
 
-/// Makes text from other sources safe for a terminal: control characters become '?', line ends
-/// become spaces.
+/// Makes text that another program or user chose safe for a terminal: control characters become
+/// '?'; line ends and tabs become spaces.
 std::string printable(absl::string_view text);
 
 /// Joins names, each safe for a terminal: "cornell.png, cornell.pfm".
 std::string printable_list(const std::vector<std::string>& names);
 
-/// Returns the number of terminal columns, counting one per code point.
+/// Returns the number of columns of a terminal that the text takes, one for each code point.
 std::size_t columns(absl::string_view text);
 
 /// Truncates the text to at most `width` columns; the last column is '…' if text was removed.
 std::string fit(absl::string_view text, std::size_t width);
 
-/// Pad the text with spaces after (or before) it to `width` columns.
+/// Adds spaces after the text up to `width` columns. A longer text is returned unchanged.
 std::string pad_right(absl::string_view text, std::size_t width);
+/// The same with the spaces before the text.
 std::string pad_left(absl::string_view text, std::size_t width);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,7 @@
 #pragma once
 
-// Calls a function periodically from a thread of its own until destroyed.
+// Calls a function periodically from a thread of its own until it is destroyed. `render`, `submit`
+// and `watch` use it to show the image while it forms.
 
 #include <chrono>
 #include <functional>
