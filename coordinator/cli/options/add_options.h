@@ -1,7 +1,8 @@
 #pragma once
 
-// Adds the options of the commands to the parser. They are parsed into RawOptions, from which
-// cli/options/checked_options.h and the functions below make checked options.
+// The functions add_X() add the options of command X to the parser (CLI11), which stores their
+// texts in RawOptions. The functions checked_X(), here and in cli/options/checked_options.h,
+// convert these texts to checked options. cli/command_line.cpp calls both.
 
 #include <CLI/CLI.hpp>
 
@@ -9,13 +10,14 @@
 
 namespace bandsaw::coordinator {
 
-// Options shared by several commands.
+// Options that several commands have: --data; --keep-days, --keep-size and --keep-jobs; --farm;
+// --json and, if `can_be_quiet`, --quiet.
 void add_data(CLI::App& app, RawOptions& raw);
 void add_keep(CLI::App& app, RawOptions& raw);
 void add_farm(CLI::App& app, RawOptions& raw);
 void add_verbosity(CLI::App& app, RawOptions& raw, bool can_be_quiet = true);
 
-// Administration (admin_options.cpp). Here and below, each function adds a command's options.
+// Commands that control a farm and its machines (admin_options.cpp).
 void add_serve(CLI::App& app, RawOptions& raw);
 void add_logs(CLI::App& app, RawOptions& raw);
 void add_quarantine(CLI::App& app, RawOptions& raw);
@@ -32,14 +34,15 @@ void add_import(CLI::App& app, RawOptions& raw);
 void add_stitch(CLI::App& app, RawOptions& raw);
 void add_compare(CLI::App& app, RawOptions& raw);
 
-// Workers on other machines (machines/invite_options.cpp). The checks return INVALID_ARGUMENT if an
-// option is wrong or missing.
+// Commands for workers on other machines (machines/invite_options.cpp). The checks return
+// INVALID_ARGUMENT if an option is wrong or missing.
 void add_invite(CLI::App& app, RawOptions& raw);
 void add_dismiss(CLI::App& app, RawOptions& raw);
 absl::StatusOr<Command> checked_invite(const RawOptions& raw);
 absl::StatusOr<Command> checked_dismiss(const RawOptions& raw);
 
-// Studies (study/study_options.cpp). The check returns INVALID_ARGUMENT if an option is wrong.
+// The command that measures error against time (study/study_options.cpp). The check returns
+// INVALID_ARGUMENT if an option is wrong.
 void add_study(CLI::App& app, RawOptions& raw);
 absl::StatusOr<Command> checked_study(const RawOptions& raw);
 

@@ -1,4 +1,6 @@
-// Checks the options of administration commands.
+// Checks the options of the commands that control a farm and its machines, and those of `serve`
+// that have a check of their own. Each checked_X() converts the texts that the user typed to the
+// plain values of command X, or returns INVALID_ARGUMENT.
 
 #include <algorithm>
 
@@ -40,7 +42,7 @@ absl::StatusOr<double> checked_share(const std::string& option,
   if (!text) {
     return standard;
   }
-  return *text == "0%" ? 0 : parse_percent(option, *text);
+  return *text == "0%" ? 0 : parse_percent(option, *text);  // parse_percent() refuses 0
 }
 
 absl::StatusOr<Browsers> checked_browsers(const RawOptions& raw) {

@@ -1,4 +1,5 @@
-// Checks the options of commands that control a job.
+// Checks the options of commands that control a job. Each checked_X() converts the texts that the
+// user typed to the plain values of command X, or returns INVALID_ARGUMENT.
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -8,6 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Checks what all these commands have: the job's number, the farm and the form of the output.
 template <class Options>
 absl::StatusOr<Options> checked(const RawOptions& raw, const std::string& command) {
   Options options;

@@ -1,5 +1,6 @@
-// Each checked_X() converts the options of command X, as typed, to its plain values, and returns
-// the first error. The functions before them check options that several commands have.
+// Each checked_X() converts the options of command X from the texts that the user typed
+// (RawOptions) to plain values, or returns the first error as INVALID_ARGUMENT. The functions
+// before them check options that several commands have.
 
 #include "coordinator/cli/options/checked_options.h"
 
@@ -24,6 +25,8 @@ namespace {
 
 absl::Status wrong(const std::string& message) { return absl::InvalidArgumentError(message); }
 
+/// Checks that the suffix of each output names an image format. `parts_allowed`: .band files, which
+/// have the sums of some rows (render --rows), are allowed as well.
 absl::Status check_outputs(const std::vector<std::string>& outputs, bool parts_allowed) {
   for (const std::string& output : outputs) {
     if (parts_allowed && is_part_name(output)) {
@@ -38,6 +41,7 @@ absl::Status check_outputs(const std::vector<std::string>& outputs, bool parts_a
   return absl::OkStatus();
 }
 
+/// Returns the rule that ends the job: --samples, --error or --time; 64 samples if none is given.
 absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
   if (raw.samples.has_value() + raw.error.has_value() + raw.time.has_value() > 1) {
     return wrong("--samples, --error and --time exclude each other: give one");
@@ -62,6 +66,8 @@ absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
   return ImageOptions().stop;
 }
 
+/// Reads a number above 0 into `value`, which is unchanged without `text`. With the bound 1e9, a
+/// size in GB fits into 64 bits as bytes.
 absl::Status read_positive(const char* name, const std::optional<std::string>& text,
                            double& value) {
   if (text && (!absl::SimpleAtod(*text, &value) || !(value > 0 && value < 1e9))) {
@@ -70,6 +76,7 @@ absl::Status read_positive(const char* name, const std::optional<std::string>& t
   return absl::OkStatus();
 }
 
+/// Reads --frame, --fps and --shutter. They determine at which time a scene that moves is rendered.
 absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
   if (raw.frame && raw.frames) {
     return wrong("--frame and --frames exclude each other");
@@ -78,7 +85,8 @@ absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
     return wrong("--fixed-seed needs --frame or --frames");
   }
   if (raw.frame) {
-    constexpr std::int64_t kMaxFrame = 1'000'000'000;
+    constexpr std::int64_t kMaxFrame =
+        1'000'000'000;  // as kMaxFrameNumber of scheduler/api/frame_numbers.h
     std::int64_t frame = 0;
     if (!absl::SimpleAtoi(*raw.frame, &frame) || std::abs(frame) > kMaxFrame) {
       return wrong(absl::StrCat("--frame: must be a whole number, is '", *raw.frame, "'"));
@@ -102,6 +110,7 @@ absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
   return read("--shutter", raw.shutter, 0, 1, choices.shutter);
 }
 
+/// Returns the options that override the scene, such as --camera and --frame.
 absl::StatusOr<SceneChoices> checked_choices(const RawOptions& raw) {
   for (const std::string& parameter : raw.parameters) {
     const std::size_t equals = parameter.find('=');
@@ -116,7 +125,7 @@ absl::StatusOr<SceneChoices> checked_choices(const RawOptions& raw) {
   return choices;
 }
 
-/// Writes the number of the frame into the names of the outputs.
+/// With --frame, replaces #### in the names of the outputs by the number of the frame.
 void number_outputs(const SceneChoices& choices, std::vector<std::string>& outputs) {
   for (std::string& output : outputs) {
     output = choices.frame ? name_of_frame(output, *choices.frame) : output;
@@ -162,6 +171,7 @@ absl::StatusOr<DisplayOptions> checked_display(const RawOptions& raw) {
   return display;
 }
 
+/// Checks that a scene is given. `command` and `example` are used in the error.
 absl::Status check_scene(const RawOptions& raw, const std::string& command,
                          const std::string& example = "cornell.textproto") {
   if (raw.scene.empty()) {
@@ -302,7 +312,8 @@ absl::StatusOr<Denoiser> checked_denoise(const RawOptions& raw) {
   return raw.denoise == "oidn" ? Denoiser::kOidn : Denoiser::kRegression;
 }
 
-/// Reads the frames of a submit, and the files and commands for the end of the job.
+/// Reads the options of `submit` for a sequence (a job of many frames): --frames, --continue, and
+/// those that take effect when the job is over. Checks that options for single images are absent.
 absl::Status read_sequence(const RawOptions& raw, SubmitOptions& options) {
   ASSIGN_OR_RETURN(options.frames, checked_frames(raw));
   ASSIGN_OR_RETURN(options.after, checked_after(raw));

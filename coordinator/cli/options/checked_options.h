@@ -1,7 +1,8 @@
 #pragma once
 
-// Options as typed, and the checks that convert them to a command's options. All errors are
-// INVALID_ARGUMENT.
+// RawOptions has the options as the user typed them. The functions checked_X() check those of
+// command X and convert them to its plain values (cli/options/options.h). All errors are
+// INVALID_ARGUMENT, with a message for the user.
 
 #include <optional>
 #include <string>
@@ -12,7 +13,8 @@
 
 namespace bandsaw::coordinator {
 
-/// The union of all commands' options, unparsed.
+/// The texts of the options of all commands; a command uses some of the fields. A string that is
+/// empty, an optional without a value, an empty list or false: the option was not given.
 struct RawOptions {
   std::string scene, environment, camera, animation, image, reference, data, farm, join;
   std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size,
@@ -56,29 +58,32 @@ absl::StatusOr<Command> checked_import(const RawOptions& raw);
 absl::StatusOr<Command> checked_stitch(const RawOptions& raw);
 absl::StatusOr<Command> checked_compare(const RawOptions& raw);
 
-// Parts of several commands.
+// The following functions check options that several commands have.
+
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
-/// `has_images`: false if the command writes no image, so that there is nothing to report.
+/// `has_images`: false if the command writes no image; then --report is an error.
 absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
-/// Returns HOST:PORT of a viewer; empty: not given.
+/// Returns HOST:PORT of --tev, the viewer that shows the image as it forms; empty: not given.
 absl::StatusOr<std::string> checked_tev(const RawOptions& raw);
 /// Returns the frames of --frames; none: not given.
 absl::StatusOr<std::vector<FrameNumber>> checked_frames(const RawOptions& raw);
-/// Checks the files and commands for the end of a job.
+/// Checks the options that take effect when a job is over: --video, --contact-sheet and --then.
 absl::StatusOr<AfterOptions> checked_after(const RawOptions& raw);
-/// Checks that the names of outputs have a place for the number of a frame.
+/// Checks that each name has a place for the number of a frame: a run of '#'.
 absl::Status check_frame_places(const std::vector<std::string>& outputs);
-/// Checks for HOST:PORT. `option` and `example` are used in the error.
+/// Checks that `address` is HOST:PORT. `option` and `example` are used in the error.
 absl::Status check_address(const std::string& option, const std::string& address,
                            const std::string& example);
-/// Returns a share of bands, [0, 1]; `standard` if none is given.
+/// Returns the share of the bands that are rendered twice, [0, 1], from a text such as "1%";
+/// `standard` if there is no text. A band (some rows of an image) is what a worker gets at once.
 absl::StatusOr<double> checked_share(const std::string& option,
                                      const std::optional<std::string>& text, double standard);
 absl::StatusOr<Browsers> checked_browsers(const RawOptions& raw);
-/// Returns the dashboard's address; empty: not given.
+/// Returns HOST:PORT of the dashboard, or "none"; empty: not given.
 absl::StatusOr<std::string> checked_web(const RawOptions& raw);
-/// `command` is used in the error.
+/// Returns the number of the job. `command` is used in the error.
 absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command);
+/// Returns the priority in `text`, [-kMaxPriority, kMaxPriority]. `name` is used in the error.
 absl::StatusOr<std::int32_t> checked_priority_value(const std::string& name,
                                                     const std::string& text);
 

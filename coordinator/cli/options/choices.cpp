@@ -1,5 +1,5 @@
-// The words of each option come from the names of the values themselves (tones, integrators,
-// kernels, …).
+// The words that an option accepts are the names that the code gives to its values (integrators,
+// tones, layers, kernels). The words of the other options are listed here.
 
 #include "coordinator/cli/options/choices.h"
 
@@ -17,6 +17,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns the names of the values 0 to `last` of an enumeration.
 template <class Kind>
 std::vector<std::string> names_of(int last, absl::string_view (*name)(Kind)) {
   std::vector<std::string> names;
@@ -49,7 +50,7 @@ std::vector<std::string> choices_of(const std::string& name) {
     return {"regression", "oidn"};
   }
   if (name == "--browsers") {
-    return {"none", "also", "only"};  // in the order of Browsers
+    return {"none", "also", "only"};  // in the order of the enumeration Browsers
   }
   if (name == "action") {
     return {"rotate"};

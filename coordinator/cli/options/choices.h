@@ -1,6 +1,7 @@
 #pragma once
 
-// Options that accept one of a few words: the words, for error messages, help and shell completion.
+// Some options accept one of a few words, such as --tone. These functions return the words and
+// check a typed one; error messages, help and shell completion use them.
 
 #include <optional>
 #include <string>
@@ -12,22 +13,24 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the words that an option ("--tone") or an argument ("role") accepts; empty: anything.
+/// Returns the words that an option ("--tone") or an argument ("role") accepts; empty: it accepts
+/// any text.
 std::vector<std::string> choices_of(const std::string& name);
 
-/// Returns the kernel that --kernel names; nullptr if the option is not given, which stands for the
-/// fastest. INVALID_ARGUMENT: this machine runs no kernel of that name.
+/// Returns the kernel (the renderer's code for one instruction set) that --kernel names; nullptr if
+/// the option is not given, which stands for the fastest. INVALID_ARGUMENT: there is no kernel of
+/// that name that this machine can run.
 absl::StatusOr<const Kernel*> chosen_kernel(const std::optional<std::string>& name);
 
-/// Parses a list such as "albedo,normal,depth,samples", each at most once. INVALID_ARGUMENT:
-/// unknown or repeated name.
+/// Parses the names of layers, such as "albedo,normal,depth,samples". INVALID_ARGUMENT: a name is
+/// unknown or repeated.
 absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list);
 
 /// Joins the words to a phrase: "none or filmic".
 std::string one_of(const std::vector<std::string>& words);
 
-/// INVALID_ARGUMENT: "--tone: must be none or filmic, is 'flimic'; did you mean filmic?" `called`
-/// is the name used in the message.
+/// Returns INVALID_ARGUMENT for a `text` that is none of choices_of(name): "--tone: must be none or
+/// filmic, is 'flimic'; did you mean filmic?" The message begins with `called`.
 absl::Status wrong_choice(const std::string& called, const std::string& name,
                           const std::string& text);
 inline absl::Status wrong_choice(const std::string& option, const std::string& text) {

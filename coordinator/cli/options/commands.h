@@ -1,6 +1,7 @@
 #pragma once
 
-// Entry points of the commands. They print their results and return the exit status.
+// The functions run() execute the commands: one for each type of options in the variant `Command`
+// (cli/options/options.h). Each prints its results and returns the exit status. main() calls them.
 
 #include "coordinator/cli/base/console.h"
 #include "coordinator/cli/base/exit_code.h"
@@ -9,7 +10,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Parts of the process that commands use.
+/// The output and the signals of this process, which commands use.
 struct Process {
   const Console& console;
   Interrupts& interrupts;

@@ -1,5 +1,5 @@
-// did_you_mean() returns the known word with the smallest edit distance, if that is at most a third
-// of the length of the word, and at least one edit is allowed.
+// did_you_mean() returns the known word with the smallest edit distance from the typed one. The
+// distance may be at most a third of the length of the typed word, but 1 is always allowed.
 
 #include "coordinator/cli/options/did_you_mean.h"
 
@@ -9,8 +9,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Returns the optimal string alignment distance (Damerau 1964, without repeated edits of one
-// place), by dynamic programming.
+// Returns the optimal string alignment distance by dynamic programming: the edit distance of
+// Damerau (1964), without two edits of the same place. d[i][j] is the distance between the first i
+// letters of a and the first j letters of b.
 std::size_t edits(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {
@@ -33,7 +34,7 @@ std::size_t edits(const std::string& a, const std::string& b) {
 
 std::optional<std::string> did_you_mean(const std::string& word,
                                         const std::vector<std::string>& known) {
-  constexpr std::size_t kMaxWord = 64;
+  constexpr std::size_t kMaxWord = 64;  // longer than all known words; bounds the time of edits()
   if (word.size() > kMaxWord) {
     return std::nullopt;
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Suggests a correction of a mistyped word.
+// Suggests a correction for a mistyped command, option or value.
 
 #include <optional>
 #include <string>
@@ -8,9 +8,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the known word with the smallest edit distance (insertion, deletion, substitution,
-/// transposition of neighbours) from `word`, if the distance is at most 1 or a third of the length
-/// of `word`; the first one on ties.
+/// Returns the word of `known` that has the smallest edit distance from `word`; the first of them
+/// if there are several. An edit inserts, deletes or replaces a letter, or swaps two neighbours.
+/// Returns std::nullopt if that distance is greater than both 1 and a third of the length of
+/// `word`, or if `word` is longer than 64 bytes.
 std::optional<std::string> did_you_mean(const std::string& word,
                                         const std::vector<std::string>& known);
 

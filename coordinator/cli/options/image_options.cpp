@@ -21,6 +21,7 @@ void add_report(CLI::App& app, RawOptions& raw) {
 
 constexpr char kPictures[] = ".png, .ppm, .pfm, .hdr or .exr";
 
+// Adds -o. `standard`: the end of the help text, which states the default.
 void add_output(CLI::App& app, RawOptions& raw, const std::string& formats,
                 const std::string& standard) {
   app.add_option("-o,--output", raw.outputs,
@@ -30,7 +31,7 @@ void add_output(CLI::App& app, RawOptions& raw, const std::string& formats,
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
-// Options of all commands that read a scene.
+// Adds the options of all commands that read a scene.
 void add_scene(CLI::App& app, RawOptions& raw) {
   app.add_option("scene", raw.scene,
                  "Scene file (.textproto, .json), scene of pbrt (.pbrt) or Mitsuba (.xml), model "
@@ -51,6 +52,7 @@ void add_scene(CLI::App& app, RawOptions& raw) {
       ->type_name("NAME");
 }
 
+// Adds the options of `submit` and `render` that determine the image.
 void add_image(CLI::App& app, RawOptions& raw) {
   add_scene(app, raw);
   app.add_option("--environment", raw.environment,
@@ -101,6 +103,7 @@ void add_integrator(CLI::App& app, RawOptions& raw) {
       ->type_name("I");
 }
 
+// Adds the options for writing pictures. `standard`: the default, for the help text.
 void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
   app.add_option(
          "--exposure", raw.exposure,
@@ -127,6 +130,7 @@ void add_layers(CLI::App& app, RawOptions& raw) {
       ->type_name("L,L,…");
 }
 
+// Adds the options that take effect when a job is over.
 void add_after(CLI::App& app, RawOptions& raw) {
   app.add_option("--video", raw.video,
                  "Video of the frames, made by ffmpeg: .mp4, .mov, .mkv or .webm; --fps sets its "
@@ -141,6 +145,7 @@ void add_after(CLI::App& app, RawOptions& raw) {
       ->type_name("COMMAND");
 }
 
+// Adds the options that show the image while it forms.
 void add_views(CLI::App& app, RawOptions& raw) {
   app.add_flag("--preview", raw.preview,
                "Draw the image on the terminal while it forms, in half blocks of 24-bit colours");

@@ -1,6 +1,8 @@
 #pragma once
 
-// The checked options of each command, as plain values.
+// The checked options of each command, as plain values. The functions in
+// cli/options/checked_options.h make them from the command line; each run() of
+// cli/options/commands.h takes one type. The project's terms are in proto/README.md, Glossary.
 
 #include <cstdint>
 #include <optional>
@@ -28,69 +30,76 @@ struct Verbosity {
   bool preview = false;  ///< the image as it forms, on a terminal with colours
 };
 
-/// All settings besides the scene that determine an image; unset: not given.
+/// All settings besides the scene that determine an image. An unset value is taken from the scene.
 struct ImageOptions {
   StopRule stop = StopAtSamples{64};
   std::uint64_t seed = 0;
-  std::optional<std::uint32_t> width;   ///< alone: the height keeps the scene's aspect ratio
-  std::optional<std::uint32_t> height;  ///< alone: the width keeps the scene's aspect ratio
-  std::optional<std::uint32_t> depth;
+  /// In pixels. If only one of the two is set, the other keeps the scene's aspect ratio.
+  std::optional<std::uint32_t> width;
+  std::optional<std::uint32_t> height;
+  std::optional<std::uint32_t> depth;  ///< maximum number of scatterings of a path
   std::optional<Integrator> integrator;
   SceneChoices choices;
   bool fixed_seed = false;  ///< every frame has `seed`; otherwise frame N has seed + N
 };
 
-/// Files that are made, and the command that runs, when a job is over. Empty: not given.
+/// Files that are made, and the command that runs, when a job is over. An empty text: the option is
+/// not given.
 struct AfterOptions {
   std::string video;          ///< file for a video of the frames
   double video_fps = 24;      ///< frames per second of the video
-  std::string contact_sheet;  ///< file for a picture with all frames, small
-  std::string command;        ///< for sh
+  std::string contact_sheet;  ///< file for one picture that shows all frames, each reduced
+  std::string command;        ///< text that is run by sh (--then)
 };
 
-/// Settings for writing pictures; unset: not given.
+/// Settings for writing pictures; an unset value is taken from the scene.
 struct DisplayOptions {
-  std::optional<double> exposure;  ///< stops
+  std::optional<double> exposure;  ///< in stops: the light is multiplied by 2^exposure
   std::optional<Tone> tone;
   bool half = false;  ///< EXR with 16 bits per channel
 
-  /// Takes unset values from `standard`.
+  /// Returns these settings, with `standard` where a value is unset.
   Display over(const Display& standard) const {
     return {exposure.value_or(standard.exposure), tone.value_or(standard.tone), half};
   }
 };
 
-/// The report, as given: a file, "none", or empty (beside each image).
+/// Where the report goes, as the user gave it: a file; "none": it is not written; empty: beside
+/// each image. The report is a JSON file that states an image's error, cost and settings.
 struct ReportOption {
   std::string file;
 };
 
-/// The farm, as given: a join string, a file, "-", or empty (then the environment and the default
-/// folder are used).
+/// The farm, as the user gave it: a join string (one line with the addresses of the farm and a
+/// secret), a file that has one, or "-" for standard input. Empty: the variable BANDSAW_FARM or the
+/// default data folder names the farm.
 struct FarmOption {
   std::string farm;
 };
 
 struct ServeOptions {
-  std::string data;  ///< empty: the default data folder
-  std::string listen = "0.0.0.0:7878";
-  std::string web;  ///< HOST:PORT of the dashboard; "none"; empty: loopback, on a free port
-  bool insecure = false;
-  bool reflection = false;
+  std::string data;                     ///< empty: the default data folder
+  std::string listen = "0.0.0.0:7878";  ///< HOST:PORT for workers and users
+  /// HOST:PORT of the dashboard, or "none"; empty: 127.0.0.1:8787, or a free port if that is taken.
+  std::string web;
+  bool insecure = false;             ///< connections are not encrypted
+  bool reflection = false;           ///< gRPC server reflection lists the calls to any client
   double keep_days = 30;             ///< maximum age of jobs that are over
   double keep_gb = 100;              ///< maximum size of results and scenes
   std::uint64_t keep_jobs = 10'000;  ///< maximum number of jobs that are over
-  double audit_share = 0.01;         ///< share of the bands of native workers, [0, 1]
-  double browser_audit_share = 0.1;  ///< share of the bands of browsers, [0, 1]
+  /// Share of the bands of native workers that a second machine renders for comparison, [0, 1].
+  double audit_share = 0.01;
+  double browser_audit_share = 0.1;  ///< the same for the bands of browsers
   Browsers browsers = Browsers::kAlso;
 };
 
-/// Additional layers of an EXR file.
+/// Additional layers of an EXR file. kSamples: the number of samples of each pixel.
 enum class LayerKind { kAlbedo, kNormal, kDepth, kSamples };
-/// Their names, in the order of LayerKind.
+/// The names of the layers, in the order of LayerKind.
 inline constexpr const char* kLayerNames[] = {"albedo", "normal", "depth", "samples"};
 
-/// Method of the clean image, which is written beside the image as rendered; kNone: not made.
+/// Method by which the noise is removed. The image as rendered is written beside the clean image.
+/// kNone: no clean image is made.
 enum class Denoiser {
   kNone,
   kRegression,  ///< renderlib/denoise
@@ -110,7 +119,9 @@ struct SubmitOptions {
   std::int32_t priority = 0;        ///< [-kMaxPriority, kMaxPriority]
   std::vector<LayerKind> layers;    ///< layers of EXR files
   std::vector<FrameNumber> frames;  ///< ascending; empty: a single image
-  JobId continued = 0;  ///< sequence whose missing scenes are sent; 0: a new job is started
+  /// Sequence (job of many frames) for which the scenes that the farm lacks are sent; 0: a new job
+  /// is started.
+  JobId continued = 0;
   AfterOptions after;
   Denoiser denoise = Denoiser::kNone;
 };
@@ -182,8 +193,8 @@ struct LogsOptions {
 };
 
 struct QuarantineOptions {
-  std::string worker;
-  bool lift = false;
+  std::string worker;  ///< name of the worker whose machine gets no more work
+  bool lift = false;   ///< end the quarantine instead
   FarmOption farm;
   Verbosity verbosity;
 };
@@ -191,23 +202,28 @@ struct QuarantineOptions {
 struct DoctorOptions {
   std::string data;                     ///< empty: the default data folder
   std::string listen = "0.0.0.0:7878";  ///< address to test for a coordinator on this machine
-  FarmOption farm;                      ///< users' or workers' join string
+  FarmOption farm;                      ///< here also a join string of workers is allowed
   Verbosity verbosity;
 };
 
+/// `bandsaw secret rotate`: makes a new secret, which invalidates the old one.
 struct RotateOptions {
-  link::Role role = link::Role::kWorker;
-  std::string data;  ///< empty: the default data folder
+  link::Role role = link::Role::kWorker;  ///< whose secret
+  std::string data;                       ///< empty: the default data folder
   Verbosity verbosity;
 };
 
+/// The link by which browsers join as workers.
 struct LinkOptions {
-  std::optional<double> seconds;  ///< the link ends after this time; std::nullopt: as it is
-  bool revoke = false;
+  /// The link ends after this time from now; std::nullopt: its end is not changed, and a new link
+  /// ends after 8 hours.
+  std::optional<double> seconds;
+  bool revoke = false;  ///< end the link now and disconnect its browsers
   FarmOption farm;
   Verbosity verbosity;
 };
 
+/// Installs and starts workers on other machines by ssh.
 struct InviteOptions {
   std::vector<std::string> hosts;  ///< as ssh takes them; at least one
   std::string join;      ///< workers' join string or its file; empty: from the data folder
@@ -216,6 +232,7 @@ struct InviteOptions {
   Verbosity verbosity;
 };
 
+/// Stops and removes workers that `invite` has started.
 struct DismissOptions {
   std::vector<std::string> hosts;  ///< as ssh takes them; at least one
   double drain_s = 60;             ///< maximum time for a worker to finish its bands
@@ -239,7 +256,7 @@ struct RenderOptions {
   Verbosity verbosity;
   int threads = 0;                 ///< 0: one for each CPU
   const Kernel* kernel = nullptr;  ///< nullptr: the fastest that this machine can run
-  std::optional<RowRange> rows;    ///< only these rows
+  std::optional<RowRange> rows;    ///< only these rows are rendered; std::nullopt: all
   std::vector<LayerKind> layers;   ///< layers of EXR files
   Denoiser denoise = Denoiser::kNone;
 };
@@ -258,8 +275,9 @@ struct ImportOptions {
   Verbosity verbosity;
 };
 
+/// Joins parts of an image that were rendered by `render --rows`.
 struct StitchOptions {
-  std::vector<std::string> parts;
+  std::vector<std::string> parts;  ///< .band files
   std::vector<std::string> outputs;
   DisplayOptions display;
   ReportOption report;
@@ -278,16 +296,16 @@ struct StudyOptions {
   std::vector<std::string> outputs = {"study.csv", "study.svg"};
   std::uint64_t samples = 64;      ///< maximum samples per pixel, [4, 65536]
   std::uint64_t seeds = 4;         ///< number of seeds to average over
-  std::uint64_t reference = 1024;  ///< samples per pixel of the reference
+  std::uint64_t reference = 1024;  ///< samples per pixel of the image that errors are measured from
   std::uint64_t seed = 0;          ///< first seed
   std::uint32_t width = 96;        ///< pixels; the height keeps the scene's aspect ratio
   int threads = 0;                 ///< 0: one for each CPU
-  bool every_object = false;       ///< also measure without BVHs
-  bool denoise = false;            ///< also measure clean images
+  bool every_object = false;       ///< also measure without a BVH, which tests every object
+  bool denoise = false;            ///< measure clean images instead of the techniques
   Verbosity verbosity;
 };
 
-/// --help and --version: print a text and exit.
+/// --help, --version and the command `completion` print a text and exit.
 struct ShowText {
   std::string text;
 };

@@ -1,5 +1,7 @@
 #pragma once
 
+// Names of the files that commands write: their defaults, and the place for the number of a frame.
+
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -9,20 +11,21 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns true if the name ends in .band (any case): a file with the sums of some rows instead of
-/// a picture.
+/// Returns true if the name ends in .band (any case). Such a file is no picture: it has the sums of
+/// the samples of some rows (`render --rows`), which `stitch` joins.
 inline bool is_part_name(const std::string& path) {
   return absl::EndsWithIgnoreCase(path, ".band");
 }
 
-/// Returns the default file name: the scene's stem in the current folder. From
-/// "scenes/cornell.textproto" and ".png" follows "cornell.png".
+/// Returns the default name of an output in the current folder, made of the scene's name and the
+/// suffix: "scenes/cornell.textproto", ".png" -> "cornell.png".
 inline std::string default_output(const std::string& scene, const std::string& suffix) {
   return std::filesystem::path(scene).stem().string() + suffix;
 }
 
-/// Replaces the last run of '#' in the name of the file by the number of a frame, with zeros in
-/// front: "walk.####.exr", 7 -> "walk.0007.exr". Unchanged without '#'.
+/// Replaces the last run of '#' in the name of the file (not of its folder) by the number of a
+/// frame, with zeros in front: "walk.####.exr", 7 -> "walk.0007.exr". A longer number is not cut.
+/// A name without '#' is returned unchanged.
 inline std::string name_of_frame(const std::string& path, std::int64_t frame) {
   const std::size_t last = path.rfind('#');
   const std::size_t folder = path.rfind('/');

@@ -1,4 +1,5 @@
-// Each parser accepts only plain decimal digits and the units that its error message names.
+// Parsers for numbers with units. Each accepts only plain decimal notation and the units that its
+// error message names.
 
 #include "coordinator/cli/options/quantities.h"
 
@@ -19,7 +20,8 @@ absl::Status must_be(const std::string& name, absl::string_view allowed, const s
       absl::StrCat(name, ": must be ", allowed, ", is '", found, "'"));
 }
 
-// Accepts plain decimal notation only: not "inf", "nan" or "0x10".
+// Accepts plain decimal notation only, neither "inf", "nan" nor "0x10". Returns false if the text
+// is anything else.
 bool parse_decimal(absl::string_view text, double& value) {
   return !text.empty() && text.find_first_not_of("0123456789.") == absl::string_view::npos &&
          absl::SimpleAtod(text, &value) && std::isfinite(value);
@@ -50,7 +52,7 @@ absl::StatusOr<double> parse_percent(const std::string& name, const std::string&
 
 absl::StatusOr<double> parse_seconds(const std::string& name, const std::string& text) {
   constexpr double kMin = 0.1;
-  constexpr double kMax = 30.0 * 24 * 3600;
+  constexpr double kMax = 30.0 * 24 * 3600;  // 30 days, the 720h of the message
   absl::string_view number = text;
   double unit = 1;
   if (absl::ConsumeSuffix(&number, "h")) {

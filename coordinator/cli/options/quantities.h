@@ -1,8 +1,8 @@
 #pragma once
 
-// Strict parsers for quantities given by the user: the whole text must match and be in range,
-// otherwise the error states the allowed values and the text found. `name` is the option's name,
-// for the error. All errors are INVALID_ARGUMENT.
+// Strict parsers for numbers with units that the user types. The whole text must match and be in
+// range; otherwise the error is INVALID_ARGUMENT and states the allowed values and the typed text.
+// `name` is the option's name, for the error.
 
 #include <cstdint>
 #include <optional>
@@ -17,7 +17,8 @@ namespace bandsaw::coordinator {
 absl::StatusOr<std::uint64_t> parse_whole(const std::string& name, const std::string& text,
                                           std::uint64_t least, std::uint64_t most);
 
-/// The same, stored in `value`, which is unchanged if `text` is std::nullopt.
+/// Parses a whole number in [least, most] into `value`, which is unchanged if `text` is
+/// std::nullopt.
 template <class T>
 absl::Status read_whole(const std::string& name, const std::optional<std::string>& text,
                         std::uint64_t least, std::uint64_t most, T& value) {
@@ -36,14 +37,14 @@ absl::Status read_whole(const std::string& name, const std::optional<std::string
   return text ? read_whole(name, text, least, most, value.emplace()) : absl::OkStatus();
 }
 
-/// Parses a percentage in (0, 100], "1%" or "0.5 %", as a fraction. The sign is required, because
-/// 0.01 alone would be ambiguous.
+/// Parses a percentage in (0, 100], such as "1%" or "0.5 %", and returns it as a fraction. The
+/// percent sign is required, because "0.01" alone could mean 1 % or 0.01 %.
 absl::StatusOr<double> parse_percent(const std::string& name, const std::string& text);
 
 /// Parses a time in [0.1 s, 30 days]: "5s", "2m", "1h", "1.5h", "90" (seconds). Returns seconds.
 absl::StatusOr<double> parse_seconds(const std::string& name, const std::string& text);
 
-/// Parses "y0:y1": rows [y0, y1), y0 < y1 <= 65536.
+/// Parses "y0:y1", the rows from y0 to y1 - 1, counted from the top; 0 <= y0 < y1 <= kMaxSide.
 absl::StatusOr<RowRange> parse_rows(const std::string& name, const std::string& text);
 
 }  // namespace bandsaw::coordinator

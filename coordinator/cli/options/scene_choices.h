@@ -1,5 +1,8 @@
 #pragma once
 
+// What a user chooses about a scene on the command line; the importer (cli/scene/import_process.h)
+// applies it.
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,7 +10,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Choices of the user that override the scene; empty: as in the scene.
+/// Choices of the user that override the scene. An empty or unset field: as in the scene.
 struct SceneChoices {
   std::string environment = {};  ///< image file that becomes the background; may be in any folder
   std::string camera = {};       ///< name of a camera of one of the scene's models
@@ -17,7 +20,7 @@ struct SceneChoices {
   /// For a Mitsuba scene: a folder that contains the scene's folder and all files of the scene.
   /// Empty: the scene's folder.
   std::string folder = {};
-  /// In a zip file, the name of the scene. Empty: the only one (scene/unpacked_scene.h).
+  /// Name of the scene in a zip file. Empty: the only one, as import_in_process() finds it.
   std::string inside = {};
   std::optional<std::int64_t> frame = {};  ///< number of a frame; its time is frame / fps
   std::optional<double> fps = {};          ///< frames per second, [0.01, 10000]
