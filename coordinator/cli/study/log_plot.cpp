@@ -1,5 +1,5 @@
-// A Panel draws axes, grid, lines and legend of one diagram as SVG elements; svg_of() arranges the
-// panels.
+// A Panel draws axes, grid, lines and legend of one diagram as SVG elements. svg_of() arranges the
+// panels in rows of two.
 
 #include "coordinator/cli/study/log_plot.h"
 
@@ -32,14 +32,17 @@ std::string escaped(const std::string& text) {
   return absl::StrReplaceAll(text, {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}});
 }
 
+/// A logarithmic axis from 10^first to 10^last.
 struct Axis {
-  int first = 0;  ///< exponent of ten
+  int first = 0;
   int last = 1;
 
-  /// Returns the position along the axis, in [0, 1].
+  /// Returns the position of `value` along the axis, in [0, 1].
   double place(double value) const { return (std::log10(value) - first) / (last - first); }
 };
 
+/// Returns the shortest axis of whole decades that has the coordinates of all points in all panels.
+/// `of` returns the coordinate of a point.
 template <class Of>
 Axis axis_over(const Plot& plot, Of of) {
   double least = 1e300;
@@ -61,6 +64,7 @@ Axis axis_over(const Plot& plot, Of of) {
   return {first, std::max(first + 1, static_cast<int>(std::ceil(std::log10(most))))};
 }
 
+/// Draws one diagram at its place in the file. `number`: its index in the plot.
 class Panel {
  public:
   Panel(const Plot& plot, const Axis& x, const Axis& y, std::size_t number)
@@ -115,6 +119,7 @@ class Panel {
     return out;
   }
 
+  /// Returns the text of 10^power: "0.01", or "10⁻⁵" where that is shorter.
   static std::string number(int power) {
     if (power >= -4 && power <= 4) {
       return absl::StrFormat("%g", std::pow(10.0, power));
@@ -128,8 +133,8 @@ class Panel {
     return out;
   }
 
-  /// Returns true if the legend goes to the top left: rising lines leave space there, falling lines
-  /// at the bottom left.
+  /// Returns true if the legend goes to the top left, false if it goes to the bottom left: wherever
+  /// fewer points of the left 40 % of the diagram are.
   bool names_on_top() const {
     int below = 0;
     for (const PlotLine& line : panel_.lines) {

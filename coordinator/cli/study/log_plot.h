@@ -1,7 +1,7 @@
 #pragma once
 
-// Plots lines in panels with logarithmic axes, as SVG, which is small, scalable and can be read in
-// a review. No scripts, no fonts, no other files.
+// Plots lines in panels with logarithmic axes, for `bandsaw study`. The result is an SVG file,
+// which is small, scalable and readable as text. It needs no scripts, fonts or other files.
 
 #include <string>
 #include <utility>
@@ -11,11 +11,12 @@ namespace bandsaw::coordinator {
 
 struct PlotLine {
   std::string name;
-  std::string note;  ///< shown after the name in the legend: "n^-0.52"
+  std::string note;  ///< shown after the name in the legend, such as "n^-0.52"; may be empty
   /// (x, y); points with a coordinate <= 0 are omitted.
   std::vector<std::pair<double, double>> points;
 };
 
+/// One diagram. All panels of a plot have the same axes.
 struct PlotPanel {
   std::string title;
   /// The n-th line has the same colour in each panel.
@@ -28,7 +29,7 @@ struct Plot {
   std::vector<PlotPanel> panels;  ///< arranged in rows of two
 };
 
-/// Returns the whole file. Names may contain any text; it is escaped.
+/// Returns the text of the SVG file. Names may contain any text; it is escaped.
 std::string svg_of(const Plot& plot);
 
 }  // namespace bandsaw::coordinator

@@ -1,4 +1,5 @@
-// bandsaw study: measures error against cost, with and without each technique.
+// The command `bandsaw study`: measures the error of images against their cost, with and without
+// each technique of the renderer.
 
 #include <algorithm>
 #include <atomic>
@@ -19,6 +20,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// A scene that is imported, and the settings to render it.
 struct Prepared {
   std::string name;
   RenderSettings settings;
@@ -48,6 +50,7 @@ absl::StatusOr<std::vector<Prepared>> prepare(const StudyOptions& options, Proce
   return out;
 }
 
+/// Runs the study of each scene, one after the other.
 absl::StatusOr<std::vector<StudyOfScene>> studied(const StudyOptions& options,
                                                   std::vector<Prepared> scenes, Process& process,
                                                   const std::atomic<bool>& stop) {

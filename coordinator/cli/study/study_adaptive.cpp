@@ -1,5 +1,6 @@
-// render_adaptively() renders a pilot pass uniformly, plans the tiles from its errors, and then
-// takes passes until the mean number of samples per pixel is as large as requested.
+// render_adaptively() first renders a pilot, in which every pixel gets the same number of samples.
+// From its errors it plans how many samples each half tile gets (half of the pixels of a square of
+// 16 x 16). Then it renders passes until the mean number of samples per pixel is as requested.
 
 #include "coordinator/cli/study/study_adaptive.h"
 
@@ -15,12 +16,15 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// The image as it forms: the film (sums of all pixels), the number of samples and of rays.
 class AdaptiveRender {
  public:
   AdaptiveRender(const Scene& scene, const RenderSettings& settings, Pool& pool,
                  const std::atomic<bool>& stop, Film film)
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop), film_(std::move(film)) {}
 
+  /// Renders a range of samples of the whole image and adds it to the film, some rows at a time.
+  /// `tiles`: the samples of each half tile; empty: all pixels have the same.
   absl::Status take(const SampleRange& pass, const TileSamples& tiles) {
     const auto most =
         static_cast<std::uint32_t>(std::max<std::uint64_t>(1, kBandPixels / settings_.width));
@@ -36,6 +40,7 @@ class AdaptiveRender {
                     (static_cast<double>(settings_.width) * settings_.height);
     return absl::OkStatus();
   }
+  /// Returns the mean number of samples per pixel so far.
   double samples() const { return out_.samples; }
   const Film& film() const { return film_; }
   AdaptiveImage result() {

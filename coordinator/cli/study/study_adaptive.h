@@ -1,7 +1,7 @@
 #pragma once
 
-// Renders an adaptive image with about a given number of samples per pixel: like `--error E
-// --adaptive`, for a study with a fixed number of samples.
+// Renders an adaptive image for `bandsaw study`. It takes samples as a job with `--error E
+// --adaptive` does, but stops at a mean number of samples per pixel instead of an error.
 
 #include <atomic>
 #include <cstdint>
@@ -18,10 +18,11 @@ struct AdaptiveImage {
   Image image;
   /// Samples per pixel, on average: the requested number or slightly more.
   double samples = 0;
-  double rays = 0;
+  double rays = 0;  ///< number of all rays
 };
 
-/// The pilot pass takes a sixteenth of the samples, but at least 32. CANCELLED: `stop`;
+/// Renders with `samples` per pixel on average. The pilot, which gives every pixel the same number
+/// of samples, takes a sixteenth of them, but at least 32. CANCELLED: `stop` was set;
 /// RESOURCE_EXHAUSTED: out of memory.
 absl::StatusOr<AdaptiveImage> render_adaptively(const Scene& scene, const RenderSettings& settings,
                                                 std::uint64_t samples, Pool& pool,

@@ -14,18 +14,20 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// An estimated error is counted as right if it is within these multiples of the true one.
+/// An estimated error is counted as right if it is between these multiples of the true one.
 constexpr double kMinRatio = 0.7;
 constexpr double kMaxRatio = 1.5;
 
+/// Accumulates the gains (CleanPoint::gain) of all scenes at one number of samples.
 struct Gains {
-  double logarithms = 0;
-  double of_time = 0;
+  double logarithms = 0;  ///< sum of the logarithms of the gains, for their geometric mean
+  double of_time = 0;     ///< the same for the gains in equal time
   double least = 1e300;
   double least_of_time = 1e300;
-  std::string worst;
+  std::string worst;  ///< name of the scene with the least gain
   double count = 0;
 
+  /// A gain of 0 or below counts as 1e-9, so that its logarithm is finite.
   void add(const std::string& scene, const CleanPoint& point) {
     logarithms += std::log(std::max(1e-9, point.gain()));
     of_time += std::log(std::max(1e-9, point.gain_in_equal_time()));

@@ -1,5 +1,5 @@
-// Study renders one scene by each method with increasing numbers of samples. Seeds accumulates the
-// results over the seeds, and a power law is fitted to each line of results.
+// The class Study renders one scene by each method with increasing numbers of samples. The class
+// Seeds accumulates the results of several seeds. power_of() fits a power law to the results.
 
 #include "coordinator/cli/study/study_measure.h"
 
@@ -25,10 +25,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Fits a power law.
-
-/// Returns p of "y ~ x^p" by least squares in logarithms over the points with x, y > 0. Returns
-/// std::nullopt if they do not have at least two different x.
+/// Fits "y ~ x^p" to the points with x, y > 0, by least squares in logarithms, and returns p.
+/// Returns std::nullopt if these points do not have two different x. The bound 1e-12 is above the
+/// rounding errors of `spread`.
 inline std::optional<double> power_of(const std::vector<std::pair<double, double>>& points) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const auto& [at, value] : points) {
@@ -42,8 +41,10 @@ inline std::optional<double> power_of(const std::vector<std::pair<double, double
                                              : std::optional((n * xy - x * y) / spread);
 }
 
+// Any number that is larger than the number of seeds, so that the reference has a seed of its own.
 constexpr std::uint64_t kReferenceSeed = 0x5eed0fa1d;
 
+// Returns the mean over all pixels and channels.
 double mean_of(const Image& image) {
   double sum = 0;
   for (const Rgb& pixel : image.pixels) {
@@ -52,7 +53,7 @@ double mean_of(const Image& image) {
   return sum / (3 * static_cast<double>(image.pixels.size()));
 }
 
-/// Accumulates the results over the seeds.
+/// Accumulates the results of images that differ only in their seeds. `mean`: of the reference.
 class Seeds {
  public:
   Seeds(const Image& reference, double mean) : reference_(reference), mean_(mean) {}
@@ -76,6 +77,8 @@ class Seeds {
     out.relative_rmse = std::sqrt(sum_.relative_rmse / count_);
     out.relative_mse = sum_.relative_mse / count_;
     out.bias = sum_.bias / count_;
+    // The variance over the seeds, divided by count_ - 1, is the squared standard error of the
+    // mean.
     const double spread = bias_squares_ / count_ - out.bias * out.bias;
     out.bias_error = count_ > 1 ? std::sqrt(std::max(0.0, spread) / (count_ - 1)) : 0;
     out.cpu_s = sum_.cpu_s / count_;
@@ -91,6 +94,7 @@ class Seeds {
   StudyPoint sum_;
 };
 
+/// Returns the integrator that renders as the method requires. `standard`: that of kFull.
 Integrator integrator_of(Method method, Integrator standard) {
   switch (method) {
     case Method::kNoMis:
@@ -101,13 +105,14 @@ Integrator integrator_of(Method method, Integrator standard) {
       return Integrator::kPathPlain;
     case Method::kIndependent:
     case Method::kPixelStops:
-      // Each sample has its own seed, and each seed its own photon map.
+      // Each sample has a seed of its own, and each seed would need a photon map of its own.
       return standard == Integrator::kPath ? Integrator::kPathPlain : standard;
     default:
       return standard;
   }
 }
 
+/// Measures one scene. make_reference() MUST be called before the other functions.
 class Study {
  public:
   Study(const Scene& scene, const RenderSettings& settings, const StudyPlan& plan, Pool& pool,
@@ -126,7 +131,7 @@ class Study {
     return reference_error_.relative_rmse;
   }
 
-  /// Measures images as rendered and the same images clean.
+  /// Measures images as rendered and the same images with their noise removed.
   absl::Status with_clean(StudyOfScene& out) {
     StudyLine raw{Method::kFull, {}};
     StudyLine clean{Method::kClean, {}};
@@ -157,6 +162,7 @@ class Study {
     return absl::OkStatus();
   }
 
+  /// Measures a method at all numbers of samples. `scene`: the scene as the method needs it built.
   absl::StatusOr<StudyLine> line(Method method, const Scene& scene) {
     StudyLine line{method, {}};
     if (method == Method::kPixelStops) {
@@ -172,12 +178,13 @@ class Study {
     return line;
   }
 
-  /// Returns true if guiding or photon maps were used in a line so far.
+  /// Returns true if an image so far used path guiding or photon maps.
   bool guides() const { return guides_; }
 
  private:
-  static constexpr std::uint64_t kMinCleanSamples = 4;
+  static constexpr std::uint64_t kMinCleanSamples = 4;  // see check_cleanable
 
+  /// Renders one image, removes its noise, and adds both to the results.
   absl::Status add_both(std::uint64_t samples, std::uint64_t seed, Seeds& of_raw, Seeds& of_clean,
                         CleanPoint& point) {
     JobSpec spec;
@@ -216,6 +223,7 @@ class Study {
     return absl::OkStatus();
   }
 
+  /// Renders one image and adds it to the results.
   absl::Status add_image(Method method, const Scene& scene, std::uint64_t samples,
                          std::uint64_t seed, Seeds& seeds) {
     RenderSettings settings = settings_;
@@ -246,6 +254,7 @@ class Study {
     return absl::OkStatus();
   }
 
+  /// Measures kPixelStops: one point for each tolerance, instead of one for each number of samples.
   absl::StatusOr<StudyLine> pixel_stops() {
     std::vector<Seeds> seeds(std::size(kTolerances), Seeds(reference_, mean_));
     for (std::uint64_t seed = 0; seed < plan_.seeds; ++seed) {
@@ -255,8 +264,8 @@ class Study {
       const double start = process_cpu_seconds();
       ASSIGN_OR_RETURN(const StoppedImages stopped,
                        stop_by_pixels(scene_, settings, plan_.samples, pool_, stop_));
-      // All tolerances are evaluated on one set of samples; the cost is attributed by the samples
-      // that each used.
+      // All tolerances are evaluated on one set of samples. So the cost of each is the whole cost
+      // times the share of the samples that it used.
       const double cpu_s = process_cpu_seconds() - start;
       const auto all = static_cast<double>(plan_.samples);
       for (std::size_t i = 0; i < seeds.size(); ++i) {

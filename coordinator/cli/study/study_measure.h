@@ -1,8 +1,8 @@
 #pragma once
 
-// Measures error against cost: renders a scene with and without each technique that can be
-// disabled, with increasing numbers of samples and several seeds, and compares each image with a
-// converged reference that has another seed.
+// Measures error against cost for `bandsaw study`: renders a scene with and without each technique
+// that can be disabled, with increasing numbers of samples and several seeds. Each image is
+// compared with a converged reference image of another seed.
 
 #include <atomic>
 #include <cstdint>
@@ -19,42 +19,46 @@
 
 namespace bandsaw::coordinator {
 
-/// Technique with which the image is made. All except kPixelStops have the same expected value.
+/// How an image is rendered. All methods except kPixelStops and kClean have the same expected
+/// value.
 enum class Method {
   kFull,       ///< as in `bandsaw render`
   kNoGuiding,  ///< neither path guiding nor photon maps; only where kFull uses one of them
-  kNoMis,      ///< light sampling only, without MIS, for lights that have a pdf
+  kNoMis,      ///< light sampling without MIS: emission that it could reach is found by it alone
   kNoLights,   ///< BSDF sampling only: no next-event estimation
-  kAdaptive,   ///< samples distributed by noise, with about the same total
-  /// Independent random numbers instead of Owen-scrambled nets; neither guiding nor maps.
+  kAdaptive,   ///< more samples where there is more noise, with about the same total
+  /// Independent random numbers instead of Owen-scrambled nets; neither guiding nor photon maps.
   kIndependent,
-  /// As kIndependent; each pixel stops at the first multiple of 8 samples at which 1.96
-  /// standard errors of its mean are within a tolerance of it, as in many ray tracers. The result
-  /// is biased, because the samples determine their own number; the method is included to show the
-  /// amount of bias.
+  /// As kIndependent, but each pixel stops when 1.96 standard errors of its mean are at most a
+  /// given fraction of the mean; this is tested at multiples of 16 samples. Many ray tracers do so.
+  /// The result is biased, because the samples determine their own number. The method is included
+  /// to show the amount of bias.
   kPixelStops,
-  /// Same bits as kFull; each ray is tested against every object of the scene. Only if requested.
+  /// As kFull, but without a BVH: each ray is tested against every object of the scene. The pixels
+  /// have the same bits. Measured only if requested.
   kEveryObject,
-  /// kFull with its noise removed (renderlib/denoise). Biased. Only if requested.
+  /// As kFull, then the noise is removed (renderlib/denoise). Biased. Measured only if requested.
   kClean,
 };
 inline constexpr Method kMethods[] = {Method::kFull,      Method::kNoGuiding, Method::kNoMis,
                                       Method::kNoLights,  Method::kAdaptive,  Method::kIndependent,
                                       Method::kPixelStops};
+/// Returns the name that is shown in tables.
 const char* method_name(Method method);
 
-/// Means over the seeds.
+/// Results for one number of samples, as means over the seeds.
 struct StudyPoint {
   double samples = 0;        ///< per pixel
   double relative_rmse = 0;  ///< root of the mean square over the seeds
-  double relative_mse = 0;
+  double relative_mse = 0;   ///< relMSE (renderlib/compare/error_metrics.h)
   /// Relative bias: (mean of the image - mean of the reference) / mean of the reference.
   double bias = 0;
   double bias_error = 0;  ///< one standard error of bias over the seeds; 0: one seed
-  double cpu_s = 0;       ///< summed over threads
-  double rays = 0;
+  double cpu_s = 0;       ///< CPU seconds of an image, summed over threads
+  double rays = 0;        ///< number of rays of an image
 };
 
+/// The results of one method.
 struct StudyLine {
   Method method = Method::kFull;
   std::vector<StudyPoint> points;  ///< sorted by samples
@@ -68,8 +72,8 @@ struct StudyOfScene {
 };
 
 struct StudyPlan {
-  std::uint64_t samples = 64;  ///< maximum: 1, 4, 16, … up to this
-  std::uint64_t seeds = 4;
+  std::uint64_t samples = 64;      ///< maximum per pixel; study_samples() lists the smaller ones
+  std::uint64_t seeds = 4;         ///< number of images to average over
   std::uint64_t reference = 1024;  ///< samples per pixel of the reference
   /// Measure kFull and kClean, from 4 samples on, instead of kMethods.
   bool denoise = false;
@@ -87,19 +91,22 @@ std::vector<std::uint64_t> study_samples(std::uint64_t most);
 
 /// Runs the study of one scene. `settings.seed` is the first of the seeds. `doing` is called with a
 /// description of the next step. `every_object`: the same scene, built to test every object
-/// (Traversal::kBruteForce); may be nullptr. Errors: as render_image; CANCELLED.
+/// (Traversal::kBruteForce); nullptr: kEveryObject is not measured. Errors: those of render_image;
+/// CANCELLED: `stop` was set.
 absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& scene,
                                          const Scene* every_object, const RenderSettings& settings,
                                          const StudyPlan& plan, Pool& pool,
                                          const std::atomic<bool>& stop,
                                          const std::function<void(const std::string&)>& doing);
 
-/// Returns p of "error ~ samples^p" over the line's points; std::nullopt with fewer than two.
+/// Fits "relative RMSE ~ samples^p" to the line's points and returns p. Returns std::nullopt if
+/// there are fewer than two points.
 std::optional<double> slope_of(const StudyLine& line);
 
-/// Returns the CPU seconds until the error is 1 %, as predicted in a report
-/// (scheduler/api/error_curve.h). Returns std::nullopt for kPixelStops and kClean, whose errors do
-/// not depend on the number of samples alone.
+/// Returns the CPU seconds until the relative RMSE is 1 %, computed as for reports
+/// (cpu_s_until in scheduler/api/error_curve.h, which extrapolates). Returns std::nullopt if it
+/// cannot be computed, and for kPixelStops and kClean, whose errors have a bias that more samples
+/// do not reduce in the same way.
 std::optional<double> cpu_s_to_1_percent(const StudyLine& line);
 
 }  // namespace bandsaw::coordinator

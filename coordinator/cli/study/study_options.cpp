@@ -11,6 +11,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+// The largest numbers that --samples and --seeds accept.
 constexpr std::uint64_t kMaxStudySamples = 65'536;
 constexpr std::uint64_t kMaxSeeds = 1'000;
 

@@ -1,4 +1,4 @@
-// Checks and writes the files of a study: figures as CSV, the plot as SVG.
+// Checks and writes the files of `bandsaw study`: the data as CSV, the plot as SVG.
 
 #include "coordinator/cli/study/study_outputs.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Output files of a study: data (.csv) and a plot (.svg).
+// Checks and writes the files of `bandsaw study`: the data (.csv) and the plot (.svg).
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace bandsaw::coordinator {
 
-/// INVALID_ARGUMENT: a name has another suffix.
+/// Checks the names. INVALID_ARGUMENT: a name ends in neither .csv nor .svg.
 absl::Status check_study_outputs(const std::vector<std::string>& outputs);
 
 /// Checks that each file can be written, before any work is done.

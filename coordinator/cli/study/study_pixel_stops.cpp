@@ -1,5 +1,5 @@
-// Renders one sample per pixel and seed at a time, and keeps for each pixel and tolerance whether
-// it has stopped, and with which value.
+// stop_by_pixels() renders one sample of every pixel at a time. For each pixel and tolerance it
+// keeps whether the pixel has stopped, and with which value.
 
 #include "coordinator/cli/study/study_pixel_stops.h"
 
@@ -13,19 +13,22 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kLookEvery = 16;
-constexpr double kNinetyFivePercent = 1.96;  // standard errors
+constexpr std::uint64_t kLookEvery = 16;  // number of samples between two tests of a pixel
+// A normal distribution has 95 % of its values within this many standard deviations of its mean.
+constexpr double kNinetyFivePercent = 1.96;
 
 /// State of one pixel with one tolerance.
 struct Pixel {
-  std::uint64_t samples = 0;  ///< 0: not stopped
-  Rgb value;
+  std::uint64_t samples = 0;  ///< number of samples when it stopped; 0: it has not stopped
+  Rgb value;                  ///< mean of these samples
 };
 
+/// Sums over the samples of a pixel. A sample counts as the mean of its three channels.
 struct Moments {
   double sum = 0;
   double squares = 0;
 
+  /// Returns true if the error of the mean of the `n` samples is within the tolerance.
   bool within(double tolerance, double n) const {
     const double mean = sum / n;
     const double variance = std::max(0.0, (squares - n * mean * mean) / (n - 1));
@@ -33,6 +36,7 @@ struct Moments {
   }
 };
 
+/// `sums`: r, g, b of a pixel, summed over `n` samples.
 Rgb mean_of(const double* sums, double n) {
   return {static_cast<float>(sums[0] / n), static_cast<float>(sums[1] / n),
           static_cast<float>(sums[2] / n)};

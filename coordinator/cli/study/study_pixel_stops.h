@@ -1,7 +1,7 @@
 #pragma once
 
-// Renders independent samples as a sequence of images with one sample per pixel, and images in
-// which each pixel decides itself when to stop.
+// Two methods that the renderer itself does not use, for comparison in `bandsaw study`: samples of
+// independent random numbers, and images in which each pixel stops by its own estimated error.
 
 #include <array>
 #include <atomic>
@@ -16,8 +16,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Renders samples of random numbers that are independent: sample i of a pixel is the first sample
-/// of another seed, so each sample has an Owen scramble of its own.
+/// Renders samples whose random numbers are independent: the i-th sample of a pixel is the first
+/// sample of the i-th seed of a series, so each sample has an Owen scramble of its own.
 class IndependentSamples {
  public:
   /// All arguments MUST outlive the object.
@@ -25,7 +25,8 @@ class IndependentSamples {
                      const std::atomic<bool>& stop)
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop) {}
 
-  /// Renders the next sample of every pixel and returns its r, g, b. CANCELLED: `stop` was set.
+  /// Renders the next sample of every pixel. Returns r, g, b of all pixels, row by row from the
+  /// top. CANCELLED: `stop` was set.
   absl::StatusOr<std::vector<double>> next();
   /// Returns the mean of all samples rendered so far.
   Image mean() const;
@@ -41,19 +42,21 @@ class IndependentSamples {
   double rays_ = 0;
 };
 
-/// Tolerances: 1.96 standard errors of a pixel's mean must be within this fraction of it.
+/// The tolerances that are compared. A pixel stops when 1.96 standard errors of its mean (half of
+/// the 95 % confidence interval) are at most this fraction of the mean.
 inline constexpr std::array<double, 4> kTolerances = {0.4, 0.2, 0.1, 0.05};
 
+/// The images of all tolerances, made of the same samples.
 struct StoppedImages {
   std::array<Image, kTolerances.size()> images;
   std::array<double, kTolerances.size()> samples = {};  ///< per pixel, on average
-  /// Number of rays if every pixel took `most` samples.
+  /// Number of rays of all samples that were rendered: as if every pixel took `most` samples.
   double rays = 0;
 };
 
-/// Stops each pixel at the first multiple of 8 samples that satisfies the tolerance, or at `most`.
-/// This is the rule of Berkeley's CS184 course and of many ray tracers that follow it; it is
-/// applied to the mean of the channels. CANCELLED: `stop` was set.
+/// Stops each pixel at the first multiple of 16 samples that satisfies the tolerance, or at `most`
+/// samples. The error is that of the mean of the three channels. This is the rule of Berkeley's
+/// course CS184 and of many ray tracers that follow it. CANCELLED: `stop` was set.
 absl::StatusOr<StoppedImages> stop_by_pixels(const Scene& scene, const RenderSettings& settings,
                                              std::uint64_t most, Pool& pool,
                                              const std::atomic<bool>& stop);

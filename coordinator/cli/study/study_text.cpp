@@ -1,4 +1,4 @@
-// Writes a study as Markdown tables, as CSV, and as a plot.
+// Formats the results of `bandsaw study` as Markdown tables, as CSV and as a plot.
 
 #include "coordinator/cli/study/study_text.h"
 
@@ -10,6 +10,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns how the error falls with the number n of samples, such as "n^-0.52".
 std::string fall_text(const StudyLine& line) {
   const auto slope = slope_of(line);
   return slope ? absl::StrFormat("n^%.2f", *slope) : "–";
@@ -24,6 +25,8 @@ std::string percent_text(double fraction) { return absl::StrFormat("%.3g %%", 10
 /// Replaces bars, which would end a table's cell.
 std::string cell(const std::string& name) { return absl::StrReplaceAll(name, {{"|", "/"}}); }
 
+/// Returns the row of the first table for one method: its results at the largest number of samples,
+/// and its CPU time to 1 % error, also relative to that of the first method.
 std::string worth_row(const StudyOfScene& study, const StudyLine& line) {
   const StudyPoint& last = line.points.back();
   const auto needed = cpu_s_to_1_percent(line);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Formats the results of a study as tables, CSV and plot. Pure functions.
+// Formats the results of `bandsaw study` as tables, as CSV and as a plot. The functions are pure.
 
 #include <string>
 #include <vector>
@@ -10,11 +10,13 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns two tables in Markdown: the benefit of each technique, and the decrease of the error.
-/// Ends with a line end.
+/// Returns two tables in Markdown. The first compares the methods at the largest number of samples.
+/// The second shows for the first method how the error decreases with the number of samples. The
+/// text ends with a line end.
 std::string study_table(const std::vector<StudyOfScene>& studies);
 
-/// Returns one line per point (RFC 4180), fractions and seconds, with a header.
+/// Returns a header and a line for each point (CSV of RFC 4180). Errors are fractions; times are
+/// seconds.
 std::string study_csv(const std::vector<StudyOfScene>& studies);
 
 /// Returns a plot of the error against CPU seconds, one panel per scene.
