@@ -20,7 +20,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kNoLimit_s = 1e7;
+constexpr double kNoLimit_s = 1e7;  // about 116 days
 
 /// Returns the name of a new temporary file with these lines; empty: it could not be written.
 std::string write_list(const std::vector<std::string>& files) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Calls that outlast a restart of the coordinator.
+// Repeats a call to the farm while the farm cannot be reached, so that commands outlast a restart
+// of the coordinator.
 
 #include <chrono>
 #include <cstdint>
@@ -12,6 +13,7 @@
 
 namespace bandsaw::coordinator {
 
+/// Returns the status of a result that is a Status or a StatusOr.
 inline const absl::Status& status_of(const absl::Status& status) { return status; }
 template <class T>
 const absl::Status& status_of(const absl::StatusOr<T>& result) {
@@ -22,8 +24,9 @@ const absl::Status& status_of(const absl::StatusOr<T>& result) {
 inline constexpr double kMaxRetry_s = 60;
 inline constexpr std::chrono::milliseconds kUnreachablePause{200};
 
-/// Repeats `call`, which returns a Status or a StatusOr, while the farm cannot be reached, for at
-/// most kMaxRetry_s. Returns the last result. (gRPC reconnects only while a client waits for it.)
+/// Repeats `call`, which returns a Status or a StatusOr, while its result is UNAVAILABLE: the farm
+/// cannot be reached. Gives up after kMaxRetry_s, or when client.stop() is called. Returns the last
+/// result. wait_for_farm() is needed because gRPC reconnects only while a client waits for it.
 template <class Call>
 auto call_with_retries(FarmClient& client, Call call) {
   const double until = steady_seconds() + kMaxRetry_s;

@@ -33,7 +33,8 @@ farm::SubmitRequest request_of(const JobSpec& spec, const std::string& manifest,
   return request;
 }
 
-/// Submits a job that a clean image needs. A farm that has it already returns that one.
+/// Submits a job that the clean image needs. The farm recognises a job that it already has by the
+/// request id, and returns the id of that job. FAILED_PRECONDITION: the scene is gone.
 absl::StatusOr<JobId> submit(FarmClient& client, const JobSpec& spec, std::int32_t priority) {
   ASSIGN_OR_RETURN(const wire::Digest manifest, wire::digest_from_hex(spec.manifest));
   const farm::SubmitRequest request = request_of(spec, manifest.raw(), priority);
@@ -45,7 +46,7 @@ absl::StatusOr<JobId> submit(FarmClient& client, const JobSpec& spec, std::int32
              : std::move(job);
 }
 
-/// Renders the images of jobs on a farm.
+/// Renders images on a farm: submits all jobs, then fetches one image after the other.
 class FarmRenderer {
  public:
   FarmRenderer(FarmClient& client, std::int32_t priority, ProgressDisplay& display)
@@ -66,9 +67,9 @@ class FarmRenderer {
   }
 
  private:
-  /// `spec`: the specification of the job. Its request id is the same for all users who need this
-  /// image, so the job may be an earlier one that was cancelled or has failed. Then another job is
-  /// submitted.
+  /// Waits for the job and returns its image. The request id in `spec` is the same for all users
+  /// who need this image. So `job` may be an earlier job that was cancelled or has failed; then a
+  /// new one is submitted. ABORTED: the new one is cancelled or fails as well.
   absl::StatusOr<Image> image_of(JobId job, JobSpec spec) {
     ASSIGN_OR_RETURN(Progress last, follow_job(client_, job, display_));
     if (last.job.state != JobState::kDone) {
@@ -91,7 +92,9 @@ class FarmRenderer {
   ProgressDisplay& display_;
 };
 
-/// Returns std::nullopt if the image has a single block of samples.
+/// Fetches the mean of the first part (about half) of each pixel's samples, by which the filter
+/// estimates the noise. Returns std::nullopt if the image has at most one block of samples (8),
+/// which has no parts.
 absl::StatusOr<std::optional<Film::FirstPart>> first_part_of(FarmClient& client,
                                                              const JobView& job) {
   if (first_part_samples(job.samples_per_pixel) == 0) {

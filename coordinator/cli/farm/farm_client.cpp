@@ -1,6 +1,6 @@
-// Each call is made by call(), which opens a new gRPC context for each attempt and retries while
-// the farm does not answer. Uploads, results and frames are in farm_upload.cpp, farm_result.cpp and
-// farm_frames.cpp.
+// The calls of FarmClient. Most are made by call(), which uses a new gRPC context for each attempt
+// and retries while the farm does not answer. Calls for uploads, images and frames are in
+// farm_upload.cpp, farm_result.cpp and farm_frames.cpp.
 
 #include "coordinator/cli/farm/farm_client.h"
 

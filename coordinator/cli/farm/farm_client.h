@@ -1,8 +1,9 @@
 #pragma once
 
-// Client of the farm's user service: typed calls over the gRPC stub. A call with an unknown outcome
-// is retried with the same arguments (farm.proto: every call is idempotent). Calls block; one call
-// at a time, except stop(), which is thread-safe.
+// Client of a farm's service for users (proto/farm.proto), which all commands use: typed calls over
+// the gRPC stub. Calls block. All are idempotent; so a call whose outcome is unknown is repeated
+// with the same arguments, except watch() and rotate_secret(). Only stop() and stopped() may be
+// called while another call runs.
 
 #include <chrono>
 #include <functional>
@@ -23,21 +24,25 @@
 
 namespace bandsaw::coordinator {
 
-/// A finished image and the scene's display settings.
+/// An image of a job and the display settings of its scene.
 struct FarmImage {
   Image image;
   Display display;
 };
 
+/// Errors of all calls: UNAVAILABLE: the farm did not answer, also after retries. CANCELLED: stop()
+/// was called. Others are those that proto/farm.proto states.
 class FarmClient {
  public:
-  /// Connects. UNAVAILABLE: no address answered. UNAUTHENTICATED: another farm answered.
+  /// Connects to the farm of the join string (a line with addresses, the digest of the certificate
+  /// and a secret). UNAVAILABLE: no address answered. UNAUTHENTICATED: another farm answered.
   static absl::StatusOr<std::unique_ptr<FarmClient>> connect(const link::JoinString& join);
   /// Returns another client on the same connection, for concurrent calls.
   std::unique_ptr<FarmClient> another() const;
   FarmClient(const FarmClient&) = delete;
   FarmClient& operator=(const FarmClient&) = delete;
 
+  /// A blob (a part of a scene package, named by the SHA-256 of its bytes) that the farm lacks.
   struct MissingBlob {
     wire::Digest digest;
     /// Number of leading bytes that the farm has from an interrupted upload.
@@ -46,32 +51,39 @@ class FarmClient {
   /// Returns those of the digests whose blobs the farm lacks.
   absl::StatusOr<std::vector<MissingBlob>> missing_blobs(const std::vector<wire::Digest>& digests);
 
-  /// Uploads one blob on the bulk channel, beginning at `there`. After an interruption, resumes at
-  /// the point that the farm reports. `sent` is called with the number of bytes sent so far.
+  /// Uploads one blob from the byte at `there` on. After an interruption, resumes at the byte that
+  /// the farm reports. `sent` is called with the number of bytes, from the blob's first byte on,
+  /// that are sent so far.
   absl::Status put_blob(const wire::Digest& digest, absl::Span<const std::byte> bytes,
                         std::uint64_t there, const std::function<void(std::uint64_t)>& sent);
 
+  /// Starts a job. FAILED_PRECONDITION: the farm lacks a blob of the scene.
   absl::StatusOr<JobId> submit(const farm::SubmitRequest& request);
 
+  /// Starts a sequence (a job of many frames), whose scenes add_frame() names one by one.
   absl::StatusOr<JobId> submit_sequence(const farm::SubmitSequenceRequest& request);
-  /// Gives a frame its scene.
+  /// Gives a frame its scene, whose blobs were uploaded. FAILED_PRECONDITION: the farm lacks a
+  /// blob.
   absl::Status add_frame(JobId sequence, FrameNumber frame, const wire::Digest& manifest);
-  /// Renders failed frames again; none: all that failed. Returns the sequence after that.
+  /// Renders failed frames again; an empty list: all that failed. Returns the sequence's state
+  /// after that.
   absl::StatusOr<Progress> retry_frames(JobId sequence, const std::vector<FrameNumber>& frames);
   struct Frames {
-    std::string epoch;
+    std::string epoch;  ///< names the run of the coordinator, from its start to its end
     std::vector<FrameView> frames;
   };
-  /// Returns the frames whose FrameView::changed is above `after`, a number of the same epoch (run
-  /// of the coordinator); 0: all. FAILED_PRECONDITION: the job is a single image.
+  /// Returns the frames that changed since a former call: those whose FrameView::changed is above
+  /// `after`, the largest such number of that call; 0: all frames. If the epoch differs from that
+  /// of the former call, the numbers cannot be compared, and all frames must be requested.
+  /// FAILED_PRECONDITION: the job is a single image.
   absl::StatusOr<Frames> frames(JobId sequence, std::uint64_t after = 0);
 
-  /// Calls `changed` with each status. Returns OK after a final state. UNAVAILABLE: the connection
-  /// was lost before.
+  /// Calls `changed` with the job's status now and after each change. Returns OK after a final
+  /// state (done, failed or cancelled). UNAVAILABLE: the connection was lost before; not retried.
   absl::Status watch(JobId job, const std::function<void(const Progress&)>& changed);
 
-  /// Waits until the connection is re-established. False: the timeout expired, or stop() was
-  /// called.
+  /// Waits until the connection is re-established. Returns false if the timeout has expired or
+  /// stop() was called.
   bool wait_for_farm(std::chrono::milliseconds timeout);
 
   /// Sleeps for `time`, or until stop() is called.
@@ -81,36 +93,43 @@ class FarmClient {
   absl::StatusOr<FarmImage> result(JobId job);
   /// Fetches the number of samples of each pixel of an adaptive job. DATA_LOSS as above.
   absl::StatusOr<Image> samples(JobId job);
-  /// Fetches the mean of the first part of each pixel's samples (render/first_part.h). NOT_FOUND:
-  /// there is none. DATA_LOSS as above.
+  /// Fetches the mean of the first part of each pixel's samples (renderlib/render/first_part.h),
+  /// which the denoiser needs. NOT_FOUND: there is none. DATA_LOSS as above.
   absl::StatusOr<Image> first_part(JobId job);
-  /// Fetches the current state of the image, at most about `most_side` pixels a side; 0: full
-  /// resolution. NOT_FOUND: no pixel is stored. DATA_LOSS as above.
+  /// Fetches the image as it is now, reduced to about `most_side` pixels a side or less; 0: in full
+  /// resolution. NOT_FOUND: no pixel is stored yet. DATA_LOSS as above.
   absl::StatusOr<FarmImage> preview(JobId job, std::uint32_t most_side);
 
-  /// Returns the state of a job, with its error curve and shares.
+  /// Returns the state of a job, with its error curve and what each worker did of it.
   absl::StatusOr<Progress> job(JobId job);
+  /// Returns the states of all jobs, without these.
   absl::StatusOr<std::vector<Progress>> jobs();
   absl::StatusOr<farm::ListWorkersReply> workers();
+  // The following four change a job and return its state after that.
   absl::StatusOr<Progress> cancel(JobId job);
   absl::StatusOr<Progress> pause_job(JobId job);
   absl::StatusOr<Progress> resume_job(JobId job);
   absl::StatusOr<Progress> set_priority(JobId job, std::int32_t priority);
   /// Fetches the last lines of a worker's log. NOT_FOUND: no log of that name.
   absl::StatusOr<std::vector<std::string>> logs(const std::string& worker);
-  /// Quarantines a worker's machine, or lifts the quarantine. NOT_FOUND: no such worker.
+  /// Quarantines a worker's machine (it gets no more work), or lifts the quarantine. NOT_FOUND: no
+  /// such worker.
   absl::Status quarantine(const std::string& worker, bool lift);
+  /// Returns the coordinator's version, clock, free disk space and number of workers.
   absl::StatusOr<farm::AboutReply> about();
-  /// Renews a secret and returns the file with the new join string, on the coordinator's machine.
+  /// Renews the secret of workers or users. Returns the path of the file, on the coordinator's
+  /// machine, that has the new join string. Not retried.
   absl::StatusOr<std::string> rotate_secret(link::Role role);
-  /// Shows, makes or revokes the link for browsers. Arguments as farm.BrowserLinkRequest.
+  /// Returns the link by which browsers join as workers; makes it if there is none. `seconds`: the
+  /// time after which it ends; 0: its end is not changed (8 hours for a new link). `revoke`: ends
+  /// it now, and the reply has no link; `seconds` MUST be 0.
   absl::StatusOr<farm::BrowserLinkReply> browser_link(double seconds, bool revoke);
   /// Returns the reasons why the job is not done, at least one. NOT_FOUND: no such job.
   absl::StatusOr<std::vector<std::string>> why(JobId job);
 
   const std::string& address() const { return connected_.address; }
 
-  /// Cancels the call in progress, and every later one, with CANCELLED. For an interrupt.
+  /// Cancels the call in progress, and every later one, with CANCELLED: for Ctrl-C. Thread-safe.
   void stop() EXCLUDES(mutex_);
   bool stopped() const EXCLUDES(mutex_);
 
@@ -121,34 +140,40 @@ class FarmClient {
   /// Makes a call that changes a job, and returns the job's state after it.
   absl::StatusOr<Progress> change(ChangeJob body);
 
+  /// Starts a call whose reply is an image in chunks.
   using OpenImage =
       std::function<std::unique_ptr<grpc::ClientReader<farm::ResultChunk>>(grpc::ClientContext&)>;
+  /// Makes such a call and checks the image. DATA_LOSS: its digest or its size is wrong.
   absl::StatusOr<FarmImage> receive(JobId job, const OpenImage& open);
 
-  /// Calls `body` with a new context for each attempt, and retries while the farm does not answer.
+  /// Calls `body` with a new context for each attempt, at most kTries times, while the farm does
+  /// not answer within `deadline`.
   absl::Status call(std::chrono::milliseconds deadline,
                     const std::function<grpc::Status(grpc::ClientContext&)>& body) EXCLUDES(mutex_);
-  /// For streams: keepalive detects a dead connection, and large transfers take long.
+  /// For streams, because large transfers take long; gRPC's keepalive detects a dead connection.
   static constexpr std::chrono::milliseconds kNoDeadline{0};
   static constexpr std::chrono::milliseconds kRetryPause{500};
   static constexpr int kTries = 4;
+  /// Returns true if the farm may or may not have executed the call.
   static bool outcome_unknown(const absl::Status& status);
   /// Converts the status of the last attempt to the error shown to the user.
   absl::Status given_up(const absl::Status& status) const;
+  /// Makes one attempt to upload a blob from the byte at `offset` on.
   absl::Status put_rest(const wire::Digest& digest, absl::Span<const std::byte> bytes,
                         std::uint64_t offset, const std::function<void(std::uint64_t)>& sent)
       EXCLUDES(mutex_);
+  /// Calls `body` once, so that stop() can cancel it.
   absl::Status try_once(std::chrono::milliseconds deadline,
                         const std::function<grpc::Status(grpc::ClientContext&)>& body)
       EXCLUDES(mutex_);
 
   link::JoinString join_;
   link::Connected connected_;
-  std::unique_ptr<farm::Farm::Stub> control_;
-  std::unique_ptr<farm::Farm::Stub> bulk_;
+  std::unique_ptr<farm::Farm::Stub> control_;  ///< on the connection for short calls
+  std::unique_ptr<farm::Farm::Stub> bulk_;     ///< on the connection for blobs and images
   mutable Mutex mutex_;
   CondVar changed_;
-  grpc::ClientContext* running_ GUARDED_BY(mutex_) = nullptr;
+  grpc::ClientContext* running_ GUARDED_BY(mutex_) = nullptr;  ///< of the call in progress
   bool stopped_ GUARDED_BY(mutex_) = false;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Maps errors of a farm to exit codes of a command.
+// Connects a command to its farm, and maps errors of a farm to exit codes of the command.
 
 #include <memory>
 
@@ -16,11 +16,12 @@ namespace bandsaw::coordinator {
 /// Finds the farm and connects to it. Errors as find_farm and FarmClient::connect.
 absl::StatusOr<std::unique_ptr<FarmClient>> connect_to_farm(const FarmOption& option);
 
-/// UNAVAILABLE, DEADLINE_EXCEEDED: kNoFarm. INVALID_ARGUMENT, UNAUTHENTICATED, PERMISSION_DENIED:
-/// kWrong (for example, the wrong join string). CANCELLED: kInterrupted. Others: kFailed.
+/// Returns kDone for OK; kNoFarm for UNAVAILABLE and DEADLINE_EXCEEDED; kWrong for
+/// INVALID_ARGUMENT, UNAUTHENTICATED and PERMISSION_DENIED, such as a wrong join string;
+/// kInterrupted for CANCELLED; kFailed for all others.
 ExitCode exit_code_of(const absl::Status& status);
 
-/// Prints the error, if any, and returns the exit code of a command.
+/// Prints the error, if there is one, and returns its exit code. Commands end with it.
 ExitCode finished(const absl::Status& status, const Console& console);
 
 }  // namespace bandsaw::coordinator

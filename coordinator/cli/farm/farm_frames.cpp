@@ -1,4 +1,4 @@
-// FarmClient's calls about sequences and their frames.
+// FarmClient's calls about sequences (jobs of many frames) and their frames, and job().
 
 #include <optional>
 
@@ -9,6 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+// Twice the usual time, because a sequence may have tens of thousands of frames.
 constexpr std::chrono::milliseconds kTimeout{20'000};
 
 }  // namespace
@@ -63,6 +64,7 @@ absl::StatusOr<Progress> FarmClient::job(JobId job) {
   RETURN_IF_ERROR(call(kTimeout, [&](grpc::ClientContext& context) {
     farm::WatchRequest request;
     request.set_job(job);
+    // The first message of Watch has all details of the job; further ones are not needed.
     const auto stream = control_->Watch(&context, request);
     farm::JobStatus message;
     if (!stream->Read(&message)) {

@@ -1,4 +1,5 @@
-// FarmClient::result, samples, first_part and preview: receives an image in chunks and verifies it.
+// FarmClient::result, samples, first_part and preview. Each receives an image in chunks and
+// verifies its size and digest.
 
 #include <bit>
 #include <cmath>
@@ -14,6 +15,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// An image as it was received: the fields of the first chunk, and the data of all chunks.
 struct Received {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -22,10 +24,11 @@ struct Received {
   double exposure = 0;
   std::uint32_t tone = 0;
 
+  /// Returns the number of bytes that an image of this width and height has.
   std::uint64_t size() const { return std::uint64_t{width} * height * sizeof(Rgb); }
 };
 
-// Ignores settings that are out of range.
+// Returns the display settings, or the defaults if one of them is out of range.
 Display display_of(const Received& received) {
   const bool known = std::abs(received.exposure) <= kMaxExposure &&
                      received.tone <= static_cast<std::uint32_t>(kLastTone);

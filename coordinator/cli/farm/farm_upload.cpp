@@ -1,4 +1,5 @@
-// FarmClient::put_blob: sends a blob in chunks and resumes after an interruption.
+// FarmClient::put_blob: sends a blob (a part of a scene, named by its SHA-256) in chunks, and
+// resumes after an interruption.
 
 #include <algorithm>
 
@@ -9,7 +10,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Returns true if the farm has fewer bytes of the blob than assumed, or has deleted damaged ones.
+/// Returns true if the farm has fewer bytes of the blob than this client assumed
+/// (FAILED_PRECONDITION), or has deleted damaged ones (DATA_LOSS). Then the upload starts again at
+/// the byte that the farm reports.
 bool other_is_there(const absl::Status& status) {
   return absl::IsFailedPrecondition(status) || absl::IsDataLoss(status);
 }
@@ -27,8 +30,8 @@ absl::Status FarmClient::put_blob(const wire::Digest& digest, absl::Span<const s
     if (missing.empty()) {
       return absl::OkStatus();
     }
-    // The retry limit counts only attempts without progress, so that a bad connection still
-    // completes.
+    // The limit counts only attempts without progress, so that an upload completes even if its
+    // connection breaks often.
     tries = missing.front().there > there ? 0 : tries;
     there = missing.front().there;
     status = put_rest(digest, bytes, there, sent);

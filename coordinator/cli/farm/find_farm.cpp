@@ -13,9 +13,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Where the join string comes from.
 struct Source {
-  std::string name;
-  std::string text;
+  std::string name;  ///< for errors: an option, a variable or a file
+  std::string text;  ///< the join string, the file that has it, or "-" for standard input
 };
 
 absl::StatusOr<Source> source_of(const FarmOption& option) {

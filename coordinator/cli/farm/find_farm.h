@@ -1,6 +1,6 @@
 #pragma once
 
-// Determines the farm that a command should use.
+// Determines which farm a command uses.
 
 #include <string>
 
@@ -10,8 +10,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the join string given by --farm, else by BANDSAW_FARM, else by the default data folder.
-/// UNAVAILABLE: none of them names a farm. INVALID_ARGUMENT: not a join string, or one for workers.
+/// Returns the join string (a line with the addresses of a farm, the digest of its certificate and
+/// a secret) given by --farm, else by BANDSAW_FARM, else by the default data folder. UNAVAILABLE:
+/// none of them names a farm. INVALID_ARGUMENT: the text is no join string, or one for workers.
 /// Other errors: the file cannot be read.
 absl::StatusOr<link::JoinString> find_farm(const FarmOption& option);
 

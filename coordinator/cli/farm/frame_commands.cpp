@@ -1,4 +1,5 @@
-// bandsaw missing, retry: the frames of a job that are not done.
+// The commands `bandsaw missing`, which lists the frames of a job that are not done, and `bandsaw
+// retry`, which renders failed frames again.
 
 #include <map>
 
@@ -14,7 +15,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Returns a line for each state, and one for each frame that has failed.
+/// Returns a line for each state except "done" with the numbers of its frames, then a line for each
+/// frame that has failed.
 std::vector<std::string> missing_lines(const std::vector<FrameView>& frames) {
   std::map<FrameState, std::vector<FrameNumber>> in_state;
   std::vector<std::string> failures;
@@ -35,6 +37,7 @@ std::vector<std::string> missing_lines(const std::vector<FrameView>& frames) {
   return lines.empty() ? std::vector<std::string>{"no frame is missing"} : lines;
 }
 
+/// Returns a JSON object for each frame that is not done.
 std::vector<std::string> missing_json(JobId job, const std::vector<FrameView>& frames) {
   std::vector<std::string> lines;
   for (const FrameView& frame : frames) {

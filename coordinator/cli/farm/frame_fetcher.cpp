@@ -47,7 +47,9 @@ absl::Status FrameFetcher::update() {
   return absl::OkStatus();
 }
 
-/// Also of frames that were done while one was cleaned, which may take long.
+/// Submits the jobs of the guides (images that the denoiser needs) of all frames that are done, so
+/// that the farm renders them while this machine filters. Asks for changes first, because filtering
+/// takes long and further frames may be done since the last time.
 absl::Status FrameFetcher::start_guides_of_new_frames() {
   RETURN_IF_ERROR(take_changes());
   for (const auto& [number, job] : not_fetched_) {
@@ -62,6 +64,7 @@ absl::Status FrameFetcher::start_guides_of_new_frames() {
 
 absl::Status FrameFetcher::take_changes() {
   ASSIGN_OR_RETURN(FarmClient::Frames changed, client_->frames(sequence_, after_));
+  // After a restart of the coordinator after_ is void, so all frames are requested.
   if (changed.epoch != epoch_) {
     if (after_ > 0) {
       ASSIGN_OR_RETURN(changed, client_->frames(sequence_, 0));
@@ -76,6 +79,7 @@ absl::Status FrameFetcher::take_changes() {
   for (const FrameView& frame : changed.frames) {
     after_ = std::max(after_, frame.changed);
     if (frame.state == FrameState::kDone) {
+      // A frame that was rendered again has another job, and is fetched again.
       JobId& job = done_[frame.number];
       if (std::exchange(job, frame.job) != frame.job && needs_images()) {
         not_fetched_[frame.number] = frame.job;
@@ -162,9 +166,9 @@ absl::Status FrameFetcher::fetch_rest() {
   return client_->stopped() ? absl::CancelledError("interrupted") : status;
 }
 
-/// Adds the frames that the video does not have yet, and ends the video. These frames were done
-/// before an earlier one was, so they are fetched, and cleaned, a second
-/// time here.
+/// Adds the frames that the video does not have yet, and ends the video. A video needs its frames
+/// in order. So frames that were done before an earlier one are fetched and cleaned a second time
+/// here.
 absl::Status FrameFetcher::feed_video() {
   while (in_video_ < numbers_.size()) {
     const FrameNumber number = numbers_[in_video_];

@@ -1,7 +1,7 @@
 #pragma once
 
-// Fetches the images of the frames of a sequence as they are done, cleans them if wanted, and
-// writes their files.
+// Fetches the images of the frames of a sequence (a job of many frames) as they are done, removes
+// their noise if wanted, and writes their files. watch_frames() uses it.
 
 #include <cstdint>
 #include <map>
@@ -20,48 +20,55 @@
 
 namespace bandsaw::coordinator {
 
+/// Makes a connection of its own to the farm of `client`. The other arguments MUST outlive the
+/// object.
 class FrameFetcher {
  public:
   FrameFetcher(const FarmClient& client, JobId sequence, const WantedFrames& wanted,
                ProgressDisplay& display, const Console& console);
 
-  /// Fetches the frames that were done since the last call and that some file needs, and reports
-  /// frames that failed. UNAVAILABLE: call it again when the farm is back; what was not fetched is
-  /// fetched then. Other errors: a file could not be written, or an image is lost.
+  /// Fetches the frames that were done since the last call, if a file is made of them, and reports
+  /// frames that failed. UNAVAILABLE: the farm cannot be reached; the next call fetches what this
+  /// one did not. Other errors: a file could not be written, or an image is lost.
   absl::Status update();
-  /// Fetches all frames that are done; if the farm cannot be reached, waits for it up to a minute.
-  /// CANCELLED: stopped.
+  /// Fetches all frames that are done and not yet fetched. If the farm cannot be reached, waits for
+  /// it up to a minute. CANCELLED: stop() was called. Other errors as update().
   absl::Status fetch_rest();
-  /// Writes the contact sheet and, if all frames are done, the video.
+  /// Writes the contact sheet (one picture that shows all frames) and, if all frames are done, the
+  /// video. Call it last.
   absl::Status make_collections();
+  /// Cancels the calls to the farm. Thread-safe.
   void stop() { client_->stop(); }
 
-  /// The names of all files that were written.
+  /// Returns the names of all files that were written.
   const std::vector<std::string>& files() const { return files_; }
 
  private:
+  /// Asks the farm which frames have changed, and updates done_ and not_fetched_.
   absl::Status take_changes();
   void report_failure(const FrameView& frame);
   absl::Status start_guides_of_new_frames();
+  /// `job`: here and below, the job that rendered the frame.
   absl::Status fetch(FrameNumber number, JobId job);
   absl::StatusOr<JobPictures> pictures_of(FrameNumber number, JobId job);
   absl::Status write(FrameNumber number, const JobPictures& pictures);
   absl::Status add_to_collections(FrameNumber number, const JobPictures& pictures);
   absl::Status feed_video();
+  /// Returns true if any file is made of the images.
   bool needs_images() const;
 
   const std::unique_ptr<FarmClient> client_;
   const JobId sequence_;
   const WantedFrames& wanted_;
   ProgressDisplay& display_;
-  ProgressDisplay silent_;  ///< for the jobs of guides: prints nothing
-  std::string epoch_;
-  std::uint64_t after_ = 0;
-  std::vector<FrameNumber> numbers_;          ///< numbers of all frames
-  std::map<FrameNumber, JobId> done_;         ///< the jobs of the frames that are done
+  ProgressDisplay silent_;             ///< for the jobs of guides: prints nothing
+  std::string epoch_;                  ///< run of the coordinator that after_ belongs to
+  std::uint64_t after_ = 0;            ///< largest FrameView::changed so far; 0: no frame is known
+  std::vector<FrameNumber> numbers_;   ///< numbers of all frames of the sequence
+  std::map<FrameNumber, JobId> done_;  ///< the jobs of the frames that are done
   std::map<FrameNumber, JobId> not_fetched_;  ///< frames in `done_` whose files are not written yet
   std::set<JobId> guided_;                    ///< frame jobs whose guides are started
-  std::set<std::pair<FrameNumber, std::string>> reported_;  ///< failures
+  std::set<std::pair<FrameNumber, std::string>> reported_;  ///< failures that were printed
   std::vector<std::string> files_;
   std::optional<ContactSheet> sheet_;
   std::optional<Video> video_;

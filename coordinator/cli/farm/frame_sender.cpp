@@ -15,13 +15,14 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Makes one attempt of send_frame().
 absl::Status try_to_send(FarmClient& client, JobId sequence, FrameNumber frame,
                          ImportedPackage& package, ProgressDisplay& display) {
   RETURN_IF_ERROR(upload(client, package, display));
   const wire::Digest manifest = wire::sha256(package.manifest());
   absl::Status status = client.add_frame(sequence, frame, manifest);
   if (absl::IsFailedPrecondition(status)) {
-    // The farm may have removed an unused blob after it was sent.
+    // A blob is missing: the farm may have removed it after it was sent, because no job used it.
     RETURN_IF_ERROR(upload(client, package, display));
     status = client.add_frame(sequence, frame, manifest);
   }

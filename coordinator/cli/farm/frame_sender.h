@@ -1,6 +1,7 @@
 #pragma once
 
-// Sends the scenes of a sequence's frames to the farm, one after the other, on a thread of its own.
+// Sends the scenes of the frames of a sequence (a job of many frames) to the farm, one after the
+// other, on a thread of its own. `submit --frames` uses it.
 
 #include <atomic>
 #include <functional>
@@ -19,28 +20,31 @@
 
 namespace bandsaw::coordinator {
 
-/// Sends the blobs that the farm lacks, then gives the frame its scene. Waits up to a minute for a
-/// farm that cannot be reached. Returns errors of the farm and of the package.
+/// Sends those blobs of the package that the farm lacks, then gives the frame its scene. Waits up
+/// to a minute for a farm that cannot be reached. CANCELLED: client.stop() was called. Returns
+/// other errors of the farm and of the package.
 absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
                         ImportedPackage& package, ProgressDisplay& display);
 
-/// Imports the scene at one frame.
+/// Imports the scene at one frame. CANCELLED: `stop` was set.
 using ImportFrame = std::function<absl::StatusOr<ImportedPackage>(FrameNumber frame,
                                                                   const std::atomic<bool>& stop)>;
 
 class FrameSender {
  public:
-  /// Starts at once. `failed` is called on the thread if a frame cannot be sent; no other is sent
-  /// then.
+  /// Starts at once, on a connection of its own to the farm of `client`. If a frame cannot be sent,
+  /// `failed` is called on the sender's thread, and no further frame is sent.
   FrameSender(const FarmClient& client, const Console& console, JobId sequence,
               std::vector<FrameNumber> frames, ImportFrame import, std::function<void()> failed);
-  /// Stops after the present step.
+  /// Stops and waits for the thread.
   ~FrameSender();
   FrameSender(const FrameSender&) = delete;
   FrameSender& operator=(const FrameSender&) = delete;
 
-  /// Waits until all frames are sent, or one of them cannot be. CANCELLED: stopped.
+  /// Waits until all frames are sent, or one of them cannot be sent; returns its error. CANCELLED:
+  /// stop() was called.
   absl::Status wait();
+  /// Ends the import or the call that is in progress. Thread-safe.
   void stop();
   /// Returns the frames that are not sent.
   std::vector<FrameNumber> unsent() const EXCLUDES(mutex_);
@@ -57,8 +61,8 @@ class FrameSender {
   ProgressDisplay display_;  ///< prints nothing
   std::atomic<bool> stop_{false};
   mutable Mutex mutex_;
-  std::size_t sent_ GUARDED_BY(mutex_) = 0;
-  absl::Status status_ GUARDED_BY(mutex_);
+  std::size_t sent_ GUARDED_BY(mutex_) = 0;  ///< number of frames, from the first one
+  absl::Status status_ GUARDED_BY(mutex_);   ///< error of the frame that could not be sent
   std::thread thread_;
 };
 

@@ -1,5 +1,5 @@
-// bandsaw cancel, pause, resume, priority, why: commands that control or explain one job. bandsaw
-// quarantine: excludes a worker's machine.
+// The commands `bandsaw cancel`, `pause`, `resume`, `priority` and `why`, which control or explain
+// one job, and `bandsaw quarantine`, which excludes the machine of a worker.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"
@@ -20,7 +20,8 @@ void print_state(const Progress& progress, Verbosity verbosity, const Console& c
     console.line(jobs_json({progress}).front());
     return;
   }
-  // Prints the actual state, not the requested one: a job that is over is not cancelled.
+  // This is the actual state, which may differ from the requested one: a job that is over cannot be
+  // cancelled.
   console.line(absl::StrCat("job ", job.id, " is ", state_name(job.state), ", priority ",
                             job.priority, job.reason.empty() ? "" : ": ", printable(job.reason)));
 }
@@ -38,6 +39,7 @@ absl::StatusOr<Progress> apply(FarmClient& client, const PriorityOptions& option
   return client.set_priority(options.job, options.priority);
 }
 
+/// Makes the change that the options stand for, and prints the job's state after it.
 template <class Options>
 absl::Status apply_and_print(const Options& options, const Console& console) {
   ASSIGN_OR_RETURN(const auto client, connect_to_farm(options.farm));

@@ -1,4 +1,5 @@
-// bandsaw jobs, workers, logs: commands that query the farm and print the answer.
+// The commands `bandsaw jobs`, `workers` and `logs`, which query the farm and print the answer, and
+// ShowText (--help, --version, `completion`), which only prints a text.
 
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/farm/farm_client.h"

@@ -1,4 +1,4 @@
-// Each list is a table for people, or one JSON object per line for scripts.
+// Formats each list as a table for people, or as one JSON object per line for programs.
 
 #include "coordinator/cli/farm/lists_text.h"
 

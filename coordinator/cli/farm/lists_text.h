@@ -1,6 +1,7 @@
 #pragma once
 
-// Formats jobs and workers as tables, and as one JSON object per line. Pure functions.
+// Formats what commands list (jobs, workers, reasons, logs) as tables for people, and as one JSON
+// object per line for programs. The functions are pure; each string is a line without a line end.
 
 #include <string>
 #include <vector>
@@ -10,8 +11,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Without the guides of clean images that are done; a last line states their number.
+/// Lists all jobs except finished guides (jobs that only render what the denoiser needs). A last
+/// line states how many these are.
 std::vector<std::string> jobs_table(const std::vector<Progress>& jobs);
+/// Lists all jobs.
 std::vector<std::string> jobs_json(const std::vector<Progress>& jobs);
 std::vector<std::string> why_json(JobId job, const std::vector<std::string>& reasons);
 std::string log_json(const std::string& worker, const std::vector<std::string>& lines);

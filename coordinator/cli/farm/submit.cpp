@@ -1,4 +1,5 @@
-// bandsaw submit: sends a scene to the farm and fetches the image.
+// The command `bandsaw submit`: sends a scene to the farm and fetches the image. With --frames,
+// submit_frames() does the work.
 
 #include <atomic>
 
@@ -23,6 +24,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Uploads the scene and submits the job. CANCELLED: a signal came.
 absl::StatusOr<JobId> send_image(FarmClient& client, ImportedPackage& package,
                                  const farm::SubmitRequest& request, Verbosity verbosity,
                                  Process& process) {
@@ -32,7 +34,8 @@ absl::StatusOr<JobId> send_image(FarmClient& client, ImportedPackage& package,
   return send(client, package, request, display);
 }
 
-/// Renders a layer as a job of its own: the same package with another integrator.
+/// Renders an additional layer of an EXR file as a job of its own: `request` has the same scene and
+/// another integrator. ABORTED: the job failed or was cancelled.
 absl::StatusOr<Image> render_on_farm(FarmClient& client, ImportedPackage& package,
                                      farm::SubmitRequest request, ProgressDisplay& display) {
   request.set_request_id(link::random_hex(16));

@@ -1,6 +1,6 @@
-// The first scene is imported and sent before the sequence is started, so that an error in it is
-// reported at once. A FrameSender sends the other scenes while watch_frames() fetches the images
-// that are done.
+// The scene of the first frame is imported before the sequence (a job of many frames) is started,
+// so that an error in it is reported at once. A FrameSender sends the other scenes while
+// watch_frames() fetches the images that are done.
 
 #include "coordinator/cli/farm/submit_frames.h"
 
@@ -37,7 +37,8 @@ absl::StatusOr<JobId> start_sequence(FarmClient& client, const SubmitOptions& op
   return client.submit_sequence(request);
 }
 
-/// Returns those of the frames whose scenes the job lacks. INVALID_ARGUMENT: the job has others.
+/// Returns the frames of the job `options.continued` whose scenes the farm lacks. INVALID_ARGUMENT:
+/// the job has other frames than --frames names.
 absl::StatusOr<std::vector<FrameNumber>> lacking(FarmClient& client, const SubmitOptions& options) {
   ASSIGN_OR_RETURN(const FarmClient::Frames known, client.frames(options.continued));
   std::vector<FrameNumber> all;
@@ -61,7 +62,8 @@ struct Started {
   std::vector<FrameNumber> left;  ///< frames whose scenes are still to be sent
 };
 
-/// Starts or continues the sequence and sends its first scene. `code` is set for an error.
+/// Starts or continues the sequence and sends its first scene. On an error of the import, sets
+/// `code` to its exit code; otherwise `code` is unchanged.
 absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options,
                               FrameImporter& importer, Process& process, ExitCode& code) {
   Started started{options.continued, options.frames};
@@ -100,6 +102,8 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
   }
 }
 
+/// Prints why the sender has ended, and the frames whose scenes were not sent; returns the exit
+/// code. An error that is not the import's is one of the farm.
 ExitCode not_sent(const absl::Status& status, JobId job, const FrameSender& sender,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)

@@ -1,5 +1,5 @@
-// upload() asks the farm which blobs it lacks and sends these, each from the byte at which an
-// earlier upload was interrupted; the manifest comes last.
+// upload() asks the farm which blobs it lacks and sends these. Each upload begins at the byte at
+// which an earlier one was interrupted. The manifest is sent last.
 
 #include "coordinator/cli/farm/upload.h"
 
@@ -16,19 +16,21 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Reports the bytes sent, over all blobs, to the display.
+// Reports the bytes sent, over all blobs, to the display. `all`: the number of bytes to send.
 class Meter {
  public:
   Meter(ProgressDisplay& display, std::uint64_t all) : display_(display), all_(all) {}
+  // `of_this_blob`: how many bytes of the blob in progress are sent.
   void sent(std::uint64_t of_this_blob) {
     display_.preparing("sending the scene", before_ + of_this_blob, all_, steady_seconds());
   }
+  // `blob`: the size of the blob that was in progress.
   void finished(std::uint64_t blob) { before_ += blob; }
 
  private:
   ProgressDisplay& display_;
   std::uint64_t all_;
-  std::uint64_t before_ = 0;
+  std::uint64_t before_ = 0;  // bytes of the blobs that are finished
 };
 
 }  // namespace
@@ -42,7 +44,7 @@ absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDispla
   }
   ASSIGN_OR_RETURN(const std::vector<FarmClient::MissingBlob> lacking,
                    client.missing_blobs(digests));
-  // For each missing blob, number of bytes that the farm already has.
+  // Maps each missing blob to the number of its bytes that the farm already has.
   std::map<wire::Digest, std::uint64_t> missing;
   for (const FarmClient::MissingBlob& blob : lacking) {
     missing[blob.digest] = blob.there;
@@ -78,8 +80,8 @@ farm::SubmitRequest request_for(const ImportedPackage& package, const RenderSett
   return request;
 }
 
-// The farm may delete an unused blob between its upload and the submission of the job. Then the
-// package is uploaded once more.
+// The farm may delete a blob that no job uses, between its upload and the submission of the job.
+// Then submit() returns FAILED_PRECONDITION, and the package is uploaded once more.
 absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
                            const farm::SubmitRequest& request, ProgressDisplay& display) {
   RETURN_IF_ERROR(upload(client, package, display));

@@ -1,6 +1,7 @@
 #pragma once
 
-// Uploads a scene package to the farm, sending only the blobs it lacks, and submits jobs.
+// Uploads a scene package (a manifest and the blobs that it names) to the farm, and submits jobs. A
+// blob that the farm already has is not sent.
 
 #include "absl/status/status.h"
 #include "coordinator/cli/farm/farm_client.h"
@@ -9,10 +10,11 @@
 
 namespace bandsaw::coordinator {
 
-/// Uploads the manifest and all blobs that it names. Returns errors of the farm and of the package.
+/// Uploads the manifest and all blobs that the farm lacks; `display` shows how far it is. Returns
+/// errors of the farm and of the package.
 absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDisplay& display);
 
-/// Makes a request for a job of this package, with a new request id.
+/// Returns a request for a job of this package, with a new random request id.
 farm::SubmitRequest request_for(const ImportedPackage& package, const RenderSettings& settings,
                                 const StopRule& stop);
 

@@ -1,4 +1,5 @@
-// bandsaw watch: follows an existing job.
+// The command `bandsaw watch`: follows a job that was submitted before and fetches its image, or
+// those of its frames.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/farm/after_job.h"

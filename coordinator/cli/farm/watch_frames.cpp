@@ -1,5 +1,5 @@
-// Follows the sequence with the farm's Watch call; at each change, a FrameFetcher fetches the
-// images of the frames that are done.
+// watch_frames() follows the sequence by follow_job(). At each change of the frames' states, a
+// FrameFetcher fetches the images of the frames that are done.
 
 #include "coordinator/cli/farm/watch_frames.h"
 
@@ -18,7 +18,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Follows the job, and fetches frames at each change. Returns the last status.
+/// Follows the job until it is over, and fetches frames at each change. Returns the last status.
+/// UNAVAILABLE: the farm did not come back. CANCELLED: a signal came. Other errors: those of
+/// FrameFetcher::update().
 absl::StatusOr<Progress> follow(FarmClient& client, JobId job, FrameFetcher& fetcher,
                                 ProgressDisplay& display) {
   FrameCounts known;

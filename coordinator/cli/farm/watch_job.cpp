@@ -1,6 +1,6 @@
-// Watch follows the job and displays its progress; FollowedImage shows its image meanwhile, from a
-// thread of its own. When the job is done, the image is fetched, cleaned if that is requested, and
-// written with its layers and reports.
+// The class Watch follows the job and displays its progress. Meanwhile the class FollowedImage
+// shows its image, from a thread of its own. When the job is done, watch_job() fetches the image,
+// removes its noise if requested, and writes it with its layers and reports.
 
 #include "coordinator/cli/farm/watch_job.h"
 
@@ -30,14 +30,15 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Periodically fetches a job's image from the farm, over a client of its own, and shows it, until
-/// destroyed. Does nothing if there is no view.
+/// Until it is destroyed, periodically fetches the unfinished image of a job, over a client of its
+/// own, and shows it in the terminal or a viewer. Does nothing if neither is requested.
 class FollowedImage {
  public:
   FollowedImage(FarmClient& client, JobId job, ImageViews& views);
   ~FollowedImage();
 
  private:
+  /// Fetches and shows the image if it is time.
   void look();
 
   ImageViews& views_;
@@ -47,8 +48,8 @@ class FollowedImage {
   std::optional<Ticker> ticker_;
 };
 
-constexpr std::chrono::milliseconds kTick{100};
-constexpr double kInterval_s = 1;
+constexpr std::chrono::milliseconds kTick{100};  // interval between two calls of look()
+constexpr double kInterval_s = 1;                // least time between two fetches
 /// Fetching takes at most this share of the time, so large images are fetched less often.
 constexpr double kMaxShare = 0.1;
 
@@ -70,8 +71,8 @@ void FollowedImage::look() {
   if (begin < next_ || !views_.any()) {
     return;
   }
-  // Errors are ignored: there may be no pixels, or the farm may be unreachable for a moment, which
-  // the job's display reports.
+  // Errors are ignored. There may be no pixels yet, or the farm may be unreachable for a moment,
+  // which Watch reports.
   if (const auto picture = client_->preview(job_, views_.most_side()); picture.ok()) {
     views_.show(picture->image, picture->display);
   }
@@ -79,13 +80,16 @@ void FollowedImage::look() {
   next_ = end + std::max(kInterval_s, (end - begin) / kMaxShare);
 }
 
+/// Follows a job over the farm's Watch call, also after the connection was lost. `also` is called
+/// with each status.
 class Watch {
  public:
   Watch(FarmClient& client, JobId job, ProgressDisplay& display,
         const std::function<void(const Progress&)>& also)
       : client_(client), job_(job), display_(display), also_(also) {}
 
-  // Returns the last status. UNAVAILABLE: the farm was unreachable too long. CANCELLED: stopped.
+  // Returns the last status. UNAVAILABLE: the farm was unreachable for kMaxRetry_s. CANCELLED:
+  // client.stop() was called. Other errors are the farm's, such as NOT_FOUND.
   absl::StatusOr<Progress> to_the_end() {
     for (;;) {
       const absl::Status status =
@@ -113,6 +117,8 @@ class Watch {
     }
   }
 
+  // Waits until the farm can be reached again; the errors are those of to_the_end(). `why`: the
+  // error by which the connection was lost.
   absl::Status wait_for_farm(const absl::Status& why) {
     const double now = steady_seconds();
     if (!gone_since_) {
@@ -136,10 +142,10 @@ class Watch {
   ProgressDisplay& display_;
   const std::function<void(const Progress&)>& also_;
   Progress last_;
-  std::optional<double> gone_since_;
+  std::optional<double> gone_since_;  // when the farm was lost; std::nullopt: it is there
 };
 
-// Prints an error that occurred after the farm had finished the image.
+// Prints an error that occurred after the farm had finished the image, and returns kFailed.
 ExitCode not_fetched(const absl::Status& status, JobId job, const Wanted& wanted,
                      const Console& console) {
   return console.fail(ExitCode::kFailed,
@@ -147,8 +153,8 @@ ExitCode not_fetched(const absl::Status& status, JobId job, const Wanted& wanted
                                    come_back(job, {}, wanted.denoise, "FILE")));
 }
 
-/// Renders the layers and, if wanted, the guides of the clean image on the farm; shows both
-/// images.
+/// Returns what is written for the job. Renders the additional layers and, with --denoise, what the
+/// clean image needs on the farm. Shows the image as rendered and then the clean one in the views.
 absl::StatusOr<JobPictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
                                         const Wanted& wanted, ImageViews& views,
                                         ProgressDisplay& display, const BesideImage& beside) {
