@@ -15,8 +15,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-using Codes = std::array<std::uint8_t, 3>;
+using Codes = std::array<std::uint8_t, 3>;  // r, g, b in sRGB
 
+/// The size of the picture that is drawn, in pixels.
 struct Grid {
   std::uint32_t width = 0;   ///< one pixel per column
   std::uint32_t height = 0;  ///< two pixels per line
@@ -31,11 +32,13 @@ Grid grid_of(const Image& image, TerminalSize available) {
   return {scaled(image.width), scaled(image.height)};
 }
 
-/// Returns the first of `side` pixels that belongs to cell `i` of `cells`.
+/// A side of the image has `side` pixels, which are divided among `cells` pixels of the picture.
+/// Returns the first pixel of the image that belongs to pixel `i` of the picture.
 std::uint32_t edge(std::uint32_t side, std::uint32_t i, std::uint32_t cells) {
   return static_cast<std::uint32_t>(std::uint64_t{side} * i / cells);
 }
 
+/// Returns the colour of pixel (x, y) of the picture.
 Codes codes_at(const Image& image, const Display& display, const Grid& grid, std::uint32_t x,
                std::uint32_t y) {
   double sum[3] = {};
@@ -46,7 +49,7 @@ Codes codes_at(const Image& image, const Display& display, const Grid& grid, std
   for (std::uint32_t v = top; v < bottom; ++v) {
     for (std::uint32_t u = left; u < right; ++u) {
       const Rgb light = shown(image.at(u, v), display);
-      // Clamped, so that one very bright pixel does not make the whole cell bright.
+      // Values are limited to 1, so that one very bright pixel does not make all of (x, y) bright.
       sum[0] += std::min(light.r, 1.0F);
       sum[1] += std::min(light.g, 1.0F);
       sum[2] += std::min(light.b, 1.0F);
@@ -57,6 +60,8 @@ Codes codes_at(const Image& image, const Display& display, const Grid& grid, std
           srgb_encode(static_cast<float>(sum[2] / n))};
 }
 
+/// Returns the escape sequence that sets a colour. `kind`: "38" for characters, "48" for their
+/// background.
 std::string colour(const char* kind, const Codes& codes) {
   return absl::StrCat("\x1b[", kind, ";2;", codes[0], ";", codes[1], ";", codes[2], "m");
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Draws a picture as text: two pixels per character, in 24-bit colours. Pure functions.
+// Draws a picture as text for --preview: two pixels per character, in 24-bit colours.
 
 #include <string>
 #include <vector>
@@ -11,9 +11,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns lines that fit into `available`. Each pixel drawn is a mean of image pixels; the aspect
-/// ratio is kept, assuming characters twice as high as wide; the picture is never larger than the
-/// image. Each line resets the colours (ECMA-48 SGR, colours by ISO 8613-6).
+/// Returns the lines of the picture, which fit into `available`; none if the image has no pixels.
+/// Each pixel drawn is a mean of image pixels. The aspect ratio is kept for characters that are
+/// twice as high as wide. The picture never has more pixels than the image. Each line resets the
+/// colours at its end (ECMA-48 SGR, colours by ISO 8613-6). A pure function.
 std::vector<std::string> half_blocks(const Image& image, const Display& display,
                                      TerminalSize available);
 

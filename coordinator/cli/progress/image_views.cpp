@@ -11,7 +11,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Upper bound of what a terminal can show; larger pictures are reduced.
+/// Pixels a side to which larger pictures are reduced for the terminal. Few terminals show more.
 constexpr std::uint32_t kTerminalSide = 256;
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
-// Shows an image while it is rendered: in the terminal (--preview) or in a viewer (--tev).
+// Shows an image while it is rendered, for `render`, `submit` and `watch`: in the terminal
+// (--preview), in a viewer (--tev), or in both.
 
 #include <optional>
 #include <string>
@@ -11,28 +12,31 @@
 
 namespace bandsaw::coordinator {
 
-/// Not thread-safe, but other threads may use the display at the same time. If the viewer cannot be
-/// reached, this is reported once and the viewer is not used any more; rendering does not wait for
-/// it.
+/// Not thread-safe, but other threads may use the ProgressDisplay at the same time. If the viewer
+/// cannot be reached, a note says so once, and the viewer is not used any more. Rendering does not
+/// wait for it.
 class ImageViews {
  public:
-  /// `tev` is the viewer's HOST:PORT, or empty; `name` is the image's name there. Options in
-  /// `picture` override the scene's display settings.
+  /// `tev` is HOST:PORT of the viewer; empty: no viewer. `name` is the image's name in the viewer.
+  /// Options in `picture` override the scene's display settings. `display` MUST outlive the object.
   ImageViews(ProgressDisplay& display, const DisplayOptions& picture, const std::string& tev,
              const std::string& name);
 
+  /// Returns true if the image is shown anywhere.
   bool any() const { return display_.draws() || tev_; }
-  /// Returns the resolution needed, as a maximum number of pixels a side; 0: full resolution.
+  /// Returns how many pixels a side of the image needs at most; 0: full resolution.
   std::uint32_t most_side() const;
+  /// Shows the image instead of the last one. `of_scene`: the scene's display settings.
   void show(const Image& image, const Display& of_scene);
 
  private:
+  /// Prints the note that there is no viewer.
   void lost(const absl::Status& why);
 
   ProgressDisplay& display_;
   const DisplayOptions picture_;
-  const std::string address_;  ///< HOST:PORT of the viewer
-  std::optional<TevViewer> tev_;
+  const std::string address_;     ///< HOST:PORT of the viewer
+  std::optional<TevViewer> tev_;  ///< std::nullopt: none is wanted, or it was lost
 };
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,7 @@
 #pragma once
 
-// Redraws a few lines at the bottom of a terminal in place. Pure: returns the bytes to write.
+// Redraws a few lines at the bottom of a terminal in place, for ProgressDisplay. It writes nothing
+// itself: the functions return the bytes to write.
 
 #include <string>
 #include <vector>
@@ -9,23 +10,24 @@
 
 namespace bandsaw::coordinator {
 
-/// Moves the cursor up only over lines that it drew itself, and always leaves it at the start of
-/// the line below them, so that the terminal stays usable if the program ends at any moment.
-/// (ECMA-48: CUU, EL, ED.)
+/// A Painter moves the cursor up only over lines that it drew itself, and always leaves the cursor
+/// at the start of the line below them. So the terminal stays usable if the program ends at any
+/// moment. The escape sequences are CUU, EL and ED of ECMA-48.
 class Painter {
  public:
-  /// Returns the bytes that replace the last frame by these lines, each cut to the terminal's
-  /// width, at most rows - 1 of them. `picture`: lines drawn first; they MUST already fit and may
-  /// contain colour codes.
+  /// Returns the bytes that replace what was drawn last by `picture` and, below it, `lines`. Each
+  /// of `lines` is cut to the terminal's width; at most size.rows - 1 lines are drawn in all. The
+  /// lines of `picture` MUST fit into the width and may have colour codes.
   std::string frame(const std::vector<std::string>& lines, TerminalSize size,
                     const std::vector<std::string>& picture = {});
-  /// Returns the bytes that erase the last frame.
+  /// Returns the bytes that erase what was drawn last; empty if nothing is drawn.
   std::string clear();
 
  private:
+  /// Returns the bytes that move the cursor to the first line that was drawn last.
   std::string back_to_first() const;
 
-  std::size_t drawn_ = 0;
+  std::size_t drawn_ = 0;  ///< number of lines that were drawn last
 };
 
 }  // namespace bandsaw::coordinator

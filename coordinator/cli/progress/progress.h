@@ -1,6 +1,7 @@
 #pragma once
 
-// State of a render in progress, local or on a farm: the model for the text and JSON output.
+// The state of a render in progress, on this machine or on a farm. The files of this folder display
+// it as text, as JSON and as a picture.
 
 #include <string>
 
@@ -10,14 +11,17 @@
 
 namespace bandsaw::coordinator {
 
-/// A farm's job, or a local render (id 0, no workers).
+/// A farm's job, or a render on this machine, which has the id 0 and no workers.
 struct Progress {
   JobView job;
-  std::string bad_sample_at;  ///< pixel and sample of the first bad sample; empty: none
-  int threads = 0;            ///< threads of a local render; 0: a farm's job
+  /// Pixel and sample of the first sample that was left out (NaN, infinite or negative); empty:
+  /// none.
+  std::string bad_sample_at;
+  int threads = 0;  ///< threads of a render on this machine; 0: a farm's job
 };
 
-/// Converts the coordinator's status. Fields that the message lacks become "unknown".
+/// Converts the status of a job that the coordinator has sent. Values that the message lacks become
+/// unknown, as JobView defines.
 inline Progress progress_of(const farm::JobStatus& status) {
   return {.job = job_view_of(status), .bad_sample_at = status.bad_sample_at()};
 }

@@ -1,5 +1,5 @@
-// On a terminal, a Painter redraws a few lines in place. In a pipe, lines are written at most once
-// a second. With --json, each call writes one event.
+// On a terminal, a Painter redraws a few lines in place. In a pipe, a line is printed about once a
+// second. With --json, each line is one event.
 
 #include "coordinator/cli/progress/progress_display.h"
 
@@ -14,8 +14,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kPipeInterval =
-    0.95;  // just below one second, because the source reports about once a second
+// Least time between two outputs in seconds. In a pipe it is just below one second: update() is
+// called about once a second, and a call that comes a little early must not be skipped.
+constexpr double kPipeInterval = 0.95;
 constexpr double kTerminalInterval = 0.1;
 
 constexpr char kBold[] = "\x1b[1m";
@@ -80,7 +81,7 @@ void ProgressDisplay::show_terminal(const Progress& progress) {
   const TerminalSize size = console_.size();
   constexpr std::size_t kKept = 3;  // rows kept free for the header, the bar and the cursor
   std::vector<std::string> lines = {bar_line(progress, std::max<std::size_t>(size.columns, 1) - 1)};
-  constexpr std::size_t kBesidePicture = 4;
+  constexpr std::size_t kBesidePicture = 4;  // lines for workers if a picture needs the space
   const std::size_t available =
       image_.pixels.empty() ? std::max(size.rows, kKept + 1) - kKept : kBesidePicture;
   for (std::string& line : worker_lines(progress, available)) {
@@ -112,7 +113,7 @@ void ProgressDisplay::note(const std::string& text) {
 void ProgressDisplay::preparing(const std::string& what, std::uint64_t bytes_done,
                                 std::uint64_t bytes_in_all, double now) {
   MutexLock lock(mutex_);
-  // A step that takes only a moment is not shown.
+  // The first call shows nothing, so that a step that takes only a moment is never shown.
   if (!has_shown_) {
     has_shown_ = true;
     shown_at_ = now;

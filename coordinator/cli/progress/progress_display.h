@@ -1,7 +1,9 @@
 #pragma once
 
-// Shows progress as requested by the options: redrawn in place on a terminal, one line per second
-// in a pipe, with an extra line for the first pixels, the same as JSON lines, or nothing.
+// Shows the progress of a render on standard output, as the options request it. On a terminal, a
+// few lines are redrawn in place. Otherwise a line of text, or of JSON with --json, is printed
+// about once a second and when the first pixels are there. With --quiet only the last line is
+// printed.
 
 #include <string>
 
@@ -15,54 +17,59 @@
 
 namespace bandsaw::coordinator {
 
-/// Thread-safe.
+/// Thread-safe. Call update() while the image is rendered, then done() or ended(). `console` MUST
+/// outlive the object.
 class ProgressDisplay {
  public:
-  /// Prints a warning if a preview is requested but cannot be drawn.
+  /// Prints a warning if a preview is requested but the console is no terminal with colours.
   ProgressDisplay(const Console& console, Verbosity verbosity);
   /// Erases the drawn lines.
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  /// Shows the progress at `now` (seconds of any steady clock); the first call also shows the
-  /// header. Calls that come too soon after the previous output are skipped.
+  /// Shows the progress at the time `now` (seconds of any steady clock); the first call also shows
+  /// the header. Does nothing if it is called too soon after the last output.
   void update(const Progress& progress, double now) EXCLUDES(mutex_);
 
-  /// Returns true if a picture is requested and can be drawn.
+  /// Returns true if --preview is given and a picture can be drawn.
   bool draws() const { return draws_; }
-  /// Sets the picture to be drawn above the progress; done() leaves it on the terminal. No effect
-  /// if pictures are not drawn.
+  /// Sets the picture that the next update() draws above the progress; done() leaves it on the
+  /// terminal. Has no effect if draws() is false.
   void picture(Image image, const Display& display) EXCLUDES(mutex_);
 
   /// Prints a message above the redrawn lines, for example "the coordinator is gone; trying again".
-  /// JSON: a "note" event.
+  /// With --json it is a "note" event.
   void note(const std::string& text) EXCLUDES(mutex_);
 
-  /// Shows the progress of a step before the render, for example "sending the scene". Rate-limited
-  /// like update().
+  /// Shows the progress of a step before the render, for example "sending the scene". Does nothing
+  /// if it is called too soon after the last output, or after the first call.
   void preparing(const std::string& what, std::uint64_t bytes_done, std::uint64_t bytes_in_all,
                  double now) EXCLUDES(mutex_);
 
-  /// Reports that the files of a frame are written. JSON only: a "frame" event.
+  /// With --json, prints a "frame" event: the files of a frame of a sequence are written.
   void frame_written(JobId sequence, FrameNumber frame, const std::vector<std::string>& outputs,
                      const std::vector<std::string>& reports) EXCLUDES(mutex_);
 
-  /// Ends the display and prints the final line with the image files (`outputs` may be empty) and
-  /// the reports. The final line is printed even if quiet.
+  /// Ends the display of a render that has its image. Prints the warnings, the cost and a final
+  /// line with the files in `outputs` (empty: with the job's number) and `reports`. With --quiet
+  /// prints the warnings and the final line.
   void done(const Progress& progress, const std::vector<std::string>& outputs,
             const std::vector<std::string>& reports = {}) EXCLUDES(mutex_);
 
-  /// Ends the display of a render without an image; JSON: an "ended" event. The caller prints the
-  /// error.
+  /// Ends the display of a render that failed or was cancelled; with --json prints an "ended"
+  /// event. The caller prints the error.
   void ended(const Progress& progress) EXCLUDES(mutex_);
 
   /// Erases the drawn lines.
   void clear() EXCLUDES(mutex_);
 
  private:
+  /// Returns true, and notes the time, if the last output was long enough ago.
   bool due(double now) REQUIRES(mutex_);
+  /// Draws the picture, the bar and the workers on the terminal.
   void show_terminal(const Progress& progress) REQUIRES(mutex_);
+  /// Erases the drawn lines.
   void wipe() REQUIRES(mutex_);
 
   const Console& console_;
@@ -70,12 +77,12 @@ class ProgressDisplay {
   const bool draws_;  ///< the picture is drawn as well
   Mutex mutex_;
   Painter painter_ GUARDED_BY(mutex_);
-  Image image_ GUARDED_BY(mutex_);
+  Image image_ GUARDED_BY(mutex_);  ///< the picture; without pixels: none
   Display shown_as_ GUARDED_BY(mutex_);
-  bool has_header_ GUARDED_BY(mutex_) = false;
-  bool has_shown_ GUARDED_BY(mutex_) = false;
-  bool has_pixels_ GUARDED_BY(mutex_) = false;
-  double shown_at_ GUARDED_BY(mutex_) = 0;
+  bool has_header_ GUARDED_BY(mutex_) = false;  ///< the header was printed
+  bool has_shown_ GUARDED_BY(mutex_) = false;   ///< shown_at_ is valid; false: output is due now
+  bool has_pixels_ GUARDED_BY(mutex_) = false;  ///< a state with pixels was shown
+  double shown_at_ GUARDED_BY(mutex_) = 0;      ///< time of the last output
 };
 
 }  // namespace bandsaw::coordinator

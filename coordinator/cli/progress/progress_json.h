@@ -1,6 +1,7 @@
 #pragma once
 
-// Progress as JSON. The events are documented in coordinator/README.md.
+// Formats the state of a render as a JSON object, for --json. coordinator/README.md documents the
+// events and their fields.
 
 #include <string>
 #include <vector>
@@ -10,10 +11,11 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the fields common to all events of a render. `event`: "job", "progress", "done", …
+/// Returns an object with the fields that all events of a render have. `event`: its kind, such as
+/// "job", "progress" or "done".
 JsonObject progress_json(const Progress& progress, const std::string& event);
 
-/// Adds one of stop_samples, stop_error and stop_time_s.
+/// Adds the stop rule of a job as one field: stop_samples, stop_error or stop_time_s.
 void add_stop(JsonObject& out, const StopRule& stop);
 
 }  // namespace bandsaw::coordinator

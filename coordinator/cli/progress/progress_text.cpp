@@ -1,4 +1,4 @@
-// Each function makes one kind of line from the state of a render; values that are unknown are left
+// Each function makes one kind of line from the state of a render. Values that are unknown are left
 // out.
 
 #include "coordinator/cli/progress/progress_text.h"
@@ -22,6 +22,7 @@ std::string percent_done(const JobView& job) {
   return pad_left(absl::StrCat(static_cast<int>(std::floor(fraction * 100)), " %"), 5);
 }
 
+// Each column shows two steps, of which the first is "╸".
 std::string bar(double fraction, std::size_t width) {
   const auto halves = std::lround(std::clamp(fraction, 0.0, 1.0) * 2 * static_cast<double>(width));
   std::string out;
@@ -37,6 +38,7 @@ std::string count(std::size_t n, const std::string& what) {
   return absl::StrCat(n, " ", what, n == 1 ? "" : "s");
 }
 
+// Returns the figures of bar_line() and plain_line(), such as "error 1.6 %", "48 Msamples".
 std::vector<std::string> measures(const JobView& job) {
   std::vector<std::string> out;
   if (job.has_frames()) {

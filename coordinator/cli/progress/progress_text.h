@@ -1,6 +1,7 @@
 #pragma once
 
-// Formats progress as lines of text: UTF-8, without colours and line ends. Pure functions.
+// Formats the state of a render as lines of text: UTF-8, without colours and line ends. The
+// functions are pure.
 
 #include <string>
 #include <vector>
@@ -9,23 +10,24 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the number of frames that are done: "12 of 48 frames · 2 failed".
+/// Returns how many frames of a sequence are done: "12 of 48 frames · 2 failed".
 std::string frames_done_text(const FrameCounts& frames);
 
-/// Describes a job: "job 7 · cornell · 600×600 · until error ≤ 1 %". The job is omitted for a local
-/// render, the number of frames is added for a sequence.
+/// Describes a job: "job 7 · cornell · 600×600 · until error ≤ 1 %". A render on this machine has
+/// no job number; a sequence also has the number of its frames.
 std::string header_line(const Progress& progress);
 
-/// Returns a progress bar, shortened to fit `width` columns, and figures:
+/// Returns a progress bar and figures. The bar is shortened so that the line fits `width` columns:
 /// " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left".
 std::string bar_line(const Progress& progress, std::size_t width);
 
-/// The same without the bar, with the number of workers and the reason for waiting: a complete
-/// status in one line, for a pipe.
+/// Returns the whole state in one line, for a pipe: the same without the bar, but with the number
+/// of workers and, if the job waits, the reason.
 std::string plain_line(const Progress& progress);
 
-/// Returns a line for each worker, "   desk     16 threads  3.1 M/s   rows 320–352", at most `most`
-/// of them; the last one states how many workers are omitted. A reason for waiting comes first.
+/// Returns a line for each worker: "   desk     16 threads  3.1 M/s   rows 320–352". If there are
+/// more than `most` lines, the last one states how many workers are omitted. If the job waits, the
+/// first line is the reason.
 std::vector<std::string> worker_lines(const Progress& progress, std::size_t most);
 
 /// Returns the result: "cornell.png · error 0.99 % · 21.4 s · 4 workers · report cornell.json".
@@ -37,13 +39,14 @@ std::string final_line(const Progress& progress, const std::string& name,
 /// 4.0 s of CPU · 1 % after 11.6 s of CPU · half of the pixels within 1.2 %, 95 % within 5 %".
 std::string cost_line(const Progress& progress);
 
-/// Returns a warning if the error estimate may be too low; empty if it can be trusted.
+/// Returns a warning if the error estimate may be too low, because few pixels have much of the
+/// error; empty if it can be trusted.
 std::string doubt_line(const Progress& progress);
 
 /// Returns a warning about samples that were not finite or negative; empty if there are none.
 std::string bad_samples_line(const Progress& progress);
 
-/// Returns the non-empty ones of these two warnings.
+/// Returns those of doubt_line() and bad_samples_line() that are not empty.
 std::vector<std::string> warning_lines(const Progress& progress);
 
 /// Returns what is missing in the image: "0.2 % of the paths were cut off at depth 32 · 3

@@ -1,4 +1,5 @@
-// Packet assembles one message of the protocol; the image is sent in packets of some rows each.
+// The class Packet assembles one packet of tev's protocol. An image is sent in several packets,
+// each with some of its rows.
 
 #include "coordinator/cli/progress/tev.h"
 
@@ -18,12 +19,14 @@ static_assert(std::endian::native == std::endian::little, "numbers are copied as
 static_assert(sizeof(Rgb) == 3 * sizeof(float), "pixels are copied as they are");
 
 constexpr std::chrono::seconds kTevTimeout{5};
-constexpr std::size_t kPacketPixels = 1 << 18;  // 3 MB
+constexpr std::size_t kPacketPixels = 1 << 18;  // a packet of 3 MB
 
+// Two of the operations of tev's protocol.
 enum class Operation : std::uint8_t { kCreateImage = 4, kUpdateImageV3 = 6 };
 
 constexpr const char* kChannels[] = {"R", "G", "B"};
 
+// A packet to which fields are appended; finish() returns it with its length.
 class Packet {
  public:
   explicit Packet(Operation operation) {
@@ -74,9 +77,10 @@ std::string create_image(const std::string& name, std::uint32_t width, std::uint
 std::string update_rows(const std::string& name, const Image& image, std::uint32_t first,
                         std::uint32_t last) {
   Packet packet(Operation::kUpdateImageV3);
-  packet.number(std::uint8_t{0});
+  packet.number(std::uint8_t{0});  // does not select the image
   packet.text(name);
   channels(packet);
+  // The left, top, width and height of the part that is replaced.
   for (const std::uint32_t place : {0U, first, image.width, last - first}) {
     packet.number(static_cast<std::int32_t>(place));
   }

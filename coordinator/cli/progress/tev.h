@@ -1,8 +1,9 @@
 #pragma once
 
-// Client of the viewer tev (https://github.com/Tom94/tev), which shows images sent by other
-// programs. Protocol: packets over TCP, each with a 32-bit length of the whole packet, an operation
-// in one byte, then fields; numbers are little-endian, strings end with a zero byte.
+// Client of the viewer tev (https://github.com/Tom94/tev), which shows images that other programs
+// send, for --tev. Its protocol has packets over TCP. Each begins with the length of the whole
+// packet in 32 bits and the operation in one byte; the fields of the operation follow. Numbers are
+// little-endian; strings end with a zero byte.
 
 #include <cstdint>
 #include <string>
@@ -14,25 +15,29 @@
 
 namespace bandsaw::coordinator {
 
-/// Encodes packets. Pure functions. The packets of TevViewer are far smaller than a length field of
-/// 32 bits allows.
+/// Pure functions that encode packets.
 namespace tev {
 
-/// Creates a black image of this size with the channels R, G and B, and shows it at once.
+/// Returns the packet that creates a black image of this size with the channels R, G and B, and
+/// selects it in the viewer.
 std::string create_image(const std::string& name, std::uint32_t width, std::uint32_t height);
-/// Updates rows [first, last) of the image with linear values.
+/// Returns the packet that replaces rows [first, last) by those of `image`, as linear values. The
+/// rows MUST be few enough for a packet of less than 4 GiB.
 std::string update_rows(const std::string& name, const Image& image, std::uint32_t first,
                         std::uint32_t last);
 
 }  // namespace tev
 
-/// Connection to a viewer that shows one image. Each call blocks for a few seconds at most.
+/// Connection to a viewer that shows one image. A call gives up if a packet cannot be sent
+/// within five seconds.
 class TevViewer {
  public:
-  /// `address` is HOST:PORT; `name` is the image's name in the viewer. UNAVAILABLE: not reachable.
+  /// `address` is HOST:PORT; `name` is the image's name in the viewer. UNAVAILABLE: no viewer can
+  /// be reached there.
   static absl::StatusOr<TevViewer> connect(const std::string& address, const std::string& name);
 
-  /// Replaces the image shown by one of the same size. UNAVAILABLE: the viewer is gone.
+  /// Shows an image. All images MUST have the size of the first one, which each further one
+  /// replaces. UNAVAILABLE: the viewer is gone.
   absl::Status show(const Image& image);
 
  private:
@@ -40,7 +45,7 @@ class TevViewer {
       : socket_(std::move(socket)), name_(std::move(name)) {}
   link::Socket socket_;
   std::string name_;
-  bool created_ = false;
+  bool created_ = false;  ///< the viewer has the image, so it is only updated
 };
 
 }  // namespace bandsaw::coordinator
