@@ -1,5 +1,5 @@
-// Cleans images by renderlib/denoise, or by OpenImageDenoise (oidn.h), and writes them beside the
-// images as rendered.
+// Removes the noise of images by renderlib/denoise or by OpenImageDenoise (oidn.h), and writes the
+// clean images beside the images as rendered.
 
 #include "coordinator/cli/image/clean.h"
 
@@ -28,8 +28,9 @@ std::string raw_name(const std::string& output) {
   return path.replace_extension(".raw" + suffix).string();
 }
 
-/// Returns the normals in the camera's view from the guide, unit vectors, or zeros where nothing
-/// was hit.
+/// Returns the normals in the camera's view as unit vectors, or zeros where no surface was hit. A
+/// pixel of `shape` has (x + 1) / 2 and (y + 1) / 2 of the normal as red and green, and as blue the
+/// distance of the surface, 0 where none was hit. z follows from the length 1.
 Image normals_of(const Image& shape) {
   Image normals{shape.width, shape.height, {}};
   for (const Rgb& guide : shape.pixels) {
@@ -41,6 +42,8 @@ Image normals_of(const Image& shape) {
   return normals;
 }
 
+/// Filters the image by OpenImageDenoise. Also filters both parts of its samples alone, because the
+/// error of the clean image is estimated from these.
 absl::StatusOr<Denoised> clean_by_oidn(const DenoiseInput& input, Pool& pool) {
   ASSIGN_OR_RETURN(const Oidn oidn, Oidn::load());
   const Image normals = normals_of(input.shape);
@@ -102,6 +105,7 @@ Report::Clean clean_report(const Denoised& clean, Denoiser denoiser,
 
 absl::Status check_denoise(Denoiser denoiser, const RenderSettings& settings,
                            const StopRule& stop) {
+  // A job that stops at an error or a time has at least one block of samples.
   const auto* until = std::get_if<StopAtSamples>(&stop);
   absl::Status status;
   if (denoiser != Denoiser::kNone) {

@@ -1,4 +1,5 @@
-// bandsaw compare: error metrics between two images.
+// The command `bandsaw compare`: prints error metrics of an image against a reference, and writes a
+// picture of the differences.
 
 #include <atomic>
 
@@ -18,7 +19,7 @@ struct Pair {
   Image reference;
 };
 
-/// A signal during reading cancels; nothing has to be cleaned up.
+/// Reads both images in confined processes. CANCELLED: a signal came.
 absl::StatusOr<Pair> read_pair(const CompareOptions& options, Interrupts& interrupts) {
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(interrupts, [&] { stop = true; });

@@ -1,6 +1,7 @@
 #pragma once
 
-// Metrics computed by `bandsaw compare` for an image and a reference.
+// Computes the metrics of an image against a reference and formats them, for `bandsaw compare`.
+// `bandsaw study` uses compare_images() as well.
 
 #include <string>
 
@@ -14,15 +15,16 @@ namespace bandsaw::coordinator {
 struct Comparison {
   ErrorMetrics errors;
   BiasTest bias;
-  double ssim = 1;
-  Plane flip;        ///< per pixel
-  bool hdr = false;  ///< the reference exceeds the range of a display: flip is HDR-FLIP
+  double ssim = 1;   ///< structural similarity, at most 1; 1: no difference
+  Plane flip;        ///< FLIP of each pixel: the difference that people see, in [0, 1]
+  bool hdr = false;  ///< the reference has values above those of a screen, so `flip` is HDR-FLIP
 };
 
-/// INVALID_ARGUMENT: the sizes differ.
+/// Computes all metrics. INVALID_ARGUMENT: the images differ in size.
 absl::StatusOr<Comparison> compare_images(const Image& image, const Image& reference);
 
-/// Formats the metrics in four lines, the last without a line end; or "identical".
+/// Formats the metrics in four lines, and a fifth if values are not finite; the last line has no
+/// line end. Returns "identical" for equal images.
 std::string comparison_text(const Comparison& comparison);
 
 /// Formats the metrics as one JSON object.

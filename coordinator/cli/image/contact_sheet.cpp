@@ -1,5 +1,5 @@
-// Chooses a number of columns that gives the sheet the shape of a screen, reduces each frame to its
-// cell, and draws its number below it in digits of 3 x 5 dots.
+// The number of columns is chosen so that the sheet has about the shape of a screen. Each frame is
+// reduced to a cell of the sheet; its number is drawn below it in digits of 3 x 5 dots.
 
 #include "coordinator/cli/image/contact_sheet.h"
 
@@ -14,22 +14,22 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint32_t kSheetWidth = 1'920;  ///< about, pixels
-constexpr std::uint32_t kMaxCell = 320;       ///< pixels
-constexpr std::uint32_t kGap = 6;
+constexpr std::uint32_t kSheetWidth = 1'920;  ///< about the width of the sheet in pixels
+constexpr std::uint32_t kMaxCell = 320;       ///< largest width of a reduced frame in pixels
+constexpr std::uint32_t kGap = 6;             ///< pixels between frames
 /// Digits of 3 x 5 dots, drawn with kDot pixels a dot.
 constexpr std::uint32_t kDot = 2;
 constexpr std::uint32_t kDigitWidth = 3;
 constexpr std::uint32_t kDigitHeight = 5;
 constexpr std::uint32_t kTextHeight = kDot * kDigitHeight;
 constexpr std::array<std::uint16_t, 11> kDigits = {
-    // Rows from the top, three bits each, the left dot first.
+    // 0 to 9 and the minus sign. Rows from the top, three bits each, the left dot first.
     0b111'101'101'101'111, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'111'001'111,
     0b101'101'111'001'001, 0b111'100'111'001'111, 0b111'100'111'101'111, 0b111'001'010'010'010,
     0b111'101'111'101'111, 0b111'101'111'001'111, 0b000'000'111'000'000};
 constexpr Rgb kPaper{0.02f, 0.02f, 0.02f};
-constexpr Rgb kInk{0.6f, 0.6f, 0.6f};
-constexpr Rgb kCross{0.25f, 0.05f, 0.04f};
+constexpr Rgb kInk{0.6f, 0.6f, 0.6f};       ///< of numbers, and of the cross of a missing frame
+constexpr Rgb kCross{0.25f, 0.05f, 0.04f};  ///< background of that cross
 
 /// Returns at most `most` of the numbers, at equal distances, with the first and the last.
 std::vector<std::int64_t> spread(const std::vector<std::int64_t>& numbers, std::size_t most) {
@@ -51,7 +51,7 @@ ContactSheet::ContactSheet(const std::vector<std::int64_t>& numbers, std::uint32
   for (const std::int64_t number : spread(numbers, kMaxSheetFrames)) {
     cells_[number] = {};
   }
-  // The number of columns gives the sheet about the shape of a screen, 16:10.
+  // With c columns of n frames the sheet has the shape c * aspect : n / c, which is to be 16:10.
   const double aspect = static_cast<double>(width) / height;
   const double columns = std::ceil(std::sqrt(static_cast<double>(cells_.size()) * 1.6 / aspect));
   columns_ =
@@ -70,6 +70,7 @@ void ContactSheet::add(std::int64_t number, const Image& image, const Display& d
   for (Rgb& pixel : bright.pixels) {
     pixel = shown(pixel, display);
   }
+  // Reduces by a whole factor as means of pixels, and then to the exact size by the nearest pixel.
   const std::uint32_t factor = std::max<std::uint32_t>(1, image.width / cell_width_);
   const Image near = shrunk(bright, factor, factor);
   Image& small = cell->second;
@@ -102,6 +103,7 @@ void ContactSheet::draw_frame(Image& sheet, std::size_t cell, const Image& frame
   const std::uint32_t top = kGap + row * (cell_height_ + kTextHeight + 2 * kGap);
   for (std::uint32_t y = 0; y < cell_height_; ++y) {
     for (std::uint32_t x = 0; x < cell_width_; ++x) {
+      // The column in which the falling diagonal of the cross is in row y.
       const std::uint32_t across = y * cell_width_ / cell_height_;
       const bool on_cross = x == across || x + across + 1 == cell_width_;
       sheet.pixels[std::size_t{top + y} * sheet.width + left + x] = !frame.pixels.empty()
@@ -124,6 +126,7 @@ void ContactSheet::draw_number(Image& sheet, std::size_t cell, std::int64_t numb
     const std::uint16_t digit = kDigits[c == '-' ? 10 : static_cast<std::size_t>(c - '0')];
     for (std::uint32_t y = 0; y < kTextHeight; ++y) {
       for (std::uint32_t x = 0; x < kDot * kDigitWidth && left + x < end; ++x) {
+        // A digit has 15 bits; the first dot is the highest.
         const std::uint32_t bit = 14 - (y / kDot * kDigitWidth + x / kDot);
         if (((digit >> bit) & 1) != 0) {
           sheet.pixels[std::size_t{top + y} * sheet.width + left + x] = kInk;

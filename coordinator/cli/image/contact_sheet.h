@@ -1,6 +1,7 @@
 #pragma once
 
-// A picture with the frames of a sequence, small, each above its number.
+// A contact sheet is one picture that shows the frames of a sequence, each reduced and above its
+// number, for --contact-sheet of `submit` and `watch`.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,24 +19,27 @@ inline constexpr std::size_t kMaxSheetFrames = 400;
 
 class ContactSheet {
  public:
-  /// `numbers` of all frames, ascending, at least one. `width` and `height` of a frame in pixels.
+  /// `numbers`: those of all frames, ascending, at least one. `width`, `height`: of a frame, in
+  /// pixels, above 0.
   ContactSheet(const std::vector<std::int64_t>& numbers, std::uint32_t width, std::uint32_t height);
 
   /// Returns true if the sheet shows this frame.
   bool shows(std::int64_t number) const { return cells_.contains(number); }
-  /// Adds a frame that the sheet shows, as an 8-bit file shows it.
+  /// Adds a frame with the brightness that an 8-bit file of it has. Ignores a frame that the sheet
+  /// does not show.
   void add(std::int64_t number, const Image& image, const Display& display);
-  /// Returns the sheet, whose values are those that are displayed. Frames that were not added are
-  /// crossed out.
+  /// Returns the sheet, in linear values that are displayed without exposure and tone. Frames that
+  /// were not added are crossed out.
   Image picture() const;
 
  private:
+  /// `cell`: index of the frame's place on the sheet, row by row. `frame`: without pixels: a cross.
   void draw_frame(Image& sheet, std::size_t cell, const Image& frame) const;
   void draw_number(Image& sheet, std::size_t cell, std::int64_t number) const;
 
-  std::map<std::int64_t, Image> cells_;  ///< small frames; without pixels: not added
-  std::uint32_t columns_ = 1;
-  std::uint32_t cell_width_ = 1;  ///< pixels of a small frame
+  std::map<std::int64_t, Image> cells_;  ///< reduced frames by number; without pixels: not added
+  std::uint32_t columns_ = 1;            ///< number of frames in a row
+  std::uint32_t cell_width_ = 1;         ///< size of a reduced frame in pixels
   std::uint32_t cell_height_ = 1;
 };
 

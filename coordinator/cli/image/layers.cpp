@@ -12,8 +12,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 struct Kind {
-  Integrator integrator;  ///< not used for samples
-  bool is_number;
+  Integrator integrator;  ///< not used for kSamples, which is not rendered
+  bool is_number;         ///< the layer has one number for each pixel, no colour
 };
 
 /// The layers in the order of LayerKind.
@@ -22,6 +22,7 @@ constexpr Kind kKinds[] = {{Integrator::kAlbedo, false},
                            {Integrator::kDepth, true},
                            {Integrator::kPath, true}};
 
+/// Returns the layer kSamples of an image whose pixels all have `samples` samples.
 Image equal_counts(const RenderSettings& settings, std::uint64_t samples) {
   Image image{settings.width, settings.height, {}};
   image.pixels.assign(std::size_t{image.width} * image.height, gray(static_cast<float>(samples)));

@@ -1,7 +1,8 @@
 #pragma once
 
-// Layers of an EXR file: additional pictures of the same scene by integrators without light
-// transport.
+// Makes the additional layers of an EXR file, for --layers of `render` and `submit`: pictures of
+// the same view by integrators without light transport (albedo, normals, depth), and the number of
+// samples of each pixel.
 
 #include <cstdint>
 #include <functional>
@@ -18,17 +19,19 @@ namespace bandsaw::coordinator {
 /// More samples than this do not visibly improve a layer.
 inline constexpr std::uint64_t kMaxLayerSamples = 64;
 
-/// Renders the scene with these settings and this number of samples, here or on a farm.
+/// A function that renders the scene with these settings and this number of samples per pixel, on
+/// this machine or on a farm.
 using LayerRenderer =
     std::function<absl::StatusOr<Image>(const RenderSettings& settings, std::uint64_t samples)>;
 
-/// Returns the number of samples of each pixel of an adaptive image.
+/// A function that returns the number of samples of each pixel of an adaptive image.
 using SampleCounts = std::function<absl::StatusOr<Image>()>;
 
-/// Renders the layers with the image's settings and min(`samples`, kMaxLayerSamples) samples, with
-/// the same bits as `--integrator albedo`, `normals` and `depth` for that number. `samples` is the
-/// image's number of samples per pixel; layer kSamples shows it if there are no `counts`. Returns
-/// errors of `render` and `counts`.
+/// Returns a layer for each of `kinds`. `settings` and `samples` (per pixel) are those of the
+/// image. The layers are rendered with at most kMaxLayerSamples samples; they have the same bits as
+/// images of that number by `--integrator albedo`, `normals` and `depth`. The layer kSamples is the
+/// result of `counts`; if `counts` is empty, all its pixels are `samples`. Returns errors of
+/// `render` and `counts`.
 absl::StatusOr<Layers> make_layers(const std::vector<LayerKind>& kinds, RenderSettings settings,
                                    std::uint64_t samples, const LayerRenderer& render,
                                    const SampleCounts& counts);

@@ -1,5 +1,5 @@
-// Loads the library with dlopen and finds its functions by name; versions 1 and 2 have different
-// names for some of them.
+// Loads the library OpenImageDenoise with dlopen and finds its functions by name. Versions 1 and 2
+// have different names for one of them.
 
 #include "coordinator/cli/image/oidn.h"
 
@@ -19,12 +19,12 @@ struct OidnFilter;
 
 namespace {
 
-/// The names of versions 2 and 1, and that of a development package.
+/// Names of the library's file: of versions 2 and 1, and of a development package.
 constexpr const char* kFiles[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1",
                                   "libOpenImageDenoise.so"};
 
 // Constants and functions of the C API.
-constexpr int kDeviceCpu = 1;     // OIDN_DEVICE_TYPE_CPU: it reads images where they are
+constexpr int kDeviceCpu = 1;     // OIDN_DEVICE_TYPE_CPU, which reads images without copying them
 constexpr int kFormatFloat3 = 3;  // OIDN_FORMAT_FLOAT3
 
 using NewDevice = OidnDevice* (*)(int type);
@@ -39,6 +39,7 @@ using SetBool = void (*)(OidnFilter* filter, const char* name, bool value);
 
 }  // namespace
 
+/// The opened library and those of its functions that are used here.
 struct Oidn::Library {
   explicit Library(void* opened) : handle(opened) {}
   ~Library() { dlclose(handle); }
@@ -51,6 +52,7 @@ struct Oidn::Library {
     function = reinterpret_cast<Function>(dlsym(handle, name));
     return function != nullptr;
   }
+  /// Returns false if the library lacks one of the functions.
   bool find_all() {
     return find("oidnNewDevice", new_device) && find("oidnCommitDevice", commit_device) &&
            find("oidnReleaseDevice", release_device) && find("oidnGetDeviceError", get_error) &&

@@ -1,8 +1,8 @@
 #pragma once
 
-// The denoiser of Intel's library OpenImageDenoise, version 1 or 2, if it is installed. It is
-// loaded at run time; nothing of it is needed to build this program. The declarations are those of
-// its documentation (https://www.openimagedenoise.org/documentation.html, "C API").
+// The denoiser of Intel's library OpenImageDenoise, version 1 or 2, for --denoise=oidn. The library
+// is loaded at run time, if it is installed; nothing of it is needed to build this program. Its
+// functions are those of https://www.openimagedenoise.org/documentation.html, "C API".
 
 #include <memory>
 #include <string>
@@ -12,15 +12,15 @@
 
 namespace bandsaw::coordinator {
 
-/// Used by one thread at a time.
+/// The loaded library. An object may be used by one thread at a time.
 class Oidn {
  public:
-  /// Loads the library; `file`: its path, empty: where the system finds it. UNAVAILABLE: it is not
-  /// installed, or not usable; the message has the cause and the cure.
+  /// Loads the library. `file` is its path; if it is empty, the system searches for the library.
+  /// UNAVAILABLE: it is not installed, or not usable; the message states the cause and the remedy.
   static absl::StatusOr<Oidn> load(const std::string& file = "");
 
-  /// Returns the clean image. `albedo` is in [0, 1], `normal` has unit vectors or zeros; all have
-  /// the same size. INTERNAL: the library's error.
+  /// Returns `color` without noise. `color` has linear values, `albedo` values in [0, 1], `normal`
+  /// unit vectors or zeros. All MUST have the same size. INTERNAL: the library's error.
   absl::StatusOr<Image> filter(const Image& color, const Image& albedo, const Image& normal) const;
 
  private:

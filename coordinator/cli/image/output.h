@@ -1,6 +1,7 @@
 #pragma once
 
-// Writes the files of an image.
+// Checks and writes the files that a user wants of an image (-o), for all commands that make
+// images.
 
 #include <cstdint>
 #include <string>
@@ -13,7 +14,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Checks that every output can be written, before any work is done. The error names the file.
+/// Checks before any work is done that every output can be written. The error names the file.
 absl::Status check_outputs_writable(const std::vector<std::string>& outputs);
 
 /// Writes the image to every output, with its layers if the format supports them, each file
@@ -21,8 +22,8 @@ absl::Status check_outputs_writable(const std::vector<std::string>& outputs);
 absl::Status write_outputs(const Image& image, const std::vector<std::string>& outputs,
                            const Display& display, const Layers& layers = {});
 
-/// Returns the number of values that were clipped because an EXR file with half-precision numbers
-/// cannot represent them; 0 if there is no such file among the outputs.
+/// Returns how many values of the image are clipped in an EXR file of 16-bit numbers (--half),
+/// because these cannot represent them; 0 if there is no such file among the outputs.
 std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>& outputs,
                              const Display& display);
 

@@ -1,5 +1,6 @@
-// A part of an image is a file with a header (exposure and tone of the scene) and the records of
-// its bands. Files without a header are read too; they have the default exposure and tone.
+// A part of an image is a file with a header (exposure and tone of the scene) and records of bands
+// (some rows with the sums of their samples). A file without a header has the default exposure and
+// tone.
 
 #include "coordinator/cli/image/part_file.h"
 

@@ -1,4 +1,5 @@
-// Builds the report as one JSON object. Each function below makes the object of one of its fields.
+// Builds the report of an image as one JSON object. Each function X_json() makes the object of one
+// of its fields; coordinator/README.md documents them.
 
 #include "coordinator/cli/image/report.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The report of an image: its error, its cost, and its inputs. The fields and their units are
-// documented in coordinator/README.md.
+// The report of an image is a JSON file beside it, which states its error, its cost and its inputs.
+// coordinator/README.md documents the fields and their units.
 
 #include <cstdint>
 #include <optional>
@@ -14,17 +14,18 @@
 
 namespace bandsaw::coordinator {
 
+/// What report_text() needs.
 struct Report {
-  Progress progress;                 ///< status of the finished job
-  std::string pixels_sha256;         ///< empty: the image is incomplete
+  Progress progress;                 ///< status of the finished job, or of a render on this machine
+  std::string pixels_sha256;         ///< digest of the image; empty: the image is incomplete
   std::vector<std::string> outputs;  ///< files of the image
-  std::uint64_t cut_off_values = 0;  ///< values clipped in these files (output.h)
-  /// The error of the clean image; absent if the image was not cleaned.
+  std::uint64_t cut_off_values = 0;  ///< number of values clipped in these files (output.h)
+  /// About the image without noise; std::nullopt: the noise was not removed.
   struct Clean {
     CleanError error;
-    std::string method;     ///< "regression" or "oidn"
-    bool same_bits = true;  ///< false: another machine may give other bits
-    std::string pixels_sha256;
+    std::string method;                    ///< "regression" or "oidn"
+    bool same_bits = true;                 ///< false: another machine may give other bits
+    std::string pixels_sha256;             ///< digest of the clean image
     std::vector<std::string> raw_outputs;  ///< files of the image as rendered
   };
   std::optional<Clean> clean = std::nullopt;
@@ -34,10 +35,10 @@ struct Report {
 /// little-endian, rows from the top; 64 hexadecimal digits.
 std::string pixels_sha256(const Image& image);
 
-/// The first bytes of a report, in every version of this program.
+/// The first bytes of a report, in every version of this program. Files are recognised by them.
 inline constexpr char kReportBegins[] = "{\n  \"schema\":\"bandsaw.report/";
 
-/// Returns the content of the report file. Unknown values are null.
+/// Returns the text of the report file, a JSON object. Unknown values are null.
 std::string report_text(const Report& report);
 
 }  // namespace bandsaw::coordinator

@@ -20,6 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns true if the path exists, also if it is a symbolic link whose target does not.
 bool is_there(const std::string& path) {
   std::error_code error;
   return fs::exists(fs::symlink_status(path, error));
@@ -40,6 +41,7 @@ absl::Status taken(const std::string& path) {
       path, ": exists and is no report; choose another with --report FILE, or --report none"));
 }
 
+/// Returns the name of the report beside an image.
 std::string beside(const std::string& output) {
   const fs::path path(output);
   const std::string plain = fs::path(path).replace_extension(".json");

@@ -1,6 +1,7 @@
 #pragma once
 
-// Chooses and writes report files. A report never replaces a file that is not a report.
+// Chooses and writes the report files of an image (report.h). A report never replaces a file that
+// is not a report.
 
 #include <string>
 #include <vector>
@@ -10,25 +11,27 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the files for the report of these images, each once: the requested file, or for each
-/// image a file of the same name with .json, or with .report.json if the .json file exists and is
-/// not a report (it may be a scene). INVALID_ARGUMENT: a file exists and is not a report. Other
-/// errors: the folder does not exist or is not writable.
+/// Returns the files for the report of these images: none for --report none; the file that --report
+/// names; or by default a file beside each image. That file has the image's name with .json, or
+/// with .report.json if the .json file exists and is not a report (it may be a scene). A name
+/// appears once. INVALID_ARGUMENT: a file exists and is not a report. Other errors: the folder does
+/// not exist or is not writable.
 absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& given,
                                                       const std::vector<std::string>& outputs);
 
-/// Checks if an image may be written to the default output file. A picture beside a model may be
-/// its texture, so an existing file is replaced only if it has a render report beside it.
-/// INVALID_ARGUMENT: the file exists and has no report. Not checked for scene files, which do not
-/// use a picture of their own name.
+/// Checks if an image of `scene` may be written to the default file `output`. A picture with the
+/// name of a model may be its texture. So an existing file is replaced only if a report is beside
+/// it, or if the scene is a scene file, which has no texture of its own name. INVALID_ARGUMENT: the
+/// file exists and may not be replaced.
 absl::Status check_default_output(const std::string& scene, const std::string& output);
 
-/// Calls check_outputs_writable (image/output.h), and check_default_output if no output was
-/// given.
+/// Checks that `outputs` can be written. If the user named none (`given` is empty), also calls
+/// check_default_output(). Errors: those of check_outputs_writable (output.h) and of that function.
 absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& given,
                            const std::vector<std::string>& outputs);
 
-/// Writes each file atomically. Stops at the first error, whose message says that the image exists.
+/// Writes `text` to each file, atomically. Stops at the first error, whose message says that the
+/// image is written.
 absl::Status write_reports(const std::string& text, const std::vector<std::string>& files);
 
 }  // namespace bandsaw::coordinator

@@ -1,4 +1,5 @@
-// bandsaw stitch: combines parts that were rendered by rows.
+// The command `bandsaw stitch`: joins the parts (.band files) of an image that were rendered by
+// `render --rows`.
 
 #include <optional>
 
@@ -18,8 +19,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Joins the records of all parts into one image. Its film is the sums of all pixels.
 class Stitcher {
  public:
+  /// Adds a record. `part`: its file, for errors. INVALID_ARGUMENT: the record is of another scene
+  /// or of other settings than the first one, or its samples were added before.
   absl::Status add(const std::string& part, const BandRecord& record) {
     if (!film_) {
       ASSIGN_OR_RETURN(film_, Film::create(record.settings.width, record.settings.height, ""));
@@ -44,8 +48,8 @@ class Stitcher {
     return film_->add(record.pixels);
   }
 
-  /// Returns the status as if the image had been rendered in one run. Values that the parts do not
-  /// contain are unknown.
+  /// Returns the status of a job that rendered the image in one run. Values that the parts do not
+  /// have are unknown. INVALID_ARGUMENT: rows or samples are missing.
   absl::StatusOr<Progress> progress() const {
     ASSIGN_OR_RETURN(const std::uint64_t samples, coverage_->samples());
     Progress progress;
@@ -93,6 +97,7 @@ struct Stitched {
   Display display;  ///< display settings of the first part
 };
 
+/// Reads and joins the parts. Errors: those of Stitcher and of read_part().
 absl::StatusOr<Stitched> stitched(const std::vector<std::string>& parts) {
   Stitcher stitcher;
   Stitched out;

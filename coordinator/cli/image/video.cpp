@@ -1,4 +1,4 @@
-// Starts ffmpeg with the size of the first frame, and writes each frame as raw 8-bit RGB to its
+// Starts ffmpeg with the first frame, and writes each frame as a PPM picture (8-bit RGB) to its
 // standard input. The video has a temporary name until it is complete.
 
 #include "coordinator/cli/image/video.h"
@@ -37,7 +37,8 @@ bool is_installed(const std::string& name) {
   return false;
 }
 
-/// Returns the options of the encoder: nearly lossless, and playable by browsers.
+/// Returns the options of the encoder: VP9 for .webm, otherwise H.264. The quality (-crf) is nearly
+/// lossless, and browsers play both.
 std::vector<std::string> encoder_for(const std::string& path) {
   return absl::EndsWithIgnoreCase(path, ".webm")
              ? std::vector<std::string>{"-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0"}
@@ -84,7 +85,7 @@ absl::Status Video::start() {
   for (std::string& option : encoder_for(path_)) {
     arguments.push_back(std::move(option));
   }
-  // Players want both sides even, because colours are stored for two by two pixels.
+  // Players need yuv420p, which stores colours for two by two pixels, so both sides must be even.
   for (const char* option : {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"}) {
     arguments.emplace_back(option);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
-// Makes a video of frames by ffmpeg, a child process.
+// Makes a video of the frames of a sequence by ffmpeg, a child process, for --video of `submit` and
+// `watch`.
 
 #include <optional>
 #include <string>
@@ -14,29 +15,34 @@ namespace bandsaw::coordinator {
 
 class Video {
  public:
-  /// FAILED_PRECONDITION: ffmpeg is not installed. Other errors: the file cannot be written.
+  /// Checks that a video can be made. FAILED_PRECONDITION: ffmpeg is not installed. Other errors:
+  /// the file cannot be written.
   static absl::Status check(const std::string& path);
 
-  /// `path`: a file whose name ends in .mp4, .mov, .mkv or .webm. REQUIRES: check was OK.
+  /// `path`: a file whose name ends in .mp4, .mov, .mkv or .webm. REQUIRES: check() was OK, and
+  /// SIGPIPE is ignored (outlive_reader), so that an end of ffmpeg is an error of add().
   Video(std::string path, double frames_per_second)
       : path_(std::move(path)), frames_per_second_(frames_per_second) {}
-  /// Removes the file unless `finish` was called.
+  /// If finish() was not called or failed, ends ffmpeg and removes the incomplete file.
   ~Video();
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
 
-  /// Appends a frame, as an 8-bit file shows it. The first one starts ffmpeg. All MUST have the
-  /// same size. ABORTED: ffmpeg failed.
+  /// Appends a frame with the brightness that an 8-bit file of it has. The first one starts ffmpeg.
+  /// All MUST have the same size. ABORTED: ffmpeg failed.
   absl::Status add(const Image& image, const Display& display);
-  /// Ends the video and gives it its name.
+  /// Ends the video and gives it its name. FAILED_PRECONDITION: there is no frame. ABORTED: ffmpeg
+  /// failed.
   absl::Status finish();
 
  private:
+  /// Starts ffmpeg.
   absl::Status start();
+  /// Returns `status` with a message that names the file and ffmpeg.
   absl::Status failed(const absl::Status& status) const;
 
   std::string path_;
-  std::string part_;  ///< name until it is complete
+  std::string part_;  ///< name of the file while it is incomplete; empty: there is none
   double frames_per_second_;
   std::optional<PipedChild> ffmpeg_;
 };
