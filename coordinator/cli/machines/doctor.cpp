@@ -1,4 +1,5 @@
-// bandsaw doctor: prints one line per check; succeeds only if all checks do.
+// The command `bandsaw doctor`: checks this machine and the farm that it uses, and prints one line
+// for each check. It succeeds only if all checks do.
 
 #include <algorithm>
 
@@ -12,6 +13,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Runs all checks. `folder`: the coordinator's data folder; empty: it is unknown.
 std::vector<Check> all_checks(const DoctorOptions& options, const std::string& folder) {
   std::vector<Check> checks = {check_data_folder(folder), check_memory(), check_import_program(),
                                check_worker_programs()};

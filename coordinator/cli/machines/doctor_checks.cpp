@@ -24,8 +24,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kMinFreeBytes = 1ull << 30;  // bytes: some passes of a large image
-constexpr std::uint64_t kMinMemory = 1ull << 30;     // bytes: a scene of moderate size and its BVHs
+constexpr std::uint64_t kMinFreeBytes = 1ull << 30;  // enough for some passes of a large image
+constexpr std::uint64_t kMinMemory = 1ull << 30;     // enough for a moderate scene and its BVHs
 constexpr double kMaxClockDifference_s = 60;         // beyond it, logs cannot be compared
 constexpr double kDay_s = 24 * 60 * 60;
 
@@ -33,6 +33,7 @@ Check problem(std::string name, std::string found) {
   return {.name = std::move(name), .ok = false, .found = std::move(found)};
 }
 
+/// Returns the text for a number of bytes.
 std::string size(std::uint64_t bytes) {
   return absl::StrFormat("%.1f GB", static_cast<double>(bytes) / 1e9);
 }

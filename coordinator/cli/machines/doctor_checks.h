@@ -13,33 +13,51 @@
 
 namespace bandsaw::coordinator {
 
+/// The result of a check: one line of output.
 struct Check {
   std::string name;
   bool ok = true;
-  std::string found;  ///< one line
+  std::string found;  ///< what was found and, for a problem, the remedy; one line
 };
 
-// This machine.
+// Checks of this machine.
+
+/// Checks that the coordinator's data folder (or its nearest existing parent) can be written and
+/// has at least 1 GiB free.
 Check check_data_folder(const std::string& folder);
+/// Checks that at least 1 GiB of memory is available.
 Check check_memory();
+/// Checks that the importer, bandsaw-import, is installed.
 Check check_import_program();
-/// Checks the workers' programs that a coordinator on this machine hands out. A missing program is
-/// not a problem. A program that cannot be handed out (damaged, or of another version or
-/// architecture) is a problem.
+/// Checks the workers' programs that a coordinator on this machine hands out to other machines. A
+/// missing program is not a problem. A program that cannot be handed out (damaged, or of another
+/// version or architecture) is a problem.
 Check check_worker_programs();
-/// Checks that the port is free, or taken by the farm that answers at one of `own`.
+/// Checks that the port of `listen` (HOST:PORT) is free, or taken by the farm that uses the
+/// addresses `own`.
 Check check_port(const std::string& listen, const std::vector<std::string>& own);
 
-// The farm.
-/// Returns the given join string, of either role. NOT_FOUND: none is given.
+// Checks of the farm.
+
+/// Returns the join string (a line with the addresses of a farm and a secret) of users or of
+/// workers. It is taken from the option, from the variables BANDSAW_FARM and BANDSAW_JOIN, or from
+/// the data folder `folder`, in this order. NOT_FOUND: none of them has one. Other errors: the text
+/// is no join string, or its file cannot be read.
 absl::StatusOr<link::JoinString> doctor_join(const FarmOption& option, const std::string& folder);
 /// Checks the connection, the certificate, the secret, versions, clocks and the coordinator's disk.
+/// The first check is that of the connection; if it fails, it is the only one.
 std::vector<Check> check_farm(const link::JoinString& join);
 
-// Pure parts of these checks. Times in seconds since 1970, sizes in bytes.
+// Pure parts of these checks. Times are in seconds since 1970, sizes in bytes.
+
+/// Checks that a certificate that is valid from `from` to `until` is valid `now`.
 Check certificate_check(double from, double until, double now);
+/// Checks that the coordinator's clock is at most a minute from this machine's. `theirs` was read
+/// between the two times of this machine.
 Check clock_check(double ours_before, double theirs, double ours_after);
+/// Checks that the coordinator has the protocol and the pixel version of this program.
 Check versions_check(const farm::AboutReply& about);
+/// Checks that at least 1 GiB is free. `name`: of the check; `where`: the folder, for the text.
 Check disk_space_check(const std::string& name, const std::string& where, std::uint64_t free_bytes);
 
 }  // namespace bandsaw::coordinator

@@ -35,6 +35,7 @@ Check check_certificate(const std::string& address) {
                        : failed("certificate", validity.status(), "");
 }
 
+/// Returns the remedy for a secret that the farm does not accept; empty for other errors.
 std::string secret_cure(const absl::Status& status) {
   return absl::IsUnauthenticated(status)
              ? "; take the new join string from the coordinator's data folder"

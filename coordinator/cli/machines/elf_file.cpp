@@ -15,8 +15,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Returns true if `count` records of `size` bytes from `offset` are within the file. No sum
-/// overflows.
+/// Returns true if `count` records of `size` bytes from `offset` on are within the file. The
+/// numbers may be any: nothing overflows.
 bool holds(absl::string_view file, std::uint64_t offset, std::uint64_t size, std::uint64_t count) {
   return offset <= file.size() && (count == 0 || size <= (file.size() - offset) / count);
 }
@@ -26,6 +26,7 @@ absl::Status cut_off(absl::string_view file) {
                                           " bytes, and its headers name more; copy it again"));
 }
 
+/// Checks that the file has all bytes of the segments that its program headers name.
 absl::Status check_segments(absl::string_view file, const Elf64_Ehdr& header) {
   for (std::size_t i = 0; i < header.e_phnum; ++i) {
     Elf64_Phdr segment{};

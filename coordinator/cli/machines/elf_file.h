@@ -1,5 +1,8 @@
 #pragma once
 
+// Reads the architecture of a program from its file, for programs of workers that this machine
+// hands out but may not be able to run (worker_file.h).
+
 #include <cstdint>
 
 #include "absl/status/statusor.h"
@@ -7,11 +10,11 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the machine type (e_machine; EM_X86_64, EM_AARCH64, … of <elf.h>) of a program, given
-/// its whole file. Reads the ELF header and the program headers; runs nothing. INVALID_ARGUMENT:
-/// not a 64-bit little-endian program. DATA_LOSS: the file ends before a part that its headers
-/// name. Messages begin with a verb; the caller names the file. Source: System V ABI, chapter 4
-/// "Object Files" and chapter 5 "Program Header".
+/// Returns the machine type of a program: e_machine, such as EM_X86_64 or EM_AARCH64 of <elf.h>.
+/// `file`: the bytes of its whole file. Reads the ELF header and the program headers; runs nothing.
+/// INVALID_ARGUMENT: the file is no 64-bit little-endian program. DATA_LOSS: it ends before a part
+/// that its headers name. The message of an error begins with a verb; the caller puts the name of
+/// the file before it. Source: System V ABI, chapter 4 "Object Files" and 5 "Program Header".
 absl::StatusOr<std::uint16_t> elf_machine(absl::string_view file);
 
 }  // namespace bandsaw::coordinator

@@ -1,4 +1,5 @@
-// bandsaw invite, bandsaw dismiss: install and remove workers on other machines by ssh.
+// The commands `bandsaw invite` and `bandsaw dismiss`, which install and remove workers on other
+// machines by ssh.
 
 #include <algorithm>
 #include <atomic>
@@ -27,16 +28,18 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Starts workers on other machines: queries a host's architecture, then sends the program for that
-/// architecture only.
+/// Starts workers on other machines: asks a host for its architecture, then sends the program for
+/// that architecture.
 class Invitation {
  public:
-  /// Reads the installed workers' programs. `join`: the workers' join string. If no program can be
-  /// sent, the error is that of this machine's own architecture; otherwise the system's.
+  /// Reads the installed programs of workers, one for each architecture. `join`: the workers' join
+  /// string, which each worker gets. If none of the programs can be sent, returns the error of the
+  /// program for this machine's own architecture.
   static absl::StatusOr<Invitation> create(const std::string& join);
 
-  /// Takes at most `seconds`. Otherwise as RemoteScript::run; if there is no program for a host,
-  /// its result says how to get one.
+  /// Installs and starts a worker on `host`, in at most `seconds`; ends soon after `stop` is set.
+  /// If there is no program for the host's architecture, the outcome says how to get one.
+  /// Thread-safe.
   RemoteOutcome invite(const std::string& host, double seconds,
                        const std::atomic<bool>& stop) const;
 
@@ -48,6 +51,7 @@ class Invitation {
   Scripts scripts_;  // one for every architecture; an error says why its program cannot be sent
 };
 
+/// Returns the script that installs a worker, with the program for `machine` as its input.
 absl::StatusOr<RemoteScript> script_for(Machine machine, const std::string& join) {
   ASSIGN_OR_RETURN(const WorkerProgram program, load_worker_program(machine));
   return RemoteScript::create(invite_script(program.bytes.size(), program.digest),
@@ -131,11 +135,12 @@ absl::StatusOr<link::JoinString> workers_join(const InviteOptions& options) {
   return join;
 }
 
-/// The work for one host; ends soon after `stop` is set.
+/// What is done for one host; it ends soon after `stop` is set.
 using HostWork =
     std::function<RemoteOutcome(const std::string& host, const std::atomic<bool>& stop)>;
 
-/// Prints the result of each host as soon as it is known, and at the end the number of successes.
+/// Does `work` for all hosts at the same time. Prints the result of each host as soon as it is
+/// known, and at the end the number of successes. `event`: the kind of the JSON events.
 ExitCode on_hosts(const std::vector<std::string>& hosts, const char* event, const HostWork& work,
                   const Verbosity& verbosity, Process& process) {
   std::atomic<bool> stop = false;

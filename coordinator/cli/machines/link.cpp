@@ -1,4 +1,5 @@
-// bandsaw link: shows, makes or revokes the link by which browsers join, with its QR code.
+// The command `bandsaw link`: shows, makes or revokes the link by which browsers join as workers.
+// On a terminal it also shows the link's QR code.
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -14,6 +15,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns true if the link's address is of the loopback interface.
 bool is_for_this_machine_only(const std::string& url) {
   return absl::StartsWith(url, "http://127.") || absl::StartsWith(url, "http://localhost:") ||
          absl::StartsWith(url, "http://[::1]:");

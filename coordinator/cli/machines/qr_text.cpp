@@ -1,4 +1,5 @@
-// Each character shows two modules (squares of the code), one above the other.
+// Draws a QR code as text. Each character shows two modules (squares of the code), one above the
+// other.
 
 #include "coordinator/cli/machines/qr_text.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// A QR code on a terminal.
+// Draws a QR code on a terminal, for `bandsaw link`.
 
 #include <string>
 
@@ -8,8 +8,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns lines of half blocks with the margin, two rows of modules a line, in explicit black and
-/// white (256 colours), so that readers find them on dark and on light terminals.
+/// Returns lines of text with the code and its margin. Each line shows two rows of modules (squares
+/// of the code) by half blocks. The colours are explicitly black and white (of 256 colours), so
+/// that cameras recognise the code on dark and on light terminals.
 std::string qr_text(const QrCode& code);
 
 }  // namespace bandsaw::coordinator

@@ -1,5 +1,6 @@
-// Runs ssh for each host. The script comes from ssh's standard input, a file without a name, so
-// that no intermediate shell parses it; the other machine's shell evaluates it.
+// Runs ssh for each host. ssh's standard input is a file in memory with the script and the script's
+// own input. The other machine's shell reads the script from it and evaluates it, so no other shell
+// on the way parses it.
 
 #include "coordinator/cli/machines/remote_hosts.h"
 
@@ -26,11 +27,12 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kAtOnce = 32;
-constexpr int kSshFailed = 255;  // exit status with which ssh reports its own errors
+constexpr std::size_t kAtOnce = 32;  // number of hosts at the same time
+constexpr int kSshFailed = 255;      // exit status with which ssh reports its own errors
 
-/// Returns the command. The script is sent first on standard input, so that no intermediate shell
-/// parses it; dd reads exactly the bytes of the script.
+/// Returns the ssh command. On the host, dd reads exactly the bytes of the script from standard
+/// input, so that the script can read the rest. ssh uses no terminal (-T), compresses (-C), never
+/// asks (BatchMode), and gives up after 10 s without a connection or 15 s of silence.
 std::vector<std::string> ssh_command(const std::string& host, std::size_t script_size) {
   return {"ssh",
           "-T",
@@ -48,6 +50,7 @@ std::vector<std::string> ssh_command(const std::string& host, std::size_t script
           absl::StrCat("exec sh -c 'eval \"$(dd bs=1 count=", script_size, " 2>/dev/null)\"'")};
 }
 
+/// Returns the last line that is not empty, made printable, or "no answer".
 std::string last_line(const std::string& output) {
   std::string last = "no answer";
   for (const absl::string_view line : absl::StrSplit(output, '\n', absl::SkipWhitespace())) {
@@ -56,7 +59,8 @@ std::string last_line(const std::string& output) {
   return last;
 }
 
-/// Returns true if the script has printed its result.
+/// If the script has printed its result (a line that begins with kRemoteResult), stores it in
+/// `outcome` and returns true.
 bool read_result(const std::string& output, RemoteOutcome& outcome) {
   for (absl::string_view line : absl::StrSplit(output, '\n')) {
     if (absl::ConsumePrefix(&line, kRemoteResult)) {
@@ -69,6 +73,7 @@ bool read_result(const std::string& output, RemoteOutcome& outcome) {
   return false;
 }
 
+/// Returns the outcome for a host from the end and the output of ssh.
 RemoteOutcome judge(const std::string& host, const absl::StatusOr<ChildOutcome>& child,
                     double seconds) {
   RemoteOutcome outcome;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Runs scripts on many machines at the same time by ssh.
+// Runs scripts on many machines at the same time by ssh, for `bandsaw invite` and `dismiss`.
 
 #include <atomic>
 #include <functional>
@@ -12,14 +12,15 @@
 
 namespace bandsaw::coordinator {
 
-/// The result of one machine.
+/// The result of a script on one machine.
 struct RemoteOutcome {
-  std::string host;  ///< as given: HOST, USER@HOST or an ssh:// address
-  bool ok = false;
-  std::string what;  ///< one line, printable
+  std::string host;  ///< as the user named it: HOST, USER@HOST or an ssh:// address; printable
+  bool ok = false;   ///< the script ran and reported success
+  std::string what;  ///< what the script reported, or the error; one line, printable
 };
 
-/// A script (remote_scripts.h) and its standard input, held in memory once for any number of hosts.
+/// A script (remote_scripts.h) and its standard input. They are in memory once, however many hosts
+/// they are sent to.
 class RemoteScript {
  public:
   /// Returns the system's error if the file with the input cannot be created.
@@ -27,7 +28,7 @@ class RemoteScript {
                                              const std::string& input = "");
 
   /// Runs the script on `host` for at most `seconds`; ends soon after `stop` is set. ssh asks no
-  /// questions: for a host that wants a password or is unknown the result is an error. Thread-safe.
+  /// questions: if the host is unknown or wants a password, the outcome is an error. Thread-safe.
   RemoteOutcome run(const std::string& host, double seconds, const std::atomic<bool>& stop) const;
 
  private:
@@ -37,8 +38,9 @@ class RemoteScript {
   std::size_t script_size_;
 };
 
-/// Calls `work` for each host, for up to 32 hosts at the same time from several threads, and
-/// `report` with each result, one call at a time. Returns when all hosts are done.
+/// Calls `work` for each host, for up to 32 hosts at the same time, on threads of its own. Calls
+/// `report` with each outcome, on these threads but one call at a time. Returns when all hosts are
+/// done.
 void for_each_host(const std::vector<std::string>& hosts,
                    const std::function<RemoteOutcome(const std::string& host)>& work,
                    const std::function<void(const RemoteOutcome&)>& report);

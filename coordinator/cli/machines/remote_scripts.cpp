@@ -1,5 +1,5 @@
-// The two scripts share kCommon, a list of shell functions. Numbers and digests are put into their
-// text; secrets come from standard input.
+// The scripts that install and remove a worker begin with kCommon, which defines shell functions.
+// Numbers and digests are put into the text of a script; the secret comes from standard input.
 
 #include "coordinator/cli/machines/remote_scripts.h"
 
@@ -8,7 +8,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// The common part of both scripts. `result` ends the script; its first argument is ok or failed.
+// The common part of both scripts. `result` prints the result and ends the script; its first
+// argument is ok or failed. `end_worker` ends a worker that runs.
 constexpr char kCommon[] = R"sh(
 result() { echo "bandsaw-result: $*"; exit 0; }
 [ -n "${HOME:-}" ] || result failed "HOME is not set there"
@@ -57,6 +58,8 @@ end_worker() {
 }
 )sh";
 
+// Needs the variables size and digest. Installs the program, starts it and waits for a minute until
+// its log says that it has joined the farm.
 constexpr char kInvite[] = R"sh(
 umask 077
 read -r join
@@ -130,6 +133,7 @@ running || result failed "the worker ended: $(tail -n 1 "$dir/log")"
 result failed "it runs, but has not reached the farm yet: $(tail -n 1 "$dir/log")"
 )sh";
 
+// Needs the variable drain. Ends the worker and removes all that kInvite has made.
 constexpr char kDismiss[] = R"sh(
 [ -d "$dir" ] || [ -f "$unit" ] || result ok "there was none"
 end_worker "$drain"

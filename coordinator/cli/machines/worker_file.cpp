@@ -1,5 +1,6 @@
 // A file is accepted as the worker for an architecture if its ELF header names this architecture,
-// and the mark in its bytes (proto/wire/worker_mark.h) has this farm's protocol and pixel version.
+// and the WorkerMark in its bytes (proto/wire/worker_mark.h) has this farm's protocol and pixel
+// version. The file is not run, because it may be for another architecture.
 
 #include "coordinator/cli/machines/worker_file.h"
 
@@ -42,6 +43,8 @@ std::string versions_text(std::uint32_t protocol, std::uint32_t pixel_version) {
   return absl::StrCat("protocol ", protocol, " and pixel version ", pixel_version);
 }
 
+/// Returns the WorkerMark in the bytes of a program. INVALID_ARGUMENT: there is none, or its
+/// version is no printable text.
 absl::StatusOr<wire::WorkerMark> mark_of(absl::string_view file) {
   wire::WorkerMark mark;
   const std::size_t at = file.find(absl::string_view(mark.magic, sizeof(mark.magic)));

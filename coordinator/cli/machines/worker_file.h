@@ -1,6 +1,7 @@
 #pragma once
 
-// The installed workers' programs, one for each architecture.
+// Finds and checks the programs of workers that are installed on this machine, one for each
+// architecture. `serve` and `invite` hand them out to other machines; `doctor` lists them.
 
 #include <string>
 
@@ -10,20 +11,21 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the path of the program for `machine`: beside this program if it has the same
-/// architecture, otherwise ../lib/bandsaw/bandsaw-worker-MACHINE relative to it. Build folders have
-/// the same layout as installed programs.
+/// Returns the path of the program for `machine`. If that is the architecture of this machine, the
+/// program lies beside the running one; otherwise it is ../lib/bandsaw/bandsaw-worker-MACHINE
+/// relative to that folder. Build folders have the same layout as installed programs.
 std::string worker_program_path(Machine machine);
 
 /// Checks that `bytes`, a whole file, are a worker for `machine` that is compatible with this
-/// coordinator (equal protocol and pixel version). Reads the ELF header and the wire::WorkerMark;
-/// runs nothing. INVALID_ARGUMENT: another program, or for another architecture. DATA_LOSS:
-/// truncated. FAILED_PRECONDITION: another version. Messages begin with a verb; the caller names
-/// the file.
+/// coordinator (equal protocol and pixel version). Reads the ELF header and the wire::WorkerMark, a
+/// structure in each worker's program that states its versions; runs nothing. INVALID_ARGUMENT: it
+/// is another program, or for another architecture. DATA_LOSS: it is cut off. FAILED_PRECONDITION:
+/// it has another version. The message of an error begins with a verb; the caller puts the name of
+/// the file before it.
 absl::StatusOr<WorkerProgram> checked_worker_program(std::string bytes, Machine machine);
 
-/// Reads the program for `machine` and checks it as above. NOT_FOUND: missing; the message says how
-/// to provide it. Other errors as above, and as File.
+/// Reads the program for `machine` and checks it. NOT_FOUND: it is not installed; the message says
+/// how to provide it. Other errors: those of checked_worker_program(), and of reading a file.
 absl::StatusOr<WorkerProgram> load_worker_program(Machine machine);
 
 }  // namespace bandsaw::coordinator

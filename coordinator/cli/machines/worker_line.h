@@ -1,5 +1,8 @@
 #pragma once
 
+// Makes the line that a user pastes into the shell of another machine to start a worker there. The
+// dashboard and `serve` show it.
+
 #include <map>
 #include <optional>
 #include <string>
@@ -9,14 +12,14 @@
 
 namespace bandsaw::coordinator {
 
-/// Digests of the programs that the dashboard hands out.
+/// SHA-256 of the workers' programs that the dashboard hands out, for each architecture.
 using WorkerDigests = std::map<Machine, wire::Digest>;
 
-/// Returns a line for the POSIX shell of another machine, which needs curl: it downloads the worker
-/// for the machine's architecture from the dashboard at `url` (without a path), checks its SHA-256
-/// and starts it with the join string. If `programs` has none for the machine, the line prints
-/// that, downloads nothing and fails. `programs` MUST NOT be empty. `public_key`: SHA-256 of the
-/// server's public key, the only one that is accepted; std::nullopt for plain HTTP.
+/// Returns the line, for a POSIX shell with curl. It downloads the worker for the machine's
+/// architecture from the dashboard at `url` (without a path), checks its SHA-256 and starts it with
+/// the join string `join`. If `programs` has none for the architecture, the line prints that,
+/// downloads nothing and fails. `programs` MUST NOT be empty. `public_key`: SHA-256 of the server's
+/// public key; curl accepts no other server. std::nullopt: `url` is plain HTTP.
 std::string worker_line(const std::string& url, const std::optional<wire::Digest>& public_key,
                         const WorkerDigests& programs, const std::string& join);
 
