@@ -41,7 +41,7 @@ absl::StatusOr<std::optional<Image>> CleanPreview::of(const Film& film, std::uin
                      .first_share = {},
                      .albedo = guides_->albedo,
                      .shape = guides_->shape};
-  // The share of a reduced pixel is that of its first one: shares differ little.
+  // A reduced pixel takes the share of the first of its pixels, because their shares differ little.
   for (std::uint32_t y = 0; y < input.mean.height; ++y) {
     for (std::uint32_t x = 0; x < input.mean.width; ++x) {
       input.first_share.push_back(first->share[std::size_t{y} * step * film.width() + x * step]);

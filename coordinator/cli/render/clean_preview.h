@@ -1,7 +1,8 @@
 #pragma once
 
-// Clean previews of an image that is being rendered: reduced in size. The denoiser's guides (images
-// of albedo and shape) have only few samples.
+// Makes previews without noise of an image that is being rendered, for `render --denoise
+// --preview`. They are reduced in size, and the denoiser's guides (images of the albedo and the
+// shape of the surfaces) have few samples, so that a preview takes little time.
 
 #include <atomic>
 #include <cstdint>
@@ -16,22 +17,24 @@
 
 namespace bandsaw::coordinator {
 
-/// Used by one thread at a time. The references MUST outlive it.
+/// An object may be used by one thread at a time. The arguments of the constructor MUST outlive it.
 class CleanPreview {
  public:
-  /// Samples of the guides; with more of them the preview would cost as much as the image.
+  /// Samples per pixel of the guides. With many more, the preview would cost as much as the image.
   static constexpr std::uint64_t kGuideSamples = 4;
 
   CleanPreview(const Scene& scene, const RenderSettings& settings, Pool& pool,
                const std::atomic<bool>& stop)
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop) {}
 
-  /// Returns the clean image of the samples that are present, with at most about `most_side` pixels
-  /// a side; std::nullopt until every pixel has two blocks of samples. The first call renders the
-  /// guides. Errors as render_image.
+  /// Returns the image of the samples in `film`, without noise and reduced to at most `most_side`
+  /// pixels a side, > 0. Returns std::nullopt until every pixel has more than one block (8) of
+  /// samples. The first call renders the guides; `most_side` MUST be the same in all calls. Errors
+  /// as render_image.
   absl::StatusOr<std::optional<Image>> of(const Film& film, std::uint32_t most_side);
 
  private:
+  /// Renders a guide and reduces it: `step` by `step` pixels become one.
   absl::StatusOr<Image> guide(Integrator integrator, std::uint32_t step);
 
   const Scene& scene_;
@@ -42,7 +45,7 @@ class CleanPreview {
     Image albedo;
     Image shape;
   };
-  std::optional<Guides> guides_;  ///< reduced
+  std::optional<Guides> guides_;  ///< reduced; std::nullopt: not rendered yet
 };
 
 }  // namespace bandsaw::coordinator

@@ -1,5 +1,5 @@
-// Collects what the rendering threads report, and computes the progress of a local render from it,
-// as the scheduler does for a job of a farm.
+// Collects what the rendering threads report, and computes from it the progress of a render on this
+// machine, as the scheduler does for a job of a farm.
 
 #include "coordinator/cli/render/local_meter.h"
 
@@ -51,7 +51,8 @@ double LocalMeter::fraction_of(const JobView& job, const ErrorCurve& curve) cons
   }
   const auto& rule = std::get<StopAtError>(spec_.stop);
   const auto end = expected_end(curve, rule.relative_rmse, planned_, rule.max_samples);
-  // For an adaptive render, counts complete passes, because a pass does not contain all pixels.
+  // In an adaptive render a pass does not have all pixels, so `done`, a mean, would be too small.
+  // Then the end of the last complete pass is used.
   const double so_far = rule.adaptive && end ? static_cast<double>(curve.back().samples) : done;
   return end ? so_far / static_cast<double>(*end) : 0;
 }
@@ -77,12 +78,12 @@ Progress LocalMeter::progress(Clocks now) const {
   if (job.counters.bad_samples > 0) {
     progress.bad_sample_at = bad_sample_text(job.counters);
   }
-  // Only the caller decides that the render is done.
+  // The fraction stays below 1, because only the caller decides that the render is done.
   job.fraction = std::min(fraction_of(job, measured.empty() ? job.curve : measured), 0.999);
   if (job.elapsed_s > 0) {
     job.samples_per_s = static_cast<double>(job.samples_done) / job.elapsed_s;
   }
-  if (job.fraction > 0.005) {
+  if (job.fraction > 0.005) {  // before that, the prediction would vary too much
     job.remaining_s = job.elapsed_s * (1 / job.fraction - 1);
   }
   return progress;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Progress of a render on this machine: updated by its threads, read by a display.
+// Measures the progress of a render on this machine (`bandsaw render`). The rendering threads
+// report to it, and a display reads it.
 
 #include <atomic>
 
@@ -9,46 +10,51 @@
 
 namespace bandsaw::coordinator {
 
+/// Thread-safe.
 class LocalMeter {
  public:
-  /// Seconds of a steady clock, and CPU time of all threads of the process.
   struct Clocks {
-    double steady_s = 0;
-    double cpu_s = 0;
+    double steady_s = 0;  ///< seconds of a steady clock
+    double cpu_s = 0;     ///< CPU time of all threads of the process, in seconds
   };
 
-  /// `rows`: the rows that are rendered. `start`: clocks at the start of the render.
+  /// `rows`: the rows that are rendered. `start`: the clocks at the start of the render.
   LocalMeter(const JobSpec& spec, RowRange rows, int threads, Clocks start);
 
-  /// Reports the number of pixel samples done, including the unfinished pass. Thread-safe; values
-  /// lower than before are ignored.
+  /// Reports how many samples are done in all pixels together, also of a pass (a range of samples
+  /// of the image) that is not finished. A number that is lower than an earlier one is ignored.
   void reached(std::uint64_t samples);
   /// Reports the end of the last planned pass, in samples per pixel.
   void plans(std::uint64_t samples) { planned_ = samples; }
-  /// Reports that samples [0, samples) of all rows are done. `error`: std::nullopt if unknown.
+  /// Reports that samples [0, samples) of each pixel are done. `error`: std::nullopt if unknown.
   void passed(std::uint64_t samples, const std::optional<ErrorEstimate>& error, Clocks now)
       EXCLUDES(mutex_);
-  /// Reports the error that the stop rule compares with its target, if it is not that of passed().
+  /// Reports the relative RMSE that the stop rule compares with its target, if it is not that of
+  /// passed(): with --denoise it is the error of the clean image.
   void measured(std::uint64_t samples, double error) EXCLUDES(mutex_);
+  /// Adds the counters (rays, bad samples, …) of rows that are done.
   void add(const Counters& counters) EXCLUDES(mutex_);
 
+  /// Returns the time of the render at a time of the steady clock, in seconds.
   double seconds(double steady_s) const { return steady_s - start_.steady_s; }
+  /// Returns the state of the render, which is never done: its fraction is below 1.
   Progress progress(Clocks now) const EXCLUDES(mutex_);
 
  private:
-  /// `curve`: the errors that the stop rule compares with its target.
+  /// Returns how much of the render is done, 1 or more: all. `curve`: the errors that the stop rule
+  /// compares with its target.
   double fraction_of(const JobView& job, const ErrorCurve& curve) const;
 
   const JobSpec spec_;
-  const double pixels_;
+  const double pixels_;  ///< number of pixels that are rendered
   const int threads_;
   const Clocks start_;
-  std::atomic<std::uint64_t> reached_{0};
-  std::atomic<std::uint64_t> planned_{0};
+  std::atomic<std::uint64_t> reached_{0};  ///< samples in all pixels together
+  std::atomic<std::uint64_t> planned_{0};  ///< samples per pixel
   mutable Mutex mutex_;
-  std::uint64_t passed_ GUARDED_BY(mutex_) = 0;
-  ErrorCurve curve_ GUARDED_BY(mutex_);
-  ErrorCurve measured_ GUARDED_BY(mutex_);
+  std::uint64_t passed_ GUARDED_BY(mutex_) = 0;  ///< samples per pixel
+  ErrorCurve curve_ GUARDED_BY(mutex_);          ///< errors of passed()
+  ErrorCurve measured_ GUARDED_BY(mutex_);       ///< errors of measured(); may be empty
   Counters counters_ GUARDED_BY(mutex_);
 };
 

@@ -1,7 +1,7 @@
-// next() returns the next pass of a local render: all passes up to the next checkpoint (a number of
-// samples) are planned at once, and the stop rule is checked when they are done. An adaptive render
-// goes to a looser error first. There wants_tiles() is true, and plan() sets the number of samples
-// of each half tile, once; schedule_ holds them.
+// next() plans all passes up to the next checkpoint (a number of samples per pixel) at once, and
+// checks the stop rule when they are done. An adaptive render first goes to an error that is larger
+// than its target. There wants_tiles() is true, and plan() sets, once, how many samples each half
+// tile takes.
 
 #include "coordinator/cli/render/local_plan.h"
 
@@ -39,6 +39,7 @@ std::optional<SampleRange> LocalPlan::next(std::uint64_t samples, double error, 
   if (samples == 0) {
     return next_timed_pass(0, 0, rule.max_samples);
   }
+  // How many samples per pixel can be rendered in the rest of the time.
   const double fits = (rule.seconds - seconds) * static_cast<double>(samples) / seconds;
   if (samples >= rule.max_samples || fits < static_cast<double>(kBlockSamples)) {
     return std::nullopt;

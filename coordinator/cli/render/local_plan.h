@@ -1,7 +1,7 @@
 #pragma once
 
-// Plans the passes of a render on this machine: the counterpart of the coordinator's scheduler, for
-// one image and one stop rule.
+// Plans the passes of a render on this machine (`bandsaw render`). It divides an image as the
+// coordinator's scheduler divides a job. A pass is a range of samples of the whole image.
 
 #include <deque>
 #include <optional>
@@ -13,37 +13,42 @@
 
 namespace bandsaw::coordinator {
 
+/// In an adaptive render the plan also has the number of samples of each half tile (half of the
+/// pixels of a square of 16 x 16). The order of calls is: next(), tiles(), render the pass; then,
+/// if wants_tiles(), plan().
 class LocalPlan {
  public:
-  /// `grid`: tiles of the image; used by adaptive stop rules only.
+  /// `grid`: the size of the image; only adaptive stop rules need it.
   explicit LocalPlan(const StopRule& stop, const TileGrid& grid = {}) : stop_(stop), grid_(grid) {}
 
-  /// Returns the next pass, after samples [0, samples) were rendered in `seconds`. `error` is their
-  /// estimated relative RMSE, negative if unknown. Returns std::nullopt if the image is done.
+  /// Returns the next pass, after samples [0, samples) of all pixels were rendered in `seconds`.
+  /// `error` is the estimated relative RMSE of the image, negative if unknown. Returns std::nullopt
+  /// if the image is done.
   std::optional<SampleRange> next(std::uint64_t samples, double error, double seconds);
-  /// Returns the end of the last planned pass.
+  /// Returns the end of the last planned pass, in samples per pixel.
   std::uint64_t planned() const { return planned_; }
 
-  /// Returns true if the image may be done: the next call of next() decides by the error.
+  /// Returns true if the next call of next() decides by the error whether the image is done.
   bool wants_error() const { return passes_.empty() && std::holds_alternative<StopAtError>(stop_); }
-  /// Returns true if the tiles are to be planned now, before the call of next() with the same
-  /// error.
+  /// Returns true if plan() is to be called now, before next() is called with the same error. That
+  /// is once in an adaptive render.
   bool wants_tiles(double error) const;
-  /// Plans the samples of the half tiles from their errors after samples [0, samples).
+  /// Plans the samples of the half tiles. `tiles`: their errors after samples [0, samples).
   void plan(absl::Span<const HalfTileErrors> tiles, std::uint64_t samples);
-  /// Returns the samples of half tiles in the pass returned by next(). Must be called once per
-  /// pass.
+  /// Returns the samples of the half tiles in the pass that next() has returned; before plan() was
+  /// called, all pixels take all samples of the pass. MUST be called once for each pass.
   TileSamples tiles(const SampleRange& pass) {
     return schedule_ ? schedule_->next(pass) : TileSamples();
   }
 
  private:
+  /// Returns the first planned pass; if none is planned, plans those of samples [from, to) before.
   std::optional<SampleRange> first_of(std::uint64_t from, std::uint64_t to);
 
   StopRule stop_;
   TileGrid grid_;
-  std::optional<TileSchedule> schedule_;
-  std::deque<SampleRange> passes_;  ///< planned, not started
+  std::optional<TileSchedule> schedule_;  ///< std::nullopt: the half tiles are not planned
+  std::deque<SampleRange> passes_;        ///< planned passes that next() has not returned yet
   std::uint64_t planned_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Renders the bands of one pass after the other and adds them to a film. The stop rule (LocalPlan)
-// decides after each pass whether there is another one.
+// Renders the bands (some rows each) of one pass after the other and adds them to a film, which has
+// the sums of all pixels. LocalPlan decides after each pass whether there is another one.
 
 #include "coordinator/cli/render/local_render.h"
 
@@ -17,7 +17,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// `done`: pixel samples before this pass; increased by those of the pass.
+// Renders a pass of some rows, and calls `take` with each band. `done`: number of samples in all
+// pixels before this pass, to which those of the pass are added.
 absl::Status render_pass(const LocalJob& job, const SampleRange& pass, const RowRange& rows,
                          const TileSamples& tiles, std::uint64_t& done,
                          absl::FunctionRef<absl::Status(BandPixels)> take) {

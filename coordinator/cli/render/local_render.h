@@ -1,6 +1,7 @@
 #pragma once
 
-// Renders an image, or some of its rows, on this machine, with the same bits as on a farm.
+// Renders an image, or some of its rows, on this machine, for `bandsaw render`. The image has the
+// same bits as on a farm. A band, as elsewhere, is a range of rows and a range of samples.
 
 #include <atomic>
 #include <functional>
@@ -17,27 +18,30 @@ namespace bandsaw::coordinator {
 /// Returns the current clocks of this process.
 LocalMeter::Clocks clocks();
 
+/// What is rendered, and by what. The references MUST outlive the render.
 struct LocalJob {
   const Scene& scene;
   const RenderSettings& settings;
   Pool& pool;
   const std::atomic<bool>& stop;  ///< setting it to true ends the render with CANCELLED
   LocalMeter& meter;
-  /// Called after each band added to a whole image; may be nullptr.
+  /// Called by render_whole() after each band that was added to the film (the sums of all pixels);
+  /// may be nullptr.
   std::function<void(const Film&)> grown = nullptr;
-  /// Returns the error of the image of the first `samples` samples per pixel, which a stop rule of
-  /// an error compares with its target. nullptr: the estimate of Film::error is used.
+  /// Returns the relative RMSE of the image, whose pixels have `samples` samples; a job that stops
+  /// at an error compares it with its target. nullptr: the estimate of Film::error is used.
   std::function<absl::StatusOr<double>(const Film&, std::uint64_t samples)> error_of = nullptr;
 };
 
-/// Renders the whole image, pass by pass until the stop rule is satisfied. CANCELLED:
-/// LocalJob::stop; RESOURCE_EXHAUSTED: out of memory.
+/// Renders the whole image, pass by pass, until the stop rule is satisfied. CANCELLED:
+/// LocalJob::stop was set. RESOURCE_EXHAUSTED: out of memory. Other errors: those of
+/// LocalJob::error_of.
 absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop);
 
 /// Renders samples [0, samples) of some rows. The samples are divided into the largest nodes of the
-/// summation tree that fit (maximal_nodes in render/band.h), and the first of these into its two
-/// halves, because the error estimate needs them. Returns bands for each of these ranges of
-/// samples, with as many rows as a band may have.
+/// tree by which samples are added (maximal_nodes in renderlib/render/band.h). The first node is
+/// divided into its two halves, because the error estimate needs them. Returns bands for each of
+/// these ranges of samples, with as many rows as a band may have. Errors: as render_whole().
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
                                                     std::uint64_t samples);
 

@@ -1,4 +1,5 @@
-// bandsaw render: the image on this machine, without a farm.
+// The command `bandsaw render`: renders an image, or some rows of it, on this machine, without a
+// farm.
 
 #include <algorithm>
 #include <atomic>
@@ -27,6 +28,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+// Returns the files that the user named, or the default one.
 std::vector<std::string> outputs_of(const RenderOptions& options) {
   if (!options.outputs.empty()) {
     return options.outputs;
@@ -36,7 +38,7 @@ std::vector<std::string> outputs_of(const RenderOptions& options) {
                                                      : ".png")};
 }
 
-// The package, ready to render.
+// The imported scene, ready to render.
 struct Prepared {
   PackageInfo info;
   DigestHex digest;
@@ -50,6 +52,8 @@ absl::StatusOr<Prepared> prepare(const RenderOptions& options, Process& process)
   return Prepared{package.info(), wire::sha256(package.manifest()).hex(), std::move(scene)};
 }
 
+/// Writes the files of `render --rows`: the sums of the rows to .band files, and a picture of these
+/// rows to all others.
 absl::Status write_part_outputs(const std::vector<BandPixels>& bands, const JobSpec& spec,
                                 const RowRange& rows, const std::vector<std::string>& outputs,
                                 const Display& display) {
@@ -72,6 +76,8 @@ absl::Status write_part_outputs(const std::vector<BandPixels>& bands, const JobS
   return write_outputs(image, pictures, display);
 }
 
+/// Renders one image, shows its progress and writes its files. `spec`: the job that would render it
+/// on a farm. `picture`: the display settings.
 class LocalRun {
  public:
   LocalRun(const RenderOptions& options, Process& process, JobSpec spec, const Display& picture,
@@ -86,6 +92,7 @@ class LocalRun {
         picture_(picture),
         views_(display_, options.display, options.tev, spec_.name) {}
 
+  /// Does all of it and returns the exit code. Call it once.
   ExitCode run(SceneDescription description, const std::vector<std::string>& outputs,
                const std::vector<std::string>& reports) {
     const Interrupts::Listener listener(process_.interrupts, [this] { stop_ = true; });
@@ -112,6 +119,7 @@ class LocalRun {
   }
 
  private:
+  /// Renders into image_, layers_ and clean_, or into bands_ with --rows.
   absl::Status render(SceneDescription description) {
     constexpr std::chrono::milliseconds kInterval{100};
     const Ticker ticker(kInterval, [this] {
@@ -129,6 +137,7 @@ class LocalRun {
     }
     std::optional<CleanPreview> preview;
     if (options_.denoise != Denoiser::kNone) {
+      // The target of --error is that of the clean image.
       job.error_of = [&](const Film& film, std::uint64_t samples) -> absl::StatusOr<double> {
         RETURN_IF_ERROR(clean(*scene, film, samples));
         return clean_->denoised.total.at_most();
@@ -159,6 +168,7 @@ class LocalRun {
     return absl::OkStatus();
   }
 
+  /// Returns a function that renders the scene with other settings.
   LayerRenderer layer_renderer(const Scene& scene) {
     return [this, &scene](const RenderSettings& settings,
                           std::uint64_t count) -> absl::StatusOr<Image> {
@@ -168,7 +178,8 @@ class LocalRun {
     };
   }
 
-  /// Makes the clean image of `samples` samples per pixel, unless it was made before.
+  /// Removes the noise of the image, whose pixels have `samples` samples, and stores the result in
+  /// clean_, unless it is there already.
   absl::Status clean(const Scene& scene, const Film& film, std::uint64_t samples) {
     if (clean_ && clean_->samples == samples) {
       return absl::OkStatus();
@@ -182,8 +193,9 @@ class LocalRun {
     return absl::OkStatus();
   }
 
-  /// Returns a renderer that renders each job once: while the number of samples of the guides is
-  /// the same, those of earlier passes are used again.
+  /// Returns a function that renders the guides (images by which the denoiser finds edges). They
+  /// are kept in guides_ and used again at a later checkpoint if that needs the same number of
+  /// samples.
   JobRenderer guides_of(const Scene& scene) {
     return [this, render = one_by_one(layer_renderer(scene))](
                const std::vector<JobSpec>& jobs) -> absl::StatusOr<std::vector<Image>> {
@@ -195,8 +207,8 @@ class LocalRun {
     };
   }
 
-  /// Shows the image at intervals, so that showing it takes little time compared with rendering.
-  /// `clean`: for a clean image, or nullptr.
+  /// Shows the image, unless it was shown a short time ago, so that most time is spent on
+  /// rendering. `clean`: makes the picture without noise; nullptr: the image is shown as rendered.
   void show(const Film& film, CleanPreview* clean) {
     constexpr double kInterval_s = 0.3;
     constexpr double kMaxShare = 0.05;  // share of the time that is spent on cleaning
@@ -209,7 +221,7 @@ class LocalRun {
       picture = clean->of(film, views_.most_side());
     }
     const double cleaned_in = steady_seconds() - begin;
-    // If this fails, rendering has failed too, which the render itself reports.
+    // If the clean picture failed, the render fails for the same reason and reports it.
     views_.show(picture.ok() && *picture ? **picture : film.snapshot().image, picture_);
     show_at_ = steady_seconds() + std::max(kInterval_s, cleaned_in / kMaxShare);
   }
@@ -239,8 +251,8 @@ class LocalRun {
   ImageViews views_;
   double show_at_ = 0;  ///< time of the next picture, in seconds of a steady clock
   std::atomic<bool> stop_{false};
-  Image image_;
-  Layers layers_;
+  Image image_;    ///< as rendered
+  Layers layers_;  ///< additional layers of EXR files
   struct Clean {
     Denoised denoised;
     std::uint64_t samples = 0;
@@ -251,7 +263,7 @@ class LocalRun {
     std::vector<Image> images;
   };
   std::optional<Guides> guides_;
-  std::vector<BandPixels> bands_;
+  std::vector<BandPixels> bands_;  ///< the rows of --rows
 };
 
 }  // namespace
