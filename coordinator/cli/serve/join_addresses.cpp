@@ -1,6 +1,6 @@
-// join_addresses() returns the addresses for the join string. A coordinator that listens on all
-// addresses lists those of this machine: real interfaces first, then virtual ones, then loopback;
-// IPv4 before IPv6.
+// join_addresses() returns the addresses for a join string. If the coordinator listens on all
+// addresses, they are those of this machine: first of real interfaces, then of virtual ones, then
+// loopback; in each of these groups IPv4 comes before IPv6.
 
 #include "coordinator/cli/serve/join_addresses.h"
 
@@ -21,20 +21,22 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kMaxAddresses = 8;
+constexpr std::size_t kMaxAddresses = 8;  // keeps the join string short
 
+// Returns true for interfaces of containers, bridges and virtual machines.
 bool is_virtual(const std::string& name) {
   const std::array<const char*, 5> prefixes = {"docker", "veth", "br-", "virbr", "lxc"};
   return std::any_of(prefixes.begin(), prefixes.end(),
                      [&](const char* prefix) { return absl::StartsWith(name, prefix); });
 }
 
+// The best addresses have the lowest rank.
 int rank(const LocalAddress& address) {
   return (address.loopback ? 4 : 0) + (is_virtual(address.interface_name) ? 2 : 0) +
          (address.ipv6 ? 1 : 0);
 }
 
-// Returns an empty string for an address that cannot be used in a join string.
+// Returns the address as text; empty if it cannot be used in a join string.
 std::string text_of(const sockaddr& address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (address.sa_family == AF_INET) {
@@ -86,7 +88,8 @@ std::vector<std::string> join_addresses(const std::string& host, int port,
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const LocalAddress& a, const LocalAddress& b) { return rank(a) < rank(b); });
   if (sorted.size() > kMaxAddresses) {
-    // Keeps the last one: loopback always works for workers and commands on this machine.
+    // The last one is kept: it is loopback, which always works for workers and commands on this
+    // machine.
     sorted.erase(sorted.begin() + kMaxAddresses - 1, sorted.end() - 1);
   }
   std::vector<std::string> out;

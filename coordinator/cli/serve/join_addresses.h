@@ -1,6 +1,7 @@
 #pragma once
 
-// Addresses under which other machines can reach this one.
+// Finds the addresses under which other machines can reach this one, for the join strings and the
+// dashboard of `bandsaw serve`.
 
 #include <string>
 #include <vector>
@@ -11,7 +12,7 @@ namespace bandsaw::coordinator {
 
 /// An address of this machine in numeric form.
 struct LocalAddress {
-  std::string interface_name;
+  std::string interface_name;  ///< of the system, such as "eth0"
   std::string address;
   bool ipv6 = false;
   bool loopback = false;
@@ -21,9 +22,10 @@ struct LocalAddress {
 /// need a scope. INTERNAL: the system's error.
 absl::StatusOr<std::vector<LocalAddress>> local_addresses();
 
-/// Returns host:port for a join string, best first, at most 8. A host name or address stands for
-/// itself; 0.0.0.0 stands for every IPv4 address, [::] for every address: LAN interfaces first,
-/// then those of containers and bridges, loopback last.
+/// Returns at most 8 addresses HOST:PORT for a join string, the best one first. `host` is what the
+/// coordinator listens on. If it is 0.0.0.0, the result is every IPv4 address in `local`; if it is
+/// [::], every address in `local`. These begin with real interfaces; those of containers and
+/// bridges follow, and loopback is last. Any other host is the only one in the result.
 std::vector<std::string> join_addresses(const std::string& host, int port,
                                         const std::vector<LocalAddress>& local);
 

@@ -11,7 +11,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// An unchanged file is not written again, so a full disk does not matter then.
+/// Writes the join string to the file, unless the file has it already. So `serve` can start on a
+/// full disk if nothing has changed.
 absl::Status write(const std::string& file, const link::JoinString& join) {
   const std::string line = join.text() + "\n";
   const absl::StatusOr<std::string> there = read_whole_file(file, 2 * line.size());

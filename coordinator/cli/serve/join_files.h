@@ -1,6 +1,8 @@
 #pragma once
 
-// The files with the farm's join strings, in the data folder.
+// Writes the files with the farm's join strings into the data folder, for `serve` and `secret
+// rotate`. A join string is a line with the addresses of the farm, the digest of its certificate
+// and the secret of a role (workers or users).
 
 #include <string>
 #include <vector>
@@ -12,10 +14,11 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns `DATA/join` for workers, `DATA/farm` for users.
+/// Returns the path of a role's file: `DATA/join` for workers, `DATA/farm` for users.
 std::string join_file_of(const std::string& data_folder, link::Role role);
 
-/// Returns the join string of a role. `insecure`: without the certificate.
+/// Returns the join string of a role. `insecure`: it has no digest of a certificate, because the
+/// farm does not encrypt.
 link::JoinString join_string(link::Role role, const link::Identity& identity,
                              const std::vector<std::string>& addresses, bool insecure);
 
@@ -23,9 +26,10 @@ link::JoinString join_string(link::Role role, const link::Identity& identity,
 /// the disk is full; the file is unchanged.
 absl::Status write_join_file(const std::string& data_folder, const link::JoinString& join);
 
-/// Renews the secret in the identity and in the role's join string, if that file exists. Errors as
-/// link::renew_secret. If writing the join string fails (`written`), the files differ until the
-/// next `serve`.
+/// Renews the secret of a role in the farm's identity (its file with certificate and secrets), and
+/// then in the role's join string, if that file exists. Errors: those of link::renew_secret. If
+/// only the join string could not be written, RenewedSecret::written has the error; the next
+/// `serve` writes the file.
 absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role);
 
 }  // namespace bandsaw::coordinator

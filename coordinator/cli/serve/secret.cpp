@@ -1,4 +1,5 @@
-// bandsaw secret rotate: asks the running coordinator, or changes the data folder if none runs.
+// The command `bandsaw secret rotate`: makes a new secret of workers or users. If a coordinator
+// runs, it is asked to do so; otherwise this program changes the files in the data folder.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -21,10 +22,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
+// The file with the farm's certificate and secrets.
 std::string identity_file(const std::string& folder) { return folder + "/identity"; }
 
-/// Gives a file written by root to the owner of its folder, such as the user of an installed
-/// service.
+/// If this program runs as root, gives the file to the owner of the folder, such as the user of an
+/// installed service, who could not read it otherwise.
 absl::Status give_to_owner(const std::string& folder, const std::string& file) {
   struct stat owner {};
   if (geteuid() == 0 && (stat(folder.c_str(), &owner) != 0 ||
@@ -34,7 +36,8 @@ absl::Status give_to_owner(const std::string& folder, const std::string& file) {
   return absl::OkStatus();
 }
 
-/// Renews the secret in the folder. FAILED_PRECONDITION: a coordinator is using it.
+/// Renews the secret in the folder and revokes the link for browsers. Returns the file with the new
+/// join string. FAILED_PRECONDITION: a coordinator is using the folder.
 absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role role) {
   ASSIGN_OR_RETURN(const DataFolder locked, DataFolder::open(folder));
   RETURN_IF_ERROR(link::remove_browser_link(folder));
@@ -47,13 +50,15 @@ absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role ro
   return renewed.join_file;
 }
 
+/// Renews the secret and returns the file with the new join string.
 absl::StatusOr<std::string> rotate(const std::string& folder, link::Role role) {
   if (!file_exists(identity_file(folder))) {
     return absl::InvalidArgumentError(
         absl::StrCat(folder, " is no data folder of a coordinator; name it with --data DIR"));
   }
   umask(S_IRWXG | S_IRWXO);
-  // The lock shows if a coordinator is running; then only it can end existing connections.
+  // The lock of the folder shows if a coordinator is running. Then it must do the work, because
+  // only it can end the connections that use the old secret.
   auto here = rotate_here(folder, role);
   if (!absl::IsFailedPrecondition(here.status())) {
     return here;

@@ -1,4 +1,5 @@
-// bandsaw serve: runs the coordinator until a signal.
+// The command `bandsaw serve`: runs the coordinator with its gRPC server and its dashboard until a
+// signal comes.
 
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -24,13 +25,14 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// All that runs, and what is printed about it.
 struct Serving {
   std::unique_ptr<Engine> engine;
-  std::unique_ptr<BrowserAccess> browsers;  // destroyed after those that use it
+  std::unique_ptr<BrowserAccess> browsers;  // the link for browsers; destroyed after its users
   std::unique_ptr<ServedDashboard> web;     // destroyed before the engine
   std::unique_ptr<Server> server;           // destroyed before `web`, which it notifies
-  std::string folder;
-  std::string join;     // workers' join string
+  std::string folder;                       // the data folder
+  std::string join;                         // workers' join string
   std::string line;     // shell line that fetches and starts a worker; may be empty
   std::string address;  // host:port
 };
@@ -42,8 +44,9 @@ absl::Status make_folder(const std::string& folder) {
                : absl::OkStatus();
 }
 
-/// Revokes the link for browsers, and renews the role's secret in the identity, the join strings
-/// and the dashboard's logins and link.
+/// Revokes the link for browsers, and renews the role's secret everywhere: in the identity, in the
+/// join string, in the dashboard's logins and in the link to the dashboard. The server calls it for
+/// `bandsaw secret rotate`.
 absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::Role role,
                                                const ServedDashboard& web,
                                                BrowserAccess& browsers) {
@@ -58,7 +61,8 @@ absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::
   return renewed;
 }
 
-/// Returns OK if the disk is full, and logs the error: then the file of an earlier start remains.
+/// Returns `written`, the result of writing a file. If the disk is full, logs the error and returns
+/// OK, because the file of an earlier start remains.
 absl::Status unless_full(const absl::Status& written) {
   if (!absl::IsResourceExhausted(written)) {
     return written;
@@ -69,6 +73,7 @@ absl::Status unless_full(const absl::Status& written) {
   return absl::OkStatus();
 }
 
+/// Starts everything and writes the files with the join strings.
 absl::StatusOr<Serving> start(const ServeOptions& options) {
   Serving serving;
   std::string folder = options.data;
@@ -109,7 +114,8 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   const std::string host = options.listen.substr(0, options.listen.rfind(':'));
   ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
   const std::vector<std::string> addresses = join_addresses(host, serving.server->port(), local);
-  // The users' file is the last one: scripts wait for it and then start a worker with the other.
+  // The users' file is written last: scripts wait for it, and then start a worker with the workers'
+  // file.
   for (const link::Role role : {link::Role::kWorker, link::Role::kFarm}) {
     link::JoinString join = join_string(role, identity, addresses, options.insecure);
     join.web = role == link::Role::kFarm ? serving.web->place(options) : "";

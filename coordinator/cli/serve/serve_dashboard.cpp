@@ -1,5 +1,6 @@
-// Starts the dashboard with the functions that it cannot have itself: importing a scene into the
-// engine's store, and the programs of workers and of browsers.
+// Starts the dashboard and gives it what the folder coordinator/web cannot have itself: the
+// function that imports a scene into the engine's store, the function that writes reports, and the
+// programs of workers and of browsers.
 
 #include "coordinator/cli/serve/serve_dashboard.h"
 
@@ -26,10 +27,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Shorter than for a command, because a user waits in a browser.
+/// Time limit of an import. It is shorter than for a command, because a user waits in a browser.
 constexpr double kImportTimeout_s = 120;
-constexpr std::size_t kPieceBytes = 16 << 20;
+constexpr std::size_t kPieceBytes = 16 << 20;  ///< a blob is written in pieces of this size
 
+/// Writes a blob (a part of a scene, named by its digest) to the store, unless it is there already.
 absl::Status store(Engine& engine, const wire::Digest& digest, absl::Span<const std::byte> bytes) {
   if (engine.has_blob(digest)) {
     return absl::OkStatus();
@@ -97,6 +99,7 @@ BrowserProgram load_browsers() {
   return *std::move(program);
 }
 
+/// Starts the dashboard; nullptr: no address was given and none can be used.
 absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, Engine& engine,
                                                  const link::Identity& identity,
                                                  const WorkerPrograms& workers,

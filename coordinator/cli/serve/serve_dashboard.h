@@ -1,6 +1,6 @@
 #pragma once
 
-// The dashboard of `bandsaw serve`, and the file with the link to it.
+// Starts the dashboard (the web pages) of `bandsaw serve`, and writes the file with the link to it.
 
 #include <memory>
 #include <string>
@@ -16,29 +16,32 @@
 
 namespace bandsaw::coordinator {
 
+/// The dashboard that runs, or none.
 struct ServedDashboard {
   std::unique_ptr<Dashboard> dashboard;  ///< nullptr: there is none
   std::string url;                       ///< its address for users, without a secret
   WorkerDigests workers;                 ///< the workers' programs that it hands out
 
-  /// Writes the file with the link that logs in (mode 0600 if the umask says so). Without a
-  /// dashboard, removes the file.
+  /// Writes the file with the link that logs a user in. Its mode is 0600 if the umask is 077, as
+  /// `serve` sets it. Without a dashboard, removes the file.
   absl::Status write_link(const std::string& data_folder, const link::Identity& identity) const;
 
   /// Returns the dashboard's address in the form of the users' join string (proto/link/join.h);
   /// empty: there is no dashboard.
   std::string place(const ServeOptions& options) const;
 
-  /// Returns the line to paste on a machine without a worker; empty: no program is handed out, or
-  /// machines that reach the coordinator do not reach the dashboard.
+  /// Returns the line to paste on a machine without a worker (cli/machines/worker_line.h). `join`:
+  /// the workers' join string. Returns an empty text if no program is handed out, or if other
+  /// machines can reach the coordinator but not the dashboard.
   absl::StatusOr<std::string> worker_line(const ServeOptions& options,
                                           const link::Identity& identity,
                                           const std::string& join) const;
 };
 
-/// Starts the dashboard. Its pointer is nullptr for "none", and if no address was given and none
-/// can be used. `engine` and `browsers`, whose address is set, MUST outlive it.
-/// FAILED_PRECONDITION: the given address cannot be used.
+/// Starts the dashboard at the address of --web, and sets its address in `browsers`. Starts none
+/// for
+/// --web none, or if --web is not given and no port can be used. `engine` and `browsers` MUST
+/// outlive the dashboard. FAILED_PRECONDITION: the address that the user gave cannot be used.
 absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Engine& engine,
                                                 const link::Identity& identity,
                                                 BrowserAccess& browsers);
