@@ -1,6 +1,6 @@
-// Runs Blender in the background with the add-on of deploy/blender, which writes the scene file,
-// warnings and errors to a temporary folder. BlendSession keeps one Blender running and asks it for
-// one frame after the other.
+// Runs Blender in the background with the add-on of deploy/blender. The add-on writes the scene
+// file, warnings and errors to a temporary folder. BlendSession keeps one Blender running and
+// requests one frame after the other from it.
 
 #include "coordinator/cli/scene/blend_file.h"
 
@@ -27,11 +27,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kBlenderTimeout_s = 600;
-constexpr std::uint64_t kMaxText = 1 << 20;
+constexpr std::uint64_t kMaxText = 1 << 20;  ///< bytes of a file with warnings or an error
 constexpr char kAddon[] = "bandsaw_blender.zip";
 /// Prefix of the line with which the add-on reports that a frame is written.
 constexpr char kAnswer[] = "bandsaw: ";
-/// Python reads the add-on from its zip. The arguments follow "--".
+/// The script that Blender runs. Python reads the add-on from its zip file, which is the first of
+/// the arguments after "--".
 constexpr char kScript[] =
     "import sys; a = sys.argv[sys.argv.index('--') + 1:]; sys.path.insert(0, a[0]); "
     "from bandsaw_blender import headless; headless.main(*a[1:])";
@@ -42,6 +43,7 @@ std::vector<std::string> lines_of(const fs::path& path) {
   return text.ok() ? absl::StrSplit(*text, '\n', absl::SkipEmpty()) : std::vector<std::string>{};
 }
 
+/// Writes the add-on, which the dashboard offers as a file as well, to `path`.
 absl::Status write_addon(const std::string& path) {
   for (const PageFile& file : page_files()) {
     if (file.name == kAddon) {
@@ -51,7 +53,7 @@ absl::Status write_addon(const std::string& path) {
   return absl::InternalError("this program does not contain the add-on for Blender");
 }
 
-/// Returns the last line of Blender's output that reports an error, else its last line.
+/// Returns the last line of Blender's output that has the word "Error", otherwise its last line.
 std::string last_error_line(const std::string& output) {
   const std::vector<std::string> lines = absl::StrSplit(output, '\n', absl::SkipWhitespace());
   const auto error = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {
@@ -76,8 +78,9 @@ absl::StatusOr<std::unique_ptr<BlendScene>> empty_scene(const std::string& path)
   return made;
 }
 
-/// Returns the command that runs the add-on on the file. `last`: a frame, "-" for frames that are
-/// asked for, or empty.
+/// Returns the command that runs the add-on on the file: without a window (-b), without the user's
+/// settings, and without the scripts in the file (-Y). `last`: the number of a frame; "-": Blender
+/// reads the numbers of frames from its standard input; empty: the frame that is saved in the file.
 std::vector<std::string> blender_command(const std::string& path, const BlendScene& to,
                                          const std::string& last) {
   std::error_code error;
@@ -111,7 +114,7 @@ absl::Status not_started(const std::string& path, const absl::Status& status) {
              : status;
 }
 
-/// Returns the error of a Blender that was killed.
+/// Returns the error if Blender was killed, otherwise OK.
 absl::Status killed(const std::string& path, const ChildOutcome& outcome) {
   if (outcome.end == ChildOutcome::End::kStopped) {
     return absl::CancelledError(absl::StrCat(name_of(path), ": Blender was interrupted"));

@@ -1,8 +1,8 @@
 #pragma once
 
-// Converts a .blend file to a scene file: runs the installed Blender without a window, with a
-// script that writes what Blender would render as a scene file and the files that it names
-// (deploy/blender).
+// Converts a .blend file to a scene file. The installed Blender is run without a window, with a
+// script (deploy/blender) that writes what Blender would render: a scene file and the files that
+// this names.
 
 #include <atomic>
 #include <cstdint>
@@ -30,24 +30,27 @@ class BlendScene {
   BlendScene(const BlendScene&) = delete;
   BlendScene& operator=(const BlendScene&) = delete;
 
-  std::string scene;                  ///< the path of the scene file
+  std::string scene;                  ///< the path of the scene file in the folder
   std::vector<std::string> warnings;  ///< sentences about what looks different in Blender
 
+  /// Returns the path of the temporary folder.
   const std::string& folder() const { return folder_; }
 
  private:
   std::string folder_;
 };
 
-/// Runs Blender on the file, at this frame or at the one that is saved in it; scripts in the file
-/// are not run. Unlike the importer, Blender runs with the user's rights. NOT_FOUND: no such file.
-/// INVALID_ARGUMENT: Blender cannot read or render it. FAILED_PRECONDITION: Blender is not
-/// installed. CANCELLED: `stop`. DEADLINE_EXCEEDED: it took more than ten minutes.
+/// Runs Blender on the file at `path`, at the frame `frame` or, without it, at the frame that is
+/// saved in the file. Scripts in the file are not run. Unlike the importer, Blender runs with all
+/// rights of the user. NOT_FOUND: there is no such file. INVALID_ARGUMENT: Blender cannot read or
+/// render it. FAILED_PRECONDITION: Blender is not installed. CANCELLED: `stop` was set.
+/// DEADLINE_EXCEEDED: Blender took more than ten minutes.
 absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(
     const std::string& path, const std::atomic<bool>& stop,
     std::optional<std::int64_t> frame = std::nullopt);
 
-/// One Blender that writes a .blend file at many frames: it reads the file once.
+/// One process of Blender that writes the scenes of many frames of a .blend file, which it reads
+/// only once.
 class BlendSession {
  public:
   /// Starts Blender. Errors as scene_of_blend_file.
@@ -56,8 +59,9 @@ class BlendSession {
   BlendSession(const BlendSession&) = delete;
   BlendSession& operator=(const BlendSession&) = delete;
 
-  /// Writes the scene at a frame, in place of the one before. Errors as scene_of_blend_file; the
-  /// session is over then.
+  /// Writes the scene at a frame and returns it. It replaces the scene of the frame before, and
+  /// belongs to this object. Errors as scene_of_blend_file; after an error at() MUST NOT be called
+  /// again.
   absl::StatusOr<const BlendScene*> at(std::int64_t frame, const std::atomic<bool>& stop);
 
  private:

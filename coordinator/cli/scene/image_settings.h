@@ -1,6 +1,6 @@
 #pragma once
 
-// Render settings: the scene's defaults, overridden by the command line.
+// Makes the render settings of an image: those of the scene, overridden by the command line.
 
 #include "absl/status/statusor.h"
 #include "coordinator/cli/options/options.h"
@@ -9,9 +9,9 @@
 
 namespace bandsaw::coordinator {
 
-/// If only a width or a height is given, the scene's aspect ratio is kept, rounded to the nearest
-/// pixel. The seed of a frame is that of the options and its number, unless it is fixed.
-/// INVALID_ARGUMENT: too large.
+/// If only a width or a height is given, the other side keeps the scene's aspect ratio, rounded to
+/// the nearest pixel. The seed of a frame is made of --seed and its number, unless --fixed-seed is
+/// given. INVALID_ARGUMENT: the settings are out of range, such as an image that is too large.
 absl::StatusOr<RenderSettings> image_settings(const ImageOptions& options,
                                               const PackageInfo& scene);
 

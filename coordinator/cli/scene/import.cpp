@@ -1,4 +1,5 @@
-// bandsaw import: writes a scene of pbrt or Mitsuba, or a model, as a scene file with its files.
+// The command `bandsaw import`: converts a scene of pbrt or Mitsuba, or a model, to a scene file,
+// and writes it with the meshes and images that it names.
 
 #include <atomic>
 #include <filesystem>
@@ -16,15 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMaxFileBytes = std::uint64_t{8} << 30;
+constexpr std::uint64_t kMaxFileBytes = std::uint64_t{8} << 30;  // of a mesh or an image
 
-/// A file to write.
+/// A file to write beside the scene file.
 struct Output {
   fs::path from;  ///< file with the bytes
-  fs::path to;
+  fs::path to;    ///< where they are written
 };
 
-/// Returns the path of the scene file to write.
+/// Returns the path of the scene file to write: -o, or the name of the scene with .textproto in the
+/// current folder.
 fs::path output_of(const ImportOptions& options) {
   if (!options.output.empty()) {
     return options.output;
@@ -34,8 +36,9 @@ fs::path output_of(const ImportOptions& options) {
   return unpacked.stem() += ".textproto";
 }
 
-/// Returns the files to write beside the scene file. Files of the foreign scene's folder are copied
-/// unless the scene file is written to that folder. PERMISSION_DENIED: a link leads outside.
+/// Returns the files to write beside the scene file. Files in the folder of the converted scene are
+/// copied, unless the scene file is written to that folder. PERMISSION_DENIED: a file is not in
+/// that folder, as where a symbolic link leads outside.
 absl::StatusOr<std::vector<Output>> outputs_of(const SceneFiles& files, const std::string& scene,
                                                const fs::path& target_folder) {
   std::error_code error;
@@ -61,7 +64,8 @@ absl::StatusOr<std::vector<Output>> outputs_of(const SceneFiles& files, const st
   return outputs;
 }
 
-/// Writes a file with the bytes of another. Nothing is done if it is there with the same bytes.
+/// Writes the file, unless it is there with the same bytes. ALREADY_EXISTS: it is there with other
+/// bytes, and `force` is false.
 absl::Status write_output(const Output& output, bool force) {
   ASSIGN_OR_RETURN(const std::string bytes, read_whole_file(output.from, kMaxFileBytes));
   if (file_exists(output.to)) {
@@ -82,6 +86,7 @@ absl::Status write_output(const Output& output, bool force) {
   return write_file_atomically(output.to, std::as_bytes(std::span(bytes)));
 }
 
+/// Converts the scene; a signal ends it with CANCELLED.
 absl::StatusOr<SceneFiles> converted(const ImportOptions& options, Process& process) {
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
@@ -90,7 +95,8 @@ absl::StatusOr<SceneFiles> converted(const ImportOptions& options, Process& proc
   return scene_files_in_process(options.scene, limits, options.choices);
 }
 
-/// Writes everything; the scene file comes last, so that it never names a file that is missing.
+/// Converts the scene and writes all files. The scene file is written last, so that it never names
+/// a file that is missing. Returns the number of files beside it.
 absl::StatusOr<std::size_t> import_to(const fs::path& target, const ImportOptions& options,
                                       Process& process) {
   if (!options.force && file_exists(target)) {

@@ -61,6 +61,7 @@ absl::StatusOr<std::string> import_program(const ImportLimits& limits) {
 
 namespace {
 
+// Makes a temporary folder in `wanted`, or in the system's default if that is empty.
 absl::StatusOr<std::unique_ptr<ScratchFolder>> make_scratch(const std::string& wanted) {
   std::error_code error;
   const fs::path parent = wanted.empty() ? fs::temp_directory_path(error) : fs::path(wanted);
@@ -72,7 +73,8 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> make_scratch(const std::string& w
   return std::make_unique<ScratchFolder>(pattern);
 }
 
-// Parses an error in the form "NOT_FOUND: message", as printed by the importer.
+// Parses an error in the form "NOT_FOUND: message", which the importer prints. Returns OK for any
+// other text. The codes of absl::StatusCode are 1 to 16.
 absl::Status reported(const std::string& output) {
   for (int code = 1; code <= 16; ++code) {
     const auto status_code = static_cast<absl::StatusCode>(code);
@@ -85,6 +87,8 @@ absl::Status reported(const std::string& output) {
   return absl::OkStatus();
 }
 
+// Returns the error if the importer has not ended well. `file`: what it read; `seconds`: its time
+// limit.
 absl::Status judge(const ChildOutcome& outcome, const std::string& file, double seconds) {
   const std::string name = fs::path(file).filename().string();
   const bool signalled = WIFSIGNALED(outcome.wait_status);
@@ -141,6 +145,8 @@ std::vector<std::string> arguments_of(const SceneChoices& choices) {
   return arguments;
 }
 
+// Returns the command that runs the importer. `what`: what it is to make ("scene", "frames",
+// "text", "image" or "unzip"); `folder`: for its output.
 std::vector<std::string> importer_arguments(const std::string& program, const char* what,
                                             const std::string& file, const std::string& folder,
                                             std::uint64_t cpu_seconds, const ImportLimits& limits,
@@ -153,7 +159,7 @@ std::vector<std::string> importer_arguments(const std::string& program, const ch
   return arguments;
 }
 
-// Runs the importer on `file`. Returns the folder with its output.
+// Runs the importer on `file`, with `what` as above. Returns the folder with its output.
 absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                                             const std::string& file,
                                                             const ImportLimits& limits,
@@ -169,7 +175,7 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
   return folder;
 }
 
-// Returns the names that lie in the smallest number of folders.
+// Returns those of the paths that are in the fewest folders.
 std::vector<std::string> outermost(std::vector<std::string> names) {
   const auto depth = [](const std::string& name) {
     return std::count(name.begin(), name.end(), '/');
@@ -182,8 +188,9 @@ std::vector<std::string> outermost(std::vector<std::string> names) {
   return names;
 }
 
-// Reads a list of files (renderlib/import/main.cpp). The names are checked again here, because the
-// process that wrote them read foreign bytes.
+// Parses a list of files that the importer has written (renderlib/import/main.cpp): in each line
+// "made" (the importer has written the file) or "found" (it has not) and a name. The names are
+// checked, because a foreign file may have taken control of the importer.
 absl::StatusOr<std::vector<ListedFile>> read_file_list(const std::string& list) {
   std::vector<ListedFile> files;
   int made = 0;
@@ -223,7 +230,8 @@ absl::StatusOr<ImportedPackage> package_in(std::shared_ptr<const ScratchFolder> 
 
 bool is_zip(const std::string& path) { return absl::EndsWithIgnoreCase(path, ".zip"); }
 
-// Returns the only scene in the archive, or the only model, or an error that lists them.
+// Returns the only scene in the archive, by the rules of import_in_process(). INVALID_ARGUMENT:
+// there are several or none; the message names two of them.
 absl::StatusOr<std::string> only_scene(const std::vector<ListedFile>& files) {
   const auto named = [&](std::initializer_list<const char*> suffixes) {
     std::vector<std::string> found;
@@ -324,7 +332,8 @@ absl::StatusOr<std::unique_ptr<ImportSession>> ImportSession::start(const std::s
   ASSIGN_OR_RETURN(const std::string program, import_program(limits));
   ASSIGN_OR_RETURN(std::shared_ptr<const ScratchFolder> folder, make_scratch(limits.scratch));
   choices.frame = 0;
-  // This process limits the time of each frame; the importer cannot know how many there will be.
+  // This process limits the time of each frame. The importer's own limit is for all frames, of
+  // which it does not know how many come, so it is set to more than any needs.
   constexpr std::uint64_t kCpuSeconds = 100'000'000;
   ASSIGN_OR_RETURN(auto importer,
                    Coprocess::start(importer_arguments(program, "frames", scene, folder->path(),

@@ -1,7 +1,9 @@
 #pragma once
 
-// Runs `bandsaw-import`, which reads foreign files in a confined process with resource limits. A
-// crash, a hang or excessive memory use in a parser becomes one clear error here.
+// Runs `bandsaw-import`, which reads scenes, models and pictures in a confined process with
+// resource limits, because they may come from strangers. A crash, a hang or excessive memory use in
+// a parser becomes one clear error here. The result is a scene package: a manifest, which describes
+// the scene, and blobs, its arrays.
 
 #include <atomic>
 #include <cstdint>
@@ -22,9 +24,10 @@ struct ImportLimits {
   std::uint64_t memory_bytes = 8ull << 30;  ///< address space of the child
   /// Program to run; empty: `bandsaw-import` in the folder of the running program.
   std::string program;
-  /// Parent folder of the temporary folder; empty: the system's default.
+  /// Folder in which temporary folders are made; empty: the system's default.
   std::string scratch;
-  /// Setting it to true kills the child and makes the call return CANCELLED. May be nullptr.
+  /// If another thread sets it to true, the child is killed and the call returns CANCELLED. May be
+  /// nullptr.
   const std::atomic<bool>* stop = nullptr;
 };
 
@@ -33,8 +36,7 @@ class Coprocess;
 /// A temporary folder that is removed with its contents by the destructor.
 class ScratchFolder;
 
-/// An imported scene: its manifest, byte for byte as serialised by the importer, and its blobs in a
-/// temporary folder that is removed with this object.
+/// An imported scene. Its blobs are in a temporary folder that is removed with this object.
 class ImportedPackage {
  public:
   ImportedPackage(std::shared_ptr<const ScratchFolder> folder, std::string manifest,
@@ -43,7 +45,9 @@ class ImportedPackage {
   ImportedPackage(ImportedPackage&&) noexcept;
   ImportedPackage& operator=(ImportedPackage&&) noexcept;
 
+  /// Returns the manifest, byte for byte as the importer has serialised it.
   const std::string& manifest() const { return manifest_; }
+  /// Returns what the manifest says about the image: its name, size, warnings and the like.
   const PackageInfo& info() const { return info_; }
   BlobFolder& blobs() { return blobs_; }
 
@@ -57,37 +61,46 @@ class ImportedPackage {
 /// Returns the path of the import program. FAILED_PRECONDITION: it is missing.
 absl::StatusOr<std::string> import_program(const ImportLimits& limits = {});
 
-/// A file that a scene or an archive names.
+/// A file that a converted scene names, or that a zip file has.
 struct ListedFile {
-  std::string name;   ///< relative, below the folder
-  int number = kOld;  ///< the file's name in SceneFiles::folder_path; kOld: not copied there
-  static constexpr int kOld = -1;  ///< the file lies below the folder of the foreign scene
+  /// Path relative to the folder of the scene file or of the zip file's contents; has no "..".
+  std::string name;
+  /// The importer has written the file under this number to its output folder (of a converted
+  /// scene, SceneFiles::folder_path). kOld: it has not, because the file is in the folder of the
+  /// scene that was converted.
+  int number = kOld;
+  static constexpr int kOld = -1;
 };
 
-/// A foreign scene that was converted to a Bandsaw scene file, and the files that this names.
+/// A scene of another format that was converted to a scene file, and the files that this names.
 struct SceneFiles {
-  std::string text;
-  std::vector<std::string> warnings;
-  std::vector<ListedFile> list;
-  std::string folder_path;
-  std::shared_ptr<const ScratchFolder> folder;  ///< keeps folder_path
+  std::string text;                             ///< the contents of the scene file
+  std::vector<std::string> warnings;            ///< sentences about what was left out
+  std::vector<ListedFile> list;                 ///< the files that the scene file names
+  std::string folder_path;                      ///< temporary folder with those that were written
+  std::shared_ptr<const ScratchFolder> folder;  ///< removes that folder when it is destroyed
 };
 
-/// Imports a scene file or model; blocks until done. Errors name the file and, for a scene file,
-/// line and column. INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED: a problem with the file, or
-/// with one that it references. DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED: a limit was exceeded.
-/// DATA_LOSS: the importer crashed. CANCELLED: `stop`, or Ctrl-C. FAILED_PRECONDITION: the program
-/// is missing. If `scene_path` is a zip file, imports the scene `choices.inside` in it. If that is
-/// empty, imports the only scene in the zip file: the outermost .textproto, if there is none the
-/// outermost .pbrt or .xml, if there is none the outermost model.
+/// Imports a scene file, a scene of pbrt or Mitsuba, or a model; blocks until done. The message of
+/// an error names the file and, for a scene file, line and column. INVALID_ARGUMENT, NOT_FOUND,
+/// PERMISSION_DENIED: there is a problem with the file, or with one that it references.
+/// DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED: a limit was exceeded. DATA_LOSS: the importer crashed.
+/// CANCELLED: limits.stop was set, or Ctrl-C ended the importer. FAILED_PRECONDITION: the program
+/// is missing.
+///
+/// If `scene_path` is a zip file, imports the scene `choices.inside` in it. If that is empty,
+/// imports the only scene in the zip file. It is searched for among the .textproto files; if there
+/// are none, among .pbrt and .xml files; then among .glb and .gltf files; then among other models.
+/// Of these, only the files in the fewest folders count.
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});
 
-/// Imports a scene at many frames, by one process that reads its files once.
+/// Imports a scene at many frames of its animation, by one process that reads its files once.
 class ImportSession {
  public:
-  /// `choices.frame` is ignored. Starts the process. Errors as import_in_process.
+  /// Starts the process. `choices.frame` and limits.stop are ignored, except that limits.stop ends
+  /// the unpacking of a zip file. Errors as import_in_process.
   static absl::StatusOr<std::unique_ptr<ImportSession>> start(const std::string& scene_path,
                                                               const ImportLimits& limits,
                                                               SceneChoices choices);
@@ -95,9 +108,9 @@ class ImportSession {
   ImportSession(const ImportSession&) = delete;
   ImportSession& operator=(const ImportSession&) = delete;
 
-  /// Imports the scene at a frame. The package of the frame before is not valid any more. The
-  /// seconds of the limits are for each frame. Setting `stop` ends the process. Errors as
-  /// import_in_process; the session is over then.
+  /// Imports the scene at a frame. The package of the frame before becomes invalid. The time limit
+  /// applies to each frame. If `stop` is set, the process ends; nullptr: it cannot be stopped.
+  /// Errors as import_in_process; after an error import() MUST NOT be called again.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, const std::atomic<bool>* stop);
 
  private:
@@ -107,17 +120,18 @@ class ImportSession {
   const std::string scene_;
   const double seconds_;
   const std::shared_ptr<const ScratchFolder> unpacked_;  ///< files of a zip file; nullptr: none
-  const std::shared_ptr<const ScratchFolder> folder_;    ///< the package
+  const std::shared_ptr<const ScratchFolder> folder_;    ///< of the package of the last frame
   const std::unique_ptr<Coprocess> importer_;
 };
 
-/// Converts a scene of pbrt or Mitsuba, or a model, to a scene file of ours. Same errors.
+/// Converts a scene of pbrt or Mitsuba, or a model, to a scene file, for `bandsaw import`. Errors
+/// as import_in_process.
 absl::StatusOr<SceneFiles> scene_files_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});
 
-/// Reads a picture and converts it to linear values: PNG, JPEG, TGA, BMP, PNM, HDR, PFM. Same
-/// limits and errors.
+/// Reads a picture (PNG, JPEG, TGA, BMP, PNM, HDR, PFM) and converts it to linear values, for
+/// `bandsaw compare`. Errors as import_in_process.
 absl::StatusOr<Image> read_image_in_process(const std::string& path,
                                             const ImportLimits& limits = {});
 

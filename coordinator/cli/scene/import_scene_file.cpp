@@ -1,5 +1,5 @@
-// A .blend file is first written as a scene file by Blender (blend_file.h); then, as every scene,
-// it is imported by the confined importer (import_process.h).
+// Every scene is imported by the confined importer (import_process.h). If it is a .blend file,
+// Blender writes it as a scene file before (blend_file.h).
 
 #include "coordinator/cli/scene/import_scene_file.h"
 
@@ -17,7 +17,7 @@ namespace {
 using Import = std::function<absl::StatusOr<ImportedPackage>(const std::atomic<bool>& stop,
                                                              std::vector<std::string>& warnings)>;
 
-/// Imports a scene; a signal stops it, and its warnings are printed.
+/// Calls `import`. A signal stops it, and the warnings of Blender and of the importer are printed.
 absl::StatusOr<ImportedPackage> import_with_warnings(const Import& import, Verbosity verbosity,
                                                      Process& process) {
   std::atomic<bool> stop{false};
@@ -35,6 +35,7 @@ absl::StatusOr<ImportedPackage> import_with_warnings(const Import& import, Verbo
   return package;
 }
 
+/// INVALID_ARGUMENT: --shutter is given, which cannot change what Blender writes.
 absl::Status check_choices_for_blender(const std::string& scene, const SceneChoices& choices) {
   return choices.shutter ? absl::InvalidArgumentError(absl::StrCat(
                                scene, ": the shutter is that of the file; omit --shutter"))

@@ -1,6 +1,7 @@
 #pragma once
 
-// Imports a scene file, for submit and render.
+// Imports what a user names as a scene, for `submit`, `render`, `study` and `info`: a scene file, a
+// scene of pbrt or Mitsuba, a model, or a .blend file.
 
 #include <atomic>
 #include <cstdint>
@@ -16,48 +17,50 @@
 
 namespace bandsaw::coordinator {
 
-/// Imports a scene file, a model, a foreign scene, or a .blend file, whose own warnings are added.
-/// Errors as import_in_process and scene_of_blend_file.
+/// Imports the scene. `warnings` is set to Blender's warnings for a .blend file, and unchanged
+/// otherwise; the importer's warnings are in the package. Setting `stop` ends the import with
+/// CANCELLED. Other errors: as import_in_process and scene_of_blend_file.
 absl::StatusOr<ImportedPackage> import_any_scene(const std::string& scene,
                                                  const SceneChoices& choices,
                                                  const std::atomic<bool>& stop,
                                                  std::vector<std::string>& warnings);
 
-/// Imports in the confined process; a signal cancels it. For a .blend file, Blender makes the scene
-/// first. Prints the warnings unless quiet. Errors as import_in_process and scene_of_blend_file.
+/// The same for a command: a signal ends it with CANCELLED, and all warnings are printed unless
+/// verbosity.quiet.
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process,
                                                   const SceneChoices& choices = {});
 
-/// Imports the frames of one scene, one after the other. The files of a scene are read only once.
-/// For a .blend file, one Blender process reads the file once and writes a scene for each frame.
+/// Imports the frames of one scene, one after the other. Its files are read only once: by one
+/// importer (ImportSession) or, for a .blend file, by one Blender that writes a scene for each
+/// frame.
 class FrameImporter {
  public:
   /// Reads nothing yet. `choices.frame` is ignored.
   FrameImporter(std::string scene, SceneChoices choices)
       : scene_(std::move(scene)), choices_(std::move(choices)) {}
 
-  /// Imports a frame; the package of the frame before is not valid any more. Errors as
-  /// import_any_scene; no other frame can be imported then.
+  /// Imports a frame; the package of the frame before becomes invalid. `stop`, `warnings` and
+  /// errors as import_any_scene. After an error import() MUST NOT be called again.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, const std::atomic<bool>& stop,
                                          std::vector<std::string>& warnings);
-  /// Imports a frame in the same way, and reports progress and warnings to the user as
-  /// import_scene_file does.
+  /// The same for a command: a signal ends it with CANCELLED, and all warnings are printed.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, Verbosity verbosity, Process& process);
 
  private:
   const std::string scene_;
   const SceneChoices choices_;
-  std::unique_ptr<ImportSession> session_;
-  std::unique_ptr<BlendSession> blender_;  ///< set for a .blend file
+  std::unique_ptr<ImportSession> session_;  ///< nullptr: not started, or a .blend file
+  std::unique_ptr<BlendSession> blender_;   ///< nullptr: not started, or no .blend file
 };
 
-/// Prints the importer's warnings unless quiet.
+/// Prints the warnings: as JSON events with --json, otherwise as text unless verbosity.quiet.
 void print_warnings(const std::vector<std::string>& warnings, Verbosity verbosity,
                     Process& process);
 
-/// Maps an import error to an exit code: a scene that cannot be read is wrong input for whatever
-/// reason; an interrupt and a broken installation are not.
+/// Returns the exit code for an error of an import: kInterrupted for CANCELLED; kFailed for
+/// FAILED_PRECONDITION and INTERNAL, which a broken installation causes; kWrong for all others,
+/// because then the scene cannot be read.
 ExitCode import_exit_code(const absl::Status& status);
 
 }  // namespace bandsaw::coordinator

@@ -1,4 +1,5 @@
-// bandsaw info: summarises a scene or model and reports unsupported features.
+// The command `bandsaw info`: prints a summary of a scene or model, and which of its features are
+// not supported.
 
 #include <algorithm>
 #include <thread>

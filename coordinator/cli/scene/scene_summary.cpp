@@ -1,4 +1,5 @@
-// Counts the parts of a scene description by kind.
+// Makes the summary of `bandsaw info` (scene_summary.h): counts the parts of a scene by kind, and
+// computes its bounds and its size in memory.
 
 #include "coordinator/cli/scene/scene_summary.h"
 
@@ -16,6 +17,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Extends `bounds` by the eight corners of `box`, transformed.
 void add_box(Box& bounds, const Box& box, const Transform& to_world) {
   if (box.empty()) {
     return;
@@ -102,6 +104,7 @@ class Tally {
 
 std::string text(const Vec3& v) { return absl::StrCat("[", v.x, ", ", v.y, ", ", v.z, "]"); }
 
+/// Returns, for example, "perspective, 40° high, at [0, 0, 5], looking at [0, 0, 0]".
 std::string camera_text(const Camera& camera) {
   const View view = view_of(camera);
   const std::string place =

@@ -21,7 +21,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kMaxAddresses = 8;  // keeps the join string short
+constexpr std::size_t kMaxAddresses = 8;  // a join string has no more (proto/link/join.cpp)
 
 // Returns true for interfaces of containers, bridges and virtual machines.
 bool is_virtual(const std::string& name) {
