@@ -1,6 +1,6 @@
-// The table of commands: for each, its name, its help, the function that adds its options to the
-// parser (CLI11), and the function that checks them. parse_command_line() finds the entry and runs
-// both.
+// The table of commands has for each command its name, its help, the function that adds its options
+// to the parser (CLI11), and the function that checks them. parse_command_line() calls both. The
+// functions add_X() and checked_X() of most commands are in cli/options.
 
 #include "coordinator/cli/command_line.h"
 
@@ -18,6 +18,8 @@
 
 namespace bandsaw::coordinator {
 namespace {
+
+// Each of these functions adds the options of a command, or of several that have the same ones.
 
 void add_list(CLI::App& app, RawOptions& raw) {
   add_farm(app, raw);
@@ -50,9 +52,10 @@ void add_retry(CLI::App& app, RawOptions& raw) {
   add_verbosity(app, raw);
 }
 
+/// A row of the table.
 struct Entry {
   const char* name;
-  const char* what;
+  const char* what;  ///< help in one line
   void (*add)(CLI::App&, RawOptions&);
   /// nullptr for the command `completion`, whose output is generated from this table.
   absl::StatusOr<Command> (*check)(const RawOptions&);
@@ -112,6 +115,8 @@ constexpr Entry kCommands[] = {
 constexpr char kExitCodes[] =
     "Exit status: 0 done, 1 failed, 2 wrong usage or input, 3 no farm reached, 130 interrupted.";
 
+/// Returns the error for a word that is none of `known`. `kind`: what the word is. The message ends
+/// with the known word that is most similar, or with `cure` if none is similar.
 absl::Status unknown(const std::string& kind, const std::string& word,
                      const std::vector<std::string>& known, const std::string& cure) {
   const auto meant = did_you_mean(word, known);
@@ -119,6 +124,8 @@ absl::Status unknown(const std::string& kind, const std::string& word,
       "no ", kind, " '", word, "'", meant ? absl::StrCat("; did you mean ", *meant, "?") : cure));
 }
 
+/// Returns INVALID_ARGUMENT if the parser has found an argument or option that the command does not
+/// have. `command`: its name.
 absl::Status check_no_extras(const CLI::App& app, const std::string& command) {
   const std::vector<std::string> extras = app.remaining();
   if (extras.empty()) {
@@ -139,6 +146,7 @@ absl::Status check_no_extras(const CLI::App& app, const std::string& command) {
   return unknown(command + " option", word, known, cure);
 }
 
+/// Runs the command `completion`: returns the script as a text to print.
 absl::StatusOr<Command> completion(const CLI::App& app, const RawOptions& raw) {
   if (raw.shell != "bash") {
     return wrong_choice("completion: the shell", "shell", raw.shell.value_or(""));
@@ -146,11 +154,14 @@ absl::StatusOr<Command> completion(const CLI::App& app, const RawOptions& raw) {
   return ShowText{bash_completion(app)};
 }
 
+/// Parses the arguments into `raw` and checks them. `commands`: the parser of each entry of
+/// kCommands, in the same order.
 absl::StatusOr<Command> parse_with(CLI::App& app, const std::vector<CLI::App*>& commands,
                                    const RawOptions& raw,
                                    const std::vector<std::string>& arguments) {
   // CLI11 reports by exceptions; they are converted here.
   try {
+    // CLI11 takes a vector of arguments in reverse order.
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
     app.parse(std::move(reversed));
   } catch (const CLI::CallForAllHelp&) {
@@ -179,7 +190,7 @@ absl::StatusOr<Command> parse_with(CLI::App& app, const std::vector<CLI::App*>& 
   return absl::InvalidArgumentError("no command; see: bandsaw --help");
 }
 
-/// Replaces the command `help` by its option: "help submit" becomes "submit --help".
+/// Replaces the word `help` by the option --help: "help submit" becomes "submit --help".
 std::vector<std::string> without_help_word(std::vector<std::string> arguments) {
   if (!arguments.empty() && arguments.front() == "help") {
     arguments.erase(arguments.begin());

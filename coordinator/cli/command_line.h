@@ -1,7 +1,7 @@
 #pragma once
 
-// Parses arguments into a checked command. Its implementation has the only table of commands and
-// options.
+// Parses the arguments of the program into a checked command. main() calls it. The table of all
+// commands is in command_line.cpp.
 
 #include <string>
 #include <vector>
@@ -11,8 +11,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Parses `arguments`, which do not contain the program's name. INVALID_ARGUMENT: one line with the
-/// error and, if there is one, the command or option that was probably meant.
+/// Parses `arguments`, which are without the program's name. INVALID_ARGUMENT: the arguments are
+/// wrong; the message is one line and names the command or option that was probably meant, if there
+/// is one.
 absl::StatusOr<Command> parse_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace bandsaw::coordinator

@@ -1,5 +1,6 @@
-// Writes a bash function whose cases are made from the commands and options that the parser (CLI11)
-// knows.
+// Generates a bash function that sets `words` to the words that fit at the cursor. It has a case
+// for each option with a value, and a case for each command; they are made from what the parser
+// (CLI11) knows.
 
 #include "coordinator/cli/completion.h"
 
@@ -13,6 +14,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
+// The script consists of kScriptStart, a case for each option, kScriptCommands, a case for each
+// command, and kScriptEnd.
 constexpr char kScriptStart[] =
     R"(# Completion of bandsaw for bash, made by: bandsaw completion bash
 _bandsaw() {
@@ -33,7 +36,8 @@ constexpr char kScriptEnd[] = R"(      esac ;;
 complete -o default -F _bandsaw bandsaw
 )";
 
-// If nothing matches, bash offers file names; this disables it where no file is expected.
+// If nothing matches, bash offers file names. This shell code prevents that where no file is
+// expected.
 constexpr char kNoFiles[] = "compopt +o default 2>/dev/null || true; return";
 
 std::vector<std::string> names_of(const CLI::Option& option) {
@@ -47,12 +51,13 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
+/// Returns true if the value of the option is a text, a file or a folder.
 bool takes_file(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type == "TEXT" || type == "FILE" || type == "DIR";
 }
 
-/// Maps the name of each option with a value to the completion of that value.
+/// Maps the name of each option that has a value to the shell code that completes the value.
 std::map<std::string, std::string> after_options(const CLI::App& app) {
   std::map<std::string, std::string> cases;
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -82,6 +87,7 @@ std::vector<std::string> arguments_of(const CLI::App& command) {
   return words;
 }
 
+/// Returns a case of the script that offers `words`. `pattern`: "number of the word:command:word".
 std::string when(const std::string& pattern, const std::vector<std::string>& words) {
   return absl::StrCat("        ", pattern, ") words='", absl::StrJoin(words, " "), "' ;;\n");
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Shell completion, generated from the table of commands.
+// Generates the script by which a shell completes commands and options, for `bandsaw completion`.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -8,7 +8,8 @@
 namespace bandsaw::coordinator {
 
 /// Returns a script for bash that completes commands, their options, the words that options accept
-/// (cli/options/choices.h), and file names where a file is expected.
+/// (cli/options/choices.h), and file names where a file is expected. `app`: the parser with all
+/// commands and options.
 std::string bash_completion(const CLI::App& app);
 
 }  // namespace bandsaw::coordinator
