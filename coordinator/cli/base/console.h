@@ -17,9 +17,9 @@ struct TerminalSize {
   std::size_t rows = 24;
 };
 
-/// Ignores SIGPIPE, so that writing to a closed pipe no longer ends the process. `render`,
-/// `submit` and `watch` call it: they must write the image even if the reader of their standard
-/// output has ended. Other commands may end when that reader ends.
+/// Ignores SIGPIPE, so that writing to a closed pipe no longer ends the process. `render`, `submit`
+/// and `watch` call it: they must write the image even if the reader of their standard output has
+/// ended. Other commands may end when that reader ends.
 void outlive_reader();
 
 class Console {

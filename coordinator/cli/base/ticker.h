@@ -1,7 +1,7 @@
 #pragma once
 
 // Calls a function periodically from a thread of its own until it is destroyed. `render`, `submit`
-// and `watch` use it to show the image while it forms.
+// and `watch` use it to renew what they show.
 
 #include <chrono>
 #include <functional>

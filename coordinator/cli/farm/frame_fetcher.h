@@ -47,6 +47,7 @@ class FrameFetcher {
   /// Asks the farm which frames have changed, and updates done_ and not_fetched_.
   absl::Status take_changes();
   void report_failure(const FrameView& frame);
+  /// Submits the jobs of the guides (images that the denoiser needs) of frames that are done.
   absl::Status start_guides_of_new_frames();
   /// `job`: here and below, the job that rendered the frame.
   absl::Status fetch(FrameNumber number, JobId job);
@@ -67,7 +68,7 @@ class FrameFetcher {
   std::vector<FrameNumber> numbers_;   ///< numbers of all frames of the sequence
   std::map<FrameNumber, JobId> done_;  ///< the jobs of the frames that are done
   std::map<FrameNumber, JobId> not_fetched_;  ///< frames in `done_` whose files are not written yet
-  std::set<JobId> guided_;                    ///< frame jobs whose guides are started
+  std::set<JobId> guided_;  ///< jobs of frames for which the denoiser's guides are submitted
   std::set<std::pair<FrameNumber, std::string>> reported_;  ///< failures that were printed
   std::vector<std::string> files_;
   std::optional<ContactSheet> sheet_;

@@ -24,8 +24,8 @@ inline std::string default_output(const std::string& scene, const std::string& s
 }
 
 /// Replaces the last run of '#' in the name of the file (not of its folder) by the number of a
-/// frame, with zeros in front: "walk.####.exr", 7 -> "walk.0007.exr". A longer number is not cut.
-/// A name without '#' is returned unchanged.
+/// frame, with zeros in front: "walk.####.exr", 7 -> "walk.0007.exr". A longer number is not cut. A
+/// name without '#' is returned unchanged.
 inline std::string name_of_frame(const std::string& path, std::int64_t frame) {
   const std::size_t last = path.rfind('#');
   const std::size_t folder = path.rfind('/');

@@ -3,8 +3,7 @@
 // Shows the progress of a render on standard output, as the options request it. With --json, lines
 // of JSON are printed. Otherwise a few lines are redrawn in place on a terminal, and lines of text
 // are printed elsewhere. Lines are printed about once a second, and when the first pixels are
-// there. With
-// --quiet only the last line is printed.
+// there. With --quiet, only the last line is printed.
 
 #include <string>
 

@@ -28,8 +28,8 @@ std::string update_rows(const std::string& name, const Image& image, std::uint32
 
 }  // namespace tev
 
-/// Connection to a viewer that shows one image. A call gives up if a packet cannot be sent
-/// within five seconds.
+/// Connection to a viewer that shows one image. A call gives up if a packet cannot be sent within
+/// five seconds.
 class TevViewer {
  public:
   /// `address` is HOST:PORT; `name` is the image's name in the viewer. UNAVAILABLE: no viewer can

@@ -38,9 +38,8 @@ struct ServedDashboard {
                                           const std::string& join) const;
 };
 
-/// Starts the dashboard at the address of --web, and sets its address in `browsers`. Starts none
-/// for
-/// --web none, or if --web is not given and no port can be used. `engine` and `browsers` MUST
+/// Starts the dashboard at the address of --web, and sets its address in `browsers`. Starts none if
+/// --web is "none", or if --web is not given and no port can be used. `engine` and `browsers` MUST
 /// outlive the dashboard. FAILED_PRECONDITION: the address that the user gave cannot be used.
 absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Engine& engine,
                                                 const link::Identity& identity,

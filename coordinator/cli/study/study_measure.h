@@ -24,7 +24,7 @@ namespace bandsaw::coordinator {
 enum class Method {
   kFull,       ///< as in `bandsaw render`
   kNoGuiding,  ///< neither path guiding nor photon maps; only where kFull uses one of them
-  kNoMis,      ///< light sampling without MIS: emission that it could reach is found by it alone
+  kNoMis,      ///< no MIS: BSDF sampling counts only the emission that light sampling cannot reach
   kNoLights,   ///< BSDF sampling only: no next-event estimation
   kAdaptive,   ///< more samples where there is more noise, with about the same total
   /// Independent random numbers instead of Owen-scrambled nets; neither guiding nor photon maps.
@@ -103,10 +103,10 @@ absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& s
 /// there are fewer than two points.
 std::optional<double> slope_of(const StudyLine& line);
 
-/// Returns the CPU seconds until the relative RMSE is 1 %, computed as for reports
-/// (cpu_s_until in scheduler/api/error_curve.h, which extrapolates). Returns std::nullopt if it
-/// cannot be computed, and for kPixelStops and kClean, whose errors have a bias that more samples
-/// do not reduce in the same way.
+/// Returns the CPU seconds until the relative RMSE is 1 %, computed as for reports (cpu_s_until in
+/// scheduler/api/error_curve.h, which extrapolates). Returns std::nullopt if it cannot be computed,
+/// and for kPixelStops and kClean, whose errors have a bias that more samples do not reduce in the
+/// same way.
 std::optional<double> cpu_s_to_1_percent(const StudyLine& line);
 
 }  // namespace bandsaw::coordinator
