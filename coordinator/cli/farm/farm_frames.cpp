@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Twice the usual time, because a sequence may have tens of thousands of frames.
+// Longer than for other calls: a sequence may have tens of thousands of frames (kMaxFrames).
 constexpr std::chrono::milliseconds kTimeout{20'000};
 
 }  // namespace

@@ -45,7 +45,7 @@ Check check_port(const std::string& listen, const std::vector<std::string>& own)
 /// is no join string, or its file cannot be read.
 absl::StatusOr<link::JoinString> doctor_join(const FarmOption& option, const std::string& folder);
 /// Checks the connection, the certificate, the secret, versions, clocks and the coordinator's disk.
-/// The first check is that of the connection; if it fails, it is the only one.
+/// If the farm cannot be reached, the result is a single check that has failed.
 std::vector<Check> check_farm(const link::JoinString& join);
 
 // Pure parts of these checks. Times are in seconds since 1970, sizes in bytes.

@@ -34,7 +34,7 @@ class RemoteScript {
  private:
   RemoteScript(File file, std::size_t script_size)
       : file_(std::move(file)), script_size_(script_size) {}
-  File file_;  // without a name: the script, then the input
+  File file_;  // a file in memory with the script and, after it, the input
   std::size_t script_size_;
 };
 

@@ -85,8 +85,8 @@ absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
     return wrong("--fixed-seed needs --frame or --frames");
   }
   if (raw.frame) {
-    constexpr std::int64_t kMaxFrame =
-        1'000'000'000;  // as kMaxFrameNumber of scheduler/api/frame_numbers.h
+    // The same as kMaxFrameNumber of scheduler/api/frame_numbers.h.
+    constexpr std::int64_t kMaxFrame = 1'000'000'000;
     std::int64_t frame = 0;
     if (!absl::SimpleAtoi(*raw.frame, &frame) || std::abs(frame) > kMaxFrame) {
       return wrong(absl::StrCat("--frame: must be a whole number, is '", *raw.frame, "'"));
