@@ -182,7 +182,8 @@ class Study {
   bool guides() const { return guides_; }
 
  private:
-  static constexpr std::uint64_t kMinCleanSamples = 4;  // see check_cleanable
+  // One sample, with which study_samples() begins, is too few for the filter (check_cleanable).
+  static constexpr std::uint64_t kMinCleanSamples = 4;
 
   /// Renders one image, removes its noise, and adds both to the results.
   absl::Status add_both(std::uint64_t samples, std::uint64_t seed, Seeds& of_raw, Seeds& of_clean,
