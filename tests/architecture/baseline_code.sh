@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Only the AVX2 kernel holds instructions that older processors do not have: disassembles our own objects (system
-# libraries check the processor themselves). Usage: baseline_code.sh BUILD-FOLDER
+# Checks that only the AVX2 kernel contains instructions that x86-64 processors without AVX2 lack. Disassembles the objects of
+# Bandsaw itself; system libraries check the processor at run time. Usage: baseline_code.sh BUILD-FOLDER
 set -euo pipefail
 cd "$1"
 # VEX-coded instructions (AVX, AVX2, FMA, F16C), and those of BMI1, BMI2, LZCNT and MOVBE. tzcnt is allowed: older processors
