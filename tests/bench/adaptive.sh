@@ -4,7 +4,8 @@
 # the reference's own noise. Gain: error squared x CPU time of the uniform renders over that of the adaptive ones, each a mean over
 # the seeds. Above 1, adaptive sampling is better.
 # Usage: tests/bench/adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE[:ERROR]...]]]]
-# An error should take some 200 samples a pixel or more: a pilot of fewer than 32 plans nothing.
+# ERROR should be so small that it takes some 200 samples a pixel or more: the first samples of an adaptive render, its pilot, decide
+# where more are taken, and from a pilot of fewer than 32 samples nothing is planned.
 # TIMES in the environment: samples of a reference over those of a uniform image, default 8.
 set -euo pipefail
 bandsaw=${1:?usage: adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE...]]]]}
@@ -22,7 +23,7 @@ trap 'rm -rf "$folder"' EXIT
 
 number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
 
-# CPU seconds, samples a pixel, relative MSE, relative RMSE, estimated error.
+# Renders $scene with $seed and prints: CPU seconds, samples a pixel, relative MSE, relative RMSE, estimated error.
 measure() {  # ERROR OPTION...
   local done compared error=$1
   shift
@@ -46,7 +47,8 @@ for wanted in "${scenes[@]}"; do
   for ((seed = 1; seed <= seeds; ++seed)); do
     even=$(measure "$error")
     adaptive=$(measure "$error" --adaptive)
-    # The squared error is about proportional to 1 / time; if no tile was left out, the times differ only by noise.
+    # The squared error is about proportional to 1 / time, which gives the error to ask for. With equal samples (fields 2 and 7)
+    # nothing was planned, and the times differ only by noise.
     longer=$(echo "$even $adaptive ${error%\%}" | awk '{ if ($2 != $7) print $11 * sqrt($6 / $1) "%" }')
     if [ -n "$longer" ]; then adaptive=$(measure "$longer" --adaptive); fi
     echo "$even $adaptive"

@@ -1,11 +1,12 @@
 """Renders a scene of Bandsaw with Cycles, for peers.sh.
 
 blender -b --python cycles.py -- SCENE.textproto WIDTH HEIGHT SAMPLES SEED OUTPUT.exr
-Prints "cpu_s=…": the CPU seconds of all samples but one, so without what comes before rendering.
+Prints "cpu_s=…": the CPU seconds of SAMPLES - 1 samples. It is the difference to a render with one
+sample, so it does not contain the preparation of the scene.
 
-Knows perspective cameras with a lens, quads, spheres (as meshes; Cycles has none), models in PLY files
-as they lie in them, diffuse, emissive, metal and dielectric materials of one colour, constant and
-gradient backgrounds. Anything else ends it with an error.
+Supports perspective cameras with a lens, quads, spheres (as meshes, because Cycles has no spheres),
+models in PLY files without a transform, diffuse, emissive, metal and dielectric materials of one
+colour, constant and gradient backgrounds. Anything else ends the program with an error.
 """
 
 import math
@@ -19,7 +20,7 @@ from mathutils import Matrix, Vector
 
 
 def parse(text):
-    """A message in protobuf's text format: {field: [values]}."""
+    """Returns a message in protobuf's text format as {field: [values]}; a value may be such a message."""
     text = re.sub(r"#.*", "", text)
     tokens = iter(re.findall(r'"[^"]*"|[{}\[\]:,]|[^\s{}\[\]:,"]+', text) + ["}"])
 
@@ -45,6 +46,7 @@ def parse(text):
     return message()
 
 
+# Ends the program if the message has a field that is not `known`.
 def only(message, *known):
     unknown = set(message) - set(known)
     if unknown:
@@ -55,6 +57,7 @@ def colour(message):
     return (*message["rgb"][0], 1)
 
 
+# Makes Blender's material of a message `material`, which has a name and one more field, its kind.
 def make_material(message):
     (name,) = message.pop("name")
     ((kind, (fields,)),) = message.items()
@@ -118,7 +121,7 @@ def add_shapes(scene, materials, folder):
             add_object(mesh, material)
             continue
         radius = shape["sphere"][0]["radius"][0]
-        segments = 1024 if radius > 50 else 64
+        segments = 1024 if radius > 50 else 64  # large spheres are grounds, whose facets would be seen
         if segments not in spheres:
             spheres[segments] = sphere_mesh(segments)
         thing = add_object(spheres[segments], material)
@@ -172,6 +175,7 @@ def set_background(fields):
     tree.links.new(mix.outputs[0], background.inputs["Color"])
 
 
+# Turns off all that makes Cycles biased or stops it early, as Bandsaw has nothing of the kind.
 def set_quality(width, height, seed):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -193,7 +197,7 @@ def set_quality(width, height, seed):
 
 
 def rendered(samples):
-    """CPU seconds."""
+    """Renders with so many samples a pixel and returns the CPU seconds."""
     bpy.context.scene.cycles.samples = samples
     bpy.context.scene.update_tag()
     before = resource.getrusage(resource.RUSAGE_SELF)
@@ -214,7 +218,7 @@ def main():
     materials = {m["name"][0]: make_material(m) for m in scene["material"]}
     add_shapes(scene, materials, os.path.dirname(path))
     bpy.context.scene.render.filepath = os.path.abspath(output)
-    rendered(1)  # the first render loads data that later renders reuse
+    rendered(1)  # not measured: the first render loads data that later renders reuse
     first = rendered(1)
     print(f"cpu_s={rendered(int(samples)) - first:.3f}")
 

@@ -1,8 +1,11 @@
-// Measures the real coordinator's cost of a band, through gRPC with TLS and to the disk, and of a
-// connected worker: null renderers answer each lease at once with black rows.
+// Measures what a band costs the real coordinator, through gRPC with TLS and to the disk, and how
+// much memory a connected worker takes. The workers are null workers: they render nothing and
+// answer each lease at once with black rows.
 //
-//   dispatch_bench [SECONDS [WORKERS]]    10 seconds of bands with 1 to 16 workers;
-//                                         then so many connected workers, 1000
+//   dispatch_bench [SECONDS [WORKERS]]
+//
+// Bands are sent for SECONDS (default 10) with each of several numbers of workers, 1 to 16. Then
+// WORKERS (default 1000) connect, and the memory is measured.
 
 #include <unistd.h>
 
@@ -36,7 +39,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Stream = grpc::ClientReaderWriter<farm::FromWorker, farm::ToWorker>;
 
-constexpr std::chrono::milliseconds kLong{600'000};
+constexpr std::chrono::milliseconds kLong{600'000};  // deadline of calls; longer than any takes
+// The image: rows of few bytes, because the costs of bands are measured, and many of them.
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 4096;
 
@@ -91,6 +95,7 @@ void put_blob(farm::Farm::Stub& stub, const link::JoinString& join, const std::s
   check(writer->Finish());
 }
 
+/// Submits a job of so many pixels whose samples (2^20 a pixel) do not end during the measurement.
 void submit(const link::JoinString& join, std::uint32_t width, std::uint32_t height) {
   const link::Connected farm = connect(join);
   const auto stub = farm::Farm::NewStub(farm.control);
@@ -174,8 +179,10 @@ class NullWorker {
   }
 
  private:
+  /// Sends black rows for a lease and waits for the acknowledgement.
   void put(const farm::Lease& lease) {
     const farm::Band& band = lease.band();
+    // 24 bytes a pixel: three sums, each a double.
     const std::string black(
         std::size_t{band.last_row() - band.first_row()} * lease.settings().width() * 24, '\0');
     farm::BandChunk chunk;
@@ -215,6 +222,7 @@ struct Coordinator {
   link::JoinString people() const { return join_from(folder / "data/farm"); }
 };
 
+/// Prints how many bands so many workers get acknowledged in `seconds`, and what each cost.
 void bands(double seconds, int workers) {
   Coordinator farm;
   submit(farm.people(), kWidth, kHeight);
@@ -267,6 +275,7 @@ void disk(double seconds) {
               1e3 * took[took.size() / 2]);
 }
 
+/// Prints the coordinator's memory while `count` workers connect, one after the other.
 void memory(int count) {
   Coordinator farm;
   submit(farm.people(), 3840, 2160);
@@ -275,7 +284,7 @@ void memory(int count) {
   std::vector<std::unique_ptr<NullWorker>> workers;
   for (int i = 0; i < count; ++i) {
     workers.push_back(std::make_unique<NullWorker>(join, connect(join), i));
-    if ((i + 1) % 100 == 0) {
+    if ((i + 1) % 100 == 0) {  // heartbeats, so that the first workers do not count as lost
       for (const auto& worker : workers) {
         worker->beat();
       }

@@ -1,4 +1,4 @@
-// Intel's Embree 3 as a kernel of the benchmark; a build without Embree has only stubs.
+// Ray tracing by Intel's Embree 3, for kernel_bench. A build without Embree has only stubs.
 
 #include "tests/bench/embree_kernel.h"
 

@@ -10,17 +10,19 @@
 
 namespace bandsaw::bench {
 
+/// One mesh in Embree. kernel_bench traces the same rays through it and through Accel.
 class EmbreeKernel {
  public:
-  /// Returns nullptr if built without Embree. `robust`: Embree's flag for tests without gaps
-  /// between triangles. `config` configures the device: "isa=avx2,threads=2".
+  /// Builds the BVH. Returns nullptr if built without Embree. `robust`: Embree's flag for tests
+  /// without gaps between triangles. `config` configures the device: "isa=avx2,threads=2".
   static std::unique_ptr<EmbreeKernel> create(const Mesh& mesh, bool robust, const char* config);
   ~EmbreeKernel();
 
+  /// Both return whether the ray hits the mesh; `closest` finds the closest hit, `occluded` any.
   bool closest(const Ray& ray) const;
   bool occluded(const Ray& ray) const;
-  double build_seconds() const;
-  long long bytes() const;
+  double build_seconds() const;  ///< wall clock
+  long long bytes() const;       ///< memory that the build has allocated and kept
 
  private:
   struct State;

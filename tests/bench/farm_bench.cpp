@@ -1,5 +1,6 @@
-// Measures how well the scheduler uses its workers' time: workers that sleep according to a cost
-// map, in virtual time, so that only the last column depends on this machine.
+// Measures how well the scheduler uses its workers' time. The workers are simulated in virtual
+// time, and a band takes the time that a cost map gives it. So only the last column of the table,
+// the CPU time of a band, depends on this machine.
 
 #include <algorithm>
 #include <cstdio>
@@ -19,10 +20,11 @@ constexpr std::uint32_t kHeight = 1080;
 constexpr std::uint64_t kSamples = 64;
 
 double even(std::uint32_t) { return 1; }
-/// Costs that fall 20:1 from the top to the bottom, with mean 1.
+/// Rows of the upper half cost 20 times as much as those of the lower half; the mean is 1.
 double uneven(std::uint32_t row) { return row < kHeight / 2 ? 40.0 / 21 : 2.0 / 21; }
 
-/// Workers that need `seconds` together; unless `equal`, every second one is four times as fast.
+/// Returns the speeds, in samples of pixels per second, of `count` workers that together need
+/// `seconds` for the image. Unless `equal`, every second one is four times as fast as the others.
 std::vector<double> speeds(std::size_t count, double seconds, bool equal) {
   const double mean = double{kWidth} * kHeight * kSamples / seconds / static_cast<double>(count);
   std::vector<double> out;
@@ -34,6 +36,7 @@ std::vector<double> speeds(std::size_t count, double seconds, bool equal) {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
+/// Least and largest of the values that were added.
 struct Spread {
   double least = 1e300;
   double most = -1e300;
@@ -43,6 +46,8 @@ struct Spread {
   }
 };
 
+/// Prints one row of the table, over ten seeds. Returns false if a job broke an invariant or did
+/// not end.
 bool measure(const char* name, BenchFarm farm) {
   Spread efficiency;
   Spread tail;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Measurements of a farm of real processes, one row of a table each.
+// The measurements of the program farm_figures: each starts a farm of real processes and returns
+// one row of the table that is printed.
 
 #include <chrono>
 #include <optional>
@@ -11,10 +12,10 @@ namespace bandsaw::bench {
 
 struct Figure {
   std::string name;
-  std::string aim;
-  std::string unit;
-  std::vector<double> measured;
-  std::string remark;  ///< reason for an empty result, or another observation
+  std::string aim;               ///< the value that is wanted, as text: "≤ 5 s"
+  std::string unit;              ///< printed directly after each value: " s"
+  std::vector<double> measured;  ///< one value for each run
+  std::string remark;            ///< reason for an empty result, or another observation
 };
 
 /// Time from the moment at which a worker is killed, frozen (SIGSTOP) or cut off to the
@@ -27,7 +28,7 @@ std::vector<Figure> first_pixel_figures();
 /// Number of bands that were finished and rendered again after the coordinator's kill -9.
 Figure rendered_again_figure();
 
-/// Relative error of the remaining time that is reported after a quarter of a job's time.
+/// Error, in percent, of the remaining time that is reported after a quarter of a job's time.
 Figure time_left_figure();
 
 using Clock = std::chrono::steady_clock;

@@ -1,5 +1,5 @@
-// Time until a coordinator detects the loss of a worker, and work that is lost when the coordinator
-// is killed.
+// Measures the time until a coordinator detects the loss of a worker, and how many finished bands
+// are rendered again after the coordinator was killed.
 
 #include <csignal>
 #include <functional>
@@ -19,7 +19,7 @@ using test::Process;
 constexpr int kKills = 10;
 constexpr int kSilences = 3;  // each takes seconds to be detected
 
-/// A job that does not end during the measurement.
+/// Submits a job that does not end during the measurement.
 void keep_busy(const FarmProcesses& farm) {
   const test::Finished finished = test::run(farm.on(
       "coordinator", farm.command({"submit", std::string(BANDSAW_GALLERY) + "/cornell.textproto",
@@ -27,7 +27,8 @@ void keep_busy(const FarmProcesses& farm) {
   BANDSAW_CHECK(finished.code == 0, finished.err.c_str());
 }
 
-/// Returns the seconds from `lose` to the coordinator's report.
+/// Starts a worker and calls `lose`, which kills, freezes or disconnects it, when it has stored a
+/// band. Returns the seconds from then to the coordinator's report.
 double seen_after(FarmProcesses& farm, const std::string& worker,
                   const std::function<void()>& lose) {
   farm.add_worker(worker, 1);
@@ -42,6 +43,7 @@ double seen_after(FarmProcesses& farm, const std::string& worker,
   return seconds_since(begin);
 }
 
+/// Measures workers that get the signal `number`: so many `times`, each another worker.
 Figure signalled(const std::string& name, const std::string& aim, int number, int times) {
   Figure figure{name, aim, " s", {}, ""};
   FarmProcesses farm;
@@ -83,7 +85,7 @@ std::vector<Figure> loss_figures() {
 
 Figure rendered_again_figure() {
   Figure figure{"finished bands rendered again after coordinator kill -9", "0", "", {}, ""};
-  for (const std::size_t stored : {1, 3, 5}) {
+  for (const std::size_t stored : {1, 3, 5}) {  // bands of worker "one" before the kill
     FarmProcesses farm;
     test::Survival job(farm);
     farm.add_worker("one", 1);

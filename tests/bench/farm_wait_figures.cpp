@@ -1,4 +1,5 @@
-// Time until the first pixels arrive, and accuracy of the reported remaining time.
+// Measures the time until the first pixels of a job arrive, and the accuracy of the reported
+// remaining time.
 
 #include <algorithm>
 #include <array>
@@ -33,6 +34,8 @@ double number(const std::string& line, const std::string& field) {
   return std::regex_search(line, found, pattern) ? std::stod(found[1]) : std::nan("");
 }
 
+/// Returns the seconds from the start of `bandsaw submit` to its first report of finished samples,
+/// and cancels the job.
 double first_pixels(const FarmProcesses& farm, const std::string& scene, int seed) {
   static const std::regex some(R"("samples_done":[1-9])");
   const Clock::time_point begin = Clock::now();
@@ -51,8 +54,8 @@ double first_pixels(const FarmProcesses& farm, const std::string& scene, int see
   return took;
 }
 
-/// A height field of 522,242 triangles: 10 MB as a file, 9.4 MB as blobs; different for each
-/// `seed`.
+/// Writes a scene with a height field of 522,242 triangles (10 MB as a file, 9.4 MB as blobs) and
+/// returns its path. It differs for each `seed`, so that no machine has it already.
 std::string hills(const FarmProcesses& farm, int seed) {
   constexpr int kSide = 512;
   const std::string name = "hills" + std::to_string(seed);
@@ -90,8 +93,8 @@ struct Job {
   std::vector<std::string> options;
 };
 
-/// Returns the relative error of the remaining time that is reported after a quarter of the job's
-/// time.
+/// Runs a job to its end. Returns the relative error of the remaining time that was reported after
+/// a quarter of its time; NaN if none was reported.
 double error_of_time_left(const FarmProcesses& farm, const Job& job, int seed) {
   std::vector<std::string> arguments = {
       "submit", gallery(job.scene),   "--json", "--seed", std::to_string(seed),
@@ -121,7 +124,7 @@ std::vector<Figure> first_pixel_figures() {
   FarmProcesses farm;
   farm.add_worker("one", 1);
   farm.add_worker("two", 1);
-  first_pixels(farm, gallery("cornell"), 0);
+  first_pixels(farm, gallery("cornell"), 0);  // after this, the workers have the package
   for (int i = 1; i <= kRuns; ++i) {
     known.measured.push_back(first_pixels(farm, gallery("cornell"), i));
     large.measured.push_back(first_pixels(farm, hills(farm, i), i));

@@ -47,12 +47,14 @@ T must(absl::StatusOr<T> result) {
   return *std::move(result);
 }
 
+/// Renders the first `rows` rows with the first `samples` samples.
 BandPixels rows_of(const Scene& scene, const RenderSettings& settings, std::uint64_t samples,
                    std::uint32_t rows, Pool& pool) {
   const std::atomic<bool> stop = false;
   return must(render_band(scene, settings, {{0, samples}, {0, rows}}, pool, stop, {}));
 }
 
+/// Measures the build and the rendering of the scene of this size.
 Figures rendered(const Family& family, double size) {
   Pool pool(threads());
   GrownScene grown = family.scene(size);
@@ -70,6 +72,7 @@ Figures rendered(const Family& family, double size) {
   return out;
 }
 
+/// Writes the package of the scene, its manifest and blobs, to the folder. Measures nothing.
 Figures packed(const Family& family, double size, const std::string& folder) {
   BlobMap blobs;
   GrownScene grown = family.scene(size);
@@ -98,6 +101,7 @@ Figures begun(const std::string& folder) {
   return out;
 }
 
+/// Measures `begun`. The package is made in another process, so that it does not add to the memory.
 Figures from_disk(const Family& family, double size) {
   const std::string folder =
       (std::filesystem::temp_directory_path() / ("growth-" + std::to_string(getpid()))).string();
@@ -121,11 +125,12 @@ double exponent(const std::vector<std::pair<double, double>>& points) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
+/// A column of the table, and a plot.
 struct Column {
   const char* name;
-  const char* file;
+  const char* file;  ///< part of the plot's file name
   double Figures::*figure;
-  double unit;
+  double unit;  ///< factor of the figure
 };
 constexpr Column kColumns[] = {
     {"build, s", "build", &Figures::build_s, 1},
@@ -134,6 +139,7 @@ constexpr Column kColumns[] = {
     {"peak, MB", "memory", &Figures::peak_bytes, 1e-6},
     {"first rows from disk, s", "first_rows", &Figures::first_rows_s, 1}};
 
+/// The figures of one family, by size. The exponent is that of size^exponent.
 struct Grown {
   std::string name;
   std::vector<std::pair<double, Figures>> by_size;
@@ -191,8 +197,8 @@ Grown measure(const Family& family) {
 
 /// Returns the speed of all threads relative to one: minimum times of alternating rounds.
 double thread_speedup() {
-  const Family cornell = families(true).back();
-  GrownScene grown = cornell.scene(8);
+  const Family cornell = families(true).back();  // "depth": a Cornell box
+  GrownScene grown = cornell.scene(8);           // paths of at most 8 scatterings
   Pool one(1);
   Pool all(threads());
   const auto scene = must(Scene::build(std::move(grown.scene), all));

@@ -1,6 +1,6 @@
 #pragma once
 
-// Scenes that grow in one respect each.
+// Scenes for growth_bench: in each family one quantity grows, such as the number of triangles.
 
 #include <cstdint>
 #include <functional>
@@ -15,17 +15,17 @@ namespace bandsaw::bench {
 struct GrownScene {
   SceneDescription scene;
   RenderSettings settings;
-  std::uint64_t samples = 16;
+  std::uint64_t samples = 16;  ///< per pixel
 };
 
 /// A quantity that grows while everything else stays the same.
 struct Family {
-  std::string name;  ///< "triangles"
-  std::vector<double> sizes;
+  std::string name;           ///< "triangles"
+  std::vector<double> sizes;  ///< values of the quantity, ascending
   std::function<GrownScene(double size)> scene;
 };
 
-/// If `quick`, the largest sizes are omitted.
+/// Returns all families. If `quick`, the largest sizes are omitted.
 std::vector<Family> families(bool quick);
 
 }  // namespace bandsaw::bench

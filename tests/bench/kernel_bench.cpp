@@ -15,16 +15,18 @@
 namespace bandsaw::bench {
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 16;
-constexpr int kPasses = 5;
+constexpr std::size_t kChunk = std::size_t{1} << 16;  // rays that one kernel traces in its turn
+constexpr int kPasses = 5;                            // turns of each kernel with the same rays
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Bandsaw or a mode of Embree, with one of the two queries.
 struct Kernel {
   std::string name;
-  std::function<std::size_t(const Ray*, const Ray*)> trace;  ///< number of rays that hit
+  /// Traces the rays from the first to before the second, and returns the number that hit.
+  std::function<std::size_t(const Ray*, const Ray*)> trace;
   double seconds = 0;  ///< sum over chunks of the minimum time of any pass
   std::size_t hits = 0;
 };
@@ -111,6 +113,7 @@ BuildSeconds build_seconds(const Geometry& geometry, Pool& pool) {
   return least;
 }
 
+/// Prints all results for one mesh. Returns the exit code: 2 if there is no such mesh.
 int measure(const std::string& name) {
   Geometry geometry;
   geometry.meshes.push_back(bench_mesh(name));

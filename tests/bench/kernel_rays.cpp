@@ -18,9 +18,10 @@ Vec3 to_float(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
+/// A camera that looks at the middle of the mesh's bounding box.
 struct View {
   Vec3 middle;
-  double size;
+  double size;  ///< largest side of the bounding box
   bool from_within;
 
   Ray ray(int x, int y) const {
@@ -28,6 +29,7 @@ struct View {
     const Vec3 forward = normalize(middle - eye);
     const Vec3 right = normalize(cross(forward, {0, 1, 0}));
     const Vec3 up = cross(right, forward);
+    // 0.73 = 2 tan 20°: a field of view of 40 degrees.
     const double u = ((x + 0.5) / kSide - 0.5) * 0.73;
     const double v = (0.5 - (y + 0.5) / kSide) * 0.73;
     return {to_float(eye), to_float(normalize(forward + u * right + v * up))};
@@ -66,6 +68,7 @@ RaySets make_rays(const Mesh& mesh, const Accel& accel, bool from_within) {
     Vec3 normal = normal_of(mesh, hit.id.primitive);
     normal = dot(normal, ray.direction) > 0 ? -normal : normal;
     const Vec3 at = to_float(ray.origin + hit.t * ray.direction + 1e-4 * size * normal);
+    // Normal plus a random unit vector is cosine-distributed. 1.0001: the sum is never zero.
     const Vec3 out = test::random_direction(random);
     sets.bounce.push_back({at, to_float(normalize(normal * 1.0001 + out))});
     const Vec3 spot = test::random_point(random);

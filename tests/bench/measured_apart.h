@@ -1,6 +1,6 @@
 #pragma once
 
-// Measures work in a separate process, so that its memory is measured separately.
+// For growth_bench: does work in a child process, whose peak memory is that of this work alone.
 
 #include <functional>
 
@@ -14,7 +14,8 @@ struct Figures {
   double peak_bytes = 0;     ///< resident memory of the whole process; set by measured_apart
 };
 
-/// Returns the result of `work`. Exits with a message if it fails, because this is a benchmark.
+/// Runs `work` in a child process, and returns its result with peak_bytes. If the child fails, this
+/// program exits with a message.
 Figures measured_apart(const std::function<Figures()>& work);
 
 }  // namespace bandsaw::bench

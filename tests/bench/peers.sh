@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Measures the efficiency against Cycles in one run: both render the same scenes in turns with two seeds. relMSE: half of the
-# difference of the two images, so no reference is needed; efficiency: 1 / (relMSE x CPU seconds / 2), as with two threads. Without blender on PATH
-# (Debian's package), only Bandsaw is measured.
+# Compares the efficiency with that of Cycles in one run: both render the same scenes in turns with two seeds.
+# relMSE: half of the relative squared difference of the two images of a renderer, so no reference is needed.
+# Efficiency: 1 / (relMSE x CPU seconds / 2), the wall clock time of two threads. Without blender on PATH (Debian's package), only
+# Bandsaw is measured.
 # Usage: tests/bench/peers.sh PATH-TO-BANDSAW [SAMPLES [SCENE.textproto...]]   (default: 64 samples of Cornell and Weekend)
 # Scenes may only use the features that cycles.py supports. Takes a minute per scene on two cores.
 set -euo pipefail

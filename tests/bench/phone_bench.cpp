@@ -1,5 +1,5 @@
-// Times the 23 images of a study of ray tracing on phones (gallery/study) on one thread, on all
-// threads, and on a farm if there is one.
+// Times the 23 images of a study of ray tracing on phones (renderlib/gallery/study) on one thread,
+// on all threads, and on a farm if there is one. phone_study.h says what is known of the study.
 
 #include <sys/resource.h>
 
@@ -48,6 +48,7 @@ double peak_mb() {
   return static_cast<double>(used.ru_maxrss) * 1024 / 1e6;
 }
 
+/// Imports the images and renders each of them several times in each of the three ways.
 class PhoneRun {
  public:
   PhoneRun(const PhoneStudyOptions& options, Process& process, FarmClient* client,
@@ -61,6 +62,7 @@ class PhoneRun {
                  ? options.threads
                  : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))) {}
 
+  /// Returns the times of the images of these names. CANCELLED: `stop` was set.
   absl::StatusOr<PhoneStudy> measured(const std::set<std::string>& names) {
     PhoneStudy study;
     study.machine = cpu_name();
@@ -90,6 +92,7 @@ class PhoneRun {
   }
 
  private:
+  /// Describes the farm: "3 workers, 24 threads". FAILED_PRECONDITION: it has no worker.
   absl::StatusOr<std::string> farm_text() {
     ASSIGN_OR_RETURN(const farm::ListWorkersReply reply, client_->workers());
     int workers = 0;
@@ -142,6 +145,7 @@ class PhoneRun {
     return client_ == nullptr ? absl::OkStatus() : there(image);
   }
 
+  /// Renders once on this machine.
   absl::Status here(Prepared& image, Pool& pool, PhoneTimes& times) {
     SceneDescription copy = image.scene;
     const double begin = steady_seconds();
@@ -155,8 +159,8 @@ class PhoneRun {
     return absl::OkStatus();
   }
 
-  /// Uses the time from the first lease until the image is complete, as shown on the dashboard. The
-  /// first run includes a worker's preparation of a scene that it has not loaded.
+  /// Renders once on the farm. The time is that from the first lease until the image is complete,
+  /// as shown on the dashboard. The first run includes a worker's loading of the scene.
   absl::Status there(Prepared& image) {
     ProgressDisplay display(process_.console, {.quiet = true});
     ASSIGN_OR_RETURN(

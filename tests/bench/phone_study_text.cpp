@@ -81,8 +81,8 @@ std::string machines_text(const PhoneStudy& study) {
                       " |\n\n");
 }
 
-/// States how much longer `b` takes than `a` on one thread, in a sentence that begins with `what`.
-/// Returns an empty string if one of them was not rendered.
+/// States the ratio of the time of image `b` to that of image `a` on one thread, in a sentence that
+/// begins with `what` and ends with `then`; empty if one of them was not rendered.
 std::string compared(const PhoneStudy& study, const std::string& what, const char* a, const char* b,
                      const std::string& then) {
   const PhoneImage* const first = image_of(study, a);

@@ -45,7 +45,7 @@ shape { sphere { center: [0, 1.1, 0]  radius: 0.6 }  interior: "smoke" }
 
 
 def noise(rng, octaves, cells):
-    """Value noise on the grid: octaves of 0.55 times the amplitude, the first of `cells` a side."""
+    """Returns value noise on the grid. The first octave has `cells` cells a side; each further one has twice as many, and 0.55 times the amplitude."""
     total = numpy.zeros((SIDE, SIDE, SIDE), numpy.float32)
     for octave in range(octaves):
         count = cells << octave
@@ -63,7 +63,9 @@ def noise(rng, octaves, cells):
 
 
 def volumes():
-    """Density of the smoke, strength of the flames, and their temperatures in kelvin."""
+    """Returns the density of the smoke, the strength of the flames, and their temperatures in kelvin.
+
+    The shapes and their constants were chosen by eye: a column of smoke over a flame."""
     rng = numpy.random.default_rng(5)
     x, y, z = numpy.meshgrid(*[numpy.linspace(-1, 1, SIDE, dtype=numpy.float32)] * 3, indexing="ij")
     detail, bend_x, bend_z = noise(rng, 6, 4), noise(rng, 3, 3), noise(rng, 3, 3)
