@@ -175,7 +175,7 @@ def set_background(fields):
     tree.links.new(mix.outputs[0], background.inputs["Color"])
 
 
-# Turns off all that makes Cycles biased or stops it early, as Bandsaw has nothing of the kind.
+# Turns off what makes Cycles biased, and adaptive sampling: both renderers take the same number of samples in each pixel.
 def set_quality(width, height, seed):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"

@@ -1,4 +1,4 @@
-"""The installed add-on in Blender without a window, at a coordinator that renders nothing:
+"""Tests the installed add-on in Blender without a window. It talks to tests/python/fake_farm.py, a coordinator that renders nothing:
 
     BLENDER_USER_SCRIPTS=EMPTY-FOLDER blender -b --factory-startup --python addon_test.py -- ADDON.zip"""
 
@@ -47,7 +47,7 @@ class AddOn(unittest.TestCase):
         self.scene.render.filepath = os.path.join(self.folder.name, "out.exr")
 
     def no_exception_in_render(self):
-        """The test fails at its end if the engine raised an exception: Blender prints it and goes on."""
+        """Makes the test fail at its end if the engine raised an exception, which Blender only prints."""
         engine = sys.modules["bandsaw_blender.engine"].BandsawEngine
         whole, raised = engine.render, []
 
@@ -142,6 +142,7 @@ class AddOn(unittest.TestCase):
         self.render()
         self.assertEqual([job["kind"] for job in self.fake.jobs.values()], ["path", "depth", "normals", "albedo"])
         engine = sys.modules["bandsaw_blender.engine"]
+        # The farm's layer has (n + 1) / 2 with y up; Blender's pass has n with z up. Depth 0 means no hit, in Blender 1e10.
         up = engine.pass_pixels("normals", np.full((1, 1, 3), 0.5) + [[[0, 0.5, 0]]], None, None)
         self.assertEqual(up.tolist(), [[[0, 0, 1]]])
         self.assertEqual(engine.pass_pixels("depth", np.zeros((1, 1, 3)), None, None).tolist(), [[[1e10]]])
@@ -172,7 +173,7 @@ class AddOn(unittest.TestCase):
 
         answer = self.fake.answer
 
-        def once_then_close(request, body):
+        def once_then_close(request, body):  # the coordinator goes away after the first question about the job
             answer(request, body)
             if request.path.startswith("/api/jobs/"):
                 self.fake.server.socket.close()

@@ -1,4 +1,4 @@
-"""Renders the scenes of scenes.py by Cycles and by the add-on, and prints how their means differ:
+"""Renders the scenes of scenes.py by Cycles or by the add-on; judge.sh compares the images. All scenes, if none is named:
 
     blender -b --factory-startup --python compare.py -- ADDON.zip FOLDER cycles|bandsaw|export SCENE…
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# A walk of 48 frames, blurred by its motion, on three workers: one of them is killed, and the coordinator is killed once. Each frame must have the bytes of
-# `bandsaw render --frame N`, none is rendered twice, the video has 48 frames, and the vertices are where Blender has them.
-# Usage: frames.sh BUILD-FOLDER WORK-FOLDER. WORK-FOLDER/pids gets the processes that must be ended.
+# Renders a walk of 48 frames with motion blur (walk.py) on three workers. One worker is killed, and the coordinator is killed once.
+# Checks that each frame has the bytes of `bandsaw render --frame N`, that none is rendered twice, and that the video has 48 frames.
+# run.sh, which calls this, compares the vertices with Blender's afterwards.
+# Usage: frames.sh BUILD-FOLDER WORK-FOLDER. Appends the ids of the processes that the caller must end to WORK-FOLDER/pids.
 set -euo pipefail
 build=$1 work=$2
 here=$(cd "$(dirname "$0")" && pwd)

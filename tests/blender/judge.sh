@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Compares the images that compare.py has written. Usage: judge.sh BANDSAW FOLDER. Scenes whose models are the same in both renderers must have
-# the same mean within 2 %; the others within the difference that deploy/blender/README.md explains.
+# Compares the images that compare.py has written. Usage: judge.sh BANDSAW FOLDER. If the materials and lights of a scene are defined alike in both
+# renderers, the means of the images must agree within 2 %. For the other scenes deploy/blender/README.md explains the larger difference.
 set -euo pipefail
 bandsaw=$1 folder=$2 failed=0
 # The largest difference of the means in percent.

@@ -67,7 +67,7 @@ case $part in
     ! "$build/bin/bandsaw" render "$work/out/bad.blend" --samples 1 -o "$work/out/bad.pfm" 2>"$work/error"
     grep -q "bad.blend: Blender made no scene of it" "$work/error" || { cat "$work/error"; exit 1; }
     [ ! -e "$work/out/bad.pfm" ]
-    # One Blender writes the frames of a sequence: each is as that of a Blender of its own.
+    # For a sequence one Blender writes all frames. Each must be as that of a Blender that writes this frame alone.
     start_farm
     in_blender "$here/save.py" "$work/out/motion.blend" motion
     "$build/bin/bandsaw" submit "$work/out/motion.blend" --frames 1-3 --samples 4 --report none -o "$work/out/m.#.pfm"

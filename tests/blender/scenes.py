@@ -7,10 +7,11 @@ import numpy as np
 from mathutils import Vector
 
 SCENES = {}
-# Scenes whose models are the same in both renderers: their means must agree within 2 %.
+# Names of the scenes whose materials and lights are defined alike in both renderers: the means of the images must agree within 2 %.
 SAME = set()
 
 
+# Decorates a function that builds a scene. `same`: the scene belongs to SAME.
 def scene(same=True):
     def keep(function):
         SCENES[function.__name__] = function
@@ -20,6 +21,7 @@ def scene(same=True):
     return keep
 
 
+# Replaces what is in Blender by the scene of this name.
 def build(name):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     made = bpy.context.scene
@@ -47,7 +49,7 @@ def camera(place, target, lens=40):
 
 
 def material(name, build_nodes=None, **inputs):
-    """A material; `build_nodes`: a function of (tree, shader) that adds nodes; else a Principled BSDF with these inputs."""
+    """Returns a material with a Principled BSDF that has these inputs. `build_nodes`, a function of (node tree, that BSDF), may add or replace nodes."""
     made = bpy.data.materials.new(name)
     made.use_nodes = True
     shader = made.node_tree.nodes["Principled BSDF"]
@@ -58,6 +60,7 @@ def material(name, build_nodes=None, **inputs):
     return made
 
 
+# Inputs of the Principled BSDF that Blender 4 has renamed.
 NEW_NAMES = {"Specular": "Specular IOR Level", "Transmission": "Transmission Weight", "Emission": "Emission Color", "Clearcoat": "Coat Weight",
              "Clearcoat Roughness": "Coat Roughness"}
 
@@ -126,7 +129,7 @@ def world(*rgb, strength=1.0):
 
 
 def picture(name, pixels, color=True, is_float=False):
-    """A packed image. `pixels`: (height, width, 3), linear if it is a float image, rows from the bottom."""
+    """Returns an image that is stored in the file. `pixels`: (height, width, 3), linear if it is a float image, rows from the bottom."""
     height, width = pixels.shape[:2]
     made = bpy.data.images.new(name, width, height, float_buffer=is_float)
     if not color:
@@ -141,7 +144,7 @@ def stripes():
     return np.stack([0.2 + 0.6 * (np.floor(x * 4) % 2), 0.3 + 0.4 * y, 0.7 - 0.5 * x], axis=2)
 
 
-# ---- the twelve ----
+# ---- scenes ----
 
 
 @scene(same=False)
@@ -191,7 +194,7 @@ def textures():
 
 
 def flat(tree, output):
-    """Makes the surface a Diffuse BSDF of this colour."""
+    """Makes the surface a Diffuse BSDF whose colour is this output of a node."""
     node = tree.nodes.new("ShaderNodeBsdfDiffuse")
     tree.links.new(output, node.inputs["Color"])
     tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])

@@ -1,4 +1,4 @@
-"""Blender as the oracle of an animation: where the vertices of a glTF file are at frames.
+"""Writes where Blender has the vertices of an animated glTF file at each frame; vertices_check.py compares them with ours.
 
     blender -b --factory-startup --python vertices.py -- FILE.glb OUT.npy FIRST LAST
 

@@ -1,6 +1,8 @@
-"""Compares the vertices of frames in scene packages with Blender's:
+"""Compares the vertices that bandsaw-import gives a model at each frame with Blender's (vertices.py):
 
-    vertices_check.py BANDSAW-IMPORT FILE.glb BLENDER.npy FIRST FOLDER"""
+    vertices_check.py BANDSAW-IMPORT FILE.glb BLENDER.npy FIRST FOLDER
+
+FIRST: number of the first frame. FOLDER gets the scene package of each frame. Its file of positions is the one with their size."""
 
 import os
 import subprocess
@@ -20,5 +22,5 @@ for number, positions in enumerate(wanted, int(first)):
     worst = max(worst, np.abs(got - positions).max())
     moved = max(moved, np.abs(positions - wanted[0]).max())
 print(f"{len(wanted)} frames of {len(wanted[0])} vertices, which move by up to {moved:.3g}: the largest difference to Blender is {worst:.2g}")
-assert moved > 0.5
+assert moved > 0.5  # otherwise the model does not walk, and the comparison says nothing
 assert worst < 1e-5

@@ -1,4 +1,5 @@
-"""In Blender's window: prepares a scene, and writes to a file what has happened at the coordinator: ready, looked, cancelled."""
+"""Runs in the Blender that window.sh has started in a window. It prepares a scene and writes one word for each thing that has happened
+to the file `state`: ready (Blender takes keys), looked (the add-on has fetched a preview), cancelled (the job is cancelled)."""
 
 import os
 import sys
@@ -17,7 +18,7 @@ addon, state = sys.argv[sys.argv.index("--") + 1:]
 bpy.ops.preferences.addon_install(filepath=addon)
 scenes.build("gradient")
 bpy.ops.preferences.addon_enable(module="bandsaw_blender")
-fake = fake_farm.FakeFarm(120)
+fake = fake_farm.FakeFarm(120)  # a render takes 120 seconds
 bpy.context.preferences.addons["bandsaw_blender"].preferences.farm = fake.string
 bpy.context.preferences.view.render_display_type = "SCREEN"
 bpy.context.preferences.view.show_splash = False  # it would take the keys
@@ -37,7 +38,7 @@ def wait_for(holds):
 
 
 def watch():
-    # The add-on asks for a preview after it has given the one before to Blender.
+    # The add-on asks for the next preview after it has given the last one to Blender. So with the second question one is shown.
     wait_for(lambda: sum(job["looks"] for job in list(fake.jobs.values())) >= 2)
     tell("looked")
     wait_for(lambda: any(job["state"] == "cancelled" for job in list(fake.jobs.values())))
