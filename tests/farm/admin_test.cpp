@@ -12,7 +12,9 @@ namespace {
 
 class Administration : public testing::Test {
  protected:
+  /// Runs a command as a user of the farm, over the network.
   Finished say(std::vector<std::string> arguments) { return run(farm_.command(arguments)); }
+  /// Runs a command on the coordinator's machine, with its data folder.
   Finished here(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), BANDSAW_BIN);
     arguments.insert(arguments.end(), {"--data", farm_.path("data")});
@@ -31,7 +33,8 @@ class Administration : public testing::Test {
   FarmProcesses farm_;
 };
 
-// Scripts wait for the users' file, as the README does, and then start a worker with the other one.
+// Scripts, such as that in the README, wait for the users' file and then start a worker with the
+// workers' file. So that one must be there before.
 TEST_F(Administration, TheFileForUsersIsWrittenLast) {
   EXPECT_LE(std::filesystem::last_write_time(farm_.join_file()),
             std::filesystem::last_write_time(farm_.farm_file()));
@@ -108,7 +111,7 @@ TEST_F(Administration, ALinkForBrowsersLastsUntilItIsRevokedOrASecretIsRenewed) 
     const std::string url = say(more).out;
     const std::size_t mark = url.find("/join#");
     EXPECT_NE(mark, std::string::npos) << url;
-    return url.substr(mark + 6, 22);
+    return url.substr(mark + 6, 22);  // the secret, 22 characters, follows "/join#"
   };
   std::string before = secret({"--for", "2h"});
   EXPECT_EQ(secret(), before);

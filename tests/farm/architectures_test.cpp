@@ -1,6 +1,6 @@
-// A farm of x86-64 and ARM64 machines: each gets the worker for its architecture. The ARM64
-// machines are simulated by a uname that prints their architecture, and the program for them is a
-// file with an ARM64 ELF header.
+// `invite` and the line to paste install on x86-64 and ARM64 machines the worker for their
+// architecture. The ARM64 machines are simulated by a uname that prints their architecture, and the
+// program for them is a file with an ARM64 ELF header (tests/support/worker_file.h).
 
 #include <elf.h>
 #include <gmock/gmock.h>
@@ -80,6 +80,7 @@ TEST_F(InviteArchitectures, AFileThatIsNotTheProgramIsNotSent) {
   wire::WorkerMark old = fitting_mark();
   old.pixel_version -= 1;
   installed_.put_aarch64_worker(worker_file(EM_AARCH64, old));
+  // 7.8.9: the version in fitting_mark().
   EXPECT_THAT(invite({"phone"}).err, HasSubstr(" is version 7.8.9 with protocol "));
   EXPECT_TRUE(got_nothing("phone"));
 }

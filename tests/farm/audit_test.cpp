@@ -1,4 +1,5 @@
-// A farm of real processes in which one machine sends wrong pixels.
+// A farm of real processes in which one machine sends wrong pixels (liar/main.cpp). Audits, which
+// render a band on a second machine and compare, find it; then it is quarantined.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,7 @@ class AuditedFarm : public testing::Test {
     EXPECT_TRUE(file_bytes(farm_.path("farm.pfm")) == file_bytes(farm_.path("local.pfm")));
   }
 
-  FarmProcesses farm_{nullptr, {"--audit", "100%"}};
+  FarmProcesses farm_{nullptr, {"--audit", "100%"}};  // every band is rendered twice
 };
 
 TEST_F(AuditedFarm, AMachineThatSendsWrongPixelsIsFoundAndTheImageIsRight) {

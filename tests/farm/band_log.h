@@ -9,6 +9,7 @@
 
 namespace bandsaw::test {
 
+/// A band: rows [first_row, last_row) with samples [first_sample, last_sample) of each pixel.
 struct LoggedBand {
   std::uint64_t job = 0;
   std::uint32_t first_row = 0;
@@ -22,7 +23,8 @@ struct LoggedBand {
   }
 };
 
-/// `verb`: "rendered" (all pixels are computed) or "stored" (they are on the coordinator's disk).
+/// Returns the bands of the lines with this verb, in order. In a worker's log: "rendered" (all
+/// pixels are computed) or "stored" (they are on the coordinator's disk).
 std::vector<LoggedBand> logged_bands(const std::string& log, const std::string& verb);
 
 }  // namespace bandsaw::test

@@ -1,4 +1,6 @@
-// Clean images (--denoise) have the same bytes by `render` and by every farm, whatever fails.
+// Clean images (--denoise) have the same bytes by `render` and by every farm, whatever fails. The
+// denoiser needs two guides, images of the albedo and of the shape of the surfaces; a farm renders
+// each as a job of its own, which the coordinator's log and the list of jobs call "guide: …".
 
 #include <gtest/gtest.h>
 
@@ -50,7 +52,7 @@ TEST_F(CleanImages, AreTheSameFromThreeWorkersOfWhichOneIsKilled) {
   farm_.worker("three").signal(SIGKILL);
   EXPECT_EQ(client.wait(), 0) << client.err();
   EXPECT_TRUE(file_bytes(farm_.path("there.exr")) == expected);
-  // The guides are there already, and so is the image.
+  // The farm has the guides already, so `watch` does not let them be rendered again.
   run_on_farm({"watch", "1", "--denoise", "--quiet", "-o", farm_.path("watched.exr")});
   EXPECT_TRUE(file_bytes(farm_.path("watched.exr")) == expected);
   const Finished jobs = run(farm_.command({"jobs", "--json"}));

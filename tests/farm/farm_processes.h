@@ -23,17 +23,18 @@ inline void expect_success(const Finished& finished) {
   ASSERT_EQ(finished.code, 0) << finished.err;
 }
 
+/// All processes are ended with this object.
 class FarmProcesses {
  public:
-  /// Starts the coordinator with additional `options` (the default disables audits, because tests
-  /// count rendered bands). If `hosts` is given, the coordinator runs on machine "coordinator" and
-  /// each worker on the machine of its name; `hosts` MUST outlive this object. `program`: bandsaw,
-  /// for the coordinator.
+  /// Starts `program`, the command bandsaw, as the coordinator with additional `options` (the
+  /// default disables audits, because tests count rendered bands). If `hosts` is given, the
+  /// coordinator runs on machine "coordinator" and each worker on the machine of its name; `hosts`
+  /// MUST outlive this object. nullptr: all processes are on loopback.
   explicit FarmProcesses(const Hosts* hosts = nullptr,
                          std::vector<std::string> options = {"--audit", "0%"},
                          std::string program = BANDSAW_BIN);
 
-  /// Starts a worker and waits until it has joined.
+  /// Starts a worker and waits until it has joined. A worker of the same name is replaced.
   Process& add_worker(const std::string& name, int threads,
                       const std::string& program = BANDSAW_WORKER_BIN);
   Process& worker(const std::string& name) { return workers_.at(name); }
@@ -52,8 +53,8 @@ class FarmProcesses {
   /// Returns the command line that runs the command on machine `host`, if there are hosts.
   std::vector<std::string> on(const std::string& host, std::vector<std::string> argv) const;
   std::string path(const std::string& name) const { return folder_ / name; }
-  std::string join_file() const { return folder_ / "data/join"; }
-  std::string farm_file() const { return folder_ / "data/farm"; }
+  std::string join_file() const { return folder_ / "data/join"; }  ///< join string of workers
+  std::string farm_file() const { return folder_ / "data/farm"; }  ///< join string of users
 
  private:
   void start_coordinator();

@@ -1,5 +1,5 @@
-// Scenes of other renderers: a farm that loses a worker gives the bytes of `render`, and so does
-// the scene file that `import` writes. The scenes are made here.
+// Scenes of pbrt and Mitsuba. A farm that loses a worker gives the bytes of `render`, and so does
+// the scene file that `import` writes. The scenes are made here and have many features each.
 
 #include <gtest/gtest.h>
 

@@ -139,7 +139,7 @@ TEST_F(Frames, HaveTheBytesOfRenderThoughAWorkerAndTheCoordinatorAreKilled) {
 
 TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
   Process client = Process::start(submit("1,3,5-20", {"-o", outputs_, "--fixed-seed"}));
-  // Without workers the submitter is killed while it sends scenes, or after.
+  // There is no worker, so no frame is rendered before the submitter is killed.
   ASSERT_TRUE(client.wait_for("\"event\":\"job\"")) << client.err();
   client.signal(SIGKILL);
   client.wait();
@@ -160,7 +160,7 @@ TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
   EXPECT_EQ(jobs_of_frames().size(), 18u);
 }
 
-TEST_F(Frames, AContactSheetAndACommandAndAClearWordWithoutFfmpeg) {
+TEST_F(Frames, HaveAContactSheetAndAFailedCommandOrMissingFfmpegIsReported) {
   farm_.add_worker("one", 2);
   const std::string sheet = farm_.path("sheet.png");
   const Finished done =
@@ -186,7 +186,7 @@ TEST_F(Frames, AreCleanedAsRenderDoes) {
     EXPECT_THAT(file_bytes(farm_.path(absl::StrFormat("w.%04d.json", frame))),
                 HasSubstr("\"method\":\"regression\""));
   }
-  // The guides are there already.
+  // The farm has the guides, the images that the denoiser needs, of the first submission.
   const Finished again =
       run(farm_.command({"watch", "1", "--denoise", "-o", farm_.path("again.####.pfm")}));
   ASSERT_EQ(again.code, 0) << again.err;

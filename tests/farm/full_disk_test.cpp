@@ -32,7 +32,8 @@ class FullDiskFarm : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_EQ(mkdir(disk_.c_str(), 0700), 0);
-    // The reserve, and the 64 MiB that must be free before jobs continue.
+    // Room for the coordinator's reserve (16 MiB, freed when the disk is full), and for the 64 MiB
+    // that must be free before jobs continue.
     if (mount("tmpfs", disk_.c_str(), "tmpfs", 0, "size=192m") != 0) {
       GTEST_SKIP() << "needs the right to mount a small tmpfs (run as root)";
     }
@@ -60,8 +61,8 @@ class FullDiskFarm : public testing::Test {
                                     "--threads", "1", "--cache", folder_ / "cache"}));
     ASSERT_TRUE(worker_->wait_for("joined")) << worker_->err();
   }
-  /// Job 1 is done, job 2 is being rendered, job 3 waits; then the coordinator is stopped and the
-  /// disk filled.
+  /// Brings the farm to this state: job 1 is done, job 2 is being rendered, job 3 waits. Then ends
+  /// the coordinator and the worker. The caller fills the disk.
   void stop_with_jobs_and_fill() {
     start_worker();
     ASSERT_EQ(say(with_samples({"submit", kCornell, "-o", folder_ / "first.pfm"}, 8)).code, 0);
@@ -76,6 +77,7 @@ class FullDiskFarm : public testing::Test {
     coordinator_->wait();
     worker_.reset();
   }
+  /// Fills the disk to the last byte.
   void fill() {
     const int file = open((disk_ + "/filler").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
     ASSERT_GE(file, 0);

@@ -1,5 +1,5 @@
-// Folders of the gallery, the study and the books: every scene loads, and a farm gives the same
-// bytes as `render`.
+// The scenes in two folders of the gallery, the study of ray tracing on phones (`study`) and the
+// "weekend" books (`books`): every scene loads, and a farm gives the same bytes as `render`.
 
 #include <gtest/gtest.h>
 

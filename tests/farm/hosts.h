@@ -12,10 +12,11 @@
 
 namespace bandsaw::test {
 
+/// Each machine is known by its name.
 class Hosts {
  public:
-  /// While it exists, the thread that made it is on a machine: its sockets, and the processes that
-  /// it starts.
+  /// While this object exists, the sockets that its thread opens and the processes that it starts
+  /// belong to a machine. It MUST be destroyed by the same thread.
   class Visit {
    public:
     ~Visit();
@@ -34,13 +35,14 @@ class Hosts {
   Hosts(const Hosts&) = delete;
   Hosts& operator=(const Hosts&) = delete;
 
-  std::string address(const std::string& name) const;
+  std::string address(const std::string& name) const;  ///< IPv4, without a port
   /// Returns the command line that runs the command on that machine. The process id is that of the
   /// command itself.
   std::vector<std::string> on(const std::string& name, std::vector<std::string> argv) const;
   std::unique_ptr<Visit> visit(const std::string& name) const;
 
   /// Disconnects the cable: packets are dropped in both directions, connections are not reset.
+  /// plug() connects it again.
   void unplug(const std::string& name) const;
   void plug(const std::string& name) const;
   /// Drops packets from `from` to `to`; the other direction works.
@@ -54,6 +56,7 @@ class Hosts {
   std::string space_of(const std::string& name) const;
   /// Runs `ip` in the namespace of the switch or of a machine; returns true on success.
   bool ip(const std::string& space, std::vector<std::string> arguments) const;
+  /// Creates a machine and its cable to the switch; returns true on success.
   bool add(const std::string& name) const;
   std::vector<std::string> names_;
   std::string prefix_;  ///< prefix of the namespaces' names

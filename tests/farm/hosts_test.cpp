@@ -32,6 +32,7 @@ class Cables : public testing::Test {
     })) << farm_->coordinator_log();
   }
 
+  /// Expects that nothing is lost if packets are dropped in the direction from `from` to `to`.
   void expect_nothing_lost_when_deaf(const std::string& from, const std::string& to) {
     Process client = job_->submit("person");
     job_->wait_until_stored("desk", 2);

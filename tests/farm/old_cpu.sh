@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A machine without AVX2 renders and joins a farm: the programs run on an emulated Nehalem (2008: SSE4.2, no AVX), where any
-# newer instruction ends them. Files are compared byte by byte with those of this machine.
+# Checks that a machine without AVX2 renders and joins a farm. The programs run on an emulated Nehalem (2008: SSE4.2, no AVX), where any
+# newer instruction ends them. The images are compared byte by byte with those of this machine.
 # Usage: old_cpu.sh BIN-FOLDER      Exit 77: qemu-user-static is not installed.
 set -euo pipefail
 bin=$(cd "$1" && pwd)

@@ -11,8 +11,8 @@
 namespace bandsaw::test {
 namespace {
 
-// The printed line, in which the shell that the test starts becomes the worker, so that signals
-// reach the worker.
+// Returns the printed line with `exec` before the worker: the shell that the test starts becomes
+// the worker, so that signals reach it.
 std::string pasted_line(Process& coordinator) {
   const std::string line = line_to_paste(coordinator);
   std::smatch parts;
@@ -20,7 +20,7 @@ std::string pasted_line(Process& coordinator) {
   return parts[1].str() + "exec " + parts[2].str();
 }
 
-// A shell in an empty folder, without Bandsaw's programs on its PATH.
+// Runs the line in a shell in a new folder, without Bandsaw's programs on its PATH.
 Process paste(const FarmProcesses& farm, const std::string& host, const std::string& folder,
               const std::string& line) {
   return Process::start(
@@ -54,7 +54,7 @@ TEST(Paste, AnotherKeyOrAnotherProgramIsNotStarted) {
   }
   FarmProcesses farm(hosts->get(), {"--web", (*hosts)->address("coordinator") + ":0"});
   const std::string line = pasted_line(farm.coordinator());
-  const std::string zeros(43, 'A');
+  const std::string zeros(43, 'A');  // with "=", 32 zero bytes in Base64: a digest of no key
   const std::string other_key =
       std::regex_replace(line, std::regex("sha256//[^ ]*"), "sha256//" + zeros + "=");
   Process impostor = paste(farm, "coordinator", farm.path("one"), other_key);

@@ -1,4 +1,5 @@
-// An image's report does not depend on where it was rendered, and its values can be reproduced.
+// The report, a JSON file that is written beside each image, does not depend on where the image was
+// rendered, and its values can be reproduced.
 
 #include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
@@ -29,8 +30,8 @@ double number(const Struct& json, const std::string& of, const std::string& fiel
   return section(json, of).fields().at(field).number_value();
 }
 
-/// Removes the fields that depend on the machines: times and names. Also the intermediate error
-/// values, because a farm measures them while rows of the next pass arrive.
+/// Removes the fields that depend on the machines, times and names, and the course of the error
+/// ("curve"), because a farm measures it while rows of the next pass arrive.
 Struct comparable(Struct json) {
   for (const char* field : {"time", "machines", "outputs", "curve"}) {
     EXPECT_EQ(json.mutable_fields()->erase(field), 1u) << field;

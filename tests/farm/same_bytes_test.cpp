@@ -27,7 +27,8 @@ std::vector<std::string> scenes() {
   return out;
 }
 
-// 72 samples: four nodes of the summation tree, the last of them half a block.
+// 72 samples are 9 blocks. That is no power of two, so a pixel's sum has several nodes (glossary:
+// proto/README.md), which come from different bands.
 const std::vector<std::string> kSettings = {"--width", "24", "--samples", "72", "--quiet"};
 
 std::vector<std::string> with_settings(std::vector<std::string> arguments) {
@@ -81,8 +82,8 @@ TEST_F(SameBytes, ByEachKernel) {
   }
 }
 
-// Tiles are planned from measured errors: the plan is equal on every farm and after a restart, as
-// is the layer that shows it.
+// The number of samples of each tile is planned from the errors of the first samples. The plan is
+// equal on every farm and after a restart, and so is the layer "samples" that shows it.
 TEST_F(SameBytes, WithAdaptiveSampling) {
   const auto adaptive = [&](const std::string& command, const std::string& file) {
     return std::vector<std::string>{command,    std::string(BANDSAW_GALLERY) + "/spheres.textproto",

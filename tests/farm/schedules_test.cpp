@@ -21,7 +21,7 @@
 namespace bandsaw::test {
 namespace {
 
-constexpr int kMachines = 4;
+constexpr int kMachines = 4;  // workers at most
 
 std::vector<std::string> with_job(std::vector<std::string> arguments) {
   const std::vector<std::string> job = {
@@ -30,6 +30,7 @@ std::vector<std::string> with_job(std::vector<std::string> arguments) {
   return arguments;
 }
 
+/// One farm, one job, and the events of one seed.
 class Schedule {
  public:
   /// Cables are pulled if `hosts` is given, which MUST outlive this object.
@@ -74,6 +75,7 @@ class Schedule {
     return false;
   }
 
+  /// Returns the workers that are neither frozen nor cut off; at least one.
   std::vector<std::string> working() const {
     std::vector<std::string> names;
     for (const std::string& name : names_) {
@@ -138,6 +140,7 @@ class Schedule {
     }
   }
 
+  // Frozen workers continue, and pulled cables are connected again.
   void calm_down() {
     tell("all go on");
     for (const std::string& name : frozen_) {

@@ -1,4 +1,5 @@
-// bandsaw study as run by a user.
+// The command `bandsaw study` as run by a user. It renders scenes with several methods of sampling
+// and writes their error against time.
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -32,8 +33,8 @@ TEST_F(StudyCommand, WritesTableFiguresAndPlot) {
   EXPECT_EQ(done.out.rfind("| scene | technique |", 0), 0u) << done.out;
   EXPECT_NE(done.out.find("| spheres | independent numbers | 16 |"), std::string::npos);
   const std::string csv = file_bytes(folder_ / "s.csv");
-  // The header, and for two scenes: 1, 4 and 16 samples of four methods and of adaptive sampling,
-  // and four tolerances.
+  // The header, and for each of the two scenes: rows of 1, 4 and 16 samples for four methods and
+  // for adaptive sampling, and rows of four tolerances.
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (5 * 3 + 4));
   EXPECT_EQ(file_bytes(folder_ / "s.svg").rfind("<svg ", 0), 0u);
 }

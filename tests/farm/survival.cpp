@@ -58,8 +58,8 @@ void Survival::expect_the_same_bytes(Process& client) {
   EXPECT_TRUE(file_bytes(farm_.path("farm.pfm")) == file_bytes(farm_.path("local.pfm")));
 }
 
-// Returns true for rows that two workers may have rendered on purpose: at the end of a job the
-// coordinator also assigns a slow worker's bands to idle ones and logs it.
+// Returns true if the rows that both bands contain were given to two workers on purpose: at the end
+// of a job the coordinator assigns a slow worker's bands to idle ones too, and logs it.
 bool Survival::shared(const LoggedBand& one, const LoggedBand& other) const {
   const auto within = [&](const LoggedBand& band, const LoggedBand& whole) {
     const std::uint32_t first = std::max(one.first_row, other.first_row);

@@ -10,6 +10,7 @@
 
 namespace bandsaw::test {
 
+/// The job is Survival's own; the test does the harm between submit() and expect_the_same_bytes().
 class Survival {
  public:
   /// `farm` MUST outlive this object. `scene`: the file to render; the default is a gallery scene.
@@ -27,9 +28,10 @@ class Survival {
   /// Expects that the job succeeds with the same bytes as a local render.
   void expect_the_same_bytes(Process& client);
 
-  /// Returns the number of bands that one worker had stored and another rendered as well, except
-  /// backup tasks and stolen work, and of bands that one worker rendered twice. Bands that the
-  /// worker `cut_off` rendered in vain do not count: it could not know what the other workers did
+  /// Counts bands that one worker had stored and another rendered as well, and bands that one
+  /// worker rendered twice. Rows that the coordinator gave to two workers on purpose (backup tasks,
+  /// and rows that it moved from a slow worker to an idle one) do not count. Bands that the worker
+  /// `cut_off` rendered in vain do not count either: it could not know what the other workers did
   /// meanwhile, or was killed before it could send them.
   int rendered_again(const std::string& cut_off = "");
 

@@ -50,7 +50,7 @@ TEST_F(Upload, ResumesAlsoAfterARestartOfTheCoordinator) {
   leave_in_the_middle();
   std::uint64_t kept = 0;
   while (kept == 0 && !HasFailure()) {
-    // the coordinator notices the disconnection a moment later
+    // The coordinator notices the disconnection a moment later, and reports no part before.
     kept = there().value_or(bytes_.size());
   }
   ASSERT_LT(kept, bytes_.size());
@@ -67,6 +67,7 @@ TEST_F(Upload, ResumesAlsoAfterARestartOfTheCoordinator) {
 }
 
 TEST_F(Upload, RestartsIfTheFarmLostThePart) {
+  // Claims that the farm has the first 8 MiB, which it has not.
   const absl::Status put = connect()->put_blob(digest(), bytes_, 8 << 20, [](std::uint64_t) {});
   EXPECT_TRUE(put.ok()) << put;
   EXPECT_EQ(there(), std::nullopt);

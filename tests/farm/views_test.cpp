@@ -1,4 +1,5 @@
-// Views of an image in progress: in the terminal, in a viewer, and over the network.
+// Views of an image in progress: in the terminal, in the image viewer tev, and by the call for
+// previews of the coordinator.
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -95,9 +96,12 @@ constexpr std::size_t kSide = 16;
 // names, rectangle, and offset and stride of each channel.
 constexpr std::size_t kHeader = 4 + 1 + 1 + 14 + 4 + 6 + 16 + 48;
 
+// Expects one packet that creates the image and then updates of the whole image, the last of them
+// with the pixels of the file `pfm`. `header`: bytes before the pixels.
 void expect_the_image(std::vector<std::string> packets, std::size_t header,
                       const std::string& pfm) {
   ASSERT_GE(packets.size(), 2u);
+  // Byte 4 is the type of a packet: 4 creates an image, 6 updates it.
   EXPECT_EQ(packets.front()[4], 4) << "it is created once";
   for (std::size_t i = 1; i < packets.size(); ++i) {
     EXPECT_EQ(packets[i][4], 6);
@@ -180,6 +184,7 @@ TEST(Views, APreviewShowsTheRowsThatAreStored) {
   const Finished submitted =
       run(farm.command({"submit", kCornell, "--width", "64", "--samples", "1048576", "--detach"}));
   ASSERT_EQ(submitted.code, 0) << submitted.err;
+  // Previews of job 1 with at most about 20 pixels a side; 0: as large as the image.
   absl::StatusOr<FarmImage> early = (*client)->preview(1, 20);
   while (absl::IsNotFound(early.status())) {
     early = (*client)->preview(1, 20);

@@ -1,4 +1,4 @@
-// The worker is one file: it needs only the kernel and glibc.
+// bandsaw-worker is one file that runs on other machines: it needs only Linux and glibc.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

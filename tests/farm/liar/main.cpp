@@ -1,5 +1,6 @@
-// A worker with defective memory: it renders correctly, and its canary is right, but it sends wrong
-// pixels.
+// A worker for the tests of audits. It behaves as if its memory were defective: it renders
+// correctly, and its canary (the hash of a small image, compared when it joins) is right, but it
+// sends wrong pixels.
 
 #include "worker/command.h"
 
