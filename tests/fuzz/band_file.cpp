@@ -1,4 +1,5 @@
-// The records of a band log, as the coordinator reads them from disk.
+// Fuzz target (fuzz.h): the records of a job's file of rendered bands, as the coordinator reads
+// them from disk. A band is a range of rows and samples.
 
 #include "renderlib/render/band_file.h"
 

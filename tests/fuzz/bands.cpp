@@ -1,6 +1,7 @@
-// Chunks of bands: any message; then a worker that begins, continues, sends wrong bytes and too
-// many, as the input selects. An accepted band has the bytes that were sent, the announced digest,
-// and valid sums.
+// Fuzz target (fuzz.h): the chunks in which a worker sends the pixels of a band, a range of rows
+// and samples. First the whole input is parsed as one chunk. Then each three bytes of the input
+// select what a sender does: it begins a band, continues it, or sends wrong or too many bytes. An
+// accepted band must have the bytes that were sent, the announced digest, and valid sums.
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +22,9 @@ bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
 
 class Sender {
  public:
-  /// Sends the next message. `what` and `number` come from three bytes of the input; the bits of
-  /// `what` select the kind of message.
+  /// Sends the next message. The bits of `what` select what is in it: 1 a header, 2 a wrong byte, 4
+  /// more bytes than the band has; in the header 8 a negative sum, 16 wrong rows, 32 a wrong size,
+  /// 64 a wrong digest.
   void step(std::uint8_t what, std::uint32_t number) {
     farm::BandChunk chunk;
     if ((what & 1) != 0) {
@@ -91,7 +93,7 @@ class Sender {
 
   BandIntake intake_;
   std::string band_;  ///< the bytes that a correct worker would send
-  std::string came_;
+  std::string came_;  ///< the bytes of this band that were accepted so far
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
-// Messages of a worker's stream (each after two bytes with its length, little-endian): checked as
-// the coordinator does, then given to a scheduler with a job.
+// Fuzz target (fuzz.h): the messages of a worker to the coordinator, each after two bytes with its
+// length, little-endian. They are checked as the coordinator does and then given to a scheduler
+// with a job, whose invariants must hold.
 
 #include "coordinator/rpc/checked_messages.h"
 #include "coordinator/scheduler/scheduler.h"
@@ -14,7 +15,7 @@ using namespace bandsaw::coordinator;
 SchedulerOptions fuzz_options() {
   SchedulerOptions options;
   options.epoch = "fuzz";
-  options.audit_share = 0.5;
+  options.audit_share = 0.5;  // half of the bands are rendered twice, so audits are often tried
   return options;
 }
 
@@ -27,6 +28,8 @@ void submit_job(Scheduler& scheduler) {
   scheduler.step(input::Submit{spec}, 0);
 }
 
+/// Returns the scheduler's input for a message; nullopt if the coordinator refuses it, or does not
+/// give such messages to the scheduler.
 std::optional<Input> as_input(const farm::FromWorker& message) {
   constexpr SessionId kSession = 1;
   switch (message.kind_case()) {

@@ -25,6 +25,7 @@ void each_step(absl::Span<const std::uint8_t> input, std::size_t most, F step) {
   }
 }
 
+/// Returns the input as a string.
 inline std::string text(absl::Span<const std::uint8_t> input) {
   return {input.begin(), input.end()};
 }

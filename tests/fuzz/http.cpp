@@ -1,5 +1,6 @@
-// A request of a browser, in two ways: the input as the bytes of a connection, and as lines "Name:
-// value" up to an empty one and then the body, so that mutations reach the handlers easily.
+// Fuzz target (fuzz.h): a request to the dashboard. The input is taken in two ways: as the bytes of
+// a connection; and as lines "Name: value" up to an empty line, followed by the body, so that
+// mutations reach the handlers easily. In these lines, one without ": " is the target of a POST.
 
 #include <sys/socket.h>
 #include <unistd.h>
@@ -19,6 +20,7 @@ namespace {
 
 using namespace bandsaw::coordinator;
 
+/// Answers like the dashboard's login, after the checks that all its requests pass.
 HttpReply answer(Access& access, const HttpRequest& request, const HttpBody& body) {
   access.check(request).IgnoreError();
   access.logged_in(request);

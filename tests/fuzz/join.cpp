@@ -1,4 +1,5 @@
-// Join strings, which contain the addresses, the certificate's digest and the secret of a farm.
+// Fuzz target (fuzz.h): join strings, which contain the addresses, the certificate's digest and the
+// secret of a farm.
 
 #include "proto/link/join.h"
 

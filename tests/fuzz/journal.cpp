@@ -1,4 +1,5 @@
-// The first line is the kind of a record, the rest are its fields.
+// Fuzz target (fuzz.h): a record of the coordinator's journal. The first line of the input is the
+// kind of the record, the rest are its fields.
 
 #include "coordinator/store/record_text.h"
 #include "renderlib/base/check.h"

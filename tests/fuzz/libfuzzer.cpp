@@ -1,4 +1,5 @@
-// The entry point that libFuzzer calls with each input.
+// The entry point that libFuzzer calls with each input. It calls the target (fuzz.h) that is
+// linked.
 
 #include "tests/fuzz/fuzz.h"
 

@@ -1,5 +1,5 @@
-// A scene of Mitsuba through the importer, without any other files; or, if the input does not begin
-// with '<', one of its mesh files.
+// Fuzz target (fuzz.h): a scene of Mitsuba through the importer, without any other files; or, if
+// the input does not begin with '<', a mesh file of such a scene.
 
 #include <fstream>
 

@@ -1,6 +1,6 @@
-// Decodes a package that consists of a manifest and of the same bytes for every blob that the
-// manifest names. The input is the length of the manifest (two bytes, little-endian), the manifest,
-// and the bytes of the blobs.
+// Fuzz target (fuzz.h): a scene package, which is a manifest and the blobs that it names. The input
+// is the length of the manifest (two bytes, little-endian), the manifest, and the bytes that every
+// blob has.
 
 #include "renderlib/package/package.h"
 

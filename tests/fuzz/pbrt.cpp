@@ -1,4 +1,5 @@
-// A pbrt scene, through converter and importer, without any other files.
+// Fuzz target (fuzz.h): a scene of pbrt through the converter and the importer, without any other
+// files.
 
 #include <fstream>
 

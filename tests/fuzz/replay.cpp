@@ -1,4 +1,5 @@
-// Runs a fuzz target over the files of a folder, so that every build tests earlier findings.
+// Runs a fuzz target (fuzz.h) over the files of the given folders, so that every build tests
+// earlier findings. Fails if there is no file.
 
 #include <cstdio>
 #include <filesystem>

@@ -1,4 +1,5 @@
-// A scene file, as text or JSON, through the importer, without any other files.
+// Fuzz target (fuzz.h): a scene file, as text or JSON, through the importer, without any other
+// files. What is imported must be decodable as a scene package.
 
 #include <fstream>
 

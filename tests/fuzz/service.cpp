@@ -1,4 +1,6 @@
-// Requests of users and bands of workers: one byte that selects the message, then the message.
+// Fuzz target (fuzz.h): messages that the coordinator checks before it uses them. The first byte of
+// the input selects the kind: a submission, a band (rows and samples; a node of the summation tree,
+// see the glossary in proto/README.md), a quarantine, or digests. The rest is the message.
 
 #include "coordinator/rpc/checked_messages.h"
 #include "renderlib/base/check.h"

@@ -1,5 +1,5 @@
-// Messages of a coordinator on a worker's stream (each after two bytes with its length,
-// little-endian).
+// Fuzz target (fuzz.h): the messages of the coordinator to a worker, each after two bytes with its
+// length, little-endian. Every task that the worker then starts must be one that can be rendered.
 
 #include "renderlib/base/check.h"
 #include "tests/fuzz/fuzz.h"
@@ -18,7 +18,7 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
       }
       session.heartbeat();
       session.hello();
-      if (tasks.size() % 3 == 1) {
+      if (tasks.size() % 3 == 1) {  // some tasks end before the next message, and some do not
         session.finished(tasks.back());
       }
     }

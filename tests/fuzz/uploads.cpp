@@ -1,4 +1,5 @@
-// Uploads of a blob in chunks. First the whole input is parsed as one chunk. Then each three bytes
+// Fuzz target (fuzz.h): the chunks in which a blob, the bytes that belong to a digest, is uploaded
+// to the coordinator. First the whole input is parsed as one chunk. Then each three bytes
 // of the input select what happens next: a sender begins, continues, skips bytes, sends wrong bytes
 // or is interrupted, or the disk is damaged. A blob that is stored must have its digest after every
 // step.
@@ -22,7 +23,7 @@ namespace {
 using namespace bandsaw;
 using namespace bandsaw::coordinator;
 
-/// Long enough that parts of an interrupted upload are kept.
+/// Returns the bytes of the blob. They are so many that parts of an interrupted upload are kept.
 const std::string& content() {
   static const std::string bytes = test::pattern(PartialBlobs::kMinBytes + 40'000);
   return bytes;
@@ -32,8 +33,8 @@ class Sender {
  public:
   explicit Sender(const std::string& folder) : folder_(folder), store_(*BlobStore::open(folder)) {}
 
-  /// Does the next thing. `what` and `number` come from three bytes of the input; `what` selects
-  /// the kind of event.
+  /// Does the next thing; `what` selects the kind: 0 the sender is interrupted, 1 the coordinator
+  /// restarts, 2 a stored byte is damaged, 3 the sender ends, otherwise a chunk is sent.
   void step(std::uint8_t what, std::uint32_t number) {
     switch (what % 6) {
       case 0:

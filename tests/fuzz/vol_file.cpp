@@ -1,4 +1,5 @@
-// Files of volumes, *.vol, as Mitsuba writes them: a grid of numbers in a box.
+// Fuzz target (fuzz.h): a *.vol file of Mitsuba, a grid of numbers in a box that gives the density
+// of a medium. What is accepted must be a valid grid.
 
 #include <span>
 
