@@ -1,6 +1,6 @@
 // Fuzz target (fuzz.h): a request to the dashboard. The input is taken in two ways: as the bytes of
 // a connection; and as lines "Name: value" up to an empty line, followed by the body, so that
-// mutations reach the handlers easily. In these lines, one without ": " is the target of a POST.
+// mutations reach the handlers easily. A line without ": " is the request's target.
 
 #include <sys/socket.h>
 #include <unistd.h>

@@ -30,6 +30,8 @@ SurfacePoint point() {
   return p;
 }
 
+/// Returns a material with all layers of MetallicRoughness: half metallic, half transmitting, and
+/// with a clear coat.
 MetallicRoughness layered(double roughness) {
   MetallicRoughness m;
   m.metallic = m.transmission = m.coat_roughness = {TextureId{1}, 1};
@@ -117,6 +119,7 @@ TEST(MaterialHardCases, M8DirectionsStayUnitOverAThousandMirrors) {
     const auto next = sample(bsdf_at(Metal{TextureId{0}}, kTextures, p, -direction), 0.5, 0.5, 0.5);
     ASSERT_TRUE(next);
     direction = next->wi;
+    // The criterion is 4 u for the length, so 8 u for its square.
     ASSERT_LE(std::abs(length_squared(direction) - 1), 8 * 0x1p-53);
   }
   test::report_hard_case("M8", "squared length within 8 u over 1,000 mirrors");

@@ -14,7 +14,8 @@
 namespace bandsaw::test {
 namespace {
 
-/// Returns the number of rays that escape from inside a closed mesh at its corners and edges.
+/// Returns the number of rays that escape from inside a closed mesh at its corners and edges. The
+/// rays start in a cube of half side `origin_size` about `origin_at`.
 int leaks(const Mesh& mesh, const Vec3& origin_at, double origin_size, int count) {
   Pool pool(2);
   const Geometry geometry = scene_of(mesh);
@@ -94,12 +95,13 @@ TEST(Triangle, T4_WithoutAreaIsNeverHit) {
   at_most("T4", "hits of 300,000 rays aimed at what has no area", hits, 0);
 }
 
+/// Returns the ray's parameter at the triangle's plane, without rounding.
 Wide plane_distance(const Ray& ray, const Triangle& t) {
   const WideVec n = cross(WideVec(t.b) - t.a, WideVec(t.c) - t.a);
   return dot(n, WideVec(t.a) - ray.origin) / dot(n, ray.direction);
 }
 
-/// Returns the change if the last bit of the corners' heights changes.
+/// Returns how much plane_distance() changes if the last bits of the corners' heights change.
 double worth_of_last_bits(const Ray& ray, Triangle t) {
   const Wide distance = plane_distance(ray, t);
   for (Vec3* corner : {&t.a, &t.b, &t.c}) {

@@ -22,7 +22,8 @@ namespace {
 using test::Random;
 using test::tries;
 
-/// A flat square of 8 x 8 cells of edge `size`, rotated, its middle at `at`: as triangles or quads.
+/// Returns a flat square of 8 x 8 cells, rotated, with its middle at `at`. The cells have edges of
+/// length `size` and are quads or pairs of triangles.
 Geometry flat_patch(double size, const Vec3& at, bool triangles) {
   const Transform turn = rotation({1, 2, 3}, 33);
   const auto point = [&](int i, int j) {
@@ -94,6 +95,7 @@ struct Crease {
     inwards[0] = {0, 1, 0};
     inwards[1] = {second.y, -second.x, 0};
   }
+  /// Returns true if the point is between the planes.
   bool holds(const Vec3& p) const {
     return p.x > 0 && dot(p, inwards[0]) > 0 && dot(p, inwards[1]) > 0;
   }

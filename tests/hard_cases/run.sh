@@ -10,7 +10,7 @@ kept=$build/hard_case_figures
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Tests whose names carry an id; of the program hard_cases the one with the full counts.
+# Runs the tests whose names contain an id. The program hard_cases has two entries in CTest; the one with few tries is excluded.
 ids=${2:-[STQBOCXMLVRAPY][0-9]+|TX[0-9]+}
 status=0
 ctest --test-dir "$build" --no-tests=error --parallel "$(nproc)" --extra-verbose \

@@ -25,6 +25,8 @@ using test::WideVec;
 
 constexpr double kUnit = 0x1p-53;
 
+/// Returns the ray's parameter at the hit, if there is one. `starts_on_it`: the ray starts on the
+/// sphere, whose near root is then not a hit.
 std::optional<double> hit(const Ray& ray, const Sphere& sphere, bool starts_on_it = false) {
   Crossing crossing;
   if (!intersect(trace_setup(ray.origin, ray.direction, ray.t_max), sphere, starts_on_it,
@@ -267,7 +269,8 @@ TEST(SphereUv, S8_StaysInTheUnitSquare) {
   test::at_most("S8", "NaN or outside of " + std::to_string(points), outside, 0);
 }
 
-/// Traces a ray that is refracted at each hit and never reflected. Returns the spheres of the hits.
+/// Traces a ray that is refracted at each hit and never reflected, and changes `direction` to that
+/// of the last refraction. Returns a letter for each hit: o for the outer sphere, i for the inner.
 std::string pass_through(const Geometry& g, const Accel& accel, Vec3& direction, Vec3 origin) {
   const Material glass = Dielectric{1.5};
   const Material air = Dielectric{1};

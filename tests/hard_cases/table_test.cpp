@@ -1,4 +1,5 @@
-// The table of README.md and the list of cases are complete, and every case has its test.
+// Checks that the table of README.md and the list cases.txt have every hard case once, and that
+// every case has its test, whose name begins with the case's id.
 
 #include <gtest/gtest.h>
 
