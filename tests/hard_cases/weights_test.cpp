@@ -18,7 +18,7 @@ namespace bandsaw {
 namespace {
 
 constexpr int kBins = 400;     // bins of the ratio, uniform in its logarithm
-constexpr double kMin = 0.01;  // smallest ratio that has a bin of its own
+constexpr double kMin = 0.01;  // below the smallest ratio at the two places
 constexpr double kMax = 2.05;  // above the largest ratio at the two places
 
 int bin_of(double ratio) {

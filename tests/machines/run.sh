@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A farm of four different machines gives the same bytes as one machine. Its workers are this build's, Debian 13's, this build's on a
-# processor without AVX2 (emulated), and an ARM64 one (emulated). Each must render a part of the image.
+# Checks that a farm of four different machines gives the same bytes as one machine. The four workers: this build's; one built on Debian 13;
+# this build's on a processor without AVX2 (emulated); one for ARM64 (emulated). Each must render a part of the image.
 # Usage: tests/machines/run.sh BUILD DEBIAN13 ARM64
 #   BUILD     this build's folder
 #   DEBIAN13  the root folder of a Debian 13 in which /root/bandsaw is built (made by deploy/nightly.sh debian13)
@@ -27,9 +27,9 @@ trap 'rm -rf "$debian13$scratch"; stop' EXIT
 join_here no-avx2 "$scratch/logs/no-avx2" qemu-x86_64-static -cpu Nehalem "$build/bin/bandsaw-worker" --threads 1
 join_here arm64 "$scratch/logs/arm64" qemu-aarch64-static -L "${BANDSAW_ARM64_ROOT:-/}" "$arm64/bin/bandsaw-worker" --threads 1
 
-# same_bytes SCENE SAMPLES: the emulated workers are 30 to 100 times slower than the others, which would render all bands first, by
-# backup tasks. So the others join once both emulated workers have bands in the image, and leave after the job. The coordinator calls
-# them NAME-2 in the second job.
+# same_bytes SCENE SAMPLES renders a scene on the farm and on this machine, and compares. The emulated workers are 30 to 100 times slower
+# than the others, which would render all bands before them, also the bands that the slow ones hold (as backup tasks). So the others join
+# when both emulated workers have bands in the image, and leave after the job. In the second job the coordinator calls them NAME-2.
 same_bytes() {
   local scene=$1 options=(--width 64 --samples "$2") progress=$scratch/$1.progress emulated=${#pids[@]} name
   : >"$progress"

@@ -1,5 +1,6 @@
-"""A coordinator for tests of the clients: it speaks the HTTP requests of proto/web.proto and renders nothing. Each request for the state of a
-job completes some more of its rows. `python3 fake_farm.py SECONDS` serves one until its standard input ends, and prints the farm's string."""
+"""A coordinator for tests of clients, the Python module and the add-on for Blender. It answers the HTTP requests of proto/web.proto and renders
+nothing: each request for the state of a job completes some more of its rows, with made-up pixels. `python3 fake_farm.py SECONDS` serves one until
+its standard input ends, and prints the string with which clients connect."""
 
 import array
 import hashlib
@@ -16,7 +17,8 @@ SECRET = "abcdefghijklmnopqrst-_"
 
 
 class FakeFarm:
-    """`seconds`: what a job takes; 0: each look completes a quarter. `refusals`: HTTP statuses with which the next scenes are refused."""
+    """`seconds`: the time that a job takes; 0: each request for its state completes a quarter of it. Tests may set `refusals`, the HTTP statuses
+    with which the next scenes are refused, and `warnings`, those of every accepted scene. `scenes`, `jobs` and `requests` are what has come."""
 
     def __init__(self, seconds=0.0):
         self.seconds, self.refusals, self.warnings = seconds, [], []
@@ -104,7 +106,7 @@ class FakeFarm:
     def take_scene(self, parameters, message):
         if self.refusals:
             status = self.refusals.pop(0)
-            if status == 409:
+            if status == 409:  # a file of the scene is not there any more
                 self.files.clear()
             return self.problem(status, "not now")
         files = {file["name"]: self.files[file["sha256"]] for file in message["file"]}
@@ -150,7 +152,7 @@ class FakeFarm:
         return self.problem(404 if what == "preview.pfm" else 409, "it is not there yet")
 
     def picture(self, job, share):
-        """Red grows to the right, green upwards; the rows that are not rendered are black. Layers: a constant."""
+        """Returns a PFM file. Red grows to the right and green upwards; the rows that are not rendered, the lower ones, are black. Layers are constant."""
         width, height = job["width"], job["height"]
         constants = {"albedo": (0.5, 0.25, 0.125), "normals": (0.5, 1.0, 0.5), "depth": (7.0, 7.0, 7.0)}
         rows = bytearray()

@@ -1,4 +1,4 @@
-"""The Python module on a farm of one worker on loopback: farm_test.py BIN-FOLDER."""
+"""Tests the Python module (deploy/python) on a real farm of one worker on loopback: farm_test.py BIN-FOLDER."""
 
 import base64
 import os

@@ -1,4 +1,5 @@
-"""The Python module without a farm: the farm's string, files of scenes, images; and what of the add-on does not need Blender."""
+"""Tests the Python module (deploy/python) without a farm: the string of a farm, the files of scenes, requests, images. Tests also those modules of
+the add-on (deploy/blender) that do not need Blender."""
 
 import array
 import json
@@ -254,6 +255,7 @@ class Images(unittest.TestCase):
             self.assertEqual(struct.unpack(">I", data[at + 8 + size:at + 12 + size])[0], zlib.crc32(kind + body))
             raw += body if kind == b"IDAT" else b""
             at += 12 + size
+        # A byte for the filter, and the codes: 0.5 is 188; 2 and -1 are clamped; 0.0031308 is the end of sRGB's linear part.
         self.assertEqual(list(zlib.decompress(raw)), [0, 0, 188, 255, 255, 0, 10])
 
     def test_compare(self):
@@ -298,6 +300,8 @@ class AddOn(unittest.TestCase):
     def test_exr_has_its_lines(self):
         np = bandsaw.numpy
         pixels = np.arange(2 * 3 * 3, dtype=np.float32).reshape(2, 3, 3)
+        # The file ends with two chunks, one for each line: two numbers of 4 bytes, line and size, and 36 bytes of pixels. Before them are the
+        # chunks' offsets, 8 bytes each. The pixels of a line are all blues, then all greens, then all reds.
         data = self.files.exr(pixels)
         self.assertEqual(struct.unpack("<i", data[:4])[0], 20000630)
         offsets = struct.unpack("<2Q", data[-2 * (8 + 36) - 16:-2 * (8 + 36)])

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Tests the table of deploy/nightly.sh, with parts that only say how they ended: counts, failures, skips, and rows that --continue keeps.
+# Tests the table that deploy/nightly.sh writes: counts, failures, skips, and rows that --continue keeps. Scripts that only print the last
+# lines of a run stand in for the parts of nightly.sh.
 # Usage: nightly.sh SOURCE-FOLDER
 set -euo pipefail
 source=$(cd "$1" && pwd)
@@ -23,7 +24,7 @@ commit() { git add . && git -c user.name=test -c user.email=test@localhost commi
 git init --quiet
 commit first
 
-# row PART TEXT: the part's row must begin so.
+# row PART TEXT: the part's row must begin with TEXT. rows N: there must be N rows.
 row() { grep -qF "| $1 | $2 |" out/nightly/table.md || fail "no row of $1 with: $2"; }
 rows() { [ "$(grep -c '^| [a-z0-9-]* | [pfs][a-z:]*' out/nightly/table.md)" -eq "$1" ] || fail "not $1 rows"; }
 

@@ -64,7 +64,7 @@ TEST(Readme, EveryShellBlockRuns) {
   }
 }
 
-// The headings that the README must have.
+// The README has these commands and headings, and a picture that exists.
 TEST(Readme, HasItsParts) {
   std::ifstream file(std::string(BANDSAW_SOURCE) + "/README.md");
   const std::string text((std::istreambuf_iterator<char>(file)), {});

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs deploy/tutorial.md, block by block, on three machines made of network namespaces. Exit 77: they cannot be made here (run as root).
-# A block's first line names its machine: on=HOST; `stays`: the block continues in the background after it has printed "join"; `stops`:
-# ends the background blocks of that machine. Usage: tutorial.sh BUILD-FOLDER
+# A block begins with ```sh on=HOST, which names its machine, and perhaps a word. `stays`: the block continues in the background after it has
+# printed "join". `stops`: the block is not run, but the background blocks of that machine are ended. Usage: tutorial.sh BUILD-FOLDER
 set -euo pipefail
 build=$(cd "$1" && pwd)
 page=$(cd "$(dirname "$0")/../.." && pwd)/deploy/tutorial.md

@@ -42,9 +42,9 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::string folder;
-  std::string only;
-  std::string out;
-  std::uint64_t samples = 0;
+  std::string only;           ///< part of a scene's path; empty: all scenes
+  std::string out;            ///< empty: no images are written
+  std::uint64_t samples = 0;  ///< per pixel, of all seeds together; 0: as the budget allows
   std::uint64_t budget = 2'000'000;
   int seeds = 16;
 };
@@ -61,6 +61,7 @@ struct Rendered {
   std::vector<std::string> warnings;
 };
 
+/// Renders a scene of Mitsuba with all seeds. Fails if it cannot be imported.
 absl::StatusOr<Rendered> render(const std::string& path, const Options& options, Pool& pool) {
   ImportChoices choices;
   choices.folder = options.folder;
@@ -113,6 +114,7 @@ absl::StatusOr<Image> read_image(const std::string& path) {
   return decode_picture(bytes);
 }
 
+/// Returns number i of the image's channels: those of the first pixel, of the second, and so on.
 float channel_of(const Image& image, std::size_t i) {
   const Rgb& c = image.pixels[i / 3];
   return i % 3 == 0 ? c.r : i % 3 == 1 ? c.g : c.b;
@@ -125,7 +127,7 @@ struct Comparison {
   double relative = 0;  ///< difference of the means of both images, over that of the reference
   double error = 0;     ///< standard error of `relative`
   std::array<double, 3> channels = {};  ///< `relative` of each channel
-  std::vector<double> z;
+  std::vector<double> z;                ///< difference over its standard deviation, of each channel
 };
 
 Comparison compare(const Rendered& ours, const Image& reference, const Image& variance) {
@@ -208,6 +210,7 @@ void write_images(const std::string& path, const Rendered& ours, const Image& re
 /// Returns "test_spot" for "test_spot_direct".
 std::string reference_name(const std::string& stem) { return stem.substr(0, stem.rfind('_')); }
 
+/// Prints a row of the table. Returns false if the scene fails; a scene without a reference passes.
 bool run_one(const fs::path& scene, const Options& options, Pool& pool) {
   const std::string stem = scene.stem().string();
   const std::string name = (scene.parent_path().filename() / stem).string();
