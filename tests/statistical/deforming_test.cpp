@@ -27,7 +27,8 @@ Mesh changing_quad(const Positions& at_open, const Positions& at_close) {
   return mesh;
 }
 
-/// Seen along -z, one unit a pixel, from (0, 0) to (width, height).
+/// Returns a scene in which the mesh emits the radiance 1. The camera looks along -z and sees the
+/// rectangle from (0, 0) to (width, height), one unit a pixel.
 SceneMaker seen_from_above(int width, int height, const Mesh& mesh) {
   SceneMaker maker;
   maker.instance(mesh, {}, maker.lamp(1));
@@ -38,6 +39,7 @@ SceneMaker seen_from_above(int width, int height, const Mesh& mesh) {
   return maker;
 }
 
+/// Returns the moments of each pixel's green channel over 32 seeds.
 std::vector<Moments> pixel_means(const SceneMaker& maker, std::uint32_t width, std::uint32_t height,
                                  std::uint64_t samples = 256) {
   const auto scene = maker.build();
@@ -72,9 +74,9 @@ TEST(Deforming, C9_AMovingEdgeIsALinearRamp) {
   test::report_hard_case("C9", "a mesh whose vertices move is within 4 SE of the ramp too");
 }
 
-// A square that grows from a point to 8 x 8 pixels: a pixel whose corner that is furthest from the
-// centre is at distance m (by the larger coordinate) is covered from the time m / 4 on; the mean of
-// the coverage over a pixel is 1 minus the mean of max(|x|, |y|) / 4.
+// A square grows from a point to 8 x 8 pixels. It covers the point (x, y), counted from its centre,
+// from the time max(|x|, |y|) / 4 on, of a shutter that is open from 0 to 1. So the value of a
+// pixel is 1 minus the mean of max(|x|, |y|) / 4 over the pixel.
 TEST(Deforming, AGrowingSquareCoversEachPixelForItsShareOfTheTime) {
   const Mesh square = changing_quad({{4, 4, 0}, {4, 4, 0}, {4, 4, 0}, {4, 4, 0}},
                                     {{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {0, 8, 0}});
@@ -93,8 +95,8 @@ TEST(Deforming, AGrowingSquareCoversEachPixelForItsShareOfTheTime) {
   EXPECT_NEAR(sum / 64, 1.0 / 3, 1e-3);  // the mean of t^2
 }
 
-/// The radiance of a patch at the origin under a lamp, averaged over the time that the shutter is
-/// open.
+/// Returns the radiance of a white patch at the origin under a lamp, averaged over the time that
+/// the shutter is open.
 Moments under(const SceneMaker& lamp, Technique technique) {
   SceneMaker maker = lamp;
   maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
@@ -122,8 +124,8 @@ Moments under(const SceneMaker& lamp, Technique technique) {
 constexpr Technique kAllTechniques[] = {Technique::kBoth, Technique::kLightsOnly,
                                         Technique::kScatteringOnly};
 
-// A small square lamp at height h that grows from nothing to the side a: E is the mean of
-// a^2 t^2 / h^2, within (a / h)^2 of it, by every technique.
+// A small square lamp of radiance L = 100 at height h = 2, whose half side grows from 0 to a. The
+// irradiance is the mean over t of L (2 a t)^2 / h^2, with a relative error of at most (a / h)^2.
 TEST(DeformingLight, EmitsByItsAreaAtTheTime) {
   constexpr float a = 0.05f;
   SceneMaker maker;

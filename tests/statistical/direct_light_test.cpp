@@ -16,8 +16,8 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
-/// Returns the irradiance at the origin with normal +y: pi times the radiance of a white diffuse
-/// patch.
+/// Adds a white diffuse patch at the origin with normal +y, and expects that its irradiance, pi
+/// times its radiance, is `expected`.
 void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples = 1024) {
   maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
   const auto scene = maker.build();
@@ -33,6 +33,7 @@ void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples 
 /// Returns the center of a light at distance d, at `angle` from the normal.
 Vec3 at(double d, double angle) { return {d * std::sin(angle), d * std::cos(angle), 0}; }
 
+// The irradiance is pi (radius / d)^2 cos(angle).
 TEST(DirectLight, OfASphereAboveTheHorizon) {
   const auto sphere = [](double d, double angle, double radius) {
     SceneMaker maker;
@@ -45,9 +46,11 @@ TEST(DirectLight, OfASphereAboveTheHorizon) {
 }
 
 TEST(DirectLight, L4_OfASphereThatCrossesTheHorizon) {
+  // The irradiance is the integral of the cosine over the part of the sphere's cone that is above
+  // the horizon.
   struct Row {
-    double half_angle;
-    double tilt;
+    double half_angle;  ///< of the cone in which the sphere is seen
+    double tilt;        ///< of the cone's axis from the normal
     double irradiance;
   };
   for (const Row& row : {Row{0.5, 1.2, 0.26481523}, Row{0.5, 1.9, 0.00623511},
@@ -66,6 +69,7 @@ TEST(DirectLight, L3_InsideASphereIsPi) {
   test::report_hard_case("L3", "E = pi L inside, within 4 SE");
 }
 
+// The values are those of Lambert's formula for polygons (polygon_light_test.cpp).
 TEST(DirectLight, OfASquareAboveItsCenterAndItsCorner) {
   const auto square = [](double h, double shift) {
     SceneMaker maker;
@@ -78,8 +82,8 @@ TEST(DirectLight, OfASquareAboveItsCenterAndItsCorner) {
   expect_irradiance(square(1, 1), 0.652688257754);
 }
 
-/// The same square as other shapes: two loose triangles, a pair of parallelograms, and a mesh with
-/// a mirrored, scaled placement.
+/// The same square as two loose triangles, as a mesh of two triangles with a mirrored, scaled
+/// placement, and as a mesh of 128 triangles that is scaled by 100.
 TEST(DirectLight, ASquareGivesTheSameAsQuadTrianglesOrMesh) {
   const double expected = 1.740839502734;
   SceneMaker triangles;

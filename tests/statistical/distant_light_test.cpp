@@ -244,7 +244,8 @@ ImageTexture four_values() {
   return image;
 }
 
-/// Its image is the same on the whole of a plane perpendicular to the axis, and nothing beyond.
+/// On a plane perpendicular to the axis a texel gives the same irradiance everywhere, and there is
+/// no light beyond the image.
 TEST(DeltaLight, AProjectorShowsItsImageOnAPlane) {
   SceneMaker maker;
   add_floor(maker);
@@ -304,7 +305,8 @@ TEST(DeltaLight, ASpotsImageCoversTheSquareAroundItsCone) {
   expect_radiance(maker, onto_floor(1.5, 1.5), 0, {.max_depth = 1}, 4);
 }
 
-/// Light selection loses no projector, individually or in the tree: their images add up.
+/// Light selection loses no projector, whether lights are selected from a list (few) or from the
+/// light tree (many): their images add up.
 TEST(DeltaLight, ManyProjectorsAddUp) {
   for (const int count : {12, 60}) {
     SceneMaker maker;

@@ -1,7 +1,8 @@
 #pragma once
 
-// Estimates the mean radiance along one ray with its standard error: Owen-scrambled samples of one
-// seed are correlated, so the mean of each of many seeds counts as one observation.
+// Estimates the mean radiance along one ray with its standard error, for the tests of this folder.
+// The Owen-scrambled samples of one seed are correlated, so the mean of each of many seeds counts
+// as one observation.
 
 #include "renderlib/integrate/path.h"
 #include "tests/support/statistics.h"
@@ -14,7 +15,7 @@ inline Moments radiance_along(const Scene& scene, const Ray& ray, const PathOpti
                               std::uint64_t samples, std::uint64_t seeds = 32) {
   Moments means;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    const PixelSampler sampler(seed, 11, 7);
+    const PixelSampler sampler(seed, 11, 7);  // any pixel
     double sum = 0;
     PathCounts counts;
     for (std::uint64_t sample = 0; sample < samples; ++sample) {

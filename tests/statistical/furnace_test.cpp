@@ -92,6 +92,7 @@ TEST(Furnace, O6_APaneOfGlassTransmitsTheSumOverItsReflections) {
   maker.quad({-9, 0.9, -9}, {18, 0, 0}, {0, 0, 18}, glass);
   maker.background(gray(0), gray(1));
   const Ray up{.origin = {0, 0, 0}, .direction = {0, 1, 0}};
+  // (1 - R) / (1 + R) with the reflectance R = 0.04 of a face: the sum over all reflections.
   expect_value(test::radiance_along(*maker.build(), up, {.max_depth = 1000}, 4096), 0.9230769231,
                1e-3);
   test::report_hard_case("O6", "a pane 0.1 thick: within 1e-3");

@@ -51,7 +51,7 @@ void expect_half_space(const Seen& seen, float density, double error, std::uint6
   EXPECT_LE(radiance.standard_error(), error * seen.reflectance) << seen.albedo << " " << seen.mu;
 }
 
-/// The tolerances are as small as about a second of sampling allows.
+/// The tolerances are as small as one can reach with about a second of sampling.
 TEST(HalfSpace, ReflectanceIsThatOfTheHFunction) {
   for (const Seen& seen :
        {Seen{0.5f, 1, 0.11522588}, Seen{0.5f, 0.5, 0.16014443}, Seen{0.8f, 1, 0.28525450},

@@ -55,8 +55,9 @@ double area_mean(const std::vector<float>& values) {
   return sum;
 }
 
-/// A light in a sphere of these albedos, and its irradiance everywhere: the light is so small that
-/// it occludes nothing, close to the wall, facing the middle.
+/// A sphere whose wall has given albedos, with a light, and the irradiance that is expected
+/// everywhere. The light is close to the wall, faces the middle, and is so small that it occludes
+/// practically nothing.
 struct LitSphere {
   std::shared_ptr<const Scene> scene;
   double irradiance = 0;
@@ -99,8 +100,9 @@ TEST(IntegratingSphere, OfAnyTextureHasTheIrradianceOfItsMeanAlbedo) {
   }
 }
 
-// Most of the pixels see one corner of the texture, and two see the other side, so that the
-// balance-heuristic weights of the vertices that they share are unequal.
+// With path reuse, pixels share the second vertices of their paths. Most of the pixels see one
+// corner of the texture, and two see the other side, so that the balance-heuristic weights of the
+// shared vertices are unequal.
 TEST(IntegratingSphere, HasTheSameIrradianceWithPathReuse) {
   const std::vector<float> values = albedos();
   const LitSphere lit = lit_sphere(values);

@@ -1,5 +1,5 @@
-// Lights out of focus: disks whose brightness is the share of the lens from which they are visible,
-// and the same mean with and without light sampling through the lens.
+// Lights out of focus are seen as disks, whose brightness is the share of the lens from which the
+// light is visible. The mean is the same with and without light sampling through the lens.
 
 #include <gtest/gtest.h>
 
@@ -24,6 +24,8 @@ PerspectiveCamera camera(double aperture) {
   return {.look_at = {0, 0, -1}, .aperture = aperture, .focus_distance = 4};
 }
 
+/// How a light that the camera sees is found: by camera rays that happen to hit it, or also by
+/// light sampling through the lens.
 enum class Technique { kBsdfSampling, kLightSampling };
 
 /// Returns the radiance at position (x, y) of an image of 20 x 20 pixels.
@@ -55,8 +57,9 @@ void expect_value(const Moments& radiance, double expected, double relative_erro
   EXPECT_LE(radiance.standard_error(), relative_error * expected);
 }
 
-/// Returns the share of the lens from which a ball of this radius straight ahead is visible: its
-/// cone through the focus intersects the lens.
+/// Returns the share of the lens from which a ball of this radius straight ahead is visible through
+/// the point of the focal plane, 4 away. The rays through this point that hit the ball are a cone,
+/// and the share is that of the cone's intersection with the lens.
 double share_of_lens(double radius, double distance, double aperture) {
   const double sine = radius / std::abs(distance - 4);
   const double on_lens = 4 * sine / std::sqrt((1 - sine) * (1 + sine));

@@ -26,8 +26,8 @@ Instance of_group(std::uint32_t group, const Transform& to_world) {
   return instance;
 }
 
-/// Returns the irradiance of a patch at the origin with normal +y, averaged over the time that the
-/// shutter is open.
+/// Adds a white patch at the origin with normal +y and expects its irradiance, averaged over the
+/// time that the shutter is open.
 void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples = 1024,
                        Technique technique = Technique::kBoth) {
   maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
@@ -141,7 +141,7 @@ TEST(MovingLight, EmitsFromItsPositionAtTheTime) {
         moving_lamp(ball, Key(-1, translation({0, 1.5, 0})), Key(3, translation({0, 4, 0}))),
         kPi * 0.25 / (1.5 * 4), 4096, technique);
   }
-  // A square that rotates about its middle: one of its two sides is always visible.
+  // A disk that rotates about its middle; it emits from both sides, so one is always visible.
   Shapes disk;
   disk.disks.push_back({{0, 0, 0}, {0, 1, 0}, 0.05, MaterialId{0}});
   // E = A |cos| / d^2 for a small one; the mean of |cos| over half a turn is 2 / pi.

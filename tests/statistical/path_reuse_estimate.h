@@ -1,6 +1,8 @@
 #pragma once
 
-// Like radiance_along (estimate.h), for the rays of pixels with path reuse.
+// Estimates the mean radiance along the rays of pixels that share the second vertices of their
+// paths (path reuse, renderlib/integrate/path_reuse.h), with standard errors. Otherwise as
+// radiance_along() in estimate.h.
 
 #include <array>
 #include <vector>

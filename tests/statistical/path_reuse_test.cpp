@@ -1,6 +1,7 @@
-// Path reuse between pixels has the same means as path tracing without it, in a Cornell box in
-// which the pixels see different surfaces and parts of the box are occluded from some of them: |z|
-// of the difference is at most 4. The closed form is in integrating_sphere_test.cpp.
+// Path reuse between pixels (renderlib/integrate/path_reuse.h) has the same means as path tracing
+// without it: the difference is at most 4 standard errors. The scene is a Cornell box in which the
+// pixels see different surfaces, and parts of the box are occluded from some of them.
+// integrating_sphere_test.cpp compares with a closed form.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Media with instanced and moving boundaries, over the time that the shutter is open.
+// Media whose boundaries are instanced and move while the shutter is open, against closed forms:
+// within 4 standard errors.
 
 #include <gtest/gtest.h>
 
@@ -13,8 +14,8 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
-/// A ball of radius 1 under a white sky: in a frame that moves from one placement to the other
-/// while the shutter is open, from 0 to 1; also with the ball mirrored in the frame.
+/// Returns a scene of a ball of radius 1, filled with the medium, under a white sky. The ball moves
+/// from one placement to the other while the shutter is open, from time 0 to 1, and is mirrored.
 SceneMaker moving_ball(const Medium& medium, const Transform& from, const Transform& to) {
   SceneMaker maker;
   maker.background(gray(1), gray(1));
@@ -62,8 +63,8 @@ TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
               (std::exp(-s) - std::exp(-3 * s)) / (2 * s));
 }
 
-// A ball that moves past: with y from -2 to 2, the mean of exp(-2 s sqrt(1 - y^2)) over those that
-// intersect the ray and 1 over the others; the first by Simpson's rule in the angle.
+// A ball that moves through the ray: its centre has y from -2 to 2. The mean is that of
+// exp(-2 s sqrt(1 - y^2)) where |y| < 1, by Simpson's rule in the angle, and of 1 elsewhere.
 TEST(MovingMedia, V6MovingBallAbsorbsByTheMeanOverTheShutter) {
   const double s = 0.8;
   const auto scene =

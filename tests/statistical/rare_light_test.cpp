@@ -20,10 +20,11 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
-constexpr TileGrid kGrid{128, 2};
+constexpr TileGrid kGrid{128, 2};  // the image has 128 x 2 pixels
 constexpr std::uint64_t kSeeds = 64;
 
-/// A strip of floor from above. The light is small, illuminates one end of it, and is not sampled.
+/// Returns a camera that sees a strip of the floor from above, and a small lamp over one end of it.
+/// The renders below do not sample the lamp, so few paths find it.
 SceneMaker strip(const Vec3& lamp, double radius) {
   SceneMaker maker;
   maker.camera({0, 2, 0}, {0, 0, 0.001}, 1);
@@ -36,8 +37,8 @@ void add_floor(SceneMaker& maker, MaterialId material) {
 }
 
 struct Rendered {
-  double mean = 0;
-  bool planned = false;
+  double mean = 0;       ///< of all pixels, green channel
+  bool planned = false;  ///< some tiles took more samples than others
 };
 
 Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
@@ -54,6 +55,7 @@ Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
         render_band(scene, settings, {pass, {0, kGrid.height}}, pool, kGoOn, {}, tiles);
     ASSERT_TRUE(pixels.ok() && film.add(*pixels, tiles).ok());
   };
+  // The pilot: 64 samples of every pixel, from whose noise the other 192 are planned.
   for (const SampleRange& pass : {SampleRange{0, 16}, {16, 32}, {32, 64}}) {
     take(pass, {});
   }
