@@ -184,8 +184,8 @@ double scattered_once(const Medium& fog, const DeltaLight& light) {
   });
 }
 
-/// A ray crosses the cone of a spot light close to its tip, where few of the samples fall. It must
-/// not make them too bright (fireflies), so the standard error is bounded.
+/// A ray crosses the cone of a spot light close to its tip, far from where most light is scattered.
+/// Samples there must not be far too bright (fireflies), so the standard error is bounded.
 TEST(Media, ScatterASpotAmongOtherLightsWithoutFireflies) {
   const Medium smoke = medium(0.02f, 0.1f);
   SceneMaker maker;

@@ -1,6 +1,7 @@
 #pragma once
 
-// The functions of bandsaw_test.wasm: one scene at a time, with what tests compare.
+// The functions that bandsaw_test.wasm, the renderer as WebAssembly, exports for tests in node
+// (module.mjs). It holds one scene at a time.
 
 #include <stddef.h>
 #include <stdint.h>
@@ -9,17 +10,19 @@ extern "C" {
 
 /// Returns memory for the bytes of the next call.
 void* bandsaw_memory(size_t size);
-/// Returns the canary of the renderer.
+/// Returns the canary: the hash of a small image that every program renders.
 uint64_t bandsaw_canary(void);
 /// Returns a hash of sums of products of many numbers, each rounded once.
 uint64_t bandsaw_fused_hash(void);
 
 /// Adds a blob of the next scene; copies the bytes.
 void bandsaw_add_blob(const void* bytes, size_t size);
-/// Builds the scene of this manifest from the blobs, and forgets them. Returns 1, or 0 for an error.
+/// Builds the scene of this manifest, the serialised description of a scene, from the blobs that
+/// were added, and forgets the blobs. Returns 1, or 0 for an error.
 uint32_t bandsaw_build(const void* manifest, size_t size);
-/// Renders the first `samples` samples of all pixels, one node of the tree of sums, and returns
-/// width x height x 3 sums, which are valid until the next call; null for an error.
+/// Renders the first `samples` samples of all pixels; `samples` is 8 times a power of two (a node
+/// of the summation tree). Returns width x height x 3 sums, which are valid until the next call;
+/// null for an error.
 const double* bandsaw_render(uint32_t width, uint32_t height, uint32_t max_depth,
                              uint32_t integrator, uint64_t seed, uint64_t samples);
 /// Returns the hash of the sums that were rendered last.

@@ -1,6 +1,7 @@
 #pragma once
 
-// Hash of results of renderlib/math/fused.h, computed in both programs that are compared.
+// Hash of results of renderlib/math/fused.h (a b + c, rounded once). It is computed by the native
+// program and as WebAssembly, which has no such instruction and emulates it, and must be equal.
 
 #include <bit>
 #include <cmath>

@@ -1,4 +1,4 @@
-// bandsaw_test.wasm (tests/wasm/entry.h) in node.
+// Loads bandsaw_test.wasm, the renderer as WebAssembly, in node, and calls its functions (tests/wasm/entry.h).
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 
@@ -62,6 +62,7 @@ class Renderer {
     return Buffer.from(this.wasm.memory.buffer, at, width * height * 3 * 8);
   }
 
+  /** Copies bytes into the module's memory; returns their address and number, the arguments of a call. */
   copy(bytes) {
     const at = this.wasm.bandsaw_memory(bytes.length);
     new Uint8Array(this.wasm.memory.buffer, at, bytes.length).set(bytes);

@@ -1,4 +1,4 @@
-// The native programs, for comparison.
+// Runs the native programs bandsaw and bandsaw-import, for comparison with the renderer as WebAssembly.
 import {execFileSync} from 'node:child_process';
 import {mkdirSync, mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -21,7 +21,7 @@ export function importScene(bin, scene, folder) {
   return parts;
 }
 
-/** Renders the first samples of all pixels on one thread; returns settings, sums and seconds. */
+/** Renders the first samples of all pixels on one thread; returns the settings, the bytes of the sums, and the CPU seconds. */
 export function renderNatively(bin, scene, folder, {width, height, samples}) {
   const band = join(folder, 'image.band');
   const report = join(folder, 'report.json');
@@ -35,7 +35,7 @@ function readBand(path) {
   const bytes = readFileSync(path);
   const record = bytes.subarray(bytes.indexOf('BSWBAND4'));
   const size = Number(record.readBigUInt64LE(8));
-  const after = 16 + 64;
+  const after = 16 + 64;  // mark, size, and the digest of the scene in hexadecimal
   const width = record.readUInt32LE(after);
   const height = record.readUInt32LE(after + 4);
   const sums = width * height * 3 * 8;

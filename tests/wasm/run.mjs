@@ -1,4 +1,4 @@
-// The renderer as WebAssembly gives the bits of the native programs.
+// Tests that the renderer as WebAssembly gives the bits of the native programs.
 // Usage: node run.mjs bits|gallery MODULE.wasm BIN GALLERY SAME_BITS NATIVE
 //   bits     the canary and the hash of fused products are those of the program NATIVE
 //   gallery  the sums of every scene of the folder GALLERY, at 48 pixels, are those of BIN/bandsaw render, and the twelve hashes
@@ -42,7 +42,7 @@ async function checkScene(scene, folder, hashes) {
   module.build(parts);
   check(scene.slice(gallery.length + 1), firstDifference(module.render(settings), sums), 'equal');
   if (hashes.has(name)) {
-    module.render({...settings, width: 20, height: 15, seed: 7, samples: 16});
+    module.render({...settings, width: 20, height: 15, seed: 7, samples: 16});  // as tests/hard_cases/same_bits_test.cpp
     check(`${name}, the hash of ${basename(sameBits)}`, module.sumsHash(), hashes.get(name));
     hashes.delete(name);
   }

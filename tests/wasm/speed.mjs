@@ -1,4 +1,4 @@
-// Speed of the renderer as WebAssembly in node beside one native core, on the same band.
+// Compares the speed of the renderer as WebAssembly in node with that of one native core, for the same image. Run by hand.
 // Usage: node speed.mjs MODULE.wasm BIN SCENE.textproto…
 import {basename} from 'node:path';
 import {importScene, inTemporaryFolder, renderNatively} from './native.mjs';

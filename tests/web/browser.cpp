@@ -1,4 +1,4 @@
-// Sends WebDriver commands to chromedriver by HTTP.
+// Starts chromedriver and sends it the commands of WebDriver by HTTP.
 
 #include "tests/web/browser.h"
 
@@ -19,6 +19,7 @@ namespace {
 using google::protobuf::Struct;
 using google::protobuf::Value;
 
+/// Parses an object in JSON.
 Struct object(const std::string& json) {
   Struct out;
   const auto status = google::protobuf::util::JsonStringToMessage(json, &out);
@@ -26,12 +27,14 @@ Struct object(const std::string& json) {
   return out;
 }
 
+/// Returns an object with one field.
 Struct object(const std::string& name, const std::string& text) {
   Struct out;
   (*out.mutable_fields())[name].set_string_value(text);
   return out;
 }
 
+/// Returns a field of an object; an empty value if there is none.
 const Value& field(const Value& value, const std::string& name) {
   static const Value kNothing;
   const auto found = value.struct_value().fields().find(name);

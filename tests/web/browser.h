@@ -1,6 +1,7 @@
 #pragma once
 
-// Chromium without a window, driven through chromedriver by the WebDriver protocol (W3C).
+// Chromium without a window, for tests of the pages that the coordinator serves. It is driven
+// through chromedriver by the WebDriver protocol (W3C).
 
 #include <google/protobuf/struct.pb.h>
 
@@ -11,7 +12,7 @@
 
 namespace bandsaw::test {
 
-/// Paths of the programs; empty: not installed.
+/// Returns the path of chromedriver; empty: not installed.
 std::string chromedriver_program();
 
 struct BrowserOptions {
@@ -36,21 +37,24 @@ class Browser {
   void reload();
   /// Runs the body of a JavaScript function and returns its result; `argument` is `arguments[0]`.
   google::protobuf::Value run(const std::string& body, const std::string& argument = "");
-  /// The same; returns the result as text.
+  /// Returns the value of a JavaScript expression as text.
   std::string text(const std::string& expression);
   /// Waits in the page until the expression is true. Returns false after three minutes.
   bool wait(const std::string& expression);
+  /// Elements are given by a CSS selector.
   void click(const std::string& selector);
   void type(const std::string& selector, const std::string& keys);
-  /// Returns a PNG of the window's content.
+  /// Writes a PNG of the window's content to the file.
   void screenshot(const std::string& path);
-  /// The process whose children are all others of this browser.
+  /// Returns the process from which all others of this browser descend.
   pid_t pid() const { return driver_.pid(); }
   /// Returns the errors on the browser's console since the last call.
   std::vector<std::string> console_errors();
 
  private:
+  /// Sends a command to the driver and returns the value of its answer.
   google::protobuf::Value post(const std::string& path, const google::protobuf::Struct& body);
+  /// Returns WebDriver's name of an element.
   std::string element(const std::string& selector);
 
   Process driver_;

@@ -24,7 +24,8 @@ std::string content_of(const std::string& path) {
   return bytes.str();
 }
 
-/// Small, so that one core renders it quickly.
+/// Returns the Cornell box as a scene file, with 96 pixels a side so that one core renders it
+/// quickly.
 std::string cornell() {
   return absl::StrReplaceAll(content_of(std::string(BANDSAW_GALLERY) + "/cornell.textproto"),
                              {{"480", "96"}});
@@ -65,10 +66,11 @@ class DashboardTest : public ::testing::Test {
   static std::string shot(const std::string& name) {
     return std::string(BANDSAW_SCREENSHOTS) + "/" + name + ".png";
   }
+  /// Returns true if the page is not wider than the window.
   static bool fits(Browser& browser) {
     return browser.wait("document.documentElement.scrollWidth <= window.innerWidth");
   }
-  /// Expects that no text of a gallery card is cut off.
+  /// Returns true if no text of a gallery card is cut off.
   static bool cards_fit(Browser& browser) {
     return browser.wait(
         "[...document.querySelectorAll('.scene .text')]"
@@ -78,10 +80,12 @@ class DashboardTest : public ::testing::Test {
   TempDir folder_;
   std::optional<Process> coordinator_;
   std::optional<Process> worker_;
-  std::string link_;
-  std::string base_;
+  std::string link_;  ///< address of the dashboard with the secret
+  std::string base_;  ///< the address alone
 };
 
+// Expressions in JavaScript: the address of a job's picture; whether the picture is shown; whether
+// the job is done.
 constexpr char kPreview[] = "document.querySelector('.picture img').src";
 constexpr char kPictured[] = "document.querySelector('.picture img')?.naturalWidth > 0";
 constexpr char kDone[] = "document.querySelector('.title .state')?.textContent === 'done'";
@@ -158,6 +162,7 @@ TEST_F(DashboardTest, ADroppedSceneIsRenderedAndItsImageDownloaded) {
   EXPECT_TRUE(browser.wait(kDone));
   EXPECT_TRUE(browser.wait("document.querySelector('.plot polyline')"));
   browser.screenshot(shot("job-done"));
+  // The first bytes of each kind of file: PNG's and EXR's marks, and "{\n  ".
   const std::map<std::string, std::string> first_bytes = {
       {"png", "137,80,78,71"}, {"exr", "118,47,49,1"}, {"json", "123,10,32,32"}};
   for (const auto& [suffix, bytes] : first_bytes) {
@@ -261,7 +266,8 @@ TEST_F(DashboardTest, TheGalleryOnAPhone) {
   browser.go(base_ + "/#/gallery");
   ASSERT_TRUE(browser.wait("document.querySelectorAll('.scene').length > 20"));
   EXPECT_TRUE(fits(browser));
-  EXPECT_EQ(browser.text("document.querySelector('select').value"), "640");  // 780 there are
+  EXPECT_EQ(browser.text("document.querySelector('select').value"),
+            "640");  // the largest choice that fits into 2 x 390 pixels
   browser.run(
       "document.querySelectorAll('select')[1].value = '4';"
       "document.querySelectorAll('select')[1].dispatchEvent(new Event('change'));");

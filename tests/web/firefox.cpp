@@ -1,4 +1,4 @@
-// Sends Marionette commands to Firefox.
+// Starts Firefox and sends it the commands of Marionette.
 
 #include "tests/web/firefox.h"
 
@@ -41,7 +41,8 @@ int port_in(const std::string& profile) {
     if (std::ifstream(profile + "/MarionetteActivePort") >> port) {
       return port;
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // Firefox tells nobody
+    // Firefox writes the file without any other sign, so it must be polled.
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   return 0;
 }
@@ -98,9 +99,8 @@ Firefox::Firefox() {
       {firefox_program(), "--headless", "--marionette", "--no-remote", "--profile", profile},
       {"HOME=" + (profile_ / ""), "MOZ_CRASHREPORTER_DISABLE=1"}));
   socket_ = std::make_unique<Socket>(port_in(profile));
-  socket_->receive();  // what it speaks
-  call("WebDriver:NewSession",
-       parsed(R"({"acceptInsecureCerts": true,
+  socket_->receive();  // its greeting: the versions of the protocol
+  call("WebDriver:NewSession", parsed(R"({"acceptInsecureCerts": true,
                   "timeouts": {"script": 180000, "pageLoad": 120000}})"));
 }
 

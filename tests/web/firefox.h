@@ -14,7 +14,7 @@
 
 namespace bandsaw::test {
 
-/// Path of the program; empty: not installed.
+/// Returns the path of Firefox; empty: not installed.
 std::string firefox_program();
 
 /// One Firefox with a profile of its own. A call that fails also fails the test, and returns an
@@ -35,11 +35,12 @@ class Firefox {
   std::string text(const std::string& expression);
   /// Waits in the page until the expression is true. Returns false after three minutes.
   bool wait(const std::string& expression);
-  /// The process whose children are all others of this Firefox.
+  /// Returns the process from which all others of this Firefox descend.
   pid_t pid() const { return firefox_->pid(); }
 
  private:
   class Socket;
+  /// Sends a command and returns the value of its answer.
   google::protobuf::Value call(const std::string& command,
                                const google::protobuf::Struct& parameters);
 

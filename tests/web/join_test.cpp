@@ -1,5 +1,5 @@
-// Browsers as workers of a farm: a job has the same bytes as a local render, whatever their tabs
-// do.
+// Browsers as workers of a farm. Whoever opens the link for browsers renders in a tab, with the
+// renderer as WebAssembly. A job has the same bytes as a local render, whatever the tabs do.
 
 #include <gmock/gmock.h>
 #include <google/protobuf/struct.pb.h>
@@ -72,6 +72,7 @@ void start(Kind& tab, int cores) {
       << tab.text("document.body.innerText");
 }
 
+/// Waits until the tab has rendered a row; returns false after three minutes.
 template <class Kind>
 bool has_rendered(Kind& tab) {
   return tab.wait("Number(document.body.dataset.rows) > 0");
@@ -99,7 +100,8 @@ class JoinTest : public ::testing::Test {
     }
   }
 
-  /// `web`: address and port of the dashboard; `program`: bandsaw, for the coordinator.
+  /// Starts `program`, the command bandsaw, as the coordinator, and makes the link for browsers.
+  /// `web`: address and port of the dashboard.
   void start_farm(const std::string& web, const std::string& program = BANDSAW_BIN) {
     farm_.emplace(hosts_.get(),
                   std::vector<std::string>{"--audit", "0%", "--browser-audit", "0%", "--web", web},
@@ -144,7 +146,7 @@ class JoinTest : public ::testing::Test {
 
   std::unique_ptr<Hosts> hosts_;  ///< nullptr: everything is on loopback
   std::optional<FarmProcesses> farm_;
-  std::string link_;
+  std::string link_;  ///< the link for browsers
 };
 
 using Kinds = ::testing::Types<Browser, Firefox>;
@@ -246,8 +248,8 @@ TEST_F(BothBrowsersTest, ChromiumAndFirefoxGiveTheBytesOfANativeWorker) {
   expect_same_bytes(client, what);
 }
 
-/// The coordinator, a native worker, the tab's machine and a user's have a cable each. The
-/// dashboard is not on loopback, so tabs reach it by TLS.
+/// The coordinator, a native worker, the tab and a user are on a machine each, a network namespace
+/// with a cable of its own. The dashboard is not on loopback, so tabs reach it by TLS.
 template <class Kind>
 class PulledCableTest : public JoinTest<Kind> {
  protected:
@@ -308,7 +310,8 @@ TYPED_TEST(PulledCableTest, AJobGoesOnWithoutATabThatReturnsForTheNext) {
   this->expect_same_bytes(client, next);
 }
 
-/// Returns the module with a bound of `pages` of 64 KiB for its memory.
+/// Returns the WebAssembly module with another bound of its memory: `pages` of 64 KiB. The number
+/// keeps its length in bytes.
 std::string with_memory(std::string module, std::uint32_t pages) {
   std::size_t at = 8;
   const auto number = [&] {  // LEB128
