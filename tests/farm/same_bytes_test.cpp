@@ -1,5 +1,6 @@
 // Pixels depend only on the scene and the settings: `render`, a farm of any size, and parts
-// combined by `stitch` give equal PFM files, byte for byte.
+// combined by `stitch` give equal PFM files, byte for byte. An id such as P5 in a test's name is
+// that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Scenes whose light after any number of bounces is known, and estimators that must agree on scenes
-// whose light is not. All within 4 standard errors.
+// whose light is not. All within 4 standard errors. An id such as O6 in a test's name is that of a
+// case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,8 @@
 // is, by Stibbs and Weir 1959, "On the H-functions for isotropic scattering", MNRAS 119, the
 // exponential of -mu / pi times the integral over x in [0, pi / 2] of ln(1 - albedo x cot x) /
 // (cos^2 x + mu^2 sin^2 x): integrated to 20 digits. Rounding albedos to floats changes R by less
-// than 1e-7 of it.
+// than 1e-7 of it. An id such as V3 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

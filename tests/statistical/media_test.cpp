@@ -1,5 +1,6 @@
 // Media against closed forms and quadratures, within 4 standard errors; if there is no noise, to
-// the precision of a float.
+// the precision of a float. An id such as V6 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

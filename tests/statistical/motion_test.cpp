@@ -1,5 +1,5 @@
 // Disks, instanced lights and moving lights against closed forms; motion blur is proportional to
-// the motion.
+// the motion. An id such as X9 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Media whose boundaries are instanced and move while the shutter is open, against closed forms:
-// within 4 standard errors.
+// within 4 standard errors. An id such as V6 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Irradiance under triangles against Lambert's formula for polygons.
+// Irradiance under triangles against Lambert's formula for polygons. An id such as X9 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Accel finds the same hits, to the bit, as brute force and as a simple BVH in double, on meshes of
-// many kinds and with any number of threads that build.
+// many kinds and with any number of threads that build. An id such as B4 in a test's name is that
+// of a case in tests/hard_cases/cases.txt.
 
 #include "tests/unit/accel/agreement.h"
 #include "tests/support/hard_case.h"

@@ -1,5 +1,5 @@
 // Compares Accel with brute force, to the bit, in hard cases: ties, borders, planes, extreme shapes
-// and rays.
+// and rays. An id such as T5 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

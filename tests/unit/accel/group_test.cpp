@@ -1,4 +1,5 @@
-// Instances of groups: disks, ellipsoids, groups of all kinds.
+// Instances of groups: disks, ellipsoids, groups of all kinds. An id such as X2 in a test's name is
+// that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Instances: mirrored, stretched, at every scale, coincident, and with a placement that has no
-// inverse.
+// inverse. An id such as X1 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Moving instances: hits at the ray's time equal brute force, to the bit.
+// Moving instances: hits at the ray's time equal brute force, to the bit. An id such as S11 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

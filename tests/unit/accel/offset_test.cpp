@@ -1,5 +1,6 @@
 // Origins of rays that leave surfaces (geometry/surface.h): the surface is not hit again, and near
-// surfaces are not skipped.
+// surfaces are not skipped. An id such as O1 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Bad input does not affect other geometry.
+// Bad input does not affect other geometry. An id such as Q7 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // Spheres and boxes whose placement squashes or stretches space by many orders of magnitude: a ray
 // that leaves their surface inwards hits their other side, and one that leaves outwards does not
-// hit them again.
+// hit them again. An id such as S12 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // The structure of a BVH: every item is in one leaf, boxes contain their items, the depth is
-// bounded, and the tree does not depend on the number of threads.
+// bounded, and the tree does not depend on the number of threads. An id such as B7 in a test's name
+// is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/accel/wide_tree.h"
 

@@ -1,4 +1,5 @@
-// Closed meshes do not leak: rays from inside, aimed at edges and corners, always hit.
+// Closed meshes do not leak: rays from inside, aimed at edges and corners, always hit. An id such
+// as T3 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

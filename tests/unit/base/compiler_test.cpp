@@ -1,4 +1,5 @@
-// The floating-point behaviour that the compiler options must ensure.
+// The floating-point behaviour that the compiler options must ensure. An id such as Y1 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Camera rays: directions, depth of field, times within the shutter, and the errors for cameras
-// that are out of range.
+// that are out of range. An id such as C1 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include "renderlib/camera/camera.h"
 

@@ -1,4 +1,5 @@
-// Pixel filters: the position of a sample within or around its pixel.
+// Pixel filters: the position of a sample within or around its pixel. An id such as C6 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/camera/pixel_filter.h"
 

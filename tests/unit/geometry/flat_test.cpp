@@ -1,4 +1,5 @@
-// Single triangles and quads; meshes are tested in tests/unit/accel.
+// Single triangles and quads; meshes are tested in tests/unit/accel. An id such as T5 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

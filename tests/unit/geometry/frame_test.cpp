@@ -1,4 +1,5 @@
-// Moving frames: decomposed keys and interpolation.
+// Moving frames: decomposed keys and interpolation. An id such as X7 in a test's name is that of a
+// case in tests/hard_cases/cases.txt.
 
 #include "renderlib/geometry/frame.h"
 

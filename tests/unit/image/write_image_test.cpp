@@ -1,4 +1,5 @@
-// Image files: the sRGB encoding and the bytes of PFM, PPM and PNG.
+// Image files: the sRGB encoding and the bytes of PFM, PPM and PNG. An id such as TX5 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/image/write_image.h"
 

@@ -1,4 +1,5 @@
-// Alpha, nested glass and glTF's material along whole paths.
+// Alpha, nested glass and glTF's material along whole paths. An id such as M6 in a test's name is
+// that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

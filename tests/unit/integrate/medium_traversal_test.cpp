@@ -1,4 +1,5 @@
-// The segments of a ray inside media, compared with the shapes that contain each point.
+// The segments of a ray inside media, compared with the shapes that contain each point. An id such
+// as V6 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/integrate/medium_traversal.h"
 

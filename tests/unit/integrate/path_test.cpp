@@ -1,5 +1,6 @@
 // Path tracing of scenes whose value is known exactly, ray by ray: emitters, mirrors, glass, depth
-// limits, and counters.
+// limits, and counters. An id such as L11 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include "renderlib/integrate/path.h"
 

@@ -1,4 +1,5 @@
-// Environment maps as lights: their orientation, seams, samples and pdfs.
+// Environment maps as lights: their orientation, seams, samples and pdfs. An id such as C10 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/light/environment.h"
 

@@ -1,4 +1,5 @@
-// The light tree, which selects one of many lights with a probability near its contribution.
+// The light tree, which selects one of many lights with a probability near its contribution. An id
+// such as L7 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/light/light_tree.h"
 

@@ -1,4 +1,5 @@
-// Samples of lights of every kind, with their pdfs, radiances and visibility.
+// Samples of lights of every kind, with their pdfs, radiances and visibility. An id such as O4 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/light/lights.h"
 

@@ -1,5 +1,5 @@
 // BSDFs of diffuse surfaces, metal and glass: samples follow their density, and no light is created
-// or lost.
+// or lost. An id such as M14 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/material/bsdf.h"
 

@@ -1,4 +1,5 @@
-// The GGX distribution of microfacets: its samples, weights and table of albedos.
+// The GGX distribution of microfacets: its samples, weights and table of albedos. An id such as M3
+// in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/material/ggx.h"
 

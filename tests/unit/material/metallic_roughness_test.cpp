@@ -1,4 +1,5 @@
-// glTF's material and rough glass: samples, values and bounds agree.
+// glTF's material and rough glass: samples, values and bounds agree. An id such as M10 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Our own sin, cos, exp, log, pow and so on, whose bits are the same on every machine: their errors
-// in units in the last place (ulp) against 113-bit references.
+// in units in the last place (ulp) against 113-bit references. An id such as Y4 in a test's name is
+// that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/math/elementary.h"
 

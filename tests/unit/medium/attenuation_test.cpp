@@ -1,4 +1,5 @@
-// Transmittance and emission of homogeneous media, for very thin and very dense ones too.
+// Transmittance and emission of homogeneous media, for very thin and very dense ones too. An id
+// such as V1 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/medium/attenuation.h"
 

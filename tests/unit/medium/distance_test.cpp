@@ -1,4 +1,5 @@
-// Sampling of distances in a medium: pdfs of samples and bounds of weights.
+// Sampling of distances in a medium: pdfs of samples and bounds of weights. An id such as V10 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// The Henyey-Greenstein phase function: samples, pdf and mean cosine.
+// The Henyey-Greenstein phase function: samples, pdf and mean cosine. An id such as V5 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/medium/phase.h"
 

@@ -1,7 +1,8 @@
 // The plan of adaptive sampling: how many samples each half tile gets from the measured noise, and
 // that the result is not biased. A tile has two halves, each planned by the noise of the other. The
 // level of a half tile is a digit of `levels`: level l has 2^((6 - l) / 2) times the samples of
-// uniform sampling. A TileError is measured on half of the pixel groups of a half tile.
+// uniform sampling. A TileError is measured on half of the pixel groups of a half tile. An id such
+// as A5 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/render/adaptive_plan.h"
 

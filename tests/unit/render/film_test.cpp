@@ -1,5 +1,5 @@
 // The film, which adds bands to an image: the same bits in any order, and its estimate of the
-// error.
+// error. An id such as A6 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/render/film.h"
 

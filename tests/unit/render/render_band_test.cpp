@@ -1,4 +1,5 @@
-// Rendering of bands: the same bits for any threads, any division into bands and any order.
+// Rendering of bands: the same bits for any threads, any division into bands and any order. An id
+// such as C5 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/render/render_band.h"
 

@@ -1,4 +1,5 @@
-// Selection of a cell of a grid with a probability proportional to its weight.
+// Selection of a cell of a grid with a probability proportional to its weight. An id such as L7 in
+// a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/sampling/grid_distribution.h"
 

@@ -1,4 +1,5 @@
-// Sampling of rectangles and spheres uniformly in solid angle.
+// Sampling of rectangles and spheres uniformly in solid angle. An id such as L6 in a test's name is
+// that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

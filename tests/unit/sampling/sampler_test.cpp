@@ -1,5 +1,6 @@
 // The sampler, scrambled Sobol' points that are a pure function of seed, pixel, sample and
-// dimension: stratification, independence, and recorded bits.
+// dimension: stratification, independence, and recorded bits. An id such as R1 in a test's name is
+// that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/sampling/sampler.h"
 

@@ -1,4 +1,5 @@
-// Maps from the unit square to disks, hemispheres, spheres, cones and balls.
+// Maps from the unit square to disks, hemispheres, spheres, cones and balls. An id such as M1 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/sampling/warp.h"
 

@@ -1,4 +1,5 @@
-// Scenes with many instances and with motion, and their cost.
+// Scenes with many instances and with motion, and their cost. An id such as C8 in a test's name is
+// that of a case in tests/hard_cases/cases.txt.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

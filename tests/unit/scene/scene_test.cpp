@@ -1,5 +1,5 @@
 // Scenes: validation, counts, the features that a scene uses, and meshes that are shared with an
-// earlier scene.
+// earlier scene. An id such as S9 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/scene/scene.h"
 

@@ -1,4 +1,5 @@
-// Textures by formula: checkers, gradient noise, ramps and mixtures.
+// Textures by formula: checkers, gradient noise, ramps and mixtures. An id such as TX4 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

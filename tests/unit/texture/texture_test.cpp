@@ -1,4 +1,5 @@
-// Image textures: orientation, wrapping, filtering and encodings.
+// Image textures: orientation, wrapping, filtering and encodings. An id such as TX2 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/texture/texture.h"
 
