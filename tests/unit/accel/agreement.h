@@ -1,6 +1,7 @@
 #pragma once
 
-// Compares Accel with the reference implementation on the same rays.
+// For tests: compares Accel with ReferenceAccel (brute force, or a simple BVH in double) on the
+// same rays.
 
 #include <gtest/gtest.h>
 
@@ -72,6 +73,7 @@ inline Box box_of(const Mesh& mesh) {
   return box;
 }
 
+/// Returns a random point of the box.
 inline Vec3 inside(const Box& box, Random& random) {
   const Vec3 p = random_point(random);
   const Vec3 half = 0.5 * (box.hi - box.lo);

@@ -59,6 +59,7 @@ Geometry of_mesh(Mesh mesh) {
   return g;
 }
 
+/// Returns a time in the shutter interval; for some i one of its ends or its middle.
 double time_of(int i, Random& random) {
   switch (i % 6) {
     case 0:
@@ -225,7 +226,8 @@ TEST(Deforming, TwoMeshesWithOneBorderDoNotLeak) {
   }
 }
 
-/// Checks the boxes of all leaves and the sizes of their packs; returns the number of coordinates.
+/// Checks the boxes of all leaves, and the sizes of their packs of eight triangles. Returns the
+/// number of coordinates that were checked; 0 after a failure.
 std::int64_t check_boxes(const MeshTree& tree, const ShutterTime& now) {
   std::int64_t checked = 0;
   for (std::size_t n = 0; n < tree.tree.nodes.size(); ++n) {
@@ -272,8 +274,8 @@ TEST(Deforming, BoxesAndSizesHoldAtEveryTime) {
   EXPECT_GT(checked, 1'000'000);
 }
 
-// The vertices move by about the largest float, so the movement of a box with its margin is no
-// float any more.
+// The vertices move by about the largest float, so the movement of a box, with its margin, exceeds
+// the range of floats.
 TEST(Deforming, BoxesHoldIfTheirChangeOverflows) {
   for (const auto& [open, close] :
        {std::pair(-0x1.8459fep127f, 0x1.ee98p125f), std::pair(-0x1.cd5030p126f, 0x1.1957e6p127f)}) {

@@ -110,14 +110,16 @@ Pair adversarial_pair(Random& random, bool in_float) {
   return pair;
 }
 
+/// How often the double test hit, the filter was sure of a hit, and the filter was wrong.
 struct Verdicts {
   int hits = 0;
   int sure = 0;
-  int false_rejects = 0;
-  int false_sure = 0;
+  int false_rejects = 0;  ///< hits that the filter rejected
+  int false_sure = 0;     ///< hits of which the filter was sure, but which are none
 };
 
-/// Runs both tests without an end, and with an end just before and just after the hit.
+/// Runs the filter and the test in double, for a ray without an end and for rays that end at the
+/// hit, just before and just after it. `reach`: bound of the coordinates.
 template <class Float>
 void judge(const FlatPack& pack, const Pair& pair, double reach, Verdicts& verdicts) {
   Crossing crossing;
