@@ -26,7 +26,7 @@ Image noisy(const Image& image, float strength, std::uint64_t seed) {
 
 TEST(Bias, NoiseAloneIsNotBias) {
   const BiasTest test = test_bias(noisy(waves(128, 96), 0.1F, kSeed), waves(128, 96));
-  EXPECT_EQ(test.blocks, 48u);
+  EXPECT_EQ(test.blocks, 48u);  // of 16 x 16 pixels
   EXPECT_LT(std::abs(test.t), 4);
   EXPECT_EQ(test.suspicious_blocks, 0u);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Small pictures for comparisons.
+// Small pictures for the tests of this folder, which compare images.
 
 #include <cmath>
 #include <cstdint>
@@ -20,7 +20,7 @@ inline Image uniform(std::uint32_t width, std::uint32_t height, float value) {
   return uniform(width, height, gray(value));
 }
 
-/// Gray between 0.2 and 0.8, smooth.
+/// Returns a smooth picture in grey between 0.2 and 0.8.
 inline Image waves(std::uint32_t width, std::uint32_t height) {
   Image out = uniform(width, height, 0.0F);
   for (std::uint32_t y = 0; y < height; ++y) {
