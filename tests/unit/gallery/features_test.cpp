@@ -1,5 +1,6 @@
-// A feature that is not set only skips work that would change nothing: every scene of the gallery
-// has the same bits with its own features and with all features.
+// The features of a scene (scene_features.h) are flags such as "has moving shapes". A flag that is
+// not set only skips work that would change nothing: every scene of the gallery has the same bits
+// with its own features and with all features.
 
 #include <gtest/gtest.h>
 

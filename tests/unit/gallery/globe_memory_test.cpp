@@ -1,4 +1,5 @@
-// The memory for a globe of the study is little more than the bytes of its texels.
+// The globe is a generated map of a planet, a texture of scenes in gallery/study. The memory to
+// render with it is little more than the bytes of its texels.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
-// The generated map of a planet: no seam, ice and sea where they belong, and the same planet at
-// every size.
+// The globe, a generated map of a planet that is a texture of scenes of the gallery: it has no
+// seam, ice and sea are where they belong, and the planet is the same at every size. The map has
+// twice as many columns as rows.
 
 #include "renderlib/gallery/globe.h"
 
