@@ -1,4 +1,6 @@
-// The guiding cells of a whole scene, in a tree over position and normal.
+// Path guiding stores in cells from where light comes; the cells of a whole scene are in a tree
+// over position and normal of a surface. They are made from records of light that paths or photons
+// found.
 
 #include "renderlib/guiding/guiding_field.h"
 

@@ -1,3 +1,6 @@
+// The photon map: each photon spreads its power over a disk of its own, whose radius is small where
+// photons are dense. The sum over the disks at a point is the irradiance there.
+
 #include "renderlib/guiding/photon_map.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +16,7 @@ namespace {
 
 constexpr Vec3 kAbove{0, 0, 1};
 
+/// For PhotonMap: the whole disk of each photon lies on the surface.
 double whole(const CausticPhoton&) { return 1; }
 
 /// Photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4.
