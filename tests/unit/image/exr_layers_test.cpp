@@ -1,4 +1,4 @@
-// Layers of an EXR file beside its image.
+// Layers of an EXR file: further images beside the main one, such as albedo or depth.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
