@@ -1,4 +1,5 @@
-// Path splitting at the first surface with a pdf.
+// Path splitting: at the first surface whose BSDF has a pdf, a path continues in several directions
+// (branches).
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,7 @@
 // Caustics from photon maps: closed forms, and that maps and path tracing divide the light exactly.
+// Photons are traced from lamps to casters, the surfaces of metal and glass, and arrive at
+// receivers, the surfaces with wide lobes. Light that takes this way is estimated by the maps, and
+// left out by paths.
 
 #include "renderlib/integrate/caustics.h"
 
@@ -26,6 +29,7 @@ using test::SceneMaker;
 
 const std::atomic<bool> kGoOn = false;
 
+/// Makes the map of this number; the maps of an image have different photons.
 std::shared_ptr<const TracedMap> map_of(const Scene& scene, const Casters& casters,
                                         std::uint32_t number, std::uint64_t photons,
                                         int threads = 2) {
@@ -124,7 +128,7 @@ TEST(Caustics, NoPowerIsLostAtEdges) {
   const auto scene = lamp_in_glass(1.5, 0.02).build();
   const Casters casters(*scene);
   const auto map = map_of(*scene, casters, 0, 1 << 14);
-  // The irradiance of the floor's midpoints of a grid.
+  // The power on the floor: the irradiance at the midpoints of a grid, times their areas.
   constexpr int kSteps = 400;
   double sum = 0;
   for (int i = 0; i < kSteps; ++i) {
@@ -135,7 +139,8 @@ TEST(Caustics, NoPowerIsLostAtEdges) {
       });
     }
   }
-  // A sixth of the lamp's power; within 4 standard errors of 1/sixth of the photons that arrive.
+  // A sixth of the lamp's power. The bound is about 4 standard errors of the number of photons that
+  // arrive at the floor.
   const double expected = 0.96 * 10 * kPi * 4 * kPi * 0.02 * 0.02 / 6;
   EXPECT_NEAR(sum, expected, 0.05 * expected);
   double raw = 0;
@@ -321,6 +326,7 @@ TEST(Caustics, MapsOfOtherSeedsAndNumbersDiffer) {
   EXPECT_NE(first(1, 0), first(1, 1));
 }
 
+// train_guiding() returns casters if its pilot, a few paths, shows that photon maps pay.
 TEST(Caustics, PayForSmallLampsOnly) {
   Pool pool(1);
   const auto casters_of = [&](const Scene& scene) {

@@ -1,4 +1,5 @@
-// The pilot that decides whether the integrator `path` uses guiding and photon maps.
+// The pilot: a few thousand paths, from which the integrator `path` estimates how much less
+// variance guiding and photon maps would give, and decides whether it uses them.
 
 #include "renderlib/integrate/guiding_gain.h"
 

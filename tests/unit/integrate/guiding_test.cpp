@@ -1,5 +1,6 @@
-// Path guiding: its training, and that it changes no expected value. The training also traces
-// photons from casters, the surfaces of metal and glass that may cast caustics.
+// Path guiding samples directions from which much light comes, as training paths have found. Tests
+// the training, and that guiding changes no expected value. The training also traces photons by way
+// of casters, the surfaces of metal and glass that may cast caustics.
 
 #include <gtest/gtest.h>
 

@@ -217,6 +217,7 @@ TEST(NestedGlass, M9_TheHigherPriorityRefractsInOverlaps) {
     const Ray ray{.origin = {-1, 3, 0}, .direction = normalize({1, -1, 0})};
     return light_along(maker, ray, 20000).mean();
   };
+  // The radiance of the strip is 1, of which the faces reflect a part.
   const double at_most = 1;
   const double overlapping = stack(0.1);
   EXPECT_GT(overlapping, 0.85);

@@ -1,4 +1,6 @@
-// Efficiency of the mixture of distance strategies for light sampling in a medium, by quadrature.
+// For light sampling in a medium, LightDistanceSampler draws the distance along a ray from a
+// mixture of two strategies: free flight and equiangular sampling. Tests the variance of the
+// mixture by quadrature.
 
 #include "renderlib/integrate/light_distance_sampler.h"
 

@@ -1,4 +1,5 @@
-// Mixtures, height maps, sheets and emission of scattering surfaces in scenes.
+// Mixtures of materials, height maps, sheets (surfaces that transmit diffusely) and emission of
+// surfaces that also scatter, in whole scenes.
 
 #include <gtest/gtest.h>
 

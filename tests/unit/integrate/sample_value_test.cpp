@@ -1,4 +1,5 @@
-// The integrators other than `path`: normals, depth, albedo, ambient occlusion and direct light.
+// The integrators other than `path`: normals, depth, albedo, ambient occlusion and direct light;
+// and the guides of the denoiser, images of albedo and of normal and distance (`shape`).
 
 #include "renderlib/integrate/sample_value.h"
 
