@@ -1,4 +1,5 @@
-// The kernels of a program give the same bits, and a scene is rendered by the one that built it.
+// A kernel is the code that builds scenes and renders them, compiled for one instruction set. All
+// kernels of a program give the same bits, and a scene is rendered by the one that built it.
 
 #include "renderlib/render/kernel.h"
 
@@ -70,6 +71,7 @@ TEST(Kernels, AreFoundByName) {
   EXPECT_THAT(std::string(wrong.message()), HasSubstr(kernels().back()->name));
 }
 
+// The canary is the hash of a small image.
 TEST(Kernels, HaveTheSameCanary) {
   for (const Kernel* kernel : kernels()) {
     EXPECT_EQ(canary(kernel), canary()) << kernel->name;
