@@ -88,7 +88,7 @@ TEST(MetallicRoughness, SamplesFollowTheirDensity) {
               const auto drawn = sample(b, u, v, lobes.uniform());
               return drawn ? drawn->wi : Vec3{};
             },
-            [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 64);
+            [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 64);  // seed; tests in all
       }
     }
   }

@@ -136,7 +136,7 @@ TEST(Surfaces, SamplesFollowTheirDensity) {
             const auto drawn = sample(b, u, v, lobes.uniform());
             return drawn && !drawn->delta ? drawn->wi : Vec3{};
           },
-          [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 51);
+          [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 51);  // seed; tests in all
     }
   }
 }
