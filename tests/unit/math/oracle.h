@@ -1,7 +1,8 @@
 #pragma once
 
-// Elementary functions in more precision than double: libquadmath with g++ on x86-64, elsewhere the
-// long double of the C library (80 bits with clang on x86-64, 128 on ARM64).
+// Reference values for elementary_test.cpp: elementary functions in more precision than double.
+// They are those of libquadmath with g++ on x86-64, elsewhere of the C library in long double (80
+// bits with clang on x86-64, 128 on ARM64).
 
 #include <cmath>
 
@@ -45,7 +46,7 @@ inline Quad quad_sqrt(Quad x) { return std::sqrt(x); }
 
 inline Quad quad_abs(Quad x) { return x < 0 ? -x : x; }
 
-/// |value - truth| in units in the last place of the truth.
+/// Returns |value - truth| in units in the last place (ulp) of the truth.
 inline double error_in_ulps(double value, Quad truth) {
   const double size = std::abs(static_cast<double>(truth));
   const double unit = std::nextafter(size, INFINITY) - size;
