@@ -1,5 +1,6 @@
-// Tracking in media that vary in space, against closed forms. Fixed seeds; with unbiased code each
-// z-test has a false-alarm rate of 6e-5.
+// Tracking (the sampling of collisions along a ray in a medium that varies in space) against closed
+// forms: flights that scatter or pass, points of scattering, transmittance and emission. Seeds are
+// fixed; with unbiased code each z-test has a false-alarm rate of 6e-5.
 
 #include "renderlib/medium/tracking.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 using test::Moments;
 
-constexpr std::size_t kWalks = 40000;
+constexpr std::size_t kWalks = 40000;  ///< estimates in each mean
 /// A ray along x through the centres of the cells, from the first to the last.
 constexpr std::uint32_t kGridCells = 257;
 const GridRay kAlong{{0.5, 0.5, 0.5}, {1, 0, 0}};
@@ -28,7 +29,8 @@ Medium of_density(const Rgb& absorption, const Rgb& scattering, const Rgb& emiss
   return medium;
 }
 
-/// A row of cells with density f(x) at the distance x along kAlong, between centres linear.
+/// A row of cells with density f(x) at the distance x along kAlong, interpolated linearly between
+/// the centres.
 std::vector<VolumeGrid> row(const std::function<double(double)>& f) {
   VolumeGrid grid =
       test::grid_of({kGridCells, 1, 1}, {}, {kGridCells, 1, 1},
@@ -37,7 +39,7 @@ std::vector<VolumeGrid> row(const std::function<double(double)>& f) {
   return {grid};
 }
 
-/// A density along kAlong with its integral.
+/// A density along kAlong, and `depth`: its integral from 0 to x.
 struct Profile {
   const char* name;
   std::function<double(double)> density;
@@ -48,10 +50,12 @@ const Profile kLinear{"linear", [](double x) { return 4e-5 * x; },
                       [](double x) { return 2e-5 * x * x; }};
 const Profile kExponential{"exponential", [](double x) { return 0.05 * std::exp(-x / 40); },
                            [](double x) { return 2 - 2 * std::exp(-x / 40); }};
-/// Constant in every cell: the control of residual ratio tracking is exact.
+/// The density is the same everywhere, so residual ratio tracking has no noise.
 const Profile kConstant{"constant", [](double) { return 0.004; },
                         [](double x) { return 0.004 * x; }};
 
+/// Returns the deviation of the mean from `expected` in standard errors, 0 if only rounding
+/// differs.
 double z_of(const Moments& moments, double expected) {
   // Float colours of a variance of 0 differ from doubles by rounding.
   return std::abs(moments.mean() - expected) < 1e-6 * expected ? 0 : moments.z(expected);
@@ -99,7 +103,7 @@ TEST(Tracking, FirstCollisionsFollowTheClosedForm) {
       NumberStream numbers(i + 1000000);
       const FirstCollision first{numbers.next(), numbers.next()};
       const Flight flight = fly(medium, kAlong, kLength, gray(1), first, numbers);
-      // All that is not scattered passes, with the same weight.
+      // Nothing is absorbed, so the weight is 1 whether light is scattered or passes.
       ASSERT_EQ(flight.throughput, gray(1));
       const double bin = flight.scattered ? flight.distance / kLength * kBins : kBins;
       ++counts[static_cast<std::size_t>(bin)];
@@ -198,7 +202,7 @@ TEST(Tracking, CollectsEmission) {
 TEST(Tracking, CollectsEmissionWhereNothingIsDense) {
   std::vector<VolumeGrid> grids = row([](double) { return 0; });
   grids.push_back(row([](double x) { return x < 128 ? 0.01 : 0; })[0]);
-  // The emission grid is in another place than the density grid, and turned.
+  // The ray meets only the emission grid, which is turned and outside of the density grid.
   grids[1].to_medium = rotation({0, 0, 1}, 90) * translation({0, -1, 0});
   Medium medium = of_density(gray(1), gray(1), {1, 2, 0});
   medium.grids.emission = GridUse{GridId{1}, 2};
@@ -213,7 +217,8 @@ TEST(Tracking, CollectsEmissionWhereNothingIsDense) {
     ASSERT_EQ(flight.emitted.b, 0);
     seen.add(flight.emitted.g);
   }
-  // Half a cell before the first centre, and the ramp of one cell from 127 to 128.
+  // Emission 2 times the grid's factor 2 times 0.01 over 128 cells: half a cell before the first
+  // centre, 127 cells between centres, and half of the cell in which the density falls to 0.
   EXPECT_LT(std::abs(seen.z(2 * 2 * 0.01 * (0.5 + 127.5))), 4);
 }
 
@@ -279,7 +284,7 @@ TEST(Tracking, EndsInVeryDenseMedia) {
   const Flight flight = fly(medium, beside, 8, gray(1), {0.5, 0.5}, numbers);
   EXPECT_FALSE(flight.scattered);
   const Rgb t = estimate_transmittance(medium, beside, 8, numbers);
-  EXPECT_EQ(t, Rgb{});  // all flights through so many collisions end
+  EXPECT_EQ(t, Rgb{});  // Russian roulette ended it
 }
 
 TEST(RegionWalk, SpansFollowEachOtherAndHaveTheDensityOfTheirPoints) {

@@ -1,4 +1,5 @@
-// Grids: numbers are stored exactly, interpolated between cell centres, bounded and checked.
+// Grids of numbers in space, stored as bricks of 8 x 8 x 8 cells: numbers are stored exactly,
+// interpolated between the centres of cells, bounded and checked.
 
 #include "renderlib/medium/volume_grid.h"
 
