@@ -291,6 +291,7 @@ TEST(Package, RoundTripsGroupsAndFrames) {
   EXPECT_EQ(g.instances[0].frame, kNoFrame);
 }
 
+/// A change to a valid manifest, and the part of the error message that names the field.
 struct Wrong {
   std::string name;
   std::function<void(package::Manifest&)> spoil;

@@ -1,6 +1,7 @@
 #pragma once
 
-// A scene that contains everything that a package can hold.
+// A scene that contains every kind of object, with every property, that a package (a scene as a
+// manifest and blobs) can hold. Used by the tests of packages.
 
 #include <cstring>
 
@@ -9,6 +10,7 @@
 
 namespace bandsaw::test {
 
+/// An image of 3 x 2 pixels with three channels.
 inline ImageTexture sample_image(ImageTexture::Format format) {
   ImageTexture image;
   image.width = 3;
@@ -45,7 +47,7 @@ inline void add_motion(SceneDescription& scene) {
   geometry.instances.push_back(moving);
 }
 
-/// Adds media that vary in space; every kind of grid.
+/// Adds media that vary in space and use every kind of grid.
 inline void add_grids(Media& media) {
   media.grids = {
       dense_grid({9, 3, 2}, 1, [](std::size_t i) { return static_cast<float>(i) * 0.1f; }),
@@ -95,6 +97,8 @@ inline void add_surfaces(SceneDescription& scene) {
   scene.materials.push_back(bumped);
 }
 
+/// Returns the scene. Its numbers are arbitrary; many are not representable exactly (1.0 / 3), so
+/// that any rounding is detected.
 inline SceneDescription sample_scene() {
   SceneDescription scene;
   PerspectiveCamera camera;
