@@ -1,4 +1,5 @@
-// Band records as bytes: they read back, and every damage is detected.
+// Files of band records (the sums of the pixels of a band, with what was rendered and the CPU
+// time): they read back as written, and every damage is detected.
 
 #include "renderlib/render/band_file.h"
 

@@ -1,3 +1,7 @@
+// Division of a band (a range of samples by a range of rows) into parts that need one photon map
+// each. A map is made for a range of samples (CausticMaps::number_of): the first four maps have two
+// blocks of samples each, later ones more.
+
 #include "renderlib/render/band_parts.h"
 
 #include <gtest/gtest.h>
@@ -8,12 +12,13 @@ namespace bandsaw {
 namespace {
 
 using Maps = std::vector<std::uint32_t>;
-/// Samples of each of the first four maps.
+/// Number of samples of each of the first four maps.
 constexpr std::uint64_t kOfMap = CausticMaps::kMinSamplesOfMap;
 static_assert(kOfMap == 2 * kBlockSamples);
 
 TEST(BandParts, AWholeBandNeedsTheMapsOfItsNode) {
   const BandPart part{{{16 * kOfMap, 32 * kOfMap}, {0, 16}}, {}};
+  // Ten maps precede: four of kOfMap samples and six of twice as many.
   EXPECT_EQ(maps_of(part), (Maps{10, 11, 12, 13}));
   const auto [left, right] = halves_of(part, 32);
   EXPECT_EQ(maps_of(left), (Maps{10, 11}));

@@ -1,4 +1,5 @@
-// The integrator path_guided where photon maps find caustics: same bits for any bands and threads.
+// The integrator path_guided where photon maps find caustics: pixels have the same bits for any
+// number of threads and any division of the image into bands (ranges of samples by ranges of rows).
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,8 @@ constexpr RenderSettings kSettings{
     .width = 21, .height = 18, .max_depth = 6, .seed = 5, .integrator = Integrator::kPathGuided};
 const std::atomic<bool> kGoOn = false;
 
-/// A box with a glass ball below a small lamp; pixels share paths if it is closed.
+/// A box with a glass ball below a small lamp. `closed`: the background is black, so neighbouring
+/// pixels share paths (Scene::reuses_paths).
 std::shared_ptr<const Scene> scene(bool closed) {
   test::SceneMaker maker = test::cornell_box();
   maker.sphere({190, 245, 170}, 80, maker.glass(1.5));

@@ -1,4 +1,6 @@
-// The estimate of an image's error from two halves of its samples, and its margin.
+// The estimate of an image's error from the difference between two halves of its samples, and the
+// margin by which the error may be larger (ErrorEstimate::at_most). A group is eight pixels that
+// share paths, so their errors are not independent.
 
 #include "renderlib/render/error_estimate.h"
 
@@ -45,8 +47,9 @@ double square_at_most(const ErrorEstimate& error) {
   return over * over;
 }
 
-// The margin is three standard deviations of a sum of n equal squares: sqrt(1.5 n) times one of
-// them.
+// If n = `decide` groups have all of the error, their sum of squares has a standard deviation of
+// sqrt(1.5 n) times one group's part, and the square of the upper bound adds three of these. The
+// bound is the same whether one pixel of a group has the error or all eight.
 TEST(ErrorEstimate, TheMarginGrowsWithFewerGroups) {
   for (const int decide : {3, 150}) {
     Pixels one_pixel;  // one pixel in each of so many groups,

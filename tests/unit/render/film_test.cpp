@@ -1,5 +1,6 @@
-// The film, which adds bands to an image: the same bits in any order, and its estimate of the
-// error. An id such as A6 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// The film adds the sums of bands (ranges of samples by ranges of rows) to an image: it gives the
+// same bits in any order, and estimates the image's error. An id such as A6 in a test's name is
+// that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/render/film.h"
 
@@ -25,6 +26,7 @@ Film make_film(std::uint32_t width, std::uint32_t height, const std::string& fol
   return *std::move(film);
 }
 
+/// Returns the mean of the values of film_values.h, added from the first maximal node to the last.
 float expected(std::uint32_t y, std::size_t k, std::uint64_t samples) {
   double total = 0;
   bool first = true;

@@ -1,4 +1,6 @@
-// Half tiles with their own numbers of samples.
+// The film (the sums of an image, to which bands are added) if half tiles have their own numbers of
+// samples, as adaptive sampling decides them. A half tile is half of the pixels of a tile of 16 x
+// 16 pixels; in each pass it takes one node of the summation tree (render/band.h), or no samples.
 
 #include <gtest/gtest.h>
 
@@ -11,12 +13,13 @@
 namespace bandsaw {
 namespace {
 
+/// What each half tile takes, where the uniform image would take `samples`.
 struct Pass {
   SampleRange samples;
   TileSamples tiles;
 };
 
-/// In each pass, two thirds of the half tiles take their next node.
+/// Returns passes in each of which about two thirds of the half tiles take their next node.
 std::vector<Pass> random_passes(std::uint64_t samples, const TileGrid& grid, Random& random) {
   std::vector<std::vector<SampleRange>> nodes(grid.half_tiles());
   for (std::vector<SampleRange>& of_half_tile : nodes) {
@@ -36,6 +39,7 @@ std::vector<Pass> random_passes(std::uint64_t samples, const TileGrid& grid, Ran
   return passes;
 }
 
+/// Returns the band's sums as film_values.h defines them, 0 where a half tile takes no samples.
 BandPixels pixels_of(const Band& band, const TileGrid& grid, const TileSamples& tiles) {
   BandPixels pixels{.band = band, .width = grid.width, .sums = {}, .counters = {}};
   for (std::uint32_t y = band.rows.first; y < band.rows.last; ++y) {
@@ -128,7 +132,8 @@ TEST(Film, TheErrorOfDifferentSampleCountsIsTheirStandardError) {
   add({16, 32}, {});
   add({32, 64}, some({32, 64}));
   add({64, 128}, some({64, 128}));
-  // Half of the pixels have 128 samples, the others 32.
+  // Half of the pixels have 128 samples, the others 32. A sample has the mean 1 and the variance
+  // 1/3.
   const double expected_error = std::sqrt((1.0 / 128 + 1.0 / 32) / 2 / 3);
   EXPECT_NEAR(film.error()->relative_rmse / expected_error, 1, 0.02);
   const std::vector<HalfTileErrors> tiles = film.tile_errors();

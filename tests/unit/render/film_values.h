@@ -1,6 +1,8 @@
 #pragma once
 
-// Fills films with values whose sums are known from the definition of the tree.
+// Values for the tests of Film (which adds the sums of bands to an image). Their sums are computed
+// here by the definition of the summation tree (render/band.h). `y` is a row of the image, and
+// `k` = 3 x + c is channel c of the pixel in column x.
 
 #include <cmath>
 #include <vector>
@@ -32,6 +34,7 @@ inline double node_sum(std::uint32_t y, std::size_t k, const SampleRange& node) 
   return sum;
 }
 
+/// Returns the sums of a band of an image that is `width` pixels wide.
 inline BandPixels band_pixels(const Band& band, std::uint32_t width) {
   BandPixels pixels{.band = band, .width = width, .sums = {}, .counters = {}};
   for (std::uint32_t y = band.rows.first; y < band.rows.last; ++y) {

@@ -1,4 +1,5 @@
-// The image of about the first half of the samples, which the denoiser needs beside the whole.
+// The number of samples in the image of about the first half of the samples, which the denoiser
+// needs beside the whole image. The share of a pixel is that number divided by all of its samples.
 
 #include "renderlib/render/first_part.h"
 
@@ -10,6 +11,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the sums of an image of two pixels with that many samples each.
 Film film_of(std::uint64_t samples) {
   absl::StatusOr<Film> film = Film::create(2, 1, "");
   EXPECT_TRUE(film.ok());

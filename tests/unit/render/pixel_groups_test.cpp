@@ -71,8 +71,9 @@ TEST(PixelGroups, HalvesHaveEightPixelsInEachRowOfATile) {
   }
 }
 
-// The errors of two pixels in one group have a correlation of up to 0.95, so those of pixels at any
-// distance have at most 5.1 % of that on average.
+// At any distance, at most 5.1 % of the pairs of pixels are in one group (the bound allows for the
+// edge of the image). The errors of two pixels in one group have a correlation of up to 0.95, so
+// the correlation at any distance is at most 5 % on average.
 TEST(PixelGroups, PixelsAtEveryDistanceRarelyShare) {
   constexpr int kSide = 256;
   const std::vector<int> groups = groups_of({kSide, kSide});

@@ -1,5 +1,6 @@
-// Rendering of bands: the same bits for any threads, any division into bands and any order. An id
-// such as C5 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// Rendering of bands (ranges of samples by ranges of rows): pixels have the same bits for any
+// number of threads, any division of the image into bands and any order of these. An id such as C5
+// in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/render/render_band.h"
 
@@ -238,7 +239,7 @@ TEST(RenderBand, ProgressCountsEachRowOnce) {
     seen.insert(rows);
   };
   ASSERT_TRUE(render_band(*rendered, kSettings, {{0, 16}, {2, 9}}, pool, kGoOn, done).ok());
-  seen.erase(0);  // steps of the pilot
+  seen.erase(0);  // reported while the guiding pilot renders, before the first row
   EXPECT_EQ(seen, (std::multiset<std::uint32_t>{1, 2, 3, 4, 5, 6, 7}));
 }
 
@@ -328,6 +329,7 @@ TEST(RenderImage, PassesDoubleAndAreNodes) {
   EXPECT_EQ(passes_of(12), (std::vector<SampleRange>{{0, 8}, {8, 12}}));
 }
 
+// The canary is a hash of a small image, by which workers are compared with the coordinator.
 TEST(Canary, DependsOnTheProgramAlone) {
   const std::uint64_t first = canary();
   EXPECT_EQ(canary(), first);

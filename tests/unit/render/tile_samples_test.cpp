@@ -1,4 +1,6 @@
-// The samples that each half tile takes in one pass of an adaptive image.
+// The samples that each half tile takes in one pass of an adaptive image. A half tile is half of
+// the pixels of a tile of 16 x 16 pixels; a pass gives it one node, which is an aligned range of
+// 2^k blocks of 8 samples, or none.
 
 #include "renderlib/render/tile_samples.h"
 
@@ -14,13 +16,14 @@ using ::testing::HasSubstr;
 
 constexpr SampleRange kPass{256, 384};
 
+/// Returns a random node of up to 32 blocks; in a third of the cases an empty range.
 SampleRange some_node(test::Random& random) {
   const std::uint64_t size = kBlockSamples << random.below(6);
   const std::uint64_t first = random.below(9) * size;
   return random.below(3) == 0 ? SampleRange{} : SampleRange{first, first + size};
 }
 
-/// The samples of some half tiles of an image, and the same for each pixel.
+/// Random samples of the half tiles of an image, and the same samples for each pixel.
 struct Some {
   TileSamples tiles;
   std::vector<SampleRange> of_pixel;

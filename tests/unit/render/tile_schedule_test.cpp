@@ -1,5 +1,6 @@
-// The order in which half tiles take the samples that the plan gives them, in whole nodes of the
-// summation tree.
+// The order in which half tiles (half of the pixels of a tile of 16 x 16: tile_samples.h) take the
+// samples that the plan of adaptive sampling gives them: in whole nodes of the summation tree,
+// which are aligned ranges of 2^k blocks of 8 samples.
 
 #include "renderlib/render/tile_schedule.h"
 
@@ -17,7 +18,9 @@ using test::Moments;
 
 constexpr TileGrid kTwelveTiles{512, 32};
 
-/// The left half of the image has twice the uniform number of samples, the right half an eighth.
+/// The left half of the image has twice the uniform number of samples, the right half an eighth:
+/// the level '4' means 2^((6 - 4) / 2) times the uniform number, 'c' (12) means 2^((6 - 12) / 2).
+/// `pilot` is the number of samples that all pixels have before the plan is made.
 TilePlan half_noisy(std::uint64_t pilot) {
   TilePlan plan{.pilot = pilot, .levels = {}};
   for (std::size_t i = 0; i < kTwelveTiles.half_tiles(); ++i) {
@@ -26,6 +29,7 @@ TilePlan half_noisy(std::uint64_t pilot) {
   return plan;
 }
 
+/// Returns the samples that half tile i takes; empty if it takes none.
 SampleRange of_half_tile(const TileSamples& tiles, std::size_t i) {
   const auto tile = static_cast<std::uint32_t>(i / 2);
   const std::uint32_t y = tile / kTwelveTiles.columns() * kTileSide;
@@ -58,8 +62,8 @@ TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
   }
 }
 
-// 48 samples are three blocks: the next node is one block, the following ones are as large as the
-// whole.
+// The half tile has 48 samples, fewer than its share. In each pass it takes the longest node that
+// begins where its samples end: 16 samples at 48, 64 at 64, 128 at 128.
 TEST(TileSchedule, ArrearsAreTakenAtOnceWhereANodeBegins) {
   TileSchedule schedule(kTwelveTiles, half_noisy(48));
   EXPECT_EQ(of_half_tile(schedule.next({48, 64}), 0), (SampleRange{48, 64}));
