@@ -47,7 +47,6 @@ TEST(GridDistribution, CellsAreSelectedByTheirWeight) {
   EXPECT_LE(std::abs(left_u.z(0.5)), 4) << "what is left of a number is uniform again";
 }
 
-// Hard case L7 (tests/hard_cases/README.md).
 TEST(GridDistribution, L7_ATailOfSmallWeightsIsSampled) {
   const GridDistribution grid(1000, 1,
                               [](std::uint32_t x, std::uint32_t) { return x == 0 ? 1e9 : 1e-6; });
