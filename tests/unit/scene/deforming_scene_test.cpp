@@ -47,12 +47,13 @@ SceneMaker scene_of_all() {
   return maker;
 }
 
+/// How the scene is built and rendered; every way must give the same pixels.
 struct How {
   SceneFeatures forced = {};
   Traversal traversal = Traversal::kBvh;
-  const Kernel* kernel = nullptr;
+  const Kernel* kernel = nullptr;  ///< nullptr: the fastest
   EarlierScenes earlier = {};
-  std::uint32_t rows = 12;
+  std::uint32_t rows = 12;  ///< of each band; a divisor of 12
 };
 
 std::shared_ptr<const Scene> built(const SceneDescription& scene, const How& how = {}) {
