@@ -89,11 +89,11 @@ TEST(Noise, IsZeroAtLatticePointsAndWithinItsBound) {
   std::uniform_real_distribution<double> where(-1000, 1000);
   for (int i = 0; i < 100000; ++i) {
     const Vec3 p{where(numbers), where(numbers), where(numbers)};
-    ASSERT_LE(std::abs(noise(p)), 0.8661);
+    ASSERT_LE(std::abs(noise(p)), 0.8661);  // sqrt(3) / 2
     ASSERT_EQ(noise({std::floor(p.x), std::floor(p.y), std::floor(p.z)}), 0);
     const double rough = turbulence(p, 7);
     ASSERT_GE(rough, 0);
-    ASSERT_LE(rough, 1.74);
+    ASSERT_LE(rough, 1.74);  // twice as much: octaves have half the size of the one before
   }
 }
 
@@ -135,6 +135,7 @@ TEST(Noise, TakesAnyPoint) {
   }
 }
 
+// The recorded hash: another value means that images with noise have changed.
 TEST(Noise, KeepsItsBits) {
   Hash64 hash;
   for (int i = 0; i < 1000; ++i) {
