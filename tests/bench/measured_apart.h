@@ -6,6 +6,7 @@
 
 namespace bandsaw::bench {
 
+/// The figures of one scene.
 struct Figures {
   double build_s = 0;        ///< from description to scene, wall clock, all threads
   double ns_per_sample = 0;  ///< CPU time

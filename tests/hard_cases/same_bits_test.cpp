@@ -71,8 +71,8 @@ bool is_small(const Geometry& geometry) {
 }
 
 struct Table {
-  std::uint32_t pixel_version = 0;
-  std::map<std::string, std::string> hashes;
+  std::uint32_t pixel_version = 0;            ///< that of the program that recorded the hashes
+  std::map<std::string, std::string> hashes;  ///< of the sums of each scene, by its name
 };
 
 Table read_table() {

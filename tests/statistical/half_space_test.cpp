@@ -21,9 +21,9 @@ using test::Moments;
 using test::SceneMaker;
 
 struct Seen {
-  float albedo;
-  double mu;
-  double reflectance;
+  float albedo;        ///< of single scattering
+  double mu;           ///< cosine between the ray and the normal of the half-space
+  double reflectance;  ///< radiance along the ray under a sky of radiance 1
 };
 
 /// The sky is an area light that covers all of it, so that it is sampled at every scattering; a

@@ -109,8 +109,8 @@ constexpr TileGrid kThin{256, 2};
 using Pixel = std::function<double(Random&)>;
 
 struct Rendered {
-  double mean = 0;  ///< mean of the left half
-  bool planned = false;
+  double mean = 0;       ///< mean of the left half
+  bool planned = false;  ///< some half tiles take more samples than others
 };
 
 /// `naive`: each half tile is planned by its own samples instead of those of its other half.
@@ -154,15 +154,17 @@ Rendered render_pixel(const Pixel& pixel, std::uint64_t seed, bool naive) {
   return {mean.mean(), !plan.even()};
 }
 
+/// Returns samples that are `base`, and with the probability p so much more that the mean is 1.
 Pixel bernoulli(double p, double base = 0) {
   return [=](Random& random) { return base + (random.uniform() < p ? (1 - base) / p : 0); };
 }
 
 constexpr int kRuns = 512;
 
+/// Of several renders with different seeds.
 struct Result {
-  Moments mean;
-  int planned = 0;
+  Moments mean;     ///< moments of Rendered::mean
+  int planned = 0;  ///< number of renders with Rendered::planned
 };
 
 Result renders(const Pixel& pixel, int runs, bool naive = false) {

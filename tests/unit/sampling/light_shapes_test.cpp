@@ -24,6 +24,7 @@ bool sees(const Vec3& point, const Vec3& d, const Quad& quad) {
   return intersect(trace_setup(point, d, kInfinity), quad, crossing);
 }
 
+/// A quad that is seen from `point`.
 struct View {
   Vec3 point;
   Quad quad;

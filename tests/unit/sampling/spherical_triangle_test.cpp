@@ -15,6 +15,7 @@
 namespace bandsaw {
 namespace {
 
+/// The triangle (a, a + u, a + v), seen from `point`.
 struct Viewpoint {
   Vec3 point;
   Vec3 a;
@@ -32,6 +33,7 @@ const std::vector<Viewpoint> kViews = {
     {{0, 0, 0}, {-1, -0.25, 1}, {2, 0, 0}, {2, 0.5, 0}}     // thin
 };
 
+/// Returns the direction from the viewpoint to a + on.x u + on.y v.
 Vec3 at(const Viewpoint& view, const Vec2& on) {
   return normalize(view.a + view.u * on.x + view.v * on.y - view.point);
 }

@@ -43,6 +43,7 @@ SceneMaker ball_in_frame(std::vector<Key> keys, const Shutter& shutter) {
   return maker;
 }
 
+/// Returns the sums of 32 samples of each pixel; empty if rendering fails.
 std::vector<double> pixels(const Scene& scene) {
   Pool pool(1);
   const std::atomic<bool> stop = false;
@@ -51,6 +52,7 @@ std::vector<double> pixels(const Scene& scene) {
   return band.ok() ? band->sums : std::vector<double>{};
 }
 
+/// At time 1, the ball is at x = 0.5.
 const std::vector<Key> kMoving = {Key(0, {}), Key(2, translation({1, 0, 0}))};
 
 // A shutter without duration gives the pixels of the static scene, to the bit.
@@ -94,6 +96,7 @@ TEST(MovingScene, OnlyInstancesThatNeverMoveBecomeStatic) {
   EXPECT_TRUE(moves(g));
 }
 
+/// Returns the error of a valid moving scene that `spoil` has changed; empty if there is none.
 std::string message_after_moving(void (*spoil)(SceneDescription&)) {
   SceneMaker maker = ball_in_frame(kMoving, {0, 1});
   maker.scene.geometry.disks.push_back({{0, 0, 0}, {0, 1, 0}, 1, MaterialId{0}});
