@@ -56,7 +56,7 @@ void expect_samples_match_density(absl::FunctionRef<Vec3(double, double)> sample
   std::uint64_t lost = 0;
   for (int i = 0; i < kSamples; ++i) {
     const double u = random.uniform();
-    const Vec3 d = sample(u, random.uniform());
+    const Vec3 d = sample(u, random.uniform());  // a unit vector, or zero: lost
     if (d == Vec3{}) {
       ++lost;
       continue;
@@ -71,12 +71,12 @@ void expect_samples_match_density(absl::FunctionRef<Vec3(double, double)> sample
     cell *= kSamples;
   }
   if (lost == 0) {
-    EXPECT_NEAR(total, 1, 5e-3);
+    EXPECT_NEAR(total, 1, 5e-3);  // the midpoint rule is less exact at steps of the pdf
     for (double& cell : expected) {
       cell /= total;
     }
   } else {
-    counts.push_back(lost);
+    counts.push_back(lost);  // one more cell: the samples that are lost
     expected.push_back(std::max(0.0, 1 - total) * kSamples);
   }
   const ChiSquared result = chi_squared(counts, expected);

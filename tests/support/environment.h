@@ -7,7 +7,7 @@
 
 namespace bandsaw::test {
 
-/// Returns a whole number; `otherwise` if the variable is not set.
+/// Returns the whole number in the environment variable; `otherwise` if it is not set.
 inline std::uint64_t number_from(const char* variable, std::uint64_t otherwise) {
   const char* const text = std::getenv(variable);
   return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Environment maps for tests.
+// Images for environment maps and textures of tests.
 
 #include <cstdint>
 
@@ -9,7 +9,8 @@
 
 namespace bandsaw::test {
 
-/// Makes a grey float image from these texels; (0, 0) is the top left.
+/// Makes a grey float image whose texel at column x and row y is texel(x, y); (0, 0) is the top
+/// left.
 ImageTexture float_image(std::uint32_t width, std::uint32_t height,
                          absl::FunctionRef<float(std::uint32_t, std::uint32_t)> texel);
 

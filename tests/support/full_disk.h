@@ -1,7 +1,7 @@
 #pragma once
 
-// Simulates a full disk by limiting the size of files that this process may write. The real call
-// fails in the real place (with EFBIG instead of ENOSPC).
+// Simulates a full disk by limiting the size of files that this process may write. So the write
+// itself fails, where it would fail on a full disk, but with EFBIG instead of ENOSPC.
 
 #include <cstdint>
 

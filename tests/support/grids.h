@@ -1,6 +1,6 @@
 #pragma once
 
-// Grids of media for tests.
+// Grids of numbers over space, which define media that vary in space, for tests.
 
 #include <cstdint>
 #include <functional>
@@ -10,8 +10,8 @@
 
 namespace bandsaw::test {
 
-/// Returns the grid whose cell (x, y, z) has the number `number(x, y, z)`, with the box from `low`
-/// to `high` in the space of the medium.
+/// Returns the grid whose cell (x, y, z) has the number `number(x, y, z)`. The grid fills the box
+/// from `low` to `high` in the space of the medium. `cells`: number of cells along x, y and z.
 inline VolumeGrid grid_of(
     const std::array<std::uint32_t, 3>& cells, const Vec3& low, const Vec3& high,
     const std::function<float(std::uint32_t, std::uint32_t, std::uint32_t)>& number) {

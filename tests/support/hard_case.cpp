@@ -19,7 +19,7 @@ std::string text(double number) {
   return digits;
 }
 
-/// Removes the source folder from the file's name.
+/// Returns the file of the running test, from "tests/" on.
 std::string here() {
   const std::string file = ::testing::UnitTest::GetInstance()->current_test_info()->file();
   const std::size_t tests = file.rfind("/tests/");

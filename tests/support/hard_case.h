@@ -1,7 +1,9 @@
 #pragma once
 
-// Figures of the hard cases (tests/hard_cases/cases.txt). Each is printed with its test on a line
-// of its own; tests/hard_cases/run.sh collects them for the table of tests/hard_cases/README.md.
+// Checks and prints the measured figures of the hard cases: numerically difficult situations of a
+// renderer, which tests/hard_cases/cases.txt lists. Each figure is printed on a line of its own,
+// with the file of its test; tests/hard_cases/run.sh collects these lines for the table of
+// tests/hard_cases/README.md.
 
 #include <string_view>
 
@@ -20,7 +22,7 @@ void report_hard_case(std::string_view id, std::string_view what);
 /// the environment (label hard_cases_full).
 int tries(int few, int full);
 
-/// Maximum of the numbers seen; NaN once a NaN was seen.
+/// Maximum of 0 and the numbers seen; NaN once a NaN was seen.
 class Worst {
  public:
   void see(double x) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// HTTP calls to a server on loopback.
+// Blocking HTTP calls to a server on loopback, for tests of the coordinator's web server.
 
 #include <map>
 #include <optional>

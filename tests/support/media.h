@@ -1,11 +1,13 @@
 #pragma once
 
-// Media for the scenes of tests.
+// Adds media (fog, smoke) to the scenes of tests.
 
 #include "tests/support/scenes.h"
 
 namespace bandsaw::test {
 
+/// `absorption`, `scattering`: coefficients per unit of length, grey. `g`: of the phase function
+/// of Henyey and Greenstein.
 inline Medium medium(float absorption, float scattering, double g = 0) {
   return {.absorption = gray(absorption), .scattering = gray(scattering), .g = g};
 }
@@ -15,6 +17,7 @@ inline MediumId add(SceneMaker& maker, const Medium& medium) {
   return MediumId{static_cast<std::uint32_t>(maker.scene.media.media.size() - 1)};
 }
 
+/// Fills all space that is in no other medium.
 inline void fog(SceneMaker& maker, const Medium& medium) {
   maker.scene.media.fog = add(maker, medium);
 }
@@ -24,7 +27,7 @@ inline void fill_sphere(SceneMaker& maker, const Vec3& center, double radius, Me
   maker.scene.media.boundaries.spheres.push_back({center, radius, filled_with(inside)});
 }
 
-/// The mesh MUST be closed.
+/// Fills a mesh, which MUST be closed, with a medium; its surface is invisible.
 inline void fill_mesh(SceneMaker& maker, Mesh mesh, const Transform& to_world, MediumId inside) {
   Geometry& boundaries = maker.scene.media.boundaries;
   const MeshId id{static_cast<std::uint32_t>(boundaries.meshes.size())};

@@ -1,4 +1,4 @@
-// Meshes for tests: spheres, grids, random triangles.
+// Meshes for tests: spheres and random triangles.
 
 #include "tests/support/meshes.h"
 
@@ -12,11 +12,13 @@
 namespace bandsaw::test {
 namespace {
 
-/// Splits every triangle at the midpoints of its edges, projected to the unit sphere.
+/// Makes the midpoints of edges, projected to the unit sphere. Triangles that share an edge share
+/// its midpoint.
 class Splitter {
  public:
   explicit Splitter(std::vector<Vec3>& points) : points_(points) {}
 
+  /// Returns the index of the midpoint of points a and b.
   std::uint32_t middle(std::uint32_t a, std::uint32_t b) {
     const auto key = std::minmax(a, b);
     const auto [place, is_new] = middles_.try_emplace(key, points_.size());
@@ -34,7 +36,7 @@ class Splitter {
 }  // namespace
 
 Mesh icosphere(int levels) {
-  const double g = (1 + std::sqrt(5.0)) / 2;
+  const double g = (1 + std::sqrt(5.0)) / 2;  // golden ratio: the corners of an icosahedron
   std::vector<Vec3> points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
                               {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
                               {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
@@ -80,6 +82,7 @@ Mesh rough_sphere(int slices, int stacks, double spread, std::uint64_t seed) {
   }
   add({0, -1, 0});
   const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
+  // The index of the vertex of stack i, slice j; stacks 0 and `stacks` are the poles.
   const auto at = [&](int i, int j) {
     return i == 0        ? 0
            : i == stacks ? last

@@ -13,15 +13,16 @@ namespace bandsaw::test {
 /// triangles, closed, normals outwards, shared vertices.
 Mesh icosphere(int levels);
 
-/// A sphere of latitudes and longitudes with shared vertices and random radii in [1, spread]:
-/// spread 1 is round, 6 gives spikes. Closed. Many more slices than stacks give needle-shaped
-/// triangles.
+/// A closed sphere of latitudes and longitudes around the origin, with shared vertices. Each vertex
+/// has a random radius in [1, spread]: spread 1 is round, 6 gives spikes. Many more slices than
+/// stacks give needle-shaped triangles.
 Mesh rough_sphere(int slices, int stacks, double spread, std::uint64_t seed);
 
 /// `count` triangles with edges up to `size`, at random places of the cube [-1, 1]^3.
 Mesh triangle_soup(int count, double size, std::uint64_t seed);
 
-/// Translates all vertices by `by`; the results are rounded to float.
+/// `moved` translates all vertices by `by`, `scaled` multiplies them by it, both in double; the
+/// results are rounded to float.
 Mesh moved(Mesh mesh, const Vec3& by);
 Mesh scaled(Mesh mesh, double by);
 

@@ -1,12 +1,15 @@
 #pragma once
 
-// A byte pattern in which all pieces differ.
+// Bytes for tests of transfers in chunks: chunks from different offsets differ, so a chunk that is
+// lost, repeated or at a wrong place is noticed.
 
 #include <cstddef>
 #include <string>
 
 namespace bandsaw::test {
 
+/// The bytes depend on the low 21 bits of their offset only: the pattern repeats after 2 MiB. The
+/// factor is 2^32 divided by the golden ratio, which spreads consecutive offsets.
 inline std::string pattern(std::size_t size) {
   std::string bytes(size, '\0');
   for (std::size_t i = 0; i < size; ++i) {

@@ -17,14 +17,16 @@ class Process {
  public:
   using Milliseconds = std::chrono::milliseconds;
 
-  /// Starts argv[0], a path. `environment`: "NAME=value", added to the test's own environment,
-  /// replacing variables of the same name.
+  /// Starts the program argv[0], a path that MUST exist; standard input is empty. `environment`:
+  /// entries "NAME=value", added to the test's own environment; they replace variables of the same
+  /// name.
   static Process start(std::vector<std::string> argv, std::vector<std::string> environment = {});
   Process(Process&&) noexcept;
   Process& operator=(Process&&) noexcept;
   ~Process();
 
   pid_t pid() const;
+  /// Does nothing if the process has ended.
   void signal(int number);
 
   /// Standard output and standard error so far.
@@ -39,8 +41,9 @@ class Process {
   bool wait_until(const std::function<bool(const std::string&, const std::string&)>& holds,
                   Milliseconds timeout = std::chrono::seconds(60));
 
-  /// Waits for the end. Returns the exit code, or 128 + the signal's number; std::nullopt if the
-  /// time expired.
+  /// Waits for the end of the process and of its output. Returns the exit code, or 128 + the number
+  /// of the signal that ended it; std::nullopt if the time expired. The default is shorter than the
+  /// 300 s after which CTest ends a test of a farm.
   std::optional<int> wait(Milliseconds timeout = std::chrono::seconds(250));
 
  private:

@@ -1,4 +1,5 @@
-// A second, simple BVH that computes in double. Accel must find the same hits.
+// A second, simple BVH that computes in double, as the reference for Accel, the renderer's BVH:
+// both must find the same hits.
 
 #include "tests/support/reference_accel.h"
 
@@ -33,8 +34,8 @@ Box bounds(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
   return box;
 }
 
-/// Conservative test of a ray against a box up to `bound`, with a margin far larger than rounding
-/// errors.
+/// Conservative test of a ray against a box up to the distance `bound`. The margin of 2^-30 is far
+/// larger than rounding errors, so no box that is hit is skipped.
 bool may_meet(const Box& box, const TracedRay& ray, double bound) {
   const double lo[3] = {box.lo.x, box.lo.y, box.lo.z};
   const double hi[3] = {box.hi.x, box.hi.y, box.hi.z};
@@ -51,6 +52,7 @@ bool may_meet(const Box& box, const TracedRay& ray, double bound) {
   return enter <= leave * (1 + 0x1p-30);
 }
 
+/// Keeps the closer hit; of two at the same distance that with the lower id, as Accel does.
 void keep_lower(const PrimitiveId& id, const Crossing& crossing, Hit& best) {
   if (crossing.t < best.t || (crossing.t == best.t && id < best.id)) {
     best = {crossing.t, id, crossing.u, crossing.v};

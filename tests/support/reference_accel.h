@@ -1,7 +1,8 @@
 #pragma once
 
-// Reference for Accel by the simplest means: brute force, or a binary tree of double boxes split at
-// the middle, with the double-precision intersection tests of renderlib/geometry only.
+// A reference for tests of Accel, the renderer's BVH. It is as simple as possible:
+// brute force, or a binary tree of boxes in double, split at the median. It uses only the
+// double-precision intersection tests of renderlib/geometry.
 
 #include <cstdint>
 #include <optional>
@@ -16,9 +17,10 @@ namespace bandsaw::test {
 
 class ReferenceAccel {
  public:
-  /// `geometry` MUST outlive this object. `brute_force`: test every primitive, without trees.
+  /// `geometry` MUST outlive this object. `brute_force`: every primitive is tested, without trees.
   explicit ReferenceAccel(const Geometry& geometry, bool brute_force = false);
 
+  /// Returns Hit{}, which converts to false, if the ray hits nothing or cannot be traced.
   Hit closest(const Ray& ray) const;
   bool occluded(const Ray& ray) const { return static_cast<bool>(closest(ray)); }
 
@@ -30,8 +32,8 @@ class ReferenceAccel {
     std::uint32_t right = 0;
   };
   struct Tree {
-    std::vector<Node> nodes;
-    std::vector<std::uint32_t> items;
+    std::vector<Node> nodes;           ///< the root is the first; empty: nothing can be hit
+    std::vector<std::uint32_t> items;  ///< indices of primitives, in the order of the leaves
   };
 
   Tree make_tree(const std::vector<Box>& boxes) const;
@@ -45,8 +47,8 @@ class ReferenceAccel {
   const Geometry& geometry_;
   bool brute_force_;
   std::vector<Tree> meshes_;
-  std::vector<std::optional<Transform>> to_object_;
-  Tree loose_;
+  std::vector<std::optional<Transform>> to_object_;  ///< std::nullopt: singular, cannot be hit
+  Tree loose_;  ///< of the shapes that are in no instance: spheres, quads, then triangles
 };
 
 }  // namespace bandsaw::test

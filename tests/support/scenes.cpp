@@ -16,7 +16,8 @@ Id append(std::vector<T>& list, T value) {
   return Id{static_cast<std::uint32_t>(list.size() - 1)};
 }
 
-/// Adds five sides of a box whose floor is corner + [u, v], rotated about the y axis.
+/// Adds the sides and the top of a box, without its floor. `corner`: a corner of the floor; `u`,
+/// `v`: the edges of the floor from there, both horizontal.
 void add_block(SceneMaker& maker, const Vec3& corner, const Vec3& u, const Vec3& v, double height,
                MaterialId material) {
   const Vec3 up{0, height, 0};

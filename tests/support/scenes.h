@@ -1,6 +1,6 @@
 #pragma once
 
-// Builds scenes for tests, one line per shape.
+// Builds scenes for tests: SceneMaker needs one short call per material or shape.
 
 #include <memory>
 
@@ -9,6 +9,8 @@
 
 namespace bandsaw::test {
 
+/// Collects a scene. The ids it returns are valid in its own scene only. A reflectance or radiance
+/// that is one number is grey. Angles are in degrees.
 class SceneMaker {
  public:
   TextureId texture(Texture texture);
@@ -16,6 +18,7 @@ class SceneMaker {
   MaterialId diffuse(const Rgb& reflectance);
   MaterialId metal(float reflectance, double fuzz);
   MaterialId glass(double index_of_refraction);
+  /// `one_sided`: only the side of the normal emits.
   MaterialId lamp(float radiance, bool one_sided = false);
 
   void sphere(const Vec3& center, double radius, MaterialId material);
@@ -25,19 +28,22 @@ class SceneMaker {
   void camera(const Vec3& position, const Vec3& look_at, double vertical_fov);
   void background(const Rgb& bottom, const Rgb& top);
 
-  SceneDescription scene;
+  SceneDescription scene;  ///< for what has no call here
 
-  /// The scene MUST be valid.
+  /// The scene MUST be valid; otherwise the program is aborted.
   std::shared_ptr<const Scene> build() const;
 };
 
 /// The Cornell box, 555 units wide: a quad that emits downwards and two boxes of diffuse quads.
 SceneMaker cornell_box();
 
-/// Adds a closed room of 4 x 4 x 4 with walls of one material, and a camera in it.
+/// Adds a closed room of 4 x 4 x 4 around the origin with walls of one material, and a camera in
+/// it.
 void add_room(SceneMaker& maker, MaterialId wall);
 
-/// This room with a lamp of this radius and radiance 10 in its middle, inside a ball of glass.
+/// Makes the room of add_room with a spherical lamp of radiance 10 in its middle, inside a ball of
+/// glass of radius 0.5. `index`: refractive index of the glass; `lamp`: radius of the lamp, below
+/// 0.5; `reflectance`: of the walls.
 SceneMaker lamp_in_glass(double index, double lamp, float reflectance = 0.5f);
 
 /// A grid of n x n squares in z = 0 over [-1, 1]^2, two triangles each, normal +z.

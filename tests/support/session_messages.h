@@ -1,13 +1,14 @@
 #pragma once
 
-// Messages of a coordinator to a worker, for tests of sessions.
+// Messages of a coordinator to a worker, for tests of the workers' sessions.
 
 #include "proto/farm.pb.h"
 #include "proto/wire/digest.h"
 
 namespace bandsaw::test {
 
-/// Leases samples [0, 16) of two rows of an image of 8 x 80 pixels.
+/// Leases samples [0, 16) of the two rows from `first_row` of an image of 8 x 80 pixels. The
+/// manifest's digest is all zeros. `id`: of the lease; 7 is an arbitrary job.
 inline farm::ToWorker lease(std::uint64_t id, std::uint32_t first_row, std::uint64_t job = 7) {
   farm::ToWorker message;
   farm::Lease* l = message.mutable_lease();

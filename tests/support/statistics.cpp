@@ -54,8 +54,8 @@ ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
   if (pooled_expected >= kMinExpected) {
     add_cell(pooled_count, pooled_expected);
   } else if (pooled_count > 4 * kMinExpected) {
-    result.statistic =
-        std::numeric_limits<double>::infinity();  // a practically impossible event happened
+    // More than 20 counts where fewer than 5 are expected: practically impossible by chance.
+    result.statistic = std::numeric_limits<double>::infinity();
   }
   result.degrees = std::max(1, result.degrees - 1);
   // Wilson and Hilferty 1931: the cube root of chi-squared / k is nearly normal, with this variance

@@ -1,6 +1,7 @@
 #pragma once
 
-// Statistical tests with fixed seeds, so that a failure is reproducible.
+// Statistics for tests of random numbers: moments and the chi-squared test. Tests call them with
+// samples of fixed seeds, so a failure is reproducible.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +19,8 @@ class Moments {
   double variance() const;
   /// Standard error of the mean.
   double standard_error() const;
-  /// Returns the deviation of the mean in standard errors; 0 if all samples are equal to the
-  /// expected value.
+  /// Returns the deviation of the mean from `expected` in standard errors. If all samples are
+  /// equal: 0 if they are the expected value, else infinity.
   double z(double expected) const;
 
  private:
@@ -28,11 +29,11 @@ class Moments {
   double sum_of_squares_ = 0;
 };
 
-/// Pearson's chi-squared test of counts against expected counts with the same sum. Cells with fewer
-/// than 5 expected counts are pooled.
+/// Result of Pearson's chi-squared test of counts against expected counts with the same sum. All
+/// cells with an expected count below 5 are pooled into one.
 struct ChiSquared {
   double statistic = 0;
-  int degrees = 0;
+  int degrees = 0;  ///< of freedom
   /// Probability of a statistic at least this large, by the cube-root normal approximation (Wilson
   /// and Hilferty 1931).
   double p_value = 1;

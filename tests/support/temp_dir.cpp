@@ -1,4 +1,4 @@
-// A folder that is removed with the object.
+// A temporary folder for tests, which the destructor removes with its contents.
 
 #include "tests/support/temp_dir.h"
 
@@ -17,7 +17,7 @@ TempDir::TempDir() {
 
 TempDir::~TempDir() {
   std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
+  std::filesystem::remove_all(path_, ignored);  // a folder that stays does not fail the test
 }
 
 }  // namespace bandsaw::test

@@ -1,7 +1,7 @@
 #pragma once
 
-// 113-bit numbers for reference results of geometry: inputs are taken as exact, results as free of
-// rounding errors.
+// Numbers with 113 bits of mantissa, for reference results of geometry. Their rounding errors are
+// so much smaller than those of double that a test takes a result as exact.
 
 #include <cmath>
 
@@ -10,7 +10,7 @@
 namespace bandsaw::test {
 
 #if defined(__aarch64__)
-using Wide = long double;  // 113 bits there; 64 on x86-64
+using Wide = long double;  // has 113 bits on ARM64, but only 64 on x86-64
 #else
 __extension__ using Wide = __float128;
 #endif

@@ -1,5 +1,5 @@
 // Makes files that look like a worker program: an ELF header, and the mark by which the command
-// identifies a worker of its version.
+// finds the version of a worker program.
 
 #include "tests/support/worker_file.h"
 
@@ -20,6 +20,7 @@ std::string bytes_of(const Record& record) {
 }  // namespace
 
 std::string worker_file(std::uint16_t machine, const wire::WorkerMark& mark) {
+  // The 1000 other bytes on both sides stand for code: the mark must be found between them.
   const std::string content = std::string(1000, 'c') + bytes_of(mark) + std::string(1000, 'c');
   Elf64_Phdr segment{};
   segment.p_type = PT_LOAD;

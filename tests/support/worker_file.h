@@ -1,6 +1,6 @@
 #pragma once
 
-// Files that the command takes for a worker program, although they cannot be run.
+// Files that the command `bandsaw` takes for a worker program, although they cannot be run.
 
 #include <cstdint>
 #include <string>
@@ -10,8 +10,8 @@
 namespace bandsaw::test {
 
 /// Makes the bytes of a file that is accepted as a worker: an ELF header of the machine type
-/// (EM_AARCH64, … of <elf.h>), one segment with the mark in it, and section headers at its end. The
-/// file cannot be run.
+/// (EM_AARCH64, … of <elf.h>), one segment that contains the mark, and section headers at its end.
+/// The mark is the record by which the command finds the version of a worker program.
 std::string worker_file(std::uint16_t machine, const wire::WorkerMark& mark);
 
 /// Returns the mark of a worker that is compatible with a coordinator of this build; its version is

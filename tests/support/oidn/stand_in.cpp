@@ -1,6 +1,8 @@
-// A stand-in for the library OpenImageDenoise, version 2, for tests: the functions that
+// A stand-in for the library OpenImageDenoise, version 2, for tests: it has the functions that
 // coordinator/cli/image/oidn.cpp calls. Its "filter" returns (color + albedo) / 2 + normal / 4, so
-// that a test sees what it was given. Images of 13 pixels width are an error.
+// that a test sees which images it was given. A width of 13 pixels is an error, to test errors. The
+// numbers are those of oidn.h: device type 1 is the CPU, format 3 is three floats, error 2 is an
+// invalid argument.
 
 #include <cstddef>
 #include <cstring>
@@ -63,6 +65,7 @@ void oidnSetFilterBool(OIDNFilterImpl* filter, const char* name, bool value) {
   filter->hdr = filter->hdr || (std::strcmp(name, "hdr") == 0 && value);
 }
 void oidnCommitFilter(OIDNFilterImpl* filter) {
+  // Four images: color, albedo, normal and output.
   filter->committed = filter->device->committed && filter->hdr && filter->pictures.size() == 4;
 }
 void oidnExecuteFilter(OIDNFilterImpl* filter) {
