@@ -1,5 +1,6 @@
-// Adaptive jobs: tiles are planned from the pilot, the plan is journalled, and every later pass
-// follows it.
+// Adaptive jobs, which give more samples to noisy parts of the image. The pilot has the same number
+// of samples for every pixel; from its errors the samples of each half tile (half of the pixels of
+// a square of 16 x 16) are planned. The plan is journalled, and every later pass follows it.
 
 #include <cmath>
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr TileGrid kGrid{512, 32};
 
-/// The left half of the image is eight times as noisy as the right.
+/// The left half of the image has eight times the error of the right half: 64 times the variance.
 std::vector<HalfTileErrors> uneven() {
   std::vector<HalfTileErrors> tiles;
   for (std::uint32_t tile = 0; tile < kGrid.columns() * kGrid.rows(); ++tile) {
@@ -22,10 +23,12 @@ std::vector<HalfTileErrors> uneven() {
   return tiles;
 }
 
+/// A job with the error target 1 %, which one worker renders to its end. The film measures the
+/// error 0.2 / sqrt(samples), and these errors of the half tiles.
 struct Adaptive {
   FarmDriver farm;
   JobId job = 0;
-  std::vector<std::uint64_t> looks;
+  std::vector<std::uint64_t> looks;  ///< samples at which the error was measured
 
   explicit Adaptive(bool adaptive = true, std::vector<HalfTileErrors> tiles = uneven()) {
     job = farm.submit(
@@ -45,7 +48,8 @@ TEST(Adaptive, PassesAfterThePilotFollowTheTilePlan) {
   EXPECT_EQ(run.farm.job(run.job).state, JobState::kFinishing);
   const auto planned = run.farm.all_records<record::TilesPlanned>();
   ASSERT_EQ(planned.size(), 1u);
-  // 0.2 / sqrt(n) <= 4 x 0.01 from 25 samples on, so tiles are planned at the first checkpoint.
+  // Tiles are planned as soon as the error is at most four times the target. 0.2 / sqrt(n) <= 4 x
+  // 0.01 from 25 samples on, so this is at the first checkpoint, 32 samples.
   EXPECT_EQ(planned[0].plan, plan_tiles(kGrid, uneven(), 32));
   TileSchedule schedule(kGrid, planned[0].plan);
   std::map<SampleRange, TileSamples> tiles_of;

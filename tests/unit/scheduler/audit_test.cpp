@@ -7,13 +7,14 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// All bands are audited.
 SchedulerOptions audited() {
   SchedulerOptions options = slow();
   options.audit_share = 1;
   return options;
 }
 
-/// A farm in which each lease is answered by a call of the test.
+/// A farm in which the test answers each lease by a call of `result`.
 struct AuditFarm : FarmDriver {
   explicit AuditFarm(SchedulerOptions options = audited()) : FarmDriver(std::move(options)) {}
 
@@ -27,6 +28,7 @@ struct AuditFarm : FarmDriver {
     return found;
   }
 
+  /// Sends the result of a lease. `lie`: added to the digest of its first row; 0: right pixels.
   Step result(const action::Lease& lease, const std::string& instance, std::uint64_t lie = 0) {
     input::BandStored in;
     in.job = lease.job;
@@ -49,7 +51,8 @@ struct AuditFarm : FarmDriver {
   }
 };
 
-/// A job of one row, rendered by a and then by b; c may be connected as a third machine.
+/// A job of one row, rendered by a and then, as its audit, by b. `lie_of_a`, `lie_of_b`: as in
+/// AuditFarm::result. `third`: c is connected as a third machine.
 AuditFarm two_results(std::uint64_t lie_of_a, std::uint64_t lie_of_b, bool third = false) {
   AuditFarm farm;
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
@@ -77,6 +80,7 @@ TEST(Audit, SelectsTheShareOfBandsAndTheSameInEveryEpoch) {
     EXPECT_FALSE(is_audited(spec, band, 0));
     EXPECT_TRUE(is_audited(spec, band, 1));
   }
+  // Four standard deviations: sqrt(20,000 x 0.05 x 0.95) is 31, sqrt(20,000 x 0.05^2) is 7.
   EXPECT_NEAR(count, 1'000, 4 * 31);
   EXPECT_NEAR(both, 50, 4 * 7) << "the selections of two jobs are independent";
 }
@@ -113,7 +117,7 @@ TEST(Audit, AMachineDoesNotConfirmItself) {
   AuditFarm farm;
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a", 1);
-  WorkerHello sibling;
+  WorkerHello sibling;  // another process with the same name: it is on the same machine
   sibling.instance = "b";
   sibling.name = "worker-a";
   sibling.protocol = 1;
@@ -134,7 +138,7 @@ TEST(Audit, AThirdMachineDecidesAndWrongRowsAreRenderedAgain) {
   EXPECT_EQ(farm.job(1).samples_done, 0u);
   EXPECT_NE(farm.job(1).reason.find("other pixels than two others"), std::string::npos)
       << farm.job(1).reason;
-  // One of b and c renders the row, the other audits it.
+  // One of b and c, whose sessions are 2 and 3, renders the row; the other audits it.
   const SessionId again = farm.all<action::Lease>().back().session;
   const std::string who[] = {"", "", "b", "c"};
   farm.result(farm.lease(again, false), who[again]);
@@ -175,6 +179,8 @@ TEST(Audit, TwoThatRepeatTheirResultsWaitForAThird) {
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
 }
 
+// The band of a is leased to b when a is lost. Then a returns with wrong pixels of it, and c has to
+// decide.
 TEST(Audit, ABackupTaskThatDiffersOpensADispute) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
@@ -336,11 +342,12 @@ TEST(Quarantine, ForgetsAnErrorMeasuredWithWrongPixels) {
     if (farm.all<action::Retract>().empty()) {
       farm.send(input::PassMerged{1, 8 * (i + 1), ErrorEstimate{.relative_rmse = 1e-6}});
       EXPECT_EQ(farm.job(1).error, 1e-6);
+      // The error is far below the target, but it is compared only when all audits are done.
       EXPECT_EQ(farm.job(1).state, JobState::kRunning) << "a look waits for the audits";
     }
   }
   ASSERT_FALSE(farm.all<action::Retract>().empty());
-  EXPECT_LT(farm.job(1).error, 0);
+  EXPECT_LT(farm.job(1).error, 0);  // unknown
   EXPECT_TRUE(farm.job(1).curve.empty());
   EXPECT_EQ(farm.job(1).state, JobState::kRunning);
 }

@@ -1,5 +1,6 @@
-// When nothing is free and a worker is idle, leases that are not begun are stolen, late ones get
-// backup tasks, and the first result ends the others.
+// Work for an idle worker when no band is free: it steals a lease that another worker has not
+// begun, or it gets a backup task, a second lease of a band that is late. The first result ends the
+// other lease. Also tests CostMap, which estimates the cost of rows.
 
 #include "coordinator/scheduler/model/row_costs.h"
 #include "farm_driver.h"
@@ -21,7 +22,7 @@ struct OneRow {
   FarmDriver farm;
   JobId job = 0;
   action::Lease original;
-  action::Lease copy;
+  action::Lease copy;  ///< the backup task
 };
 
 TEST(BackupTasks, AnIdleWorkerBacksUpASlowOne) {
@@ -75,7 +76,7 @@ TEST(BackupTasks, ALongBandIsSplitByRowsOverIdleWorkers) {
   FarmDriver farm;
   farm.submit(test_job("r1", StopAtSamples{8}, 1000, 8));
   farm.hello(1, "a", 1);
-  farm.stored(farm.all<action::Lease>()[0], "a", 0.001);
+  farm.stored(farm.all<action::Lease>()[0], "a", 0.001);  // so fast that the next band is large
   const action::Lease large = farm.all<action::Lease>().back();
   ASSERT_GT(large.band.rows.count(), 2u);
   farm.pass_time(2, {1});
@@ -97,7 +98,7 @@ TEST(BackupTasks, ALongBandIsSplitByRowsOverIdleWorkers) {
 
 TEST(BackupTasks, ALeaseThatIsNotBegunIsStolen) {
   SchedulerOptions options = test_options();
-  options.band_target_s = 1e-4;
+  options.band_target_s = 1e-4;  // so short that each band has one row
   FarmDriver farm(options);
   farm.submit(test_job("r1", StopAtSamples{8}, 64, 2));
   farm.hello(1, "a", 2);
@@ -116,6 +117,8 @@ TEST(BackupTasks, ALeaseThatIsNotBegunIsStolen) {
 TEST(CostMap, LearnsTheCostOfRows) {
   CostMap cost(200);
   EXPECT_EQ(cost.of_all(), 200);
+  // The upper half costs three times as much as was assumed. A single measurement corrects only a
+  // part of the difference.
   for (int i = 0; i < 20; ++i) {
     const RowRange top{0, 100};
     cost.learn(top, 300 / cost.of(top));

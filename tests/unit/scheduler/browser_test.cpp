@@ -1,4 +1,5 @@
-// Browsers as workers: how they are shown, what they are given, and how little they are trusted.
+// Browsers as workers, which join by a link and may be malicious: how they are shown, which jobs
+// and bands they get, how their bands are audited, and what the holder of a link cannot do.
 
 #include <cmath>
 #include <map>
@@ -11,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Bands of one row; all of browsers are audited, none of native workers.
+/// Bands of one row. All bands of browsers are audited, none of native workers.
 SchedulerOptions browsers_audited() {
   SchedulerOptions options = slow();
   options.browser_audit_share = 1;
@@ -31,6 +32,7 @@ struct BrowserFarm : FarmDriver {
     return {};
   }
 
+  /// Returns how many leases of audits, or of other bands, the session got.
   std::size_t leases(SessionId session, bool audit = false) const {
     const auto all_leases = all<action::Lease>();
     return static_cast<std::size_t>(
@@ -49,6 +51,8 @@ struct BrowserFarm : FarmDriver {
     return found;
   }
 
+  /// Sends the result of a lease. `lie`: added to the digest of its first row; 0: right pixels.
+  /// `written`: false for a band whose rows are stored already, so that it is only compared.
   Step result(const action::Lease& lease, const std::string& instance, std::uint64_t lie = 0,
               bool written = true) {
     input::BandStored in;
@@ -123,6 +127,7 @@ TEST(Browser, CannotTakeTheNameOrTheInstanceOfANativeWorker) {
 
 // ---- memory ----
 
+// A scene needs about four times the bytes of its package.
 TEST(Browser, GetsOnlyScenesThatFitIntoItsMemory) {
   for (const std::uint64_t memory : {399'999'999, 400'000'000}) {
     BrowserFarm farm;
@@ -343,7 +348,7 @@ TEST(Browser, AuditsAnotherOneOnlyIfNoNativeWorkerIsThere) {
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 40));
   farm.result(farm.lease(2), "t");
   EXPECT_EQ(farm.leases(3, true), 0u) << "a native worker may be back soon";
-  farm.pass_time(61, {2, 3});
+  farm.pass_time(61, {2, 3});  // native workers are waited for 60 s
   farm.result(farm.lease(2), "t");
   farm.result(farm.lease(3), "u");
   EXPECT_GT(farm.leases(2, true) + farm.leases(3, true), 0u);
@@ -351,7 +356,7 @@ TEST(Browser, AuditsAnotherOneOnlyIfNoNativeWorkerIsThere) {
 
 TEST(Browser, ThoseThatDisagreeAloneAreDecidedByAThird) {
   BrowserFarm farm;
-  farm.pass_time(61);
+  farm.pass_time(61);  // no native worker is waited for any more
   farm.submit(one_row());
   farm.hello_tab(1, "t");
   farm.hello_tab(2, "u");
@@ -447,10 +452,13 @@ TEST(Browser, OnesThatLieAreFoundWithTheExpectedProbability) {
     expected += probability;
     variance += probability * (1 - probability);
   }
-  EXPECT_GT(expected, 0.2 * kTabs);
+  EXPECT_GT(expected, 0.2 * kTabs);  // or else the next comparison would say little
   EXPECT_NEAR(found, expected, 4 * std::sqrt(variance));
 }
 
+// At most kMaxAudits audits of a job can be open. While half as many are open, browsers get no
+// bands, until a native worker has compared one. Checking the invariants after each of thousands of
+// steps would be slow, so there is no FarmDriver here.
 TEST(Browser, GetsNoBandsThatWouldNotBeAudited) {
   SchedulerOptions options = browsers_audited();
   options.browsers = Browsers::kOnly;
@@ -563,7 +571,7 @@ TEST(Browser, ThoseThatLieDisplaceNobodyFromTheQuarantine) {
   farm.result(lease, tab, 7);
   farm.send(input::Quarantine{"tab@browser"});
 
-  EXPECT_LT(flood(farm, 10, "u"), 300);
+  EXPECT_LT(flood(farm, 10, "u"), 300);  // the list of quarantined browsers has 256 places
   EXPECT_EQ(in<action::Refuse>(farm.hello(6, native, 1)).size(), 1u);
   // A restart does not take the tab's pixels from the disk again.
   BrowserFarm next;

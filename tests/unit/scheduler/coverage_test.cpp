@@ -1,4 +1,5 @@
-// Coverage against plain bookkeeping: every sample of every row has one owner.
+// Coverage knows the owner of each sample of each row of one pass: the id of a lease (here mostly
+// 7), kStored or kFree. Random operations are compared with plain bookkeeping.
 
 #include "coordinator/scheduler/model/coverage.h"
 
@@ -68,11 +69,12 @@ TEST(Coverage, OnlyRowsWithoutALeaseAreAdoptable) {
   EXPECT_TRUE(coverage.adoptable({{0, 16}, {1, 3}}));
 }
 
-/// Bookkeeping with one cell per block and row.
+/// Bookkeeping with one owner for each block of 8 samples of each row.
 class Plain {
  public:
   Plain(std::uint64_t blocks, std::uint32_t height) : blocks_(blocks), cells_(blocks * height) {}
 
+  /// Returns true if any block of the node is stored in the row.
   bool stored(std::uint32_t row, const SampleRange& node) const {
     bool any = false;
     for (std::uint64_t b = node.first_block(); b < node.first_block() + node.blocks(); ++b) {
@@ -100,6 +102,7 @@ class Plain {
   }
 
  private:
+  /// Frees what the lease owns in the row: a lease that loses a part of a row loses the whole row.
   void lose_row(std::uint32_t row, Owner lease) {
     for (std::uint64_t b = 0; b < blocks_ && lease != kFree; ++b) {
       Owner& cell = cells_[row * blocks_ + b];

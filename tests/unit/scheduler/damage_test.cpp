@@ -1,4 +1,5 @@
-// Stored bands that are found damaged on disk.
+// Stored bands that are found damaged on disk become free again: they are rendered and audited
+// again, and counted once.
 
 #include "coordinator/scheduler/api/worker_process.h"
 #include "farm_driver.h"
@@ -6,12 +7,14 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// All bands are audited.
 SchedulerOptions with_audits() {
   SchedulerOptions options = test_options();
   options.audit_share = 1;
   return options;
 }
 
+/// Reports that the record of this band, rendered by this instance, is damaged.
 Step lose(FarmDriver& farm, JobId job, const Band& band, const std::string& instance) {
   return farm.send(input::BandsDamaged{
       .job = job, .bands = {{.band = band, .process = worker_process_id(instance)}}});

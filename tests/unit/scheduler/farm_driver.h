@@ -1,6 +1,8 @@
 #pragma once
 
-// A scheduler that a test drives by hand: sends inputs and keeps all records and actions.
+// Helpers of the scheduler's tests. FarmDriver drives a Scheduler by hand: it sends inputs, keeps
+// all records and actions, and checks the invariants after each step. The glossary of
+// proto/README.md defines the terms: band, pass, lease, epoch, audit and others.
 
 #include <algorithm>
 #include <functional>
@@ -14,6 +16,7 @@
 
 namespace bandsaw::coordinator {
 
+/// The versions are those of test_worker: protocol 1, pixel version 2, canary 3.
 inline SchedulerOptions test_options() {
   SchedulerOptions options;
   options.compatibility = {1, 2, 3};
@@ -21,9 +24,8 @@ inline SchedulerOptions test_options() {
   return options;
 }
 
-/// Options with which even single rows of a small image take long, so that leases have one or two
-/// rows.
-/// Options with which a band is a row or a few.
+/// Options with which a band of a small image has one row or a few, because the target time of a
+/// band is a millisecond.
 inline SchedulerOptions slow() {
   SchedulerOptions options = test_options();
   options.band_target_s = 1e-3;
@@ -42,7 +44,8 @@ inline JobSpec test_job(std::string request, const StopRule& stop, std::uint32_t
   return spec;
 }
 
-/// Returns the row digest that a correct worker would send.
+/// Returns the row digest that a correct worker would send. It is any function of samples and row;
+/// a worker that sends another number counts as wrong.
 inline std::uint64_t honest_digest(const SampleRange& samples, std::uint32_t row) {
   return samples.first * 1'000'003 + samples.last * 7'919 + row + 1;
 }
@@ -54,6 +57,8 @@ inline std::vector<std::uint64_t> honest_digests(const Band& band) {
   return digests;
 }
 
+/// Returns the Hello of a worker process on a machine of its own. `instance` names the process;
+/// `held`: the leases that it holds after a reconnect.
 inline WorkerHello test_worker(const std::string& instance, std::uint32_t max_bands = 2,
                                std::vector<WorkerHello::Held> held = {}) {
   WorkerHello worker;
@@ -81,6 +86,7 @@ class FarmDriver {
     return step;
   }
 
+  /// Keeps the records and actions of a step that the test caused itself.
   void take(const Step& step) {
     for (const Record& record : step.records) {
       records.push_back(record);
@@ -109,6 +115,7 @@ class FarmDriver {
     return send(input::Hello{session, std::move(worker)});
   }
 
+  /// The worker returns the right pixels of a lease, which took it `render_s` seconds.
   Step stored(const action::Lease& lease, const std::string& instance, double render_s = 0.5) {
     input::BandStored in;
     in.job = lease.job;
@@ -123,7 +130,8 @@ class FarmDriver {
 
   void heartbeat(SessionId session) { send(input::Heartbeat{session, {}, "rendering"}); }
 
-  /// Sends a Tick each half second, with heartbeats of these sessions.
+  /// Advances the time in steps of half a second. Each sends heartbeats of these sessions and a
+  /// Tick. Workers of other sessions are silent.
   void pass_time(double seconds, const std::vector<SessionId>& sessions = {}) {
     for (double passed = 0; passed < seconds; passed += 0.5) {
       now += 0.5;
@@ -134,7 +142,7 @@ class FarmDriver {
     }
   }
 
-  /// Renders all bands that one worker is leased until it gets no more.
+  /// Lets a worker render all bands that it is leased, until it gets no more.
   void render_all(SessionId session, const std::string& instance) {
     for (std::size_t i = 0; i < actions.size(); ++i) {
       if (const auto* lease = std::get_if<action::Lease>(&actions[i]);
@@ -157,6 +165,7 @@ class FarmDriver {
     return found;
   }
 
+  /// Returns all records of a kind so far.
   template <class R>
   std::vector<R> all_records() const {
     std::vector<R> found;
@@ -171,7 +180,7 @@ class FarmDriver {
   JobView job(JobId id) const { return *scheduler.job(id, now); }
 
   Scheduler& scheduler;
-  Time now = 1000;
+  Time now = 1000;  ///< seconds; the start is arbitrary
   std::vector<Record> records;
   std::vector<Action> actions;
 };

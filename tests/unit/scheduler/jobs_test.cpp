@@ -143,7 +143,7 @@ TEST(Jobs, ATimeLimitEndsAtTheLastCompletePassAndRevokesTheRest) {
   const JobId job = farm.submit(test_job("r1", StopAtTime{20, kMaxSamples}));
   farm.hello(1, "a");
   std::size_t done = 0;
-  while (farm.now < 1019) {
+  while (farm.now < 1019) {  // the job began at 1000 and may take 20 s
     const auto leases = farm.all<action::Lease>();
     ASSERT_LT(done, leases.size());
     farm.stored(leases[done++], "a", 0.5);

@@ -41,7 +41,7 @@ TEST(Liveness, DisconnectsASilentWorkerAndLeasesItsBandAgain) {
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   farm.hello(2, "b");
-  farm.pass_time(6, {2});
+  farm.pass_time(6, {2});  // session 1 is silent for more than 4 s
   EXPECT_EQ(farm.all<action::Close>().size(), 1u);
   EXPECT_EQ(farm.all<action::Lease>().back().session, 2u);
 }
@@ -57,6 +57,8 @@ TEST(Liveness, AJumpOfTheClockDisconnectsNobody) {
   EXPECT_TRUE(farm.all<action::Close>().empty());
 }
 
+// A lease is revoked after 30 s without progress. A worker that prepares the scene reports a number
+// that grows; its change from 0 to 17 is progress.
 TEST(Liveness, RevokesALeaseWithoutProgress) {
   FarmDriver farm;
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
@@ -70,7 +72,7 @@ TEST(Liveness, RevokesALeaseWithoutProgress) {
   EXPECT_FALSE(farm.all<action::Revoke>().empty());
 }
 
-// A finished band may be uploading over a slow line, but not for ever.
+// A finished band may be uploading over a slow line, but for 600 s at most.
 TEST(Liveness, AnUploadHasALongerTimeout) {
   FarmDriver farm;
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
@@ -222,6 +224,8 @@ void store_one_and_lose(FarmDriver& farm, SessionId session) {
   farm.send(input::SessionEnded{session, "connection reset"});
 }
 
+// The first crash makes the band suspect. A new farm, of which nothing is known, requires five more
+// (CrashRate).
 TEST(CrashAttribution, SixCrashesOnANewFarmFailTheJobAndNameTheBand) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
@@ -302,6 +306,8 @@ Band lose_one_at(FarmDriver& farm, std::uint32_t row, SessionId session) {
   return band;
 }
 
+// Each worker that renders row 23 is lost. The band is retried in eight pieces, of which one is
+// blamed.
 TEST(CrashAttribution, FindsOneDeadlyRowOfALongBand) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 800));
@@ -428,6 +434,7 @@ TEST(CrashAttribution, RandomKillsDoNotFailAJobThatAdvances) {
   EXPECT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
 }
 
+// Each worker is silent when it gets the band, and is disconnected for this silence.
 TEST(CrashAttribution, DoesNotCountAWorkerThatWasSilentBefore) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));

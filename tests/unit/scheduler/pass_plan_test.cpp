@@ -1,4 +1,5 @@
-// Pure functions: passes, error checkpoints, sizes of bands, rates and time.
+// The scheduler's pure functions: division of a job into passes, error checkpoints (sample numbers
+// at which the error is compared with the target), sizes of bands, rates and the clock.
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 TEST(Passes, AreNodesThatFollowEachOtherToTheLastSample) {
+  // Every number of samples below 300, and some of the larger ones.
   for (std::uint64_t samples = 1; samples < 3000; samples += samples < 300 ? 1 : 37) {
     std::uint64_t end = 0;
     for (const SampleRange& pass : passes_between(0, samples)) {
@@ -60,6 +62,7 @@ TEST(Checkpoints, AreFewAndTheLastIsAtMostAQuarterTooFar) {
         samples = next;
         ++looks;
       }
+      // Checkpoints begin at 32 samples and are multiples of 16.
       const double needed = std::max(32.0, std::pow(target, -1 / power));
       EXPECT_LE(static_cast<double>(samples), needed * 1.25 + 16);
       EXPECT_LE(looks, 16);
@@ -74,6 +77,9 @@ TEST(Checkpoints, ContinueWithoutAnErrorAndStayBelowTheMaximum) {
   EXPECT_EQ(next_checkpoint(0, -1, 0.01, 5), 5u);
 }
 
+/// A worker that renders 100 rows of 8 samples a second, half of the speed of the farm, gets a band
+/// of 1,000 free rows; so many rows are left. The target time of a band is 1 s. A row of tiles has
+/// 16 rows.
 Sizing sizing() {
   static const CostMap even(2000);
   Sizing s;
@@ -112,17 +118,17 @@ TEST(BandSizes, ShrinkTowardTheEndDownToAMinimum) {
   Sizing s = sizing();
   s.free.rows.first = 7;
   s.work_left = 80'000;
-  EXPECT_EQ(size_band(s).rows.count(), 25u);
+  EXPECT_EQ(size_band(s).rows.count(), 25u);  // half of its share of the 100 rows that are left
   s.free.rows.first = 4;
   s.work_left = 800;
-  EXPECT_EQ(size_band(s).rows.count(), 12u);
+  EXPECT_EQ(size_band(s).rows.count(), 12u);  // an eighth of the target time
 }
 
 TEST(BandSizes, AreSmallBeforeAnythingIsMeasured) {
   Sizing s = sizing();
   s.free.rows.first = 12;
   s.measured = false;
-  EXPECT_EQ(size_band(s).rows.count(), 20u);
+  EXPECT_EQ(size_band(s).rows.count(), 20u);  // a fifth of the target time
 }
 
 TEST(BandSizes, ARowOfTilesThatIsTooMuchWorkIsCutByItsSamples) {
@@ -152,8 +158,8 @@ TEST(BandSizes, FitIntoAMessage) {
   s.work_rate = 1e12;
   s.work_left = 0x1p60;
   const Band band = size_band(s);
-  EXPECT_LE(std::uint64_t{band.rows.count()} * s.width * 24, wire::kBandBytes);
-  EXPECT_GE(band.rows.count(), 42u);
+  EXPECT_LE(std::uint64_t{band.rows.count()} * s.width * 24, wire::kBandBytes);  // 3 doubles
+  EXPECT_GE(band.rows.count(), 42u);  // as many as fit: 64 MiB / (65536 x 24 bytes) = 42.7
 }
 
 TEST(RecentRate, CoversTheLastTenSeconds) {

@@ -1,5 +1,6 @@
-// All workers are lost at once, because the coordinator's own network failed, and reconnect one by
-// one.
+// The reconnect barrier: all workers are lost at once, because the coordinator's own network
+// failed, and reconnect one by one. Until all are back, or 6 s (the grace time) have passed since
+// the first came back, none of them gets a lease, because another may have rendered those rows.
 
 #include "farm_driver.h"
 
@@ -20,7 +21,7 @@ struct AllLost {
     farm.hello(1, "a", 1);
     farm.hello(2, "b", 1);
     leases = farm.all<action::Lease>();
-    farm.pass_time(6);
+    farm.pass_time(6);  // workers are disconnected after 4 s of silence
     farm.actions.clear();
   }
 
@@ -45,7 +46,7 @@ TEST(ReconnectBarrier, TheFirstReconnectedWorkerGetsNothingAnotherHasRendered) {
 
 TEST(ReconnectBarrier, EndsAfterTheGraceTime) {
   AllLost all;
-  all.farm.pass_time(3600);
+  all.farm.pass_time(3600);  // does not count: the grace time begins with the first worker
   all.farm.stored(all.leases[0], "a");
   all.farm.hello(3, "a", 1);
   all.farm.pass_time(5, {3});

@@ -9,6 +9,7 @@ JobId submit(FarmDriver& farm, const std::string& request, std::int32_t priority
   return farm.send(input::Submit{test_job(request, StopAtSamples{64}, 64, 64), priority}).job;
 }
 
+/// Returns the job of the lease that worker a gets after its last one.
 JobId next_leased(FarmDriver& farm) {
   const action::Lease last = farm.all<action::Lease>().back();
   farm.stored(last, "a");
@@ -130,14 +131,14 @@ TEST(Why, NamesRefusedWorkersUntilTheyStopTrying) {
   worker.name = "desk";
   worker.protocol = 1;
   worker.pixel_version = 2;
-  worker.canary = 4;
+  worker.canary = 4;  // the hash of the worker's test render; the coordinator's is 3
   worker.build = "1a2b";
   farm.send(input::Hello{1, worker});
   EXPECT_NE(farm.scheduler.why(job, farm.now).at(0).find("desk was refused: its test render"),
             std::string::npos);
   ASSERT_EQ(farm.scheduler.workers(farm.now).size(), 1u);
   EXPECT_EQ(farm.scheduler.workers(farm.now)[0].state, "refused");
-  farm.pass_time(200);
+  farm.pass_time(200);  // a refusal is forgotten after 180 s
   EXPECT_TRUE(farm.scheduler.workers(farm.now).empty());
 }
 

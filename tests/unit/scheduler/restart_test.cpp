@@ -6,7 +6,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A job of eight rows whose first lease is stored, and a restart of its scheduler.
+/// A job of eight rows of which worker a holds leases, and a restart of its scheduler. `band` is
+/// the result of the first lease, which may be on disk at the restart.
 struct Before {
   FarmDriver farm;
   std::vector<action::Lease> leases;
@@ -258,7 +259,8 @@ TEST(Restart, AdoptsAHeldLeaseUnderItsId) {
   EXPECT_TRUE(in<action::Revoke>(step).empty());
 }
 
-// The data folder was reset or restored, and the id is of another job.
+// The data folder was reset or restored, so the worker's lease is of another job with this id. The
+// hash of the scene and settings (work_hash) shows it.
 TEST(Restart, RevokesAHeldLeaseOfAnotherJobWithTheSameId) {
   FarmDriver farm(slow());
   JobSpec spec = test_job("r1", StopAtSamples{8});

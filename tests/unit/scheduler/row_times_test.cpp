@@ -1,4 +1,4 @@
-// The estimated cost of each row of an image, from measured bands.
+// RowTimes: the render time of each row of an image, measured by bands and interpolated elsewhere.
 
 #include "coordinator/scheduler/model/row_costs.h"
 
@@ -34,7 +34,7 @@ TEST(RowTimes, AverageTwoMeasurements) {
 TEST(RowTimes, ScaleWithTheShareOfSamples) {
   RowTimes times(64);
   times.measure({0, 64}, 64);
-  std::vector<float> shares(64 / 8, 0.5F);
+  std::vector<float> shares(64 / 8, 0.5F);  // at least one for each row of tiles (16 rows)
   EXPECT_DOUBLE_EQ(times.of_all() / 2, times.of({0, 64}, shares));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The seeds of simulated farms.
+// The seeds with which tests run simulated farms.
 
 #include <cstdint>
 #include <cstdlib>
@@ -11,7 +11,9 @@
 
 namespace bandsaw::coordinator::sim {
 
-/// Calls f for `seeds` seeds from `first` on, or for the seeds that the environment specifies.
+/// Calls f(seed) for `seeds` consecutive seeds from `first` on, until a test fails. The environment
+/// variable BANDSAW_SEEDS=n gives another number of seeds, BANDSAW_SEED=n runs seed n alone. Builds
+/// with a sanitizer run fewer seeds.
 template <class F>
 void for_seeds(std::uint64_t first, std::uint64_t seeds, F f) {
   if (std::getenv("BANDSAW_SEED") != nullptr) {

@@ -1,4 +1,5 @@
-// Sequences: frames are given to workers, tried again, and survive a restart.
+// Sequences (jobs of many frames): frames are given to workers as jobs of their own, tried again if
+// they fail, and survive a restart.
 
 #include <gmock/gmock.h>
 
@@ -47,7 +48,8 @@ class FrameFarm : public FarmDriver {
     EXPECT_TRUE(send(input::AddFrames{id, scenes}).status.ok());
   }
 
-  /// Renders the next lease that was granted, and writes results. False: there is none.
+  /// Does the next thing that the scheduler asked for: renders a lease, or writes an image. Returns
+  /// false if there is none.
   bool work() {
     for (; next_ < actions.size(); ++next_) {
       const Action action = actions[next_];
@@ -106,8 +108,8 @@ class FrameFarm : public FarmDriver {
   std::map<SessionId, std::string> instances;
   std::map<JobId, std::set<SessionId>> sessions_of;  ///< who rendered bands of a job
   std::map<JobId, int> results;
-  std::set<JobId> fails;
-  bool fail_all = false;
+  std::set<JobId> fails;  ///< jobs whose bands fail
+  bool fail_all = false;  ///< all bands fail
 
  private:
   std::size_t next_ = 0;
@@ -145,7 +147,7 @@ TEST(Sequences, WholeFramesGoToWorkersWhileThereAreMany) {
   for (const FrameView& frame : farm.frames(id)) {
     shared += farm.sessions_of[frame.job].size() > 1 ? 1 : 0;
   }
-  // The last three may be.
+  // The last three frames may be shared: then some workers have no frame of their own.
   EXPECT_LE(shared, 3u);
 }
 
@@ -224,6 +226,7 @@ TEST(Sequences, FewOfManyFramesAreJobsAtATime) {
   for (int i = 0; i < 200 && farm.work(); ++i) {
     most = std::max(most, farm.in_state(id, FrameState::kRendering).size());
   }
+  // Two frames for each worker, here one, and four more are jobs at a time.
   EXPECT_GE(most, 3u);
   EXPECT_LE(most, 6u);
   EXPECT_EQ(farm.scheduler.jobs(farm.now).size(), 1u);
@@ -379,6 +382,7 @@ TEST(Sequences, AnotherPixelVersionFailsTheWholeSequence) {
             absl::StatusCode::kFailedPrecondition);
 }
 
+// A sequence has at most 50,000 frames, and all jobs and frames of a farm are at most 100,000.
 TEST(Sequences, TooManyFramesAreRefused) {
   FrameFarm farm;
   SequenceSpec spec = test_sequence("1-50000");

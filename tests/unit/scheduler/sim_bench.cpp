@@ -1,5 +1,5 @@
-// Drives the scheduler in virtual time: workers ask, "render" for the time of their cost map, and
-// answer.
+// Drives the scheduler in virtual time: simulated workers take leases, wait for the time that the
+// rows of the band cost, and send results.
 
 #include "sim_bench.h"
 
@@ -14,7 +14,7 @@
 namespace bandsaw::coordinator::sim {
 namespace {
 
-/// One job on a farm in virtual time: workers that sleep for the time that their bands cost.
+/// One run: a scheduler, one job, and workers. Worker i has session i + 1.
 class Bench {
  public:
   explicit Bench(const BenchFarm& farm)
@@ -28,6 +28,7 @@ class Bench {
       beat(i);
     }
     tick();
+    // A job that is not over after 1e5 seconds, a hundred times its planned time, never ends.
     while (!over_ && agenda_.now() < 1e5 && result_.broken.empty() && agenda_.run_next()) {
     }
     finish();
@@ -41,12 +42,13 @@ class Bench {
     return options;
   }
 
+  /// The state of a worker.
   struct Busy {
     std::deque<action::Lease> queue;  ///< the first is being rendered
-    double begun_at = -1;
-    double takes = 0;
-    double idle_since = 0;
-    std::uint64_t turn = 0;
+    double begun_at = -1;             ///< when the first was begun
+    double takes = 0;                 ///< seconds that the first takes
+    double idle_since = 0;            ///< if the queue is empty
+    std::uint64_t turn = 0;  ///< counts what was begun; the end of an earlier turn is ignored
   };
 
   void hello(std::size_t i) {

@@ -1,7 +1,8 @@
 #pragma once
 
-// A farm without failures in virtual time, whose bands take the time that a cost map says: measures
-// the efficiency and the length of a job's last phase.
+// Measures the scheduler's efficiency on a farm that is simulated in virtual time, without
+// failures. The time of a band follows from a given cost of each row. A job's last phase, its tail,
+// is the time in which some workers have nothing left to do.
 
 #include <cstdint>
 #include <functional>
@@ -12,30 +13,31 @@
 
 namespace bandsaw::coordinator::sim {
 
+/// The farm, and the one job that it renders.
 struct BenchFarm {
   std::vector<double> speeds;                    ///< of each worker, pixel samples per second, > 0
-  std::function<double(std::uint32_t)> cost_of;  ///< work of a sample of a row; 1: mean
+  std::function<double(std::uint32_t)> cost_of;  ///< relative work of a sample, by row; mean 1
   std::uint32_t width = 1920;
   std::uint32_t height = 1080;
   std::uint64_t samples = 64;
   std::uint32_t threads = 8;  ///< of each worker
-  double noise = 0;           ///< relative deviation of a band's time, at most
-  double trip_s = 0.002;      ///< of a message, either way
-  double upload_s = 0.02;     ///< of a band, until it is on disk
-  std::uint64_t seed = 1;
-  double audit_share = 0;  ///< of all bands: rendered twice
-  /// A worker that slows down to a hundredth at this time; none: no worker.
+  double noise = 0;           ///< maximum relative deviation of a band's time
+  double trip_s = 0.002;      ///< seconds that a message takes, either way
+  double upload_s = 0.02;     ///< seconds from the end of a band until it is on disk
+  std::uint64_t seed = 1;     ///< of the noise and of the times at which workers join
+  double audit_share = 0;     ///< share of the bands that are rendered twice
+  /// From this time on, in seconds, the first worker is a hundred times slower; negative: never.
   double stalls_at = -1;
 };
 
 struct BenchResult {
   double seconds = 0;     ///< first lease to last result
-  double efficiency = 0;  ///< work of the job over the work that the workers could do in that time
-  double tail = 0;        ///< time from the first idle worker to the last result, over all
+  double efficiency = 0;  ///< work of the job over the work that the workers could do in `seconds`
+  double tail = 0;        ///< last phase: share of `seconds` in which some worker was idle
   std::uint64_t bands = 0;
-  std::uint64_t wasted = 0;   ///< bands or parts of bands rendered for nothing
-  double predicted_left = 0;  ///< remaining time predicted after a quarter, over the true one
-  std::string broken;         ///< a broken invariant, or a job that did not end
+  std::uint64_t wasted = 0;   ///< bands that were rendered, in whole or in part, for nothing
+  double predicted_left = 0;  ///< predicted over true remaining time, after a quarter of `seconds`
+  std::string broken;         ///< a broken invariant, or that the job did not end; empty: neither
 };
 
 BenchResult run_bench(const BenchFarm& farm);

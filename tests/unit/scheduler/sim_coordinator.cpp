@@ -30,7 +30,7 @@ void SimCoordinator::start() {
   ++epoch_number_;
   SchedulerOptions options = test_options();
   options.epoch = epoch();
-  options.progress_timeout_s = 8;
+  options.progress_timeout_s = 8;  // short, so that bands that hang are revoked in the storm
   options.audit_share = audit_share;
   options.browser_audit_share = browser_audit_share;
   options.browsers = browsers;
@@ -40,7 +40,7 @@ void SimCoordinator::start() {
     note(record);
   }
   if (chance_.happens(0.3)) {
-    journal_ = scheduler_->snapshot();
+    journal_ = scheduler_->snapshot();  // as the compaction of a long journal
   }
   for (auto& [id, disk] : disk_) {
     disk.stored = {};
@@ -228,12 +228,16 @@ void SimCoordinator::tell_passes(JobId job) {
     const std::uint64_t samples = *filming.pass_ends.begin();
     filming.reported.insert(samples);
     filming.pass_ends.erase(filming.pass_ends.begin());
+    // The last pass that is planned ends at an error checkpoint. Nothing may be rendered beyond it,
+    // so that the same job stops at the same sample on every farm.
     const bool look = std::holds_alternative<StopAtError>(spec.stop) && filming.pass_ends.empty();
     if (look && filming.film.last_sample() != samples) {
       fail(absl::StrCat("the error of job ", job, " is looked at while its film has more than ",
                         samples, " samples"));
     }
     std::optional<ErrorEstimate> error;
+    // The film estimates no error of fewer than 32 samples. The exponent is between those of random
+    // and of well stratified samples, 0.5 and 1.
     if (samples >= 32) {
       error = ErrorEstimate{.relative_rmse = 0.3 / std::pow(static_cast<double>(samples), 0.6)};
     }
@@ -248,6 +252,7 @@ void SimCoordinator::damage_log() {
   if (at == disk_.end() || at->second.bands.empty()) {
     return;
   }
+  // Damages either the records from number `tail` on, or each one with the probability `share`.
   const double share = chance_.happens(0.2) ? 1 : chance_.between(0, 0.5);
   const std::size_t tail = chance_.happens(0.3) ? chance_.pick(0, at->second.bands.size()) : 0;
   std::vector<Added> records;

@@ -1,8 +1,9 @@
 #pragma once
 
-// The scheduler in a simulated coordinator: a journal that is synced late, bands that are on disk
-// before the scheduler is informed, a film that merges late, a disk that is full at times, and
-// crashes at any moment.
+// A simulated coordinator, in which tests run the real scheduler in virtual time. Its journal is
+// synced late, bands are on disk before the scheduler is informed, its film (the accumulators of an
+// image) merges them late, its disk is full at times, and it crashes at any moment. It also checks
+// what the scheduler does: no row is in an image twice, leased although it is stored, or missing.
 
 #include <deque>
 #include <functional>
@@ -22,12 +23,15 @@ namespace bandsaw::coordinator::sim {
 /// Sends an action to a worker.
 using ToWorker = std::function<void(const Action&)>;
 
+/// Answer to a worker that sent a band. kDuplicate: all its rows were stored already. kUnwanted:
+/// its job is over or not known. kTryAgain: the disk is full; the worker keeps the band.
 enum class PutOutcome { kStored, kDuplicate, kUnwanted, kTryAgain };
 
 class SimCoordinator {
  public:
   SimCoordinator(Agenda& agenda, Chance& chance) : agenda_(agenda), chance_(chance) {}
 
+  /// Starts a new epoch: a scheduler that replays the journal and the bands on disk.
   void start();
   /// Loses the data that is not synced, and all sessions.
   void crash();
@@ -35,26 +39,32 @@ class SimCoordinator {
   std::uint64_t epoch_number() const { return epoch_number_; }
   std::string epoch() const { return std::to_string(epoch_number_); }
 
+  /// Opens a session with a worker, to which `link` sends. MUST be up.
   SessionId open(ToWorker link);
+  /// Gives an input to the scheduler; ignored while the coordinator is down.
   void input(const Input& input);
+  /// Takes a band of a worker. MUST be up. `reply` is called at once or later; if the coordinator
+  /// crashes before, it is not called.
   void put_band(const input::BandStored& band, std::function<void(PutOutcome)> reply);
+  /// Lets all writes of bands and results fail for this time.
   void fill_disk(double seconds);
-  /// Damages records of a job's band log: some, the last ones, or all. The film may find it when it
-  /// reads the log; otherwise the next start does.
+  /// Damages some, the last or all records in the band log of a random job. Either the film finds
+  /// the damage while the coordinator runs, or the next start does.
   void damage_log();
 
+  /// Returns true if the coordinator is up and each of its jobs is final.
   bool all_final() const;
   std::uint64_t package_bytes(JobId job) { return disk_[job].spec.package_bytes; }
-  /// Notes the first thing that is wrong.
+  /// Sets `broken`, unless it is set.
   void fail(const std::string& what);
   Scheduler& scheduler() { return *scheduler_; }
 
-  /// The first invariant that did not hold.
+  /// The first thing that was wrong: a broken invariant, or a wrong image. std::nullopt: nothing.
   std::optional<std::string> broken;
-  std::uint64_t steps = 0;
-  std::uint64_t damages = 0;               ///< found by a film
-  std::map<JobId, std::uint64_t> results;  ///< samples per pixel
-  double time_skew = 0;                    ///< of the coordinator's clock
+  std::uint64_t steps = 0;                 ///< of the scheduler
+  std::uint64_t damages = 0;               ///< damaged logs that a film found
+  std::map<JobId, std::uint64_t> results;  ///< samples per pixel of each finished image
+  double time_skew = 0;  ///< seconds that the scheduler's clock is ahead of the virtual time
   double audit_share = 0;
   double browser_audit_share = 0.1;
   Browsers browsers = Browsers::kAlso;
@@ -65,34 +75,38 @@ class SimCoordinator {
   bool tear_steps = false;            ///< a crash may keep a part of a step's records
 
  private:
+  /// A step of the scheduler whose records are not synced yet, so its actions wait.
   struct Committing {
     Step step;
-    std::vector<std::function<void()>> then;
-    std::optional<input::BandStored> band;
+    std::vector<std::function<void()>> then;  ///< called after the actions
+    std::optional<input::BandStored> band;    ///< that the step stored
   };
   struct OnDisk {
     JobSpec spec;
     std::vector<input::BandStored> bands;
     SimFilm stored;  ///< the bands that are in the image
   };
-  /// Rows of a record that are in the film.
+  /// A part of a record of the band log that is in the film.
   struct Added {
-    Band record;
-    Band band;
-    std::uint64_t process = 0;
+    Band record;                ///< the whole band of the record
+    Band band;                  ///< the rows of it that were added together
+    std::uint64_t process = 0;  ///< that rendered it
   };
+  /// The film of a job in memory; a restart builds it again from the band log.
   struct Filming {
     SimFilm film;
     std::vector<Added> added;
-    std::set<std::uint64_t> pass_ends;
-    std::set<std::uint64_t> reported;
+    std::set<std::uint64_t> pass_ends;  ///< last samples of passes that are not reported as merged
+    std::set<std::uint64_t> reported;   ///< last samples of those that are
   };
 
+  /// Checks a step and commits it later; `then` is called after its actions.
   void take(Step step, std::function<void()> then = {});
   void commit();
   void perform(const Action& action, const std::optional<input::BandStored>& band);
   void check_lease(const action::Lease& lease, const std::set<LeaseId>& held);
   void take_stored(const input::BandStored& band, std::function<void()> then);
+  /// Calls `what` after this time, unless the coordinator has crashed.
   void after(double seconds, std::function<void()> what);
   /// Runs the calls of the film late but in order, as on one thread.
   void on_film(std::function<void()> what);
@@ -114,10 +128,10 @@ class SimCoordinator {
   std::deque<Committing> committing_;
   std::map<JobId, Filming> films_;
   std::set<JobId> writing_;  ///< jobs whose results were requested
-  double film_at_ = 0;       ///< when the film has finished its calls
+  double film_at_ = 0;       ///< when the film will have finished the calls it was given
   double disk_full_until_ = 0;
-  std::set<LeaseId> held_;                 ///< named in the Hello of this step
-  std::optional<input::BandStored> band_;  ///< of this step
+  std::set<LeaseId> held_;                 ///< leases that the Hello of this step names
+  std::optional<input::BandStored> band_;  ///< band that this step stores
 
   // Survives a crash.
   std::vector<Record> journal_;

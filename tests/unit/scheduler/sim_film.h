@@ -1,7 +1,8 @@
 #pragma once
 
-// Plain bookkeeping of the samples of each row, with their digests and the process that rendered
-// them. The scheduler's own bookkeeping is checked against it.
+// SimFilm records which samples of each row of an image are stored, with their digests and the
+// worker process that rendered them. It is as simple as possible, because the simulated farm checks
+// the scheduler's own bookkeeping against it.
 
 #include <algorithm>
 #include <cstdint>
@@ -17,7 +18,8 @@ namespace bandsaw::coordinator::sim {
 
 class SimFilm {
  public:
-  /// Returns false if a part of it is stored already; then nothing changes.
+  /// Stores these rows of the band. Returns false, and changes nothing, if some of their samples
+  /// are stored already.
   bool add(const input::BandStored& band, const RowRange& rows) {
     if (any_of(band.band.samples, rows)) {
       return false;
@@ -33,7 +35,7 @@ class SimFilm {
     return true;
   }
 
-  /// Removes the rows that the process rendered, and ignores its later ones.
+  /// Removes all rows that the process rendered, and ignores those that are added later.
   void retract(std::uint64_t process) {
     void_.insert(process);
     for (auto& [row, there] : rows_) {
@@ -41,7 +43,7 @@ class SimFilm {
     }
   }
 
-  /// Removes rows that the process rendered.
+  /// Removes the rows of this band, as far as the process rendered them.
   void lose(const Band& band, std::uint64_t process) {
     for (std::uint32_t row = band.rows.first; row < band.rows.last; ++row) {
       if (const auto part = rows_[row].find(band.samples);
@@ -51,6 +53,7 @@ class SimFilm {
     }
   }
 
+  /// Returns true if any of these samples of these rows is stored.
   bool any_of(const SampleRange& samples, const RowRange& rows) const {
     for (auto it = rows_.lower_bound(rows.first); it != rows_.end() && it->first < rows.last;
          ++it) {
@@ -63,7 +66,7 @@ class SimFilm {
     return false;
   }
 
-  /// Returns the number of samples that every row has, counted from the first without a gap.
+  /// Returns the largest n such that every row of the image has all samples [0, n).
   std::uint64_t least(std::uint32_t height) const {
     std::uint64_t least = ~std::uint64_t{0};
     for (std::uint32_t row = 0; row < height; ++row) {
@@ -79,7 +82,7 @@ class SimFilm {
     return least;
   }
 
-  /// Returns the end of the last sample range of any row.
+  /// Returns the end of the last sample range that is stored in any row; 0 if there is none.
   std::uint64_t last_sample() const {
     std::uint64_t last = 0;
     for (const auto& [row, there] : rows_) {
@@ -88,7 +91,8 @@ class SimFilm {
     return last;
   }
 
-  /// Returns a row whose digest in samples [0, end) is not honest(samples, row).
+  /// Returns a row that has a wrong digest in samples [0, end): one that is not honest(samples,
+  /// row). std::nullopt: all are right.
   template <class Honest>
   std::optional<std::uint32_t> wrong_row(std::uint64_t end, Honest honest) const {
     for (const auto& [row, there] : rows_) {
@@ -107,7 +111,7 @@ class SimFilm {
     std::uint64_t digest = 0;
   };
   std::map<std::uint32_t, std::map<SampleRange, Part>> rows_;
-  std::set<std::uint64_t> void_;
+  std::set<std::uint64_t> void_;  ///< processes that were retracted
 };
 
 }  // namespace bandsaw::coordinator::sim

@@ -19,7 +19,7 @@ class Chance {
   std::uint64_t bits() { return split_mix(state_ += kSplitMixIncrement); }
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double between(double low, double high) { return low + (high - low) * uniform(); }
-  /// Uniform in the logarithm.
+  /// Uniform in the logarithm; low > 0.
   double between_log(double low, double high) {
     return low * std::exp(uniform() * std::log(high / low));
   }
@@ -33,13 +33,17 @@ class Chance {
   std::uint64_t state_;
 };
 
+/// The events of a simulation. They run in the order of their times, and of equal times in the
+/// order in which they were added.
 class Agenda {
  public:
   double now() const { return now_; }
+  /// Adds an event at this time, in seconds; a time in the past means now.
   void at(double time, std::function<void()> what) {
     items_.emplace(std::pair(std::max(time, now_), order_++), std::move(what));
   }
   void in(double seconds, std::function<void()> what) { at(now_ + seconds, std::move(what)); }
+  /// Sets the time to that of the next event and runs it. Returns false if there is none.
   bool run_next() {
     if (items_.empty()) {
       return false;

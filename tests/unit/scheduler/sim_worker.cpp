@@ -1,5 +1,5 @@
-// A worker in virtual time: it holds leases, renders them after some time, and suffers what the
-// simulation does to it.
+// A worker in virtual time: it holds leases, finishes each of them after some time, and sends the
+// results. All delays are random.
 
 #include "sim_worker.h"
 
@@ -149,6 +149,7 @@ void SimWorker::take(const action::Lease& lease) {
     held->epoch = epoch_;
     return;
   }
+  // A scene needs 4 bytes of memory for each byte of its package (Eligibility).
   if (nature_.memory_bytes > 0 &&
       4 * coordinator_.package_bytes(lease.job) > nature_.memory_bytes) {
     coordinator_.fail(absl::StrCat("job ", lease.job, " is too large for ", name_));
@@ -244,12 +245,13 @@ void SimWorker::upload(LeaseId id) {
   band.instance = absl::StrCat(name_, "/", process_);
   band.render_s = held->render_s;
   band.cpu_s = held->render_s * nature_.threads;
+  // The result is sent once. In the share `loses` of all cases it gets lost or arrives twice.
   const std::size_t times = chance_.happens(nature_.loses) ? chance_.pick(0, 1) * 2 : 1;
   for (std::size_t i = 0; i < times; ++i) {
     agenda_.in(chance_.happens(0.05) ? chance_.between(0, 8) : chance_.between(0.01, 0.1),
                [this, band, id] { send(band, id); });
   }
-  later(chance_.between(3, 5), [this, id] { upload(id); });
+  later(chance_.between(3, 5), [this, id] { upload(id); });  // again, unless it is acknowledged
 }
 
 void SimWorker::send(const input::BandStored& band, LeaseId id) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// A simulated worker that is killed, frozen and disconnected, whose results are lost and repeated,
-// and whose coordinator restarts.
+// A simulated worker in virtual time. Tests kill, freeze and disconnect it; its results are lost,
+// delayed and repeated; its coordinator restarts.
 
 #include <deque>
 #include <memory>
@@ -13,19 +13,22 @@
 
 namespace bandsaw::coordinator::sim {
 
+/// How a simulated worker behaves.
 struct Nature {
-  double samples_per_s = 10'000;
+  double samples_per_s = 10'000;  ///< pixel samples
   std::uint32_t threads = 1;
-  std::uint32_t max_bands = 2;
-  std::uint32_t number = 0;        ///< tells workers of the same name apart
-  double fails = 0;                ///< share of its bands
-  double hangs = 0;                ///< share of its bands; it hangs until they are revoked
-  double lies = 0;                 ///< share of its rows
-  double loses = 0.05;             ///< share of messages about bands, either way
+  std::uint32_t max_bands = 2;     ///< leases that it holds at once, at most
+  std::uint32_t number = 0;        ///< distinguishes the processes of workers of the same name
+  double fails = 0;                ///< share of its bands that it cannot render
+  double hangs = 0;                ///< share of its bands that it renders until they are revoked
+  double lies = 0;                 ///< share of its rows that have wrong pixels
+  double loses = 0.05;             ///< share of messages about bands that are lost, either way
   bool browser = false;            ///< it is a tab; a new process is the page loaded again
-  std::uint64_t memory_bytes = 0;  ///< of its scenes; 0: no limit
-  JobId dies_of = 0;               ///< the process crashes in the middle of a band of this job
-  std::uint32_t dies_at_row = 0;   ///< if the band has this row; it is restarted
+  std::uint64_t memory_bytes = 0;  ///< for scenes; 0: no limit
+  /// The process crashes at the end of each band of the job `dies_of` that has the row
+  /// `dies_at_row`, and is restarted. 0: it never crashes by itself.
+  JobId dies_of = 0;
+  std::uint32_t dies_at_row = 0;
 };
 
 class SimWorker {
@@ -41,16 +44,21 @@ class SimWorker {
   /// Starts a new process.
   void start();
   void kill();
+  /// The process does nothing for this time, as if it were stopped by SIGSTOP.
   void freeze(double seconds) { frozen_until_ = agenda_.now() + seconds; }
+  /// Ends the connection; the coordinator notices it late or not at all. The worker reconnects.
   void cut_cable();
+  /// Announces that it finishes its leases and takes no more.
   void drain();
+  /// From now on, it makes no errors and loses no messages.
   void calm_down() { nature_.fails = nature_.hangs = nature_.lies = nature_.loses = 0; }
   bool running() const { return running_; }
 
-  std::uint64_t rendered = 0;
-  std::uint64_t failed = 0;
+  std::uint64_t rendered = 0;  ///< bands, with those that failed
+  std::uint64_t failed = 0;    ///< bands
 
  private:
+  /// A connection to the coordinator.
   struct Stream {
     SessionId id = 0;
     std::uint64_t epoch_number = 0;
@@ -58,13 +66,14 @@ class SimWorker {
     double down_at = 0;  ///< arrival of the last message from the coordinator; the order is kept
     double up_at = 0;    ///< the same for messages to the coordinator
   };
+  /// A lease that it holds until its result is acknowledged.
   struct Held {
     action::Lease lease;
-    std::string epoch;
-    bool finished = false;
+    std::string epoch;      ///< of the coordinator that granted or confirmed it
+    bool finished = false;  ///< rendered, but not acknowledged
     std::vector<std::uint64_t> digests;
-    double render_s = 0;
-    double begun_at = -1;
+    double render_s = 0;      ///< seconds that it takes, without the scene
+    double begun_at = -1;     ///< negative: not begun
     double prepared_at = -1;  ///< the scene is being fetched until then
     bool hangs = false;
   };
@@ -72,6 +81,7 @@ class SimWorker {
   /// Calls `what` after this time, unless the process has ended; a frozen process calls it later.
   void later(double seconds, std::function<void()> what);
   void connect();
+  /// Connects again after `wait` seconds.
   void disconnected(double wait);
   /// Sends an action of the coordinator to this worker.
   void down(const std::shared_ptr<Stream>& stream, const Action& action);
@@ -96,13 +106,13 @@ class SimWorker {
   std::string name_;
   Nature nature_;
   bool running_ = false;
-  std::uint64_t process_ = 0;
+  std::uint64_t process_ = 0;  ///< counts its processes
   double frozen_until_ = 0;
   std::shared_ptr<Stream> stream_;
   std::string epoch_;
-  std::set<JobId> scenes_;
+  std::set<JobId> scenes_;  ///< jobs whose scenes it has fetched
   std::deque<Held> held_;
-  LeaseId rendering_ = 0;
+  LeaseId rendering_ = 0;  ///< 0: none
 };
 
 }  // namespace bandsaw::coordinator::sim

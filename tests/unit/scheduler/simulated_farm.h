@@ -1,7 +1,8 @@
 #pragma once
 
-// The common base of simulated farms: their parts, the storm in which things fail, and jobs that
-// are submitted until the coordinator knows them.
+// The common base of simulated farms (simulation_test, tabs_simulation_test): a coordinator and
+// workers in virtual time. Things fail only in the first kStorm seconds; after that every job must
+// end.
 
 #include <memory>
 #include <vector>
@@ -13,11 +14,13 @@ namespace bandsaw::coordinator::sim {
 
 class SimulatedFarm {
  protected:
-  static constexpr double kStorm = 40;  ///< seconds, from the beginning
+  /// Seconds from the beginning in which things fail. The timeouts of the simulated coordinator, 4
+  /// to 8 s, expire several times in it.
+  static constexpr double kStorm = 40;
 
   explicit SimulatedFarm(std::uint64_t seed) : chance_(seed), coordinator_(agenda_, chance_) {}
 
-  /// Returns true if there are so many jobs, and all are final.
+  /// Returns true if the coordinator is up, knows exactly `jobs` jobs, and all are final.
   bool over(std::size_t jobs) {
     return coordinator_.all_final() && coordinator_.scheduler().jobs(agenda_.now()).size() == jobs;
   }
@@ -40,8 +43,8 @@ class SimulatedFarm {
     keep_sending([this, job] { coordinator_.input(input::Submit{job}); });
   }
 
-  /// Runs the farm until `jobs` jobs are over and `calm_s` seconds have passed since the storm; at
-  /// most until `end`, or until something is wrong.
+  /// Runs the farm until `jobs` jobs are final and `calm_s` seconds have passed since the storm. It
+  /// ends early at the time `end`, in seconds, or as soon as something is wrong.
   void run_until_over(std::size_t jobs, double calm_s, double end) {
     while (agenda_.now() < end && !coordinator_.broken) {
       if (!agenda_.run_next() || (agenda_.now() > kStorm + calm_s && over(jobs))) {

@@ -1,8 +1,11 @@
-// A whole farm in one thread and virtual time: random joins, kills, freezes, cut cables, lost,
-// late, repeated and reordered results, full disks, damaged band logs, failures, wrong results,
-// cancellations, and a coordinator that crashes at any moment. The invariants are checked after
-// each step of the scheduler; at the end every job is done without a hole. A failure prints its
-// seed; BANDSAW_SEED=n repeats that one, BANDSAW_SEEDS=n runs n seeds.
+// Simulates a whole farm in one thread and virtual time. Workers join, are killed, freeze and lose
+// their connection at random. Results are lost, late, repeated or reordered, some are wrong, and
+// bands fail. Disks are full, band logs are damaged, jobs are cancelled, and the coordinator
+// crashes at any moment. The invariants are checked after each step of the scheduler; at the end
+// every job is done and no row of its image is missing.
+//
+// Each test has its own range of seeds. A failure prints its seed; BANDSAW_SEED=n in the
+// environment repeats that one, BANDSAW_SEEDS=n runs n seeds of each test.
 
 #include <optional>
 
@@ -15,30 +18,31 @@ namespace bandsaw::coordinator::sim {
 namespace {
 
 struct Outcome {
-  std::string broken;
-  std::uint64_t steps = 0;
-  std::uint64_t rendered = 0;
-  std::uint64_t crashes = 0;
-  std::uint64_t damages = 0;
-  std::uint64_t done = 0;
-  std::string failed;  ///< reason of the last job that failed
-  std::map<JobId, std::uint64_t> results;
-  std::set<std::string> quarantined;
+  std::string broken;                      ///< the first thing that was wrong; empty: nothing
+  std::uint64_t steps = 0;                 ///< of the scheduler
+  std::uint64_t rendered = 0;              ///< bands
+  std::uint64_t crashes = 0;               ///< of the coordinator
+  std::uint64_t damages = 0;               ///< damaged band logs that were found
+  std::uint64_t done = 0;                  ///< jobs
+  std::string failed;                      ///< reason of the last job that failed
+  std::map<JobId, std::uint64_t> results;  ///< samples per pixel of each finished image
+  std::set<std::string> quarantined;       ///< names of workers
 };
 
 /// The events that may happen in a run.
 struct Weather {
-  bool chaos = true;
-  bool crashes = true;
-  bool lies = false;
+  bool chaos = true;    ///< all that one_thing_happens does
+  bool crashes = true;  ///< of the coordinator
+  bool lies = false;    ///< some workers return wrong results
   /// This many of seven machines return wrong results for one row of five, all bands are audited,
   /// and the coordinator crashes now and then. Two machines that are right connect before the first
   /// job, because a wrong machine that is alone cannot be detected.
   std::optional<std::size_t> liars = std::nullopt;
-  bool damage = false;  ///< of band logs
-  bool failures = true;
-  bool cancels = true;
-  std::optional<std::uint32_t> deadly_row = std::nullopt;  ///< of job 1: crashes its workers
+  bool damage = false;   ///< of band logs
+  bool failures = true;  ///< some workers fail some bands
+  bool cancels = true;   ///< a user cancels jobs
+  /// Each worker that renders this row of job 1 crashes.
+  std::optional<std::uint32_t> deadly_row = std::nullopt;
 };
 
 class Simulation : SimulatedFarm {
@@ -82,7 +86,7 @@ class Simulation : SimulatedFarm {
   static constexpr double kEnd = 400'000;
 
   using SimulatedFarm::submit;
-  /// Submits a sequence, and sends the scenes of some of its frames, in the end of all.
+  /// Submits a sequence, and sends the scenes of some of its frames; after the storm, of all.
   void submit(const SequenceSpec& spec) {
     keep_sending([this, spec] {
       coordinator_.input(input::SubmitSequence{spec});
@@ -158,6 +162,7 @@ class Simulation : SimulatedFarm {
     agenda_.in(chance_.between(0.1, 8), [this] { coordinator_.start(); });
   }
 
+  /// Lets random things happen at random times until the storm is over.
   void stir() {
     agenda_.in(chance_.between_log(0.05, 5), [this] {
       if (agenda_.now() < kStorm) {
@@ -220,6 +225,7 @@ class Simulation : SimulatedFarm {
     }
   }
 
+  /// Ends the storm: from now on nothing fails, and every job has to end.
   void calm_down() {
     for (JobId job = 1; job <= 3; ++job) {  // those that `one_thing_happens` may pause
       resume(job);                          // a pause may have been journalled and its answer lost
@@ -430,7 +436,7 @@ TEST(Simulation, AuditedImagesAreRightWithWrongWorkersAndDamagedBands) {
   });
 }
 
-/// A farm of which `liars` of seven machines are wrong, and all bands are audited.
+/// Runs a farm of seven machines of which `liars` return wrong results; all bands are audited.
 Outcome run_with_liars(std::uint64_t seed, std::size_t liars) {
   return Simulation(seed,
                     {.chaos = seed % 2 == 1, .liars = liars, .failures = false, .cancels = false})
@@ -474,6 +480,8 @@ std::vector<JobSpec> job_with_error_target(std::uint64_t seed) {
   return {test_job("request", StopAtError{chance.between_log(0.01, 0.06), kMaxSamples}, 16, 12)};
 }
 
+/// Runs the job of this seed on a farm on which things fail. The farm has another seed than the
+/// calm one, so its workers are others.
 Outcome run_storm(std::uint64_t seed) {
   return Simulation(seed + 1'000'000, {.failures = false, .cancels = false})
       .run(job_with_error_target(seed));
@@ -487,7 +495,8 @@ TEST(Simulation, SeedsAtWhichAHealthyJobOnceFailed) {
   EXPECT_EQ(run_storm(20'771).broken, "");
 }
 
-// Seed 23577: the coordinator ends between the records of two passes of one plan.
+// At seed 23577 the coordinator crashes between the records of two passes that were planned in one
+// step.
 TEST(Simulation, AnErrorTargetStopsAtTheSampleThatWasPlannedBeforeACrash) {
   const Outcome calm = Simulation(23'577, {.chaos = false, .failures = false, .cancels = false})
                            .run(job_with_error_target(23'577));

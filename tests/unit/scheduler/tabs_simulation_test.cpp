@@ -1,7 +1,7 @@
-// Forty browser tabs beside a few native workers, in one thread and virtual time: tabs join, are
-// frozen, closed, loaded again and cut off, reconnect with what they hold, fail bands and lie,
-// while the coordinator crashes. A failure prints its seed; BANDSAW_SEED=n repeats that one,
-// BANDSAW_SEEDS=n runs n seeds.
+// Simulates forty browser tabs beside a few native workers, in one thread and virtual time. Tabs
+// join, are frozen, closed, loaded again and disconnected; they reconnect with the leases that they
+// hold, fail bands and return wrong pixels ("lie"), while the coordinator crashes. A failure prints
+// its seed; BANDSAW_SEED=n in the environment repeats that one, BANDSAW_SEEDS=n runs n seeds.
 
 #include <cmath>
 
@@ -14,13 +14,14 @@ namespace bandsaw::coordinator::sim {
 namespace {
 
 struct TabOutcome {
-  std::string broken;
-  std::size_t done = 0;
-  std::uint64_t rendered_by_tabs = 0;
-  std::uint64_t reloads = 0;
-  std::set<std::string> quarantined;
+  std::string broken;                  ///< the first thing that was wrong; empty: nothing
+  std::size_t done = 0;                ///< jobs
+  std::uint64_t rendered_by_tabs = 0;  ///< bands
+  std::uint64_t reloads = 0;           ///< tabs and native workers that were started again
+  std::set<std::string> quarantined;   ///< names of workers
 };
 
+/// The farm and the events that may happen in a run.
 struct TabWeather {
   bool liars = false;  ///< a third of the tabs; then all bands of tabs are audited
   Browsers browsers = Browsers::kAlso;
@@ -60,7 +61,7 @@ class TabSimulation : SimulatedFarm {
     JobSpec job = test_job(absl::StrCat("request ", number), StopAtSamples{chance_.pick(16, 400)},
                            static_cast<std::uint32_t>(chance_.pick(8, 48)),
                            static_cast<std::uint32_t>(chance_.pick(8, 90)));
-    // Each fits into some tab.
+    // Each fits into tab 0, which has 4 GB: a scene needs four times the bytes of its package.
     job.package_bytes = static_cast<std::uint64_t>(chance_.between_log(1e6, 9e8));
     return job;
   }
@@ -70,7 +71,8 @@ class TabSimulation : SimulatedFarm {
     return *workers_.back();
   }
 
-  // Lies are found for certain only while a native worker is connected, so these stay if tabs lie.
+  // Wrong pixels are certainly found only while a native worker is connected. So, if tabs lie,
+  // nothing happens to the native workers.
   void add_native(std::size_t number) {
     SimWorker& worker =
         add(absl::StrCat("native", number), {.samples_per_s = chance_.between_log(3'000, 30'000),
@@ -103,7 +105,7 @@ class TabSimulation : SimulatedFarm {
     });
   }
 
-  /// The next thing that happens to a worker.
+  /// Lets something happen to the worker at a random time, again and again until the storm is over.
   void live(SimWorker& worker) {
     agenda_.in(chance_.between_log(0.3, 20), [this, &worker] {
       if (agenda_.now() > kStorm) {
