@@ -26,6 +26,7 @@ BandRecord sample_band(std::uint32_t row) {
 
 class BandLogTest : public testing::Test {
  protected:
+  /// Opens the log, and keeps the rows and offsets of the records that it reads, and its report.
   absl::StatusOr<BandLog> open() {
     rows_.clear();
     offsets_.clear();

@@ -21,6 +21,7 @@ class BlobStoreTest : public testing::Test {
  protected:
   std::unique_ptr<BlobStore> open() { return *BlobStore::open(folder_.path()); }
 
+  /// Uploads a blob in two parts.
   static absl::Status put(BlobStore& store, const std::string& text) {
     absl::StatusOr<BlobStore::Writer> writer = store.write(wire::sha256(text), text.size());
     if (!writer.ok()) {
@@ -168,7 +169,7 @@ TEST_F(BlobStoreTest, PartsAreLimitedInNumberAndAge) {
   EXPECT_EQ(store->partial(wire::sha256(texts.front())), 0u);
   EXPECT_GT(store->partial(wire::sha256(texts.back())), 0u);
   const double now = static_cast<double>(std::time(nullptr));
-  store->remove_partials(now, 60);
+  store->remove_partials(now, 60);  // those older than 60 s
   EXPECT_EQ(files(), wire::kPartialBlobs);
   store->remove_partials(now + 100, 60);
   EXPECT_EQ(files(), 0u);

@@ -55,7 +55,8 @@ TEST(RecordText, VersionsWithoutTheNewestFieldsAreRead) {
   int fields = 0;
   for (const Record& record : sample_records()) {
     RecordText old = to_text(record);
-    for (const std::string field : {"package_bytes ", "browser ", "techniques ", "training_rays "}) {
+    for (const std::string field :
+         {"package_bytes ", "browser ", "techniques ", "training_rays "}) {
       if (const std::size_t at = old.fields.find(field); at != std::string::npos) {
         old.fields.erase(at, old.fields.find('\n', at) + 1 - at);
         ++fields;
@@ -73,7 +74,7 @@ TEST(RecordText, VersionsWithoutTheNewestFieldsAreRead) {
       EXPECT_EQ(summary->counters.techniques, 0u);
     }
   }
-  EXPECT_GT(fields, 5);
+  EXPECT_GT(fields, 5);  // there were such fields to remove
 }
 
 TEST(RecordText, NamesOfOlderVersionsAreRead) {

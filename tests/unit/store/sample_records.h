@@ -1,6 +1,7 @@
 #pragma once
 
-// One record of every kind, with values that are difficult to write as text.
+// Sample data for tests of the journal: one record of every kind, with values that are difficult to
+// write as text, such as control characters and the limits of number types.
 
 #include <limits>
 #include <vector>

@@ -23,6 +23,7 @@ using testing::HasSubstr;
 
 using Texts = std::vector<std::string>;
 
+// Records are compared by their texts.
 std::string text_of(const Record& record) {
   const RecordText text = to_text(record);
   return absl::StrCat(text.kind, "\n", text.fields);
@@ -184,7 +185,8 @@ TEST_F(SqliteJournalTest, AFullDiskLosesNothingAndTheSameAppendWorksLater) {
   EXPECT_EQ(replayed(*journal), expected);
 }
 
-/// A child process that appends without end and reports each finished append on a pipe.
+/// Starts a child process that appends without end. It writes the number of each finished append to
+/// a pipe, whose reading end `acknowledged` is set to.
 pid_t start_appender(const std::string& path, int& acknowledged) {
   int ends[2];
   EXPECT_EQ(::pipe(ends), 0);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Files as strings, for tests that damage them.
+// Reads and writes whole files as strings, for tests that damage them.
 
 #include <fstream>
 #include <sstream>
