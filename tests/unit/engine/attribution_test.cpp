@@ -1,4 +1,5 @@
-// Which worker rendered which rows of an image.
+// Attribution: which worker rendered which rows of an image. The arguments of `add` are a job,
+// rows, the worker's process and its name.
 
 #include "coordinator/engine/attribution.h"
 

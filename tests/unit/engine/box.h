@@ -1,6 +1,7 @@
 #pragma once
 
-// Receives the values of a callback, and waits for them. A wait of a minute fails the test.
+// Passes values from a callback, which runs on another thread, to the test that waits for them. A
+// wait of a minute aborts the test.
 
 #include <chrono>
 #include <functional>
@@ -12,6 +13,7 @@
 
 namespace bandsaw::coordinator {
 
+/// Holds the newest value that was put. Thread-safe.
 template <class T>
 class Box {
  public:
@@ -20,15 +22,15 @@ class Box {
     value_ = std::move(value);
     changed_.notify_all();
   }
-  /// Waits for a value that satisfies the condition, and returns the newest.
+  /// Waits until the newest value satisfies the condition, and returns a copy of it.
   T wait(const std::function<bool(const T&)>& fits = [](const T&) { return true; })
       EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     wait_until(fits);
     return *value_;
   }
-  /// Returns the next value, which then belongs to the caller alone (coordinator/engine/answer.h
-  /// says why that matters).
+  /// Waits for a value and removes it, so that it belongs to the caller alone
+  /// (coordinator/engine/answer.h says why that matters).
   T take() EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     wait_until([](const T&) { return true; });

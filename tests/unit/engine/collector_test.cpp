@@ -1,5 +1,6 @@
 // The collector, which forgets jobs that are over by age, bytes and number, and then removes the
-// blobs that no known job needs.
+// blobs that no known job needs. By default it keeps jobs for 30 days and unused blobs for one day.
+// A KeptJob here is written {id, is it final?, manifests, frame jobs}.
 
 #include "coordinator/engine/collector.h"
 
@@ -36,6 +37,7 @@ class CollectorTest : public testing::Test {
     ASSERT_EQ(utimensat(AT_FDCWD, path.c_str(), times, 0), 0) << path;
   }
 
+  /// Stores a blob that was last used at the time `at`.
   wire::Digest put(const std::string& text, double at) {
     const wire::Digest digest = wire::sha256(text);
     auto writer = blobs_->write(digest, text.size());
@@ -58,6 +60,7 @@ class CollectorTest : public testing::Test {
     return put(manifest, kNow - 100 * kDay).hex();
   }
 
+  /// Stores a result of this size, of a job that ended at the time `at`.
   void result(JobId job, std::size_t bytes, double at) {
     ASSERT_TRUE(make_folder(folder_.job(job)).ok());
     std::ofstream(folder_.result(job)) << std::string(bytes, 'x');
@@ -136,6 +139,7 @@ TEST_F(CollectorTest, RemovesNothingWhileAManifestCannotBeRead) {
   const std::string path = folder_.blobs() + "/" + one.substr(0, 2) + "/" + one;
   ASSERT_TRUE(std::filesystem::remove(path));
   ASSERT_TRUE(std::filesystem::create_directory(path));
+  // A folder in the place of the manifest: it exists, but reading it fails.
   const absl::Status unreadable = blobs_->get(*wire::digest_from_hex(one)).status();
   ASSERT_FALSE(unreadable.ok() || absl::IsNotFound(unreadable)) << unreadable;
   collector({}).sweep({{1, false, {one}, {}}}, kNow);
@@ -154,7 +158,7 @@ TEST_F(CollectorTest, KeepsRecentlySentOrRequestedBlobs) {
   ASSERT_EQ(
       stat((folder_.blobs() + "/" + asked.hex().substr(0, 2) + "/" + asked.hex()).c_str(), &found),
       0);
-  EXPECT_GT(static_cast<double>(found.st_mtim.tv_sec), 1.7e9);
+  EXPECT_GT(static_cast<double>(found.st_mtim.tv_sec), 1.7e9);  // the present, roughly
   EXPECT_NE(static_cast<double>(found.st_mtim.tv_sec), kNow - 2 * kDay);
   collector({}).sweep({}, kNow);
   EXPECT_FALSE(blobs_->has(old));

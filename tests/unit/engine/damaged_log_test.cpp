@@ -18,6 +18,7 @@ constexpr std::uint64_t kSamples = 1024;
 
 enum class Damage { kFlippedByte, kCutTail, kNoFile };
 
+/// Damages a band log. Its records are larger than 500 bytes, so at least the first one is lost.
 void do_damage(const std::string& file, Damage damage) {
   const std::uintmax_t size = std::filesystem::file_size(file);
   ASSERT_GT(size, 1000u);
@@ -53,13 +54,13 @@ class DamagedLog : public testing::TestWithParam<Damage> {
     (farm_.engine().*what)(job, [&](const absl::StatusOr<JobView>& v) { said.put(v.status()); });
     return said.take();
   }
-  /// Resumes a paused job, lets a worker render some bands, and pauses it again.
+  /// Resumes a paused job, lets a worker render at least one band, and pauses it again.
   void render_some(JobId job, const std::string& worker) {
     std::atomic<int> stored{0};
     FakeWorker one(farm_.scene(), worker,
                    [&](const Band&, const absl::StatusOr<BandOutcome>& outcome) {
-                     // Runs on the worker's thread; takes effect before its second next band at the
-                     // latest.
+                     // This runs on the worker's thread. The pause takes effect before the worker
+                     // begins the band after its next one.
                      if (outcome.ok() && ++stored == 1) {
                        EXPECT_TRUE(tell(&Engine::pause, job).ok());
                      }
@@ -77,6 +78,7 @@ class DamagedLog : public testing::TestWithParam<Damage> {
     render_some(job, "wrong");
     return job;
   }
+  /// Lets the running coordinator read the damaged log, and waits until it reports the damage.
   void find_damage(JobId job) {
     ASSERT_TRUE(quarantine("wrong").ok());  // the film is built again from the log
     std::string why;

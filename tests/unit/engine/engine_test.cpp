@@ -19,6 +19,7 @@ namespace {
 
 using testing::HasSubstr;
 
+/// The image of the farm has 14 rows of 20 pixels.
 class EngineTest : public testing::Test {
  protected:
   EngineTest() { EXPECT_TRUE(farm_.start().ok()); }
@@ -139,6 +140,7 @@ TEST_F(EngineTest, ABandIsStoredOnceThenADuplicateAndUnwantedWhenTheJobIsOver) {
   EXPECT_EQ(*farm_.put(job + 1, top), BandOutcome::kUnwanted) << "no such job";
 }
 
+// The work hash, of the scene and the settings, shows that a band is of another job.
 TEST_F(EngineTest, ABandOfAnEarlierJobWithTheSameIdIsUnwanted) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 7}});

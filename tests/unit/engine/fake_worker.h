@@ -1,6 +1,7 @@
 #pragma once
 
-// A worker without a network: it renders its leases on a thread of its own with the real renderer.
+// A worker without a network, for tests of the engine: it takes leases from the engine by function
+// calls, and renders them on a thread of its own with the real renderer.
 
 #include <deque>
 #include <functional>
@@ -18,19 +19,22 @@ namespace bandsaw::coordinator {
 
 class FakeWorker {
  public:
-  /// Called with the engine's answer to each band.
+  /// Called on the worker's thread with the engine's answer to each band.
   using Answered = std::function<void(const Band&, const absl::StatusOr<BandOutcome>&)>;
 
+  /// Renders `scene`, whatever the job. `name`: at most 32 characters; also names its process.
   FakeWorker(std::shared_ptr<const Scene> scene, std::string name, Answered answered = nullptr);
   /// Ends the session and the thread.
   ~FakeWorker();
 
+  /// Begins a session, after the end of an earlier one. `engine` MUST outlive the session.
   void join(Engine& engine);
-  /// Ends the stream; the current band is lost.
+  /// Ends the session, after the present band; further leases are lost.
   void leave();
 
   /// Returns all bands that were leased to it.
   std::vector<Band> leased() const;
+  /// Returns why the last session was refused; empty: it was not.
   std::string refused() const;
 
  private:

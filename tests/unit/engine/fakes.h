@@ -1,6 +1,7 @@
 #pragma once
 
-// The engine's dependencies in memory: a clock that tests advance, and a journal that can fail.
+// Replacements of the engine's dependencies for tests: a clock that the test advances, and a
+// journal in memory that can fail as on a full disk.
 
 #include <atomic>
 #include <functional>
@@ -14,7 +15,8 @@
 
 namespace bandsaw::coordinator {
 
-/// The time, which the test shares and advances.
+/// The time of a FakeClock, in seconds. The test keeps a pointer to it and advances it.
+/// Thread-safe.
 class FakeTime {
  public:
   void advance(double seconds) { now_ = now_ + seconds; }
@@ -33,7 +35,8 @@ class FakeClock : public Clock {
   std::shared_ptr<FakeTime> time_;
 };
 
-/// The storage of a MemoryJournal, which it survives as a disk does. Thread-safe.
+/// The records of a MemoryJournal. The test holds them longer than the journal, as a disk keeps
+/// files over a restart. Thread-safe.
 class JournalDisk {
  public:
   /// Appends fail until `mend`.
@@ -46,7 +49,7 @@ class JournalDisk {
     broken_ = false;
     breaks_after_ = -1;
   }
-  /// After so many appends, all further ones fail.
+  /// After `appends` more appends, all further ones fail until `mend`.
   void break_after(int appends) EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     breaks_after_ = appends;

@@ -1,5 +1,6 @@
 // The film's thread, which adds stored bands to the images of jobs and makes previews, error
-// estimates and results.
+// estimates and results. A film can be built again from the band log, for example without the bands
+// of a worker that returned wrong pixels; only then is damage of the log found.
 
 #include "coordinator/engine/film_thread.h"
 
@@ -75,6 +76,7 @@ class FilmThreadTest : public testing::Test {
     thread_.add_job(1, settings_);
   }
 
+  /// Renders a band, appends it to the band log, and returns it as the store does.
   IncomingBand logged(const SampleRange& samples, const RowRange& rows,
                       const TileSamples& tiles = {}) {
     Pool pool(1);
@@ -88,6 +90,7 @@ class FilmThreadTest : public testing::Test {
     incoming.pixels = std::move(record.pixels);
     return incoming;
   }
+  /// Renders, logs and adds a band. `new_rows`: rows that the film does not have; empty: all.
   absl::Status add(const SampleRange& samples, const RowRange& rows,
                    std::vector<RowRange> new_rows = {}) {
     if (new_rows.empty()) {
@@ -95,6 +98,7 @@ class FilmThreadTest : public testing::Test {
     }
     return thread_.add(1, logged(samples, rows), std::move(new_rows));
   }
+  /// Overwrites a byte of the band log.
   void damage(std::uint64_t at) {
     std::fstream bands(folder_.bands(1), std::ios::in | std::ios::out | std::ios::binary);
     bands.seekp(static_cast<std::streamoff>(at));
@@ -153,11 +157,11 @@ TEST_F(FilmThreadTest, DamagedBandsAreLeftOutAndReported) {
   thread_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   IncomingBand sound = logged({0, 16}, {4, 8});
-  damage(sound.offset + 300);
+  damage(sound.offset + 300);  // in the pixels of this record
   sound.process = 5;
   ASSERT_TRUE(thread_.add(1, std::move(sound), {{4, 6}, {6, 8}}).ok());
   EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16})) << "it was added from memory";
-  thread_.retract(1, 7);
+  thread_.retract(1, 7);  // no band is of process 7, but the film is built again from the log
   EXPECT_EQ(scheduler_.failed, 0);
   ASSERT_EQ(scheduler_.damaged.size(), 2u);
   for (const auto& lost : scheduler_.damaged) {

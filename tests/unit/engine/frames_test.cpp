@@ -1,4 +1,4 @@
-// A sequence in the whole engine, with real pixels, over a restart.
+// A sequence (a job of many frames) in the whole engine, with real pixels and over a restart.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

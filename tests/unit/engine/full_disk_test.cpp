@@ -1,4 +1,5 @@
-// A disk that becomes full during a job, and a journal that cannot be written.
+// A disk that becomes full during a job, and a journal that cannot be written. The full disk is
+// simulated by a limit on the size of files, so its error is "File too large".
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,6 +27,7 @@ class FullDiskTest : public testing::Test {
     dependencies.journal = std::make_unique<MemoryJournal>(disk_);
     EXPECT_TRUE(farm_.start(std::move(dependencies)).ok());
   }
+  /// Renders rows [first, last) of the 14 rows of the image.
   BandPixels rendered(std::uint32_t first, std::uint32_t last) {
     Pool pool(1);
     const std::atomic<bool> stop{false};
@@ -184,7 +186,8 @@ TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
   EXPECT_EQ(farm.result(job)->image.pixels, farm.local(512).pixels);
 }
 
-// The reserve takes the space that the journal lacks.
+// The reserve is a file that occupies disk space. When the journal cannot be written, the file is
+// deleted, so that the journal has space; new jobs are still refused.
 TEST_F(FullDiskTest, TheReserveIsForTheJournal) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   JobSpec another = farm_.spec(StopAtSamples{.samples = 8});

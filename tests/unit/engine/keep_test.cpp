@@ -1,4 +1,5 @@
-// A coordinator that receives thousands of jobs forgets the oldest that are over.
+// A coordinator that receives thousands of jobs forgets the oldest that are over: old jobs are
+// collected every ten minutes, and also after a thousand new jobs. Here five final jobs are kept.
 
 #include <gtest/gtest.h>
 

@@ -21,7 +21,7 @@ bool overlap(const Band& a, const Band& b) {
          a.rows.first < b.rows.last && b.rows.first < a.rows.last;
 }
 
-/// Returns the number of leases of pixels that were acknowledged before.
+/// Returns the number of leases that overlap a band that was acknowledged before.
 long rendered_again(const std::vector<Band>& leased, const std::vector<Band>& acknowledged) {
   return std::count_if(leased.begin(), leased.end(), [&](const Band& lease) {
     return std::any_of(acknowledged.begin(), acknowledged.end(),
@@ -123,8 +123,8 @@ TEST(Restart, DamagedBandsAreRenderedAgain) {
   expect_local_image(farm, job, kJobSamples);
 }
 
-/// A coordinator with its workers in a process of its own, which writes the bands it acknowledged
-/// to `out`.
+/// Runs a coordinator and two workers in this (child) process. It writes each band that was
+/// acknowledged to the pipe `out`.
 [[noreturn]] void run_farm(TestFarm& farm, int out) {
   const auto tell = [out](const Band& band, const absl::StatusOr<BandOutcome>& outcome) {
     if (outcome.ok() && *outcome == BandOutcome::kStored &&

@@ -1,4 +1,4 @@
-// An engine on a temporary folder with fake workers, and short calls for tests.
+// A coordinator's engine on a temporary folder. Each call waits for the engine's answer.
 
 #include "tests/unit/engine/test_farm.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// An engine on a temporary folder, with a small scene to render.
+// A coordinator's engine on a temporary folder, with the Cornell box as the scene of all jobs, and
+// blocking calls for tests. The image has 20 x 14 pixels.
 
 #include <memory>
 #include <string>
@@ -29,14 +30,18 @@ class TestFarm {
   /// Sends the package and submits a job; ends the test if that fails.
   JobId begin(StopRule stop);
   JobView view(JobId job);
+  /// Waits until the job's state satisfies the condition; `wait_final`: until the job is final.
   JobView wait_until(JobId job, const std::function<bool(const JobView&)>& fits);
   JobView wait_final(JobId job);
   absl::StatusOr<StoredResult> result(JobId job, FinishedPart part = FinishedPart::kImage);
+  /// Sends a band as a worker does, which is a browser if `browser`. `work`: the hash of scene and
+  /// settings (render/work_hash.h) that the worker reports; 0: none.
   absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels, std::uint64_t work = 0,
                                   bool browser = false);
   std::string bands_file(JobId job) const {
     return folder_ + "/jobs/" + std::to_string(job) + "/bands";
   }
+  /// Returns the sentences of `bandsaw why`: what the job waits for.
   std::vector<std::string> why(JobId job);
 
   std::shared_ptr<const Scene> scene() const { return scene_; }

@@ -10,6 +10,7 @@ namespace {
 
 class WatchersTest : public testing::Test {
  protected:
+  /// Adds a watcher that ends its watch after so many states. States are collected in `told_`.
   void watch(int times = 1'000'000) {
     watchers_.add(
         1, view_,
@@ -19,7 +20,8 @@ class WatchersTest : public testing::Test {
         },
         now_);
   }
-  /// Runs `count` steps of a hundredth of a second, with or without changes.
+  /// Runs `count` steps of a hundredth of a second. `news`: the job changes in each step.
+  /// `hold_final`: its final state is not durable yet.
   void pass(int count, bool news, bool hold_final = false) {
     for (int i = 0; i < count; ++i) {
       now_ += 0.01;

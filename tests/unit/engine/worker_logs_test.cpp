@@ -1,4 +1,5 @@
-// The last lines of each worker's log, kept within a limit of bytes.
+// WorkerLogs keeps the last lines of each worker's log. Its limits here are lines of each log, and
+// bytes of all logs together.
 
 #include "coordinator/engine/worker_logs.h"
 
@@ -27,7 +28,7 @@ TEST(WorkerLogs, AnErrorListsTheWorkersWithLogs) {
   EXPECT_THAT(std::string(logs.of("desk").status().message()), HasSubstr("laptop"));
 }
 
-TEST(WorkerLogs, BeyondTheBytesTheLongestSilentLogIsDropped) {
+TEST(WorkerLogs, BeyondTheBytesTheLogWithoutNewLinesForLongestIsDropped) {
   WorkerLogs logs(100, 3'000);
   logs.add("one", {std::string(1'000, 'x')});
   logs.add("two", {std::string(1'000, 'x')});
