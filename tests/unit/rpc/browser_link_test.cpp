@@ -1,4 +1,5 @@
-// The link by which browsers join: its file, its end, and the call that shows it.
+// The link by which browsers join the farm as workers: how it is made, shown, moved to a later end
+// and revoked by the call BrowserLink, and the file that keeps it over a restart.
 
 #include <gmock/gmock.h>
 
@@ -32,6 +33,8 @@ class BrowserLinkTest : public FarmTest {
   }
   ~BrowserLinkTest() override { server_.reset(); }
 
+  /// Calls BrowserLink and keeps its status. `seconds`: the time until the link is to end; 0: as it
+  /// is, or the standard for a new link.
   farm::BrowserLinkReply ask(double seconds = 0, bool revoke = false) {
     farm::BrowserLinkRequest request;
     request.set_seconds(seconds);
@@ -42,7 +45,7 @@ class BrowserLinkTest : public FarmTest {
   }
   bool holds(const std::string& url) { return access_->holds(url.substr(url.find('#') + 1)); }
 
-  double now_ = 1'700'000'000;
+  double now_ = 1'700'000'000;  ///< seconds since 1970, by the clock of the link
   grpc::Status status_;
   std::unique_ptr<BrowserAccess> access_;
 };
@@ -50,6 +53,7 @@ class BrowserLinkTest : public FarmTest {
 TEST_F(BrowserLinkTest, IsMadeOnceAndThenShown) {
   const farm::BrowserLinkReply made = ask();
   EXPECT_THAT(made.url(), StartsWith("https://10.0.0.5:8787/join#"));
+  // A secret has 22 characters.
   EXPECT_EQ(made.url().size(), std::string("https://10.0.0.5:8787/join#").size() + 22);
   EXPECT_EQ(made.left_s(), BrowserAccess::kStandardSeconds);
   now_ += 100;

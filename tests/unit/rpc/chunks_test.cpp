@@ -1,4 +1,5 @@
-// Transfers in chunks: complete or refused.
+// Transfers of blobs and bands in chunks, by gRPC: each is complete, is continued after an
+// interruption, or is refused with the reason.
 
 #include <gmock/gmock.h>
 
@@ -46,7 +47,7 @@ class ChunksTest : public FarmTest {
     return bytes;
   }
 
-  /// Returns the blob's chunks from `offset`.
+  /// Returns the blob's chunks from `offset`; the first one has the digest and size of the blob.
   static std::vector<farm::BlobChunk> chunks_from(const std::string& bytes, std::size_t offset) {
     std::vector<farm::BlobChunk> chunks;
     for (std::size_t at = offset; at < bytes.size(); at += wire::kChunkBytes) {
@@ -77,6 +78,7 @@ class ChunksTest : public FarmTest {
     EXPECT_EQ(writer->Finish().error_code(), StatusCode::CANCELLED);
   }
 
+  /// Returns how many bytes of an unfinished upload the coordinator has.
   std::uint64_t bytes_there(const std::string& bytes) {
     farm::MissingBlobsRequest request;
     request.add_sha256(wire::sha256(bytes).raw());
@@ -236,6 +238,7 @@ TEST_F(ChunksTest, MissingBlobsAreNamed) {
          StatusCode::INVALID_ARGUMENT, "32 bytes");
 }
 
+// The band has 2 rows of 3 pixels: 18 sums, 144 bytes.
 TEST_F(ChunksTest, ABandThatDiffersFromItsHeaderIsRefused) {
   farm::BandChunk bare = band_chunk();
   bare.clear_header();

@@ -1,4 +1,5 @@
-// Concurrent downloads of images and scenes: their memory and threads.
+// Concurrent downloads of images and scenes. The memory of images that are being sent is limited by
+// a budget, engine_->images(); and downloads of scenes do not wait for threads that images occupy.
 
 #include <gmock/gmock.h>
 
@@ -45,6 +46,7 @@ class DownloadsTest : public FarmTest {
     const auto call = context(link::Role::kFarm);
     return read_all(get_result(*call, job));
   }
+  /// Waits until exactly so many bytes of the budget are free.
   void wait_until_left(std::int64_t bytes) {
     while (engine_->images().left() != bytes) {
       std::this_thread::yield();
@@ -59,6 +61,7 @@ TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileItIsDownloaded) {
   const Reader slow = get_result(*call, job);  // it does not read
   wait_until_left(all - kImageBytes);
 
+  // Other images take so much of the budget that a byte is missing for a second download.
   auto others = engine_->images().take(static_cast<std::uint64_t>(all - 2 * kImageBytes + 1));
   ASSERT_TRUE(others);
   const grpc::Status refused = whole_result(job);

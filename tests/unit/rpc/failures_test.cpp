@@ -1,4 +1,5 @@
-// The limit on wrong secrets: failures are counted by address and minute.
+// The limit on wrong secrets, here 2 a minute: failures are counted by address and minute. The
+// second argument of `add` is the time in seconds.
 
 #include "coordinator/rpc/failures.h"
 

@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::chrono::milliseconds kLong{60'000};
+constexpr std::chrono::milliseconds kLong{60'000};  // a call that takes longer hangs
 
 }  // namespace
 

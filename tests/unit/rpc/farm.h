@@ -1,7 +1,8 @@
 #pragma once
 
-// A coordinator for each test: an engine on a temporary folder, a server on a free port, and calls
-// to it.
+// The base of tests of the gRPC server. It starts a coordinator for each test: an engine on a
+// temporary folder and a server on a free port of loopback. The client has the role `farm`, that of
+// a user; `worker` is the role of a worker.
 
 #include <gtest/gtest.h>
 
@@ -25,10 +26,12 @@ class FarmTest : public ::testing::Test {
   FarmTest();
   ~FarmTest() override;
 
+  /// Returns what a client of this role needs to connect: address, certificate and secret.
   link::JoinString join(link::Role role) const;
   std::shared_ptr<grpc::Channel> channel() const { return channel_; }
   /// Returns a context with this role's secret and a deadline that expires only because of a bug.
   std::unique_ptr<grpc::ClientContext> context(link::Role role) const;
+  /// `people`: the service for users; `work`: the service for workers.
   std::unique_ptr<farm::Farm::Stub> people() const { return farm::Farm::NewStub(channel_); }
   std::unique_ptr<farm::Work::Stub> work() const { return farm::Work::NewStub(channel_); }
 
@@ -37,8 +40,9 @@ class FarmTest : public ::testing::Test {
     std::vector<farm::PutBandReply::Outcome> outcomes;
     grpc::Status status;
   };
-  /// Returns two rows of three pixels of an unknown job.
+  /// Returns a band of two rows of three pixels, of an unknown job; `sums`: 3 for each pixel.
   static farm::BandChunk band_chunk(const std::vector<double>& sums = std::vector<double>(18, 0.5));
+  /// Sends these chunks as a worker, and returns the answers to the bands.
   PutBands put_bands(const std::vector<farm::BandChunk>& chunks);
   /// Returns one chunk with the whole blob.
   static farm::BlobChunk whole(const std::string& bytes);
@@ -47,11 +51,11 @@ class FarmTest : public ::testing::Test {
   wire::Digest put_cornell_box();
   farm::SubmitRequest cornell_request(const wire::Digest& manifest) const;
 
-  /// Submits a job of side x side pixels with 8 samples.
+  /// Submits a job of side x side pixels with 8 samples per pixel; returns its id.
   std::uint64_t submit_job(std::uint32_t side);
   /// Uploads all samples of these rows and waits until they are stored.
   void put_rows(std::uint64_t job, std::uint32_t side, std::uint32_t first, std::uint32_t last);
-  /// Submits and completes a job.
+  /// Submits a job, uploads its pixels and waits until it is done; returns its id.
   std::uint64_t finish_job(std::uint32_t side);
 
   test::TempDir folder_;

@@ -15,6 +15,7 @@ struct NamedCall {
   Call call;
 };
 
+/// Reads all messages of a stream, and returns its status.
 template <class Reader, class Message>
 grpc::Status drain(Reader& reader) {
   Message message;
@@ -128,6 +129,8 @@ class GateTest : public FarmTest {
     };
   }
 
+  /// Returns true if access was refused. Any other error, here mostly of an empty request, shows
+  /// that access was granted.
   static bool refused(const grpc::Status& status) {
     return status.error_code() == grpc::StatusCode::UNAUTHENTICATED ||
            status.error_code() == grpc::StatusCode::PERMISSION_DENIED;

@@ -1,4 +1,5 @@
-// Commands on jobs, by gRPC.
+// The commands of users on jobs, by gRPC: pause, resume, set the priority, cancel, and ask why a
+// job waits.
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,5 @@
-// The health service for probes, and reflection for grpcurl.
+// The health service, which probes of Kubernetes and load balancers call without a secret, and
+// reflection, by which grpcurl lists the services.
 
 #include <gmock/gmock.h>
 #include <grpcpp/generic/generic_stub.h>
@@ -22,8 +23,8 @@ class ProbeTest : public FarmTest {
     return health::Health::NewStub(channel)->Check(&context, request, &reply);
   }
 
-  /// Requests the list of services from the server on this port; returns the response's bytes, or
-  /// the status of the call.
+  /// Requests the list of services from the server on this port. Returns the status of the call;
+  /// the bytes of the response are appended to `answer`.
   grpc::Status list_services(int port, std::string& answer) {
     link::JoinString where = join(link::Role::kFarm);
     where.addresses = {"127.0.0.1:" + std::to_string(port)};
@@ -73,7 +74,7 @@ TEST_F(ProbeTest, HealthIsAnsweredWithoutASecret) {
   EXPECT_EQ(check(channel(), "nothing", reply).error_code(), grpc::StatusCode::NOT_FOUND);
 }
 
-TEST_F(ProbeTest, AStreamNeedsASecret) {
+TEST_F(ProbeTest, TheStreamOfHealthStatesIsNotImplemented) {
   grpc::ClientContext context;
   const auto reader = health::Health::NewStub(channel())->Watch(&context, {});
   health::HealthCheckResponse reply;

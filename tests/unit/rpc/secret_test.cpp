@@ -1,4 +1,5 @@
-// Renewed secrets, and repeated wrong ones.
+// Renewal of a role's secret, which ends all calls that were made with the old one, and the limit
+// on wrong secrets.
 
 #include <gmock/gmock.h>
 
@@ -26,6 +27,7 @@ class SecretTest : public FarmTest {
     channel_ = link::connect(join(link::Role::kFarm), std::chrono::seconds(60))->control;
   }
 
+  /// Renews the secret in the identity file, as the program does for the server.
   absl::StatusOr<RenewedSecret> renew(link::Role role) {
     const auto identity = link::renew_secret(folder_ / "identity", role);
     EXPECT_TRUE(identity.ok()) << identity.status();
@@ -93,6 +95,7 @@ TEST_F(SecretTest, UploadsOfBandsWithTheOldSecretEnd) {
 }
 
 TEST_F(SecretTest, DownloadsOfScenesWithTheOldSecretEnd) {
+  // So large that the download is not over when the secret is renewed.
   const std::string scene = test::pattern(16 << 20);
   ASSERT_TRUE(put_blob(chunks_of(scene)).ok());
   const auto call = context(link::Role::kWorker);
@@ -123,8 +126,8 @@ TEST_F(SecretTest, UploadsOfScenesWithTheOldSecretEnd) {
   farm::RotateSecretReply reply;
   ASSERT_TRUE(rotate(farm::SECRET_ROLE_FARM, &reply).ok());
   EXPECT_EQ(writer->Finish().error_code(), StatusCode::UNAUTHENTICATED);
-  while (engine_->partial_blob(digest) ==
-         0) {  // the received bytes are kept for a sender with the new secret
+  // The received bytes are kept for a sender with the new secret.
+  while (engine_->partial_blob(digest) == 0) {
     std::this_thread::yield();
   }
 }
@@ -176,7 +179,7 @@ TEST_F(SecretTest, ManyWrongSecretsAreLimitedAndTheRightOneIsNot) {
   EXPECT_TRUE(list_jobs(identity_.farm_secret).ok());
 }
 
-using WithoutRenewal = FarmTest;
+using WithoutRenewal = FarmTest;  // a server that was started without the option `renew`
 
 TEST_F(WithoutRenewal, ItIsRefused) {
   farm::RotateSecretRequest request;

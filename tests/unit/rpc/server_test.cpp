@@ -36,6 +36,7 @@ TEST_F(ServerTest, ReportsAnInvalidAddress) {
               absl::StatusCode::kInvalidArgument)
         << listen;
   }
+  // An address of the documentation network, which no machine has.
   EXPECT_EQ(Server::start(*engine_, identity_, {.listen = "192.0.2.1:0"}).status().code(),
             absl::StatusCode::kFailedPrecondition);
 }
@@ -90,7 +91,7 @@ TEST_F(ServerTest, ReportsTheMissingBlobOfAJob) {
   EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION) << status.error_message();
 }
 
-/// A worker in this process.
+/// A real worker in this process, on a thread of its own. `id`: a character that distinguishes it.
 class Worker {
  public:
   Worker(const link::JoinString& join, const std::string& cache, char id)

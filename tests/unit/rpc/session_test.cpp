@@ -31,7 +31,8 @@ farm::FromWorker hello() {
 
 class StreamTest : public FarmTest {
  protected:
-  /// Sends these messages, then reads until the stream ends.
+  /// Opens a session, sends these messages, and reads until the stream ends. `hang_up`: the worker
+  /// ends the stream; if false, the coordinator MUST end it.
   grpc::Status say(const std::vector<farm::FromWorker>& messages,
                    std::vector<farm::ToWorker>* answers = nullptr, bool hang_up = true) {
     const auto call = context(link::Role::kWorker);
@@ -51,6 +52,7 @@ class StreamTest : public FarmTest {
     return stream->Finish();
   }
 
+  /// Expects that this first message ends the session with an error that contains `what`.
   void expect_refused(const farm::FromWorker& message, const std::string& what) {
     const grpc::Status status = say({message}, nullptr, false);
     EXPECT_EQ(status.error_code(), StatusCode::INVALID_ARGUMENT) << what;
