@@ -127,8 +127,8 @@ TEST_F(AccessTest, ANewSecretClosesConnections) {
       "POST /api/scenes?name=a.glb HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Bandsaw: 1\r\nCookie: " +
       headers_.find("Cookie")->second + "\r\nExpect: 100-continue\r\nContent-Length: 1000\r\n\r\n";
   ASSERT_EQ(send(one, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
-  std::string told(25,
-                   '\0');  // "HTTP/1.1 100 Continue" and the empty line: the request is admitted
+  // The response "HTTP/1.1 100 Continue" with its empty line has 25 bytes: the request is admitted.
+  std::string told(25, '\0');
   ASSERT_EQ(recv(one, told.data(), told.size(), MSG_WAITALL), 25);
   ASSERT_EQ(told.substr(0, 12), "HTTP/1.1 100");
   link::Identity renewed = identity_;
@@ -142,7 +142,8 @@ TEST_F(AccessTest, ANewSecretClosesConnections) {
   close(one);
 }
 
-// Each of them would occupy a thread until its deadline, and there are as many as threads.
+// Each half-open connection occupies a thread of the server until its deadline. The server has 32
+// threads; 40 such connections would occupy all, if those of one address were not limited.
 TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   std::vector<int> sockets;
   sockaddr_in address{};
@@ -157,7 +158,7 @@ TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
     ASSERT_EQ(bind(one, reinterpret_cast<sockaddr*>(&from), sizeof(from)), 0);
     inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
     ASSERT_EQ(connect(one, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-    send(one, "GET / HT", 8, MSG_NOSIGNAL);  // some are cut off already
+    send(one, "GET / HT", 8, MSG_NOSIGNAL);  // fails if the server has closed the connection
     sockets.push_back(one);
   }
   EXPECT_EQ(status_of(get("/")), 200);
@@ -189,7 +190,7 @@ TEST_F(AccessTest, ABodyForAnUnknownPathIsNotRead) {
 TEST_F(AccessTest, AHeadWithoutEndIsRefused) {
   headers_.emplace("X-Long", std::string(4000, 'x'));
   EXPECT_EQ(status_of(get("/")), 200);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 20; ++i) {  // 80 kB in all; a head may have 32 KiB
     headers_.emplace("X-Long-" + std::to_string(i), std::string(4000, 'x'));
   }
   EXPECT_NE(status_of(get("/")), 200);

@@ -1,5 +1,6 @@
-// Denoised pictures of finished jobs, for which the farm first renders the guides: images of albedo
-// and normal.
+// Denoised ("clean") pictures of finished jobs, for which the farm first renders the guides: images
+// of the albedo and of the normals of the surfaces. The guides of job n are here jobs n + 1 and
+// n + 2, with a quarter of its 64 samples.
 
 #include "coordinator/web/clean_pictures.h"
 

@@ -1,4 +1,5 @@
-// Requests as bytes, and their responses: the parts of HTTP that browsers and attackers use.
+// One exchange of HTTP over a socket: the bytes of a request, and those of its response. Covers the
+// parts of HTTP that browsers and attackers use.
 
 #include "coordinator/web/exchange.h"
 

@@ -1,4 +1,5 @@
-// Requests and responses without a server: targets, ranges, routes.
+// HTTP without a server: parsing of a request's target, byte ranges of a response, and the choice
+// of a route by method and path.
 
 #include "coordinator/web/http.h"
 
@@ -35,6 +36,7 @@ TEST(HttpHeaders, HaveNamesOfAnyCase) {
   EXPECT_FALSE(request.has_header("X-Band"));
 }
 
+/// Returns `reply`, restricted to the range of a Range header.
 HttpReply ranged(const std::string& range, HttpReply reply = text_reply("0123456789", "text")) {
   HttpRequest request;
   request.method = "GET";

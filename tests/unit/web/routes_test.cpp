@@ -1,4 +1,5 @@
-// The requests of the dashboard's page and their answers.
+// The requests of the dashboard's page and their answers: the farm, dropped scenes, jobs, images,
+// the gallery, and the program of the workers.
 
 #include <gmock/gmock.h>
 
@@ -168,7 +169,7 @@ TEST_F(RoutesTest, AnImageThatFindsNoMemoryIsRefused) {
   for (const char* file : {"/image.png", "/image.exr", "/report.json"}) {
     EXPECT_EQ(get(path + file)->status, 200) << file;
   }
-  while (engine_->images().left() != all) {  // given back when the server has closed it
+  while (engine_->images().left() != all) {  // until the server has closed the connection
     std::this_thread::yield();
   }
   const auto preview = get(path + "/preview.png");

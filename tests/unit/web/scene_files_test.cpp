@@ -1,4 +1,5 @@
-// Scenes whose files are sent apart, pictures as floats, and layers: the requests of deploy/python.
+// The requests of the Python module and the Blender add-on (deploy/python): scenes whose files are
+// sent one by one, images as floats, and layers such as depth or normals.
 
 #include <gmock/gmock.h>
 
@@ -25,6 +26,7 @@ class SceneFilesTest : public WebTest {
  protected:
   SceneFilesTest() { log_in(); }
   std::string error_of(const Answer& result) { return message<web::Problem>(result).error(); }
+  /// Returns those of the digests whose files the coordinator does not have.
   std::vector<std::string> missing(const std::vector<std::string>& hex) {
     web::FileDigests asked;
     asked.mutable_sha256()->Assign(hex.begin(), hex.end());
@@ -36,6 +38,7 @@ class SceneFilesTest : public WebTest {
         message<web::FileDigests>(post("/api/files/missing", "{\"sha256\": [" + list + "]}"));
     return {found.sha256().begin(), found.sha256().end()};
   }
+  /// Returns the body of a request that submits a scene of one file.
   std::string scene(const std::string& name, const std::string& hex) {
     return absl::StrCat("{\"scene\": \"", name, "\", \"file\": [{\"name\": \"", name,
                         "\", \"sha256\": \"", hex, "\"}]}");

@@ -1,6 +1,7 @@
 #pragma once
 
-// A coordinator with a dashboard for each test, and a browser's requests to it.
+// The base of tests of the dashboard. It starts a coordinator with a dashboard for each test, and
+// sends the requests that a browser sends.
 
 #include <gtest/gtest.h>
 
@@ -34,9 +35,11 @@ class WebTest : public ::testing::Test {
   Answer get(const std::string& path);
   Answer post(const std::string& path, const std::string& body = "{}");
   void log_in();
-  /// Submits a job that no worker renders.
+  /// Submits a job of 24 x 16 pixels, which no worker renders; returns its id. log_in() MUST have
+  /// been called.
   std::uint64_t submit_box();
-  /// Uploads all samples of a job, a multiple of 8, and waits until the job is done.
+  /// Uploads all samples of a job, whose number is a multiple of 8, and waits until the job is
+  /// done. Each pixel's value is 0.5.
   void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
               std::uint64_t samples = 64);
   /// Parses the body as a message; fails the test if it is not one.
