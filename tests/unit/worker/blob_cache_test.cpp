@@ -186,6 +186,7 @@ TEST_F(BlobCacheTest, KeepsBlobsThatAreBeingDownloaded) {
   EXPECT_TRUE(cache->has(wire::sha256(bytes)));
 }
 
+// Four workers use nine blobs in a cache that has space for four.
 TEST_F(BlobCacheTest, IsSafeWithManyWorkersAndLittleSpace) {
   std::vector<std::thread> workers;
   for (int w = 0; w < 4; ++w) {
@@ -200,6 +201,7 @@ TEST_F(BlobCacheTest, IsSafeWithManyWorkersAndLittleSpace) {
         }
         auto download = cache->begin(digest);
         ASSERT_TRUE(download.ok()) << download.status();
+        // A null pointer: another worker is downloading this blob.
         if (*download != nullptr && (*download)->offset() == 0) {
           ASSERT_TRUE((*download)->append(bytes).ok());
           EXPECT_TRUE((*download)->commit().ok()) << "the part is still there";

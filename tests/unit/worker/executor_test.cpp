@@ -86,8 +86,8 @@ class ExecutorTest : public ::testing::Test {
   Pool pool_{2};
   Mutex mutex_;
   CondVar changed_;
-  bool gate_closed_ = false;
-  absl::Status load_error_;
+  bool gate_closed_ = false;  ///< while it is true, loading a scene does not end
+  absl::Status load_error_;   ///< result of loading, unless it is OK
   std::vector<wire::Digest> loads_;
   std::vector<TaskId> prepared_;
   std::vector<TaskId> order_;
@@ -167,6 +167,8 @@ TEST_F(ExecutorTest, StopsABandWhoseSceneIsLoading) {
   EXPECT_TRUE(failed_.empty()) << "a band that was stopped is not reported as failed";
 }
 
+// Two bands need the same scene. Its loading must be reported for the earlier one, whichever thread
+// loads it. That depends on timing, so it is tried with 20 scenes.
 TEST_F(ExecutorTest, ReportsLoadingUnderTheEarliestTask) {
   start();
   for (TaskId first = 1; first < 40; first += 2) {

@@ -1,4 +1,5 @@
-// A worker fetches a package from the coordinator: each byte once, also after lost connections.
+// A worker fetches a scene package (a manifest and the blobs that it names) from the coordinator:
+// each byte once, also after lost connections.
 
 #include "worker/executor/load_package.h"
 
@@ -61,10 +62,10 @@ class LoadPackageTest : public ::testing::Test {
   test::TempDir folder_;
   BlobMap farm_;
   wire::Digest manifest_;
-  std::uint64_t total_ = 0;
+  std::uint64_t total_ = 0;  ///< bytes of the package
   std::uint64_t bytes_sent_ = 0;
-  int breaks_ = 0;
-  std::uint64_t prepared_ = 0;
+  int breaks_ = 0;              ///< so many of the next transfers are interrupted
+  std::uint64_t prepared_ = 0;  ///< the last progress that was reported; it MUST grow
   std::atomic<bool> stop_{false};
   Pool pool_{1};
   PackageLoader loader_{pool_};

@@ -1,4 +1,5 @@
-// The lines of a worker's log that wait to be sent to the coordinator.
+// LogQueue: the lines of a worker's log that wait to be sent to the coordinator. At most 500 wait,
+// and the last 50 that were taken can be returned again, for a coordinator that restarted.
 
 #include "worker/log_queue.h"
 

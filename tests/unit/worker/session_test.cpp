@@ -93,7 +93,8 @@ TEST(Session, StartsLeasesAndReportsTheirRows) {
   EXPECT_EQ(beat.doing(), "rendering");
 }
 
-// A training that takes longer than the progress timeout does not end the lease.
+// Before its first row, a band may need a preparation that takes longer than the progress timeout.
+// Each of its steps counts as progress, so the lease is not revoked.
 TEST(Session, StepsOfThePreparationBeforeTheFirstRowAreProgress) {
   Session session(worker_info());
   session.receive(welcome("e1"));
@@ -127,10 +128,10 @@ TEST(Session, RefusesAnInvalidLease) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   farm::ToWorker bad = lease(10, 0);
-  bad.mutable_lease()->mutable_band()->set_last_row(81);
+  bad.mutable_lease()->mutable_band()->set_last_row(81);  // the image has 80 rows
   farm::ToWorker worse = lease(11, 0);
   worse.mutable_lease()->set_manifest_sha256("short");
-  farm::ToWorker no_node = lease(12, 0);
+  farm::ToWorker no_node = lease(12, 0);  // samples [16, 48) of a half tile are no node
   for (const std::uint32_t number : {16u, 16u, 16u, 32u}) {
     no_node.mutable_lease()->add_tile_samples(number);
   }
@@ -294,6 +295,8 @@ TEST(Session, KeepsBandsWhenRefusedAndDropsThemAtBye) {
   EXPECT_TRUE(second.dismissal->for_ever);
 }
 
+// The waiting time before a retry, in milliseconds, is random between half of a cap and the cap.
+// The cap doubles from 200 to 5000.
 TEST(Backoff, GrowsToItsCapAndStaysWithinHalfOfIt) {
   Backoff backoff(1);
   std::int64_t cap = 200;

@@ -18,7 +18,8 @@ FinishedBand band(TaskId id) {
   return band;
 }
 
-/// A coordinator that answers each attempt as the test specifies.
+/// A coordinator that answers each attempt to send a band by answer_(task, attempt); attempts are
+/// counted from 1. By default it stores all bands.
 class UploaderTest : public ::testing::Test {
  protected:
   Outcome put(const FinishedBand& band) {
