@@ -1,4 +1,5 @@
-// Limits of a holder of the link for browsers: one test for each line of the table in
+// What somebody who has the link for browsers cannot do. The name of each test completes the
+// sentence "the holder of the link cannot …", and there is one test for each line of the table in
 // coordinator/web/README.md.
 
 #include <gmock/gmock.h>
@@ -263,7 +264,7 @@ TEST_F(JoinCannotTest, SendLongMessages) {
   ASSERT_TRUE(socket.send(hello()));
   socket.send_bytes(std::string(100'000, 'x'));
   socket.read_to_end();
-  EXPECT_EQ(socket.close_code(), 1009);
+  EXPECT_EQ(socket.close_code(), 1009);  // "message too big" of the WebSocket standard
   wait_until([&] { return workers().empty(); });
 }
 
@@ -293,7 +294,8 @@ TEST_F(JoinCannotTest, HoldASocketWithoutAHandshake) {
   EXPECT_THAT(answer, testing::StartsWith("HTTP/1.1 4"));
 }
 
-// Its messages fill the queue, or one of them is not sent in time; neither blocks the scheduler.
+// The coordinator's messages for this tab fill its queue, or one of them is not sent in time.
+// Either ends its session; neither blocks the scheduler.
 TEST_F(JoinCannotTest, HoldUpTheFarmByNotReading) {
   options_.browser_limits.write = std::chrono::milliseconds(200);
   options_.browser_limits.idle = std::chrono::minutes(1);

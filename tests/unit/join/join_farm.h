@@ -1,6 +1,7 @@
 #pragma once
 
-// A coordinator with a link for browsers, and a browser's messages.
+// The base of tests of browsers that render. It starts a coordinator with a dashboard and a link
+// for browsers, and makes the messages that the page in a browser's tab sends.
 
 #include <string>
 #include <thread>
@@ -17,11 +18,11 @@ class JoinTest : public WebTest {
 
   /// Opens a session with the present link.
   test::SocketClient open() const { return {dashboard_->port(), {.secret = secret_}}; }
-  /// The Hello of a browser that is admitted; each name is an instance of its own.
+  /// Returns the Hello of a browser that is admitted. Each name is a tab of its own.
   static farm::FromWorker hello(const std::string& name = "tab");
   /// Opens a session, says Hello, and reads until the first lease.
   farm::Lease lease_to(test::SocketClient& socket, const std::string& name = "tab") const;
-  /// The body of POST /join/band with all samples of the lease, each pixel's sum being 8.
+  /// Returns the body of POST /join/band with all samples of the lease; the sum of each pixel is 8.
   static std::string band(const farm::Lease& lease, const std::string& name = "tab");
 
   /// Requests with the link's secret.
@@ -40,7 +41,7 @@ class JoinTest : public WebTest {
     }
   }
 
-  std::string secret_;
+  std::string secret_;  ///< of the link, which ends after a minute
 };
 
 }  // namespace bandsaw::coordinator

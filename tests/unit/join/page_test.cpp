@@ -1,4 +1,5 @@
-// The page for browsers, its policy, its renderer, and the link that leads to it.
+// The page /join, on which a browser joins the farm: its content security policy, the renderer that
+// it loads (WebAssembly), and the link that leads to it.
 
 #include <gmock/gmock.h>
 
@@ -115,7 +116,7 @@ TEST_F(JoinPageTest, UsersOfTheDashboardMakeShowAndRevokeTheLink) {
   const auto made = message<web::BrowserLink>(post("/api/link"));
   EXPECT_THAT(made.url(), StartsWith(base() + "/join#"));
   EXPECT_NE(made.url(), shown.url());
-  EXPECT_GT(made.left_s(), 7.9 * 3600);
+  EXPECT_GT(made.left_s(), 7.9 * 3600);  // a new link ends after 8 hours
   const auto code = get("/api/link.svg");
   EXPECT_EQ(code->header("Content-Type"), "image/svg+xml");
   EXPECT_EQ(code->body, qr_svg(*qr_code(made.url())));

@@ -1,4 +1,6 @@
-// A browser's session from its Hello to the last band, and every way in which it ends.
+// A browser's session over a WebSocket, from its Hello to the last band, and every way in which it
+// ends. Close codes of the standard: 1000 normal, 1001 going away, 1008 violation of the rules;
+// 4409 is our own: another session of the same tab replaced it.
 
 #include <gmock/gmock.h>
 
@@ -84,7 +86,8 @@ TEST_F(JoinSessionTest, ATabThatAnswersPingsStays) {
   ASSERT_TRUE(socket.read());
   // Reading answers the pings. Nothing else comes until the coordinator stops.
   std::thread reader([&] { socket.read_to_end(); });
-  wait_until([&] { return socket.pings() == 4; });  // one after half of the limit: twice that
+  // A ping is sent after half of the limit, so four pings take twice the limit.
+  wait_until([&] { return socket.pings() == 4; });
   EXPECT_THAT(workers(), Not(IsEmpty()));
   dashboard_.reset();
   reader.join();

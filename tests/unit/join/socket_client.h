@@ -1,6 +1,7 @@
 #pragma once
 
-// The WebSocket of a browser, to a server on loopback.
+// A blocking WebSocket client for tests: it takes the place of the page /join in a browser's tab.
+// The server is on loopback.
 
 #include <atomic>
 #include <cstdint>
@@ -12,6 +13,8 @@
 
 namespace bandsaw::test {
 
+/// The handshake of a client. The secret is that of the link for browsers; it is sent as one of the
+/// WebSocket's protocols, because a page cannot set other headers.
 struct SocketOffer {
   std::string secret;
   std::string protocol = "bandsaw.1";
@@ -25,7 +28,8 @@ class SocketClient {
   SocketClient(int port, const SocketOffer& offer, int receive_buffer = 0);
   ~SocketClient();
 
-  /// Status of the response to the handshake: 101, or that of a refusal; 0: none came.
+  /// HTTP status of the response to the handshake: 101 (accepted) or that of a refusal; 0: none
+  /// came.
   int status() const { return status_; }
   /// Body of a refusal.
   const std::string& refusal() const { return refusal_; }

@@ -1,5 +1,6 @@
-// A browser's session over TLS with the farm's certificate: the rules of the session without TLS
-// hold, and whatever happens to the connection ends it and frees its place.
+// A browser's session over TLS with the farm's certificate. The same rules hold as without TLS
+// (session_test.cpp). Whatever happens to the connection ends the session and frees its place among
+// the limited number of sessions.
 
 #include <gmock/gmock.h>
 
@@ -60,7 +61,7 @@ class SecureTab {
   void send_record(const std::string& bytes) {
     asio::write(stream_.next_layer(), asio::buffer(bytes));
   }
-  /// Sends bytes that TLS does not know of.
+  /// Sends bytes directly to the TCP socket, without TLS.
   void send_below(const std::string& bytes) { asio::write(tcp(), asio::buffer(bytes)); }
   /// Returns the next message; std::nullopt: the session has ended.
   std::optional<farm::ToWorker> read() {
@@ -84,7 +85,7 @@ class SecureTab {
     beast::error_code ignored;
     stream_.close(websocket::close_code::normal, ignored);
   }
-  /// Says that nothing more comes, by TLS and not by a frame.
+  /// Ends the connection by a message of TLS, without a close frame of the WebSocket.
   void end_tls() {
     beast::error_code ignored;
     stream_.next_layer().shutdown(ignored);
@@ -99,7 +100,8 @@ class SecureTab {
   int code_ = 0;
 };
 
-/// Returns a binary frame with a mask of zeros. Its head announces `size` bytes, at most 65,535.
+/// Returns a binary WebSocket frame with a mask of zeros, so that the payload is sent as it is. Its
+/// head announces `size` bytes, at most 65,535; `payload` may be shorter.
 std::string frame(const std::string& payload, std::size_t size) {
   std::string head = "\x82";
   if (size < 126) {
@@ -200,7 +202,8 @@ TEST_F(JoinTlsTest, AStallInTheMiddleOfAFrameEndsIt) {
     tab->send_record(frame(half, 2 * half.size()));
     expect_ended();
   }
-  // In the middle of a record, which TLS cannot open yet.
+  // In the middle of a TLS record: 0x17 is application data, and the length (0x20 and the first x)
+  // is 8,312 bytes.
   const auto tab = join();
   tab->send_below("\x17\x03\x03\x20" + half);
   expect_ended();
