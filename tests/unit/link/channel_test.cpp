@@ -18,7 +18,7 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-/// A server that only records the secret of each call.
+/// A server that answers a call of ListJobs with the secret of the call, as the name of a job.
 class Echo : public farm::Farm::Service {
   grpc::Status ListJobs(grpc::ServerContext* context, const farm::ListJobsRequest*,
                         farm::ListJobsReply* reply) override {
@@ -31,6 +31,7 @@ class Echo : public farm::Farm::Service {
   }
 };
 
+/// Runs an Echo on loopback. `wanted_port`: 0: any free one.
 struct EchoServer {
   Echo service;
   int port = 0;
@@ -60,6 +61,7 @@ JoinString join_to(int port, std::optional<wire::Digest> digest) {
   return join;
 }
 
+/// Expects that calls on both channels arrive with the secret of the join string.
 void expect_calls_work(const Connected& connected, const JoinString& join) {
   for (const auto& channel : {connected.control, connected.bulk}) {
     grpc::ClientContext context;
@@ -129,7 +131,7 @@ TEST_F(ConnectTest, ReportsAPlaintextServer) {
 
 TEST_F(ConnectTest, FetchingACertificateNeitherReadsNorLeavesErrorsOfOpenSsl) {
   const EchoServer server(tls(identity_));
-  ERR_raise(ERR_LIB_USER, ERR_R_INTERNAL_ERROR);
+  ERR_raise(ERR_LIB_USER, ERR_R_INTERNAL_ERROR);  // an old error in this thread's queue
   const auto pem =
       fetch_certificate_pem("127.0.0.1:" + std::to_string(server.port), milliseconds(3'000));
   ASSERT_TRUE(pem.ok()) << pem.status();

@@ -1,4 +1,5 @@
-// Join strings: written and read again, with errors that do not repeat the secret.
+// Join strings, the lines of text with which machines and users connect to a farm: they are written
+// and read again, and errors do not repeat the secret that they contain.
 
 #include "proto/link/join.h"
 
