@@ -1,4 +1,5 @@
-// The command that a user is told to come back with repeats what was asked for.
+// When a command leaves a job early, for example at Ctrl-C, it prints the command that follows the
+// job again. That command repeats the files and the denoiser that the user asked for.
 
 #include <gtest/gtest.h>
 

@@ -26,6 +26,7 @@ T parsed(const std::string& line) {
   return command.ok() && std::holds_alternative<T>(*command) ? std::get<T>(*command) : T();
 }
 
+/// Expects that the line is refused by an error of one line that contains `says`.
 void expect_wrong(const std::string& line, const std::string& says) {
   const auto command = parse(line);
   ASSERT_FALSE(command.ok()) << line;

@@ -32,6 +32,7 @@ TEST(Comparison, ReportsTheMetricsOfTheDifference) {
   }
 }
 
+// If the reference, the second image, has values above 1, FLIP compares several exposures.
 TEST(Comparison, ABrightReferenceIsSeenAtSeveralExposures) {
   EXPECT_FALSE(compare_images(image(8, 8, 5), image(8, 8, 1)).value().hdr);
   EXPECT_TRUE(compare_images(image(8, 8, 1), image(8, 8, 5)).value().hdr);

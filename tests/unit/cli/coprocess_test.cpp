@@ -1,4 +1,6 @@
-// A child process that answers line by line.
+// Coprocess: a child process that gets lines and answers each with a line. The arguments of
+// `exchange` are a line, the longest time to wait for the answer in seconds, and a flag that stops
+// the wait (nullptr: none).
 
 #include "coordinator/cli/base/coprocess.h"
 

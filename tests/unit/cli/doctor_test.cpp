@@ -14,6 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
+// The arguments are the times from and until which the certificate is valid, and the present.
 TEST(Doctor, ACertificateIsValidInItsTime) {
   EXPECT_TRUE(certificate_check(100, 200, 150).ok);
   EXPECT_THAT(certificate_check(100, 200, 99).found, HasSubstr("not valid yet"));
@@ -22,6 +23,7 @@ TEST(Doctor, ACertificateIsValidInItsTime) {
   EXPECT_THAT(over.found, HasSubstr("not valid any more"));
 }
 
+// The arguments are our time before the coordinator's answer, its time, and our time after it.
 TEST(Doctor, ClocksMayDifferALittle) {
   EXPECT_TRUE(clock_check(100, 103, 102).ok);
   const Check slow = clock_check(100, 1, 102);

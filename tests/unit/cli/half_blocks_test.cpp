@@ -20,6 +20,7 @@ constexpr Rgb kBlack{};
 constexpr Rgb kWhite{1, 1, 1};
 constexpr Rgb kRed{1, 0, 0};
 
+/// Returns the line without its escape sequences.
 std::string plain(const std::string& line) {
   std::string out;
   bool inside = false;

@@ -10,6 +10,7 @@ namespace {
 
 using testing::ElementsAre;
 
+/// Each has an interface, an address, and whether it is IPv6 and whether it is loopback.
 const std::vector<LocalAddress> kLocal = {
     {"lo", "127.0.0.1", false, true},      {"docker0", "172.17.0.1", false, false},
     {"eth0", "192.168.1.5", false, false}, {"lo", "::1", true, true},

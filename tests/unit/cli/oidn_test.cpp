@@ -1,4 +1,5 @@
-// --denoise=oidn with a stand-in for the library (tests/support/oidn).
+// --denoise=oidn, which uses the library OpenImageDenoise. A stand-in takes its place: it computes
+// (color + albedo) / 2 + normal / 4 (tests/support/oidn).
 
 #include "coordinator/cli/image/oidn.h"
 
@@ -11,6 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
+/// Returns an image of two rows in one colour.
 Image filled(std::uint32_t width, const Rgb& color) { return {width, 2, {2 * width, color}}; }
 
 TEST(Oidn, FiltersWithAlbedoAndNormals) {

@@ -21,6 +21,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
+/// Collects what a console prints. `terminal`: it is one, so that lines can be redrawn.
 struct Screen {
   std::string out;
   std::string err;

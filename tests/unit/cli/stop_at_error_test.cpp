@@ -1,5 +1,6 @@
-// Jobs that run until the estimate of their own film is small enough, with samples of known mean:
-// the true error meets the target.
+// Jobs that run until the error that is estimated from their own film reaches the target. Their
+// samples are random numbers of known mean, so the true error is known: it must meet the target in
+// 19 of 20 jobs.
 
 #include <gtest/gtest.h>
 
@@ -18,6 +19,7 @@ using test::Random;
 constexpr TileGrid kGrid{48, 32};
 constexpr double kTarget = 0.05;
 
+/// Returns a number that is nearly normal, with mean 0 and variance 1: the sum of 12 uniform ones.
 double normal(Random& random) {
   double sum = -6;
   for (int i = 0; i < 12; ++i) {
@@ -26,12 +28,13 @@ double normal(Random& random) {
   return sum;
 }
 
-/// Correlation of the pixels' errors: kOwn: independent; kFew: independent, and some 40 pixels have
-/// most of the noise (rare bright paths); kShared: equal within each group of pixels that may share
-/// their paths.
+/// How the errors of pixels are related. kOwn: they are independent. kFew: they are independent,
+/// and some 40 pixels have most of the noise, as with rare bright paths. kShared: they are equal
+/// within each group of pixels that may share their paths.
 enum class Errors { kOwn, kFew, kShared };
 
-/// An image that is 1 everywhere, with the noise in some 70 of its pixels or of its groups.
+/// An image whose true value is 1 everywhere. Some 70 of its pixels, or of its groups of pixels,
+/// have most of the noise.
 class NoisyImage {
  public:
   NoisyImage(Errors errors, Random& random) : errors_(errors), random_(random) {
@@ -47,6 +50,7 @@ class NoisyImage {
   /// Number of samples per pixel that reach the target on average.
   double ideal_samples() const { return variance_ / (kTarget * kTarget); }
 
+  /// Returns the sums of these samples, with new random errors.
   BandPixels render(const SampleRange& samples, const TileSamples& tiles) {
     std::vector<double> errors;
     for (const double deviation : deviations_) {
@@ -105,6 +109,8 @@ double true_error(const Image& image) {
   return std::sqrt(squares);
 }
 
+/// Runs one job until it stops. `with_margin`: it compares the upper bound of the error with the
+/// target, as jobs do; otherwise the estimate itself.
 Stopped run(Errors errors, bool adaptive, bool with_margin, Random& random) {
   NoisyImage image(errors, random);
   LocalPlan plan(StopAtError{.relative_rmse = kTarget, .adaptive = adaptive}, kGrid);

@@ -40,7 +40,8 @@ const StudyLine& line(const StudyOfScene& study, Method method) {
   return *found;
 }
 
-/// An area light in the middle of each pixel of kSettings, a twentieth of its area; nothing else.
+/// In the middle of each pixel of kSettings there is an area light with a twentieth of the pixel's
+/// area; the rest is black.
 std::shared_ptr<const Scene> rare_light() {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);
@@ -74,6 +75,7 @@ TEST(Study, WithoutATechniqueTheErrorIsLargerAndTheMeanIsUnbiased) {
     const StudyLine& of = line(study, method);
     ASSERT_EQ(of.points.size(), 4u);
     EXPECT_LT(*slope_of(of), -0.3) << method_name(method);
+    // The image has 64 pixels, so its mean has an eighth of the error of the reference's pixels.
     const StudyPoint& last = of.points.back();
     EXPECT_LT(std::abs(last.bias), 4 * last.bias_error + 2 * study.reference_error / 8)
         << method_name(method);
@@ -92,6 +94,8 @@ TEST(Study, WhereGuidingPaysThereIsALineWithoutIt) {
             line(study, Method::kNoGuiding).points.back().relative_rmse / 2);
 }
 
+// A pixel that stops as soon as its own estimated error is small often stops before it has seen a
+// rare light, so its image is too dark.
 TEST(Study, StoppingPerPixelLosesRareLight) {
   const StudyOfScene study =
       study_of(*rare_light(), {.samples = 256, .seeds = 2, .reference = 4096});

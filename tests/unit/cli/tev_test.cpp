@@ -1,4 +1,5 @@
-// The packets that show an image in the viewer tev.
+// The packets of the network protocol of the image viewer tev, which show an image while it is
+// rendered. Numbers are little-endian.
 
 #include "coordinator/cli/progress/tev.h"
 
@@ -19,9 +20,9 @@ TEST(Tev, AnImageIsMadeByItsNameSizeAndChannels) {
                   "\x04"        // create
                   "\x01"        // grab the focus
                   "box\0"
-                  "\x02\x01\0\0"
-                  "\x02\0\0\0"
-                  "\x03\0\0\0"
+                  "\x02\x01\0\0"  // width
+                  "\x02\0\0\0"    // height
+                  "\x03\0\0\0"    // number of channels
                   "R\0G\0B\0"));
 }
 
@@ -32,16 +33,16 @@ TEST(Tev, RowsAreSentAsTheyLieInMemory) {
                   "\x06"        // update, third version
                   "\0"          // leave the focus
                   "b\0"
-                  "\x03\0\0\0"
+                  "\x03\0\0\0"  // number of channels
                   "R\0G\0B\0"
-                  "\0\0\0\0"    // x
-                  "\x01\0\0\0"  // y
-                  "\x01\0\0\0"  // width
-                  "\x02\0\0\0"  // height
-                  "\0\0\0\0\0\0\0\0"
+                  "\0\0\0\0"          // x
+                  "\x01\0\0\0"        // y
+                  "\x01\0\0\0"        // width
+                  "\x02\0\0\0"        // height
+                  "\0\0\0\0\0\0\0\0"  // offsets of the channels in the data, in floats
                   "\x01\0\0\0\0\0\0\0"
                   "\x02\0\0\0\0\0\0\0"
-                  "\x03\0\0\0\0\0\0\0"
+                  "\x03\0\0\0\0\0\0\0"  // their strides, in floats
                   "\x03\0\0\0\0\0\0\0"
                   "\x03\0\0\0\0\0\0\0"
                   "\0\0\x80\x3f\0\0\0\0\0\0\0\x3f"  // IEEE 754: 1, 0, 0.5

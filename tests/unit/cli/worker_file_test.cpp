@@ -1,4 +1,5 @@
-// Worker programs are identified by their bytes, not their names, and are not run.
+// The coordinator identifies worker programs by their bytes, without running them: an ELF header,
+// and the mark, a record with the version.
 
 #include "coordinator/cli/machines/worker_file.h"
 
@@ -18,6 +19,7 @@ using test::fitting_mark;
 using test::worker_file;
 using testing::HasSubstr;
 
+/// Returns the error for a file that is to be the worker for this architecture.
 std::string error_of(const std::string& bytes, Machine machine = Machine::kAarch64) {
   const auto program = checked_worker_program(bytes, machine);
   return program.ok() ? "no error" : std::string(program.status().message());

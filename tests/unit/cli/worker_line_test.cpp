@@ -1,5 +1,6 @@
-// The line for machines without a worker, run by a real shell with uname and curl replaced by
-// scripts of the test.
+// The shell line that a user pastes on a machine without a worker: it downloads the program for the
+// machine's architecture, checks it and starts it. The test runs it in a real shell; uname and curl
+// are replaced by scripts.
 
 #include "coordinator/cli/machines/worker_line.h"
 
@@ -43,7 +44,7 @@ class WorkerLine : public ::testing::Test {
     std::ofstream(folder_ / name) << text;
     std::filesystem::permissions(folder_ / name, std::filesystem::perms::owner_all);
   }
-  /// Runs the line in an empty home folder.
+  /// Runs the line in an empty home folder. `uname`: the output of uname -m.
   Finished paste(const std::string& uname) {
     write("uname", uname);
     write("bin/uname", "#!/bin/sh\n[ \"$*\" = -m ] && cat " + folder_.path() + "/uname\n");
