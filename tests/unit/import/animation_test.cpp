@@ -17,6 +17,8 @@ Curve numbers(std::vector<double> times, std::vector<double> values, Interpolati
   return {std::move(times), std::move(values), 1, interpolation};
 }
 
+// A cubic curve has three values for each key: the tangent before it, its value, and the tangent
+// after it.
 TEST(Curve, RestsBeforeTheFirstKeyAndAfterTheLast) {
   for (const Interpolation kind :
        {Interpolation::kLinear, Interpolation::kStep, Interpolation::kSmooth}) {

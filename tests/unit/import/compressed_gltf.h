@@ -1,6 +1,7 @@
 #pragma once
 
-// Meshes that tests compress by the encoders of libdraco and libmeshoptimizer.
+// Makes glTF files with compressed meshes, for tests of their decoding. The encoders are those of
+// libdraco (KHR_draco_mesh_compression) and libmeshoptimizer (EXT_meshopt_compression).
 
 #include <draco/compression/encode.h>
 #include <gtest/gtest.h>
@@ -12,7 +13,9 @@
 
 namespace bandsaw::test {
 
-/// Puts a compressed buffer view into the file, whose fallback buffer does not exist.
+/// Adds a buffer view that is compressed by meshopt: `stream` decodes to `count` elements of
+/// `stride` bytes. Its fallback, buffer 1, has no data, so a reader must decode. `mode`, `filter`:
+/// of the extension. Returns the index of the view.
 inline std::size_t add_view(GltfWriter& file, const std::string& stream, std::size_t count,
                             std::size_t stride, const char* mode, const char* filter = "NONE") {
   const std::size_t at = file.view(stream);
@@ -27,6 +30,7 @@ inline std::size_t add_view(GltfWriter& file, const std::string& stream, std::si
   return at;
 }
 
+/// Returns vertices of `stride` bytes, encoded by meshopt.
 inline std::string encoded_vertices(const std::string& bytes, std::size_t stride) {
   const std::size_t count = bytes.size() / stride;
   std::string out(meshopt_encodeVertexBufferBound(count, stride), '\0');
@@ -36,6 +40,8 @@ inline std::string encoded_vertices(const std::string& bytes, std::size_t stride
   return out;
 }
 
+/// Adds an accessor over vertices that are encoded by meshopt. `members`: its component type and
+/// its type. Returns its index.
 inline std::size_t add_attribute(GltfWriter& file, const std::string& bytes, std::size_t stride,
                                  const Json& members, const char* filter = "NONE") {
   const std::size_t count = bytes.size() / stride;
@@ -49,6 +55,7 @@ inline std::size_t add_attribute(GltfWriter& file, const std::string& bytes, std
 inline const Json kFloats3 = {{"componentType", 5126}, {"type", "VEC3"}};
 inline const Json kFloats2 = {{"componentType", 5126}, {"type", "VEC2"}};
 
+/// Returns the indices of the square, encoded by meshopt as a sequence or as triangles.
 inline std::string encoded_indices(const WavySquare& square, bool as_sequence) {
   const auto& indices = square.indices;
   meshopt_encodeIndexVersion(1);
@@ -62,6 +69,8 @@ inline std::string encoded_indices(const WavySquare& square, bool as_sequence) {
   return out;
 }
 
+/// Returns a file of the square that is encoded by meshopt. `index_size`: bytes of a decoded index,
+/// 2 or 4.
 inline GltfWriter with_meshopt(const WavySquare& square, bool as_sequence, std::size_t index_size) {
   GltfWriter file;
   file.attributes() = {{"POSITION", add_attribute(file, bytes_of(square.positions), 12, kFloats3)},
@@ -81,7 +90,9 @@ inline GltfWriter with_meshopt(const WavySquare& square, bool as_sequence, std::
   return file;
 }
 
-/// The square as a Draco mesh; the attributes' numbers are 0 to 2. `bits` of 0: not quantised.
+/// Returns the square as a Draco mesh, whose attributes 0 to 2 are positions, normals and uvs.
+/// `bits`: of a quantised number; 0: not quantised. `edgebreaker`: that encoding, else the
+/// sequential one.
 inline std::string draco_stream(const WavySquare& square, int bits, bool edgebreaker) {
   draco::Mesh mesh;
   mesh.set_num_points(static_cast<std::uint32_t>(square.vertices()));
@@ -117,6 +128,8 @@ inline std::string draco_stream(const WavySquare& square, int bits, bool edgebre
   return std::string(out.data(), out.size());
 }
 
+/// Returns a file of one mesh in this Draco stream, of which it claims these numbers of vertices
+/// and indices.
 inline GltfWriter with_draco(const std::string& stream, std::size_t vertices, std::size_t indices) {
   GltfWriter file;
   const auto accessor = [&](Json members, std::size_t count) {

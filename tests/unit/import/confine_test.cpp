@@ -31,7 +31,9 @@ struct Folders {
   TempDir other;
 };
 
-// Runs `act` in a confined process; its result is that process's exit code.
+// Runs `act` in a confined process. Returns that process's exit code: the result of `act`; 200 if
+// it could not be confined; 1000 + the number of the signal that ended it. The limits are 8 GiB of
+// memory, 60 s of CPU time and files of 1 MiB.
 int confined(const Folders& folders, const std::function<int()>& act) {
   const pid_t pid = fork();
   if (pid == 0) {

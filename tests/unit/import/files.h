@@ -1,6 +1,7 @@
 #pragma once
 
-// Scenes and models that tests write themselves.
+// Files for tests of the import: text files that a test writes, a small picture, and the models of
+// Assimp's test suite.
 
 #include <fstream>
 #include <string>
@@ -9,6 +10,7 @@
 
 namespace bandsaw::test {
 
+/// Writes a file, and returns its path.
 inline std::string write_text(const TempDir& folder, const std::string& name,
                               const std::string& text) {
   std::ofstream(folder / name, std::ios::binary) << text;
@@ -21,7 +23,7 @@ inline std::string small_ppm() {
          "\xff" + std::string(1, '\0') + std::string(2, '\0') + "\xff" + "\xff\xff\xff";
 }
 
-/// Folder of the package assimp-testmodels.
+/// Returns the path of a model of the Debian package assimp-testmodels, which may be missing.
 inline std::string test_model(const std::string& name) {
   return "/usr/share/assimp/models/" + name;
 }

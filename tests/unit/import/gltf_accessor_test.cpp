@@ -30,7 +30,7 @@ class GltfAccessors : public ::testing::Test {
     EXPECT_TRUE(imported.ok()) << imported.status();
     return imported.ok() ? *std::move(imported) : ImportedScene();
   }
-  /// Returns the only mesh of the file. Its image is used, so that its uvs are read.
+  /// Returns the only mesh of the file. Expects no warning.
   Mesh mesh(GltfWriter& file) {
     const ImportedScene imported = read(file);
     EXPECT_THAT(imported.info.warnings, IsEmpty());

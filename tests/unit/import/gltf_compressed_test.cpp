@@ -81,8 +81,9 @@ TEST(Meshopt, ALosslessEncodingIsRenderedToTheSameBits) {
   EXPECT_EQ(seen(read(with_meshopt(square, true, 2), folder)), seen(read(square.plain(), folder)));
 }
 
-/// Each number as an exponent of 8 bits above a mantissa of `bits` with its sign: the exponential
-/// filter. The library's encoder takes other arguments in each of its versions.
+/// Encodes numbers for meshopt's exponential filter: each becomes an exponent of 8 bits above a
+/// signed mantissa of `bits` bits. This replaces the library's encoder, which takes other arguments
+/// in each of its versions.
 std::string exponential(const std::vector<float>& values, int bits) {
   std::vector<std::uint32_t> codes;
   for (const float value : values) {
@@ -95,6 +96,7 @@ std::string exponential(const std::vector<float>& values, int bits) {
   return test::bytes_of(codes);
 }
 
+/// Returns vectors of three numbers with `value` as the fourth.
 std::vector<float> fourth(const std::vector<float>& from, float value) {
   std::vector<float> to;
   for (std::size_t i = 0; i < from.size(); i += 3) {
@@ -155,6 +157,7 @@ TEST(Meshopt, FilteredNormalsAndPositionsAreWithinTheirPrecision) {
   }
 }
 
+// Our decoders of the filters differ from the library's by at most one unit.
 TEST(Meshopt, FiltersAreThoseOfTheLibraryUpToItsRounding) {
   test::Random random(3);
   std::vector<float> unit;
@@ -242,12 +245,13 @@ TEST(Draco, UnquantisedValuesAreTheSameToTheBit) {
   EXPECT_EQ(seen(imported), seen(plain));
 }
 
-/// Vertices sorted by their uvs, because edgebreaker renumbers them.
 struct Vertex {
   std::array<float, 2> uv;
   std::array<float, 3> position;
   std::array<float, 3> normal;
 };
+/// Returns the vertices of a square of n x n cells, sorted by their uvs, because the encoding
+/// "edgebreaker" renumbers them.
 std::vector<Vertex> sorted_vertices(const Mesh& mesh, int n) {
   std::vector<Vertex> all;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -273,7 +277,8 @@ TEST(Draco, QuantisedMeshesAreWithinTheirPrecision) {
       ASSERT_EQ(mesh.triangles.size(), plain.triangles.size());
       const auto found = sorted_vertices(mesh, kSide);
       ASSERT_EQ(found.size(), expected.size());
-      // Tolerances: half a step of the largest extent, 1; a step of the octahedral map of two.
+      // Tolerances: half a step of the largest extent, which is 1, for positions and uvs; one step
+      // of the octahedral map, whose extent is 2, for normals.
       const double step = 0.51 / ((1 << bits) - 1);
       for (std::size_t i = 0; i < found.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) {

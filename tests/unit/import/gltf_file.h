@@ -1,6 +1,7 @@
 #pragma once
 
-// Small glTF files that tests write themselves.
+// A small glTF file that tests write as text: one triangle, to which they add materials, textures
+// and further members. gltf_writer.h has a writer for meshes of numbers.
 
 #include <cstring>
 #include <string>
@@ -11,7 +12,7 @@
 
 namespace bandsaw::test {
 
-/// The bytes of floats, for buffers.
+/// Returns the bytes of floats, for the buffer of a glTF file.
 inline std::string floats(const std::vector<float>& values) {
   std::string bytes(values.size() * sizeof(float), '\0');
   std::memcpy(bytes.data(), values.data(), bytes.size());
@@ -23,12 +24,13 @@ inline std::string floats(const std::vector<float>& values) {
 struct GltfTriangle {
   std::string materials = "{}";  ///< contents of the list
   std::string textures;          ///< contents of the list
-  std::string images;
-  std::string samplers;
-  bool colors = false;
-  std::string primitives;  ///< further primitives of the mesh, each after a comma
-  std::string more;        ///< further members of the file, each followed by a comma
+  std::string images;            ///< contents of the list
+  std::string samplers;          ///< contents of the list
+  bool colors = false;           ///< the triangle has its vertex colours
+  std::string primitives;        ///< further primitives of the mesh, each after a comma
+  std::string more;              ///< further members of the file, each followed by a comma
 
+  /// Writes the file, and its buffer t.bin beside it; returns its path.
   std::string write(const TempDir& folder, const std::string& name) const {
     write_text(folder, "t.bin",
                floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + floats({0, 0, 1, 0, 0, 1}) +

@@ -21,6 +21,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+/// Index of refraction 1, so rays pass straight; white light becomes (0.25, 0.5, 1) over a length
+/// of 2.
 constexpr char kGlass[] = R"({"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
   "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1},
     "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2,

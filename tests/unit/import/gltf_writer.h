@@ -1,6 +1,7 @@
 #pragma once
 
-// glTF files that tests build from vectors of numbers, and damage.
+// GltfWriter makes glTF files from vectors of numbers, for tests of the import. Tests may change
+// the JSON before it is written, also to damage it.
 
 #include <array>
 #include <cmath>
@@ -18,6 +19,7 @@ namespace bandsaw::test {
 
 using Json = nlohmann::json;
 
+/// Returns the number by which glTF names the type.
 template <class T>
 int component_type() {
   return std::is_same_v<T, float>           ? 5126
@@ -35,7 +37,7 @@ std::string bytes_of(const std::vector<T>& values) {
   return bytes;
 }
 
-/// One mesh of one primitive at one node; tests add everything else.
+/// A file with one mesh of one primitive at one node; tests add everything else.
 class GltfWriter {
  public:
   GltfWriter() {
@@ -47,6 +49,7 @@ class GltfWriter {
   Json& primitive() { return root["meshes"][0]["primitives"][0]; }
   Json& attributes() { return primitive()["attributes"]; }
 
+  /// Adds bytes to the buffer, with a buffer view of them; returns the index of the view.
   std::size_t view(const std::string& part) {
     bytes.resize((bytes.size() + 3) / 4 * 4);
     root["bufferViews"].push_back(
@@ -54,12 +57,14 @@ class GltfWriter {
     bytes += part;
     return root["bufferViews"].size() - 1;
   }
+  /// Adds an accessor; returns its index.
   std::size_t accessor(const Json& members) {
     root["accessors"].push_back(members);
     return root["accessors"].size() - 1;
   }
-  /// An accessor over a view of its own. Rows of vertices must be padded to 4 bytes: of each row
-  /// `padding` values are not part of the elements.
+  /// Adds an accessor over a view of its own; returns its index. `values` are rows of `components`
+  /// numbers and `padding` further ones, which are not read: glTF requires that each row of an
+  /// attribute is a multiple of 4 bytes.
   template <class T>
   std::size_t add(const std::vector<T>& values, int components, bool normalized = false,
                   int padding = 0) {
@@ -79,7 +84,7 @@ class GltfWriter {
     return accessor(members);
   }
 
-  /// Returns the file; its buffer is a file beside it.
+  /// Writes the file, and its buffer as a file beside it; returns its path.
   std::string write(const TempDir& folder, const std::string& name) {
     write_text(folder, name + ".bin", bytes);
     Json whole = root;
@@ -89,7 +94,7 @@ class GltfWriter {
     return write_text(folder, name, whole.dump());
   }
 
-  /// The bytes of the file as a .glb.
+  /// Returns the bytes of the file as a .glb.
   std::string glb() const {
     Json whole = root;
     whole["buffers"] = Json::array({{{"byteLength", bytes.size()}}});
@@ -108,11 +113,11 @@ class GltfWriter {
     return import_scene(write(folder, name));
   }
 
-  Json root;
-  std::string bytes;
+  Json root;          ///< the JSON of the file
+  std::string bytes;  ///< its buffer
 };
 
-/// A wavy square of 2 n^2 triangles over [0, 1]^2, as input for encoders.
+/// A square of 2 n^2 triangles over [0, 1]^2 that is bent to a wave, as input for encoders.
 struct WavySquare {
   explicit WavySquare(int n = 12) {
     for (int y = 0; y <= n; ++y) {
@@ -136,7 +141,7 @@ struct WavySquare {
   }
   std::size_t vertices() const { return positions.size() / 3; }
 
-  /// As floats and 32-bit indices.
+  /// Returns a file of the square, uncompressed: floats and 32-bit indices.
   GltfWriter plain() const {
     GltfWriter file;
     file.attributes() = {{"POSITION", file.add(positions, 3)},

@@ -38,7 +38,8 @@ ImageTexture decoded(const std::string& file, Gray gray = Gray::kKept) {
   return image.ok() ? *std::move(image) : ImageTexture();
 }
 
-// Each of the pictures is 2 x 2: red, green above blue, white.
+// The colour pictures are 2 x 2: red and green above blue and white. Red has the code 250, so that
+// it cannot be mistaken for the 255 of the other colours.
 constexpr int kRed = 250;
 
 TEST(ImageFormats, PpmGoesFromTheTopRowDown) {

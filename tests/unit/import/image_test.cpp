@@ -142,7 +142,7 @@ TEST(DecodePicture, GivesBackAPngToHalfACode) {
   }
 }
 
-/// Many magnitudes, zeros, long and short runs.
+/// Returns an image with values of many magnitudes, zeros, and long and short runs of equal pixels.
 Image varied(std::uint32_t width, std::uint32_t height) {
   Image image{width, height, {}};
   std::mt19937_64 random(17);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Renders layers of an imported scene, for tests.
+// Renders an imported scene with an integrator such as albedo or normals, for tests of the import.
 
 #include <atomic>
 

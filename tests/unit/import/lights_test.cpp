@@ -1,4 +1,5 @@
-// Delta lights and environments of scene files and of models.
+// Lights without size (directional, point, spot, projector) and environments of scene files, and
+// the lights of models.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -207,6 +208,8 @@ TEST_F(SceneLights, AnEnvironmentThatIsGivenBesideTheSceneReplacesItsBackground)
       HasSubstr("x.hdr: is not an image"));
 }
 
+// L9 is the id of this hard case in tests/hard_cases/cases.txt. Negative and NaN texels become 0,
+// infinite and too large ones become the largest valid value.
 TEST(RepairLight, L9InvalidTexelsAreRepairedAndCounted) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   const float values[] = {1, -1, std::nanf(""), 7, kInf, 2e30f, -kInf, 0};

@@ -99,7 +99,8 @@ TEST(MitsubaPly, ClaimsAreCheckedBeforeMemoryIsTaken) {
   EXPECT_THAT(message(read_ply("solid", false)), HasSubstr("is not a PLY file"));
 }
 
-/// Returns a *.serialized file of one triangle; the header says `vertices`.
+/// Returns a *.serialized file of one triangle whose header claims this number of vertices.
+/// `flags`: 0x1000 means single precision.
 std::string serialized(std::uint64_t vertices, std::uint32_t last_index = 2,
                        std::uint32_t flags = 0x1000) {
   std::string inside;

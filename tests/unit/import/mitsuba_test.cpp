@@ -1,4 +1,5 @@
-// Scenes of Mitsuba: what becomes of them, and what is refused.
+// Scene files of the renderer Mitsuba (XML): how they are converted to scene files of our own
+// format, what is left out with a warning, and what is refused.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -467,7 +468,7 @@ TEST_F(MitsubaScene, GridsReachTheirFaces) {
               ElementsAre(HasSubstr("wrap_mode \"repeat\" of a grid is shown as clamp")));
 }
 
-/// The images that are seen are those of a scene file of ours that says the same.
+/// import_scene reads a Mitsuba file too, also in strict mode.
 TEST_F(MitsubaScene, IsImportedAsASceneFile) {
   write_text(folder_, "s.xml",
              "<scene version=\"3.0.0\">\n" + kSensor +

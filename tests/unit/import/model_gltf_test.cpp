@@ -1,5 +1,5 @@
-// Contents of a glTF file that are imported: its materials, texture transforms, data beyond Assimp,
-// its rest pose.
+// What is imported from a glTF file: materials with their extensions, texture transforms, sets of
+// uvs, vertex colours, and the rest pose of skins and morph targets.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

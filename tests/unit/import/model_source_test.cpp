@@ -21,8 +21,9 @@ namespace {
 
 using test::test_model;
 
+/// A material of the MTL file.
 struct Look {
-  Vec3 tint;
+  Vec3 tint;  ///< Kd
   ImageTexture image;
 };
 
@@ -127,8 +128,8 @@ struct Hit {
   Vec3 normal;
 };
 
-/// Returns the nearest hit at (x, y) for a viewer who looks along -z; std::nullopt if it is
-/// ambiguous: at an edge, or if two surfaces are equally near.
+/// Returns the nearest hit at (x, y) for a viewer who looks along -z; std::nullopt: there is none.
+/// `doubtful` is set to true if the hit is at an edge, or if two surfaces are equally near.
 std::optional<Hit> hit_at(const Obj& obj, double x, double y, bool& doubtful) {
   std::optional<Hit> nearest;
   doubtful = false;

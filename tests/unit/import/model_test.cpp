@@ -247,6 +247,7 @@ TEST(Model, AloneIsFramedWholeAndFillsThePicture) {
     left = std::min(left, x);
     right = std::max(right, x);
   }
+  // A margin of 3 % of the width, 600 pixels, remains at each side.
   EXPECT_NEAR(left, 18, 1);
   EXPECT_NEAR(right, 582, 1);
 }

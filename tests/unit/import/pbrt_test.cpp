@@ -1,4 +1,5 @@
-// Scenes of pbrt-v4.
+// Scene files of the renderer pbrt-v4: how they are converted to scene files of our own format,
+// what is left out with a warning, and what is refused.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -51,7 +51,7 @@ double smoke_along(const Scene& scene, const Vec3& origin, const Vec3& direction
   return -std::log(double{media_transmittance(scene, ray, NumberStream(0), rays).g}) / kDensity;
 }
 
-constexpr double kError = 4e-6;  // of a transmittance in float
+constexpr double kError = 4e-6;  // of a length, because the transmittance is a float
 
 TEST(PlacedMedia, TheDensityDoesNotDependOnThePlacement) {
   const auto scene = scene_of(kOpenFor1 + R"(

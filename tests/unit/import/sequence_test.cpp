@@ -23,6 +23,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
+/// Chooses a frame by its number. `fps`, `shutter` (the share of a frame's time in which it is
+/// open): std::nullopt: those of the scene.
 ImportChoices frame(double number, std::optional<double> fps = std::nullopt,
                     std::optional<double> shutter = std::nullopt) {
   ImportChoices choices;
@@ -38,6 +40,8 @@ void expect_near(const Vec3& a, const Vec3& b) {
 
 class Sequence : public ::testing::Test {
  protected:
+  /// Imports the scene, and expects that the result does not depend on frames that were imported
+  /// before.
   ImportedScene read(const std::string& path, const ImportChoices& choices) {
     auto imported = import_scene(path, choices);
     EXPECT_TRUE(imported.ok()) << imported.status();

@@ -30,6 +30,7 @@ void append(std::string& bytes, const T& value) {
   bytes.append(raw.data(), raw.size());
 }
 
+/// A *.vol file, the format of Mitsuba's grids. `encoding`: 1: floats; 2: halves; 3: bytes.
 struct Vol {
   std::int32_t encoding = 1;
   std::array<std::int32_t, 3> cells = {3, 2, 1};
@@ -151,6 +152,7 @@ typename Grid::Ptr named(const std::string& name,
   return grid;
 }
 
+/// Returns a grid of 500 voxels, scaled by 0.25 and moved.
 openvdb::FloatGrid::Ptr blob(const std::string& name) {
   auto grid = named<openvdb::FloatGrid>(name);
   auto access = grid->getAccessor();

@@ -1,4 +1,4 @@
-// Zip archives, and spectra: small readers of the importer.
+// Small readers of the importer: zip archives, deflated data, and spectra.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
+/// Returns a number in little-endian order.
 std::string little(std::uint64_t value, int bytes) {
   std::string out;
   for (int i = 0; i < bytes; ++i) {
@@ -20,7 +21,9 @@ std::string little(std::uint64_t value, int bytes) {
   return out;
 }
 
-/// Returns an archive with one stored file, "hello" with its checksum.
+/// Returns an archive with one file, "hello", stored without compression. `attributes`: Unix mode
+/// in the upper 16 bits; `claimed`: the size that the archive claims; `entries`: how often its
+/// directory lists the file.
 std::string archive(const std::string& name, std::uint32_t attributes = 0,
                     std::uint32_t claimed = 5, int entries = 1) {
   const std::string data = "hello";
@@ -81,6 +84,7 @@ TEST(Zip, DamageIsAnError) {
   }
 }
 
+// The last argument is the largest size of the result.
 TEST(Inflate, DamageAndBombsEnd) {
   EXPECT_FALSE(inflate("\x1f\x8b\x08", DeflateKind::kGzip, 100).ok());
   EXPECT_FALSE(inflate("", DeflateKind::kRaw, 100).ok());
@@ -112,6 +116,7 @@ TEST(Spectrum, ABlackBodyHasItsColour) {
   EXPECT_NEAR(y / (x + y + z), 0.40745, 0.001);
 }
 
+// Names of spectra are those of pbrt-v4. Reflectances are those at normal incidence.
 TEST(Spectrum, MetalsHaveTheirColours) {
   const auto reflectance = [](const std::string& name) {
     const auto metal = spectrum::metal_rgb(*spectrum::named("metal-" + name + "-eta"),
