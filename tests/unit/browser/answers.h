@@ -1,6 +1,7 @@
 #pragma once
 
-// Reads the answers of the functions that the browser's renderer exports.
+// Reads the answers of the exported functions, in tests of the renderer and the session of a
+// browser's tab. An answer is valid until the next call for its object.
 
 #include <gtest/gtest.h>
 

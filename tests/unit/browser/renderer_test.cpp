@@ -1,4 +1,7 @@
-// A renderer of a tab, through the exported functions: its bytes are those of a native worker.
+// The renderer in a browser's tab, called by the functions that it exports: it gives the bytes of a
+// native worker. It renders a band in parts of a few rows. If the scene shares paths between
+// pixels, the row step, 16, says that a part should have whole rows of tiles; otherwise the row
+// step is 1.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -101,7 +104,7 @@ class BrowserRendererTest : public ::testing::Test {
     return bandsaw_renderer_render(renderer_, bytes.data(), bytes.size(), first, last);
   }
 
-  /// Renders a band in pieces of `step` rows, joined as the tab joins them.
+  /// Renders a band in parts that end at multiples of `step` rows, joined as the tab joins them.
   BandPixels pieces(const Task& task, std::uint32_t step) {
     BandPixels joined{.band = task.band, .width = task.settings.width, .sums = {}, .counters = {}};
     const farm::Lease lease = lease_of(task);
@@ -139,6 +142,8 @@ class BrowserRendererTest : public ::testing::Test {
     return done.get_future().get().pixels;
   }
 
+  /// Expects the sums of a native worker. The counters are the same only if no part divides tiles
+  /// that share paths, because such tiles are traced by each part.
   void expect_same(const Task& task, const SceneDescription& scene, std::uint32_t step) {
     const BandPixels expected = native(task, scene);
     const BandPixels joined = pieces(task, step);
@@ -162,7 +167,7 @@ class BrowserRendererTest : public ::testing::Test {
 
   BlobMap farm_;
   BandsawRenderer* renderer_;
-  std::string row_step_;
+  std::string row_step_;  ///< JSON, of the scene that was loaded last
 };
 
 TEST_F(BrowserRendererTest, SharedPathsGiveTheBytesOfANativeWorker) {

@@ -1,4 +1,5 @@
-// A session of a tab against scripted messages of the coordinator, through the exported functions.
+// The session of a browser's tab with the coordinator, called by the functions that it exports. The
+// messages of the coordinator are made by the test. Answers are JSON or serialised messages.
 
 #include <gmock/gmock.h>
 #include <google/protobuf/struct.pb.h>
@@ -72,6 +73,7 @@ class BrowserSessionTest : public ::testing::Test {
     const std::string bytes = message.SerializeAsString();
     return json_of(good(bandsaw_session_receive(session_, bytes.data(), bytes.size())));
   }
+  /// Receives a lease of two rows, and returns the task that the tab is told to start.
   std::uint32_t start(std::uint64_t id, std::uint32_t first_row) {
     return static_cast<std::uint32_t>(
         field(field(receive(lease(id, first_row)), "start"), "task").number_value());
@@ -81,6 +83,8 @@ class BrowserSessionTest : public ::testing::Test {
     EXPECT_EQ(good(bandsaw_session_rendering(session_, task, rows, bytes.data(), bytes.size())),
               "");
   }
+  /// Returns the header of a finished band of 8 x 2 pixels, 384 bytes, with a render time of 2 s
+  /// and a CPU time of 3 s.
   const BandsawAnswer* header(std::uint32_t task) {
     const std::string digest = wire::sha256("sums").raw();
     return bandsaw_session_band_header(session_, task, digest.data(), digest.size(), 384, 2, 3);
