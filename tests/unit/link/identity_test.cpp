@@ -60,7 +60,7 @@ TEST(Identity, ItsCertificateIsValidNowAndForYears) {
       certificate_validity(load_or_make_identity(folder / "data")->certificate_pem);
   ASSERT_TRUE(validity.ok()) << validity.status();
   constexpr double kDay = 24 * 60 * 60;
-  // Twenty years, and one day for clocks that are behind.
+  // It is valid from one day ago until twenty years from now.
   EXPECT_NEAR(validity->until - validity->from, (20 * 365 + 1) * kDay, 10);
   EXPECT_FALSE(certificate_validity("nonsense").ok());
 }
