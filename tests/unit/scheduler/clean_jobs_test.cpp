@@ -1,5 +1,5 @@
-// The additional jobs that a denoised image needs: its guides (albedo and normal), and half of its
-// samples if they are one block.
+// The additional jobs that a denoised ("clean") image needs: its guides, which are images of the
+// albedo and of the shape of the surfaces, and half of its samples if it has at most one block (8).
 
 #include "coordinator/scheduler/api/clean_jobs.h"
 

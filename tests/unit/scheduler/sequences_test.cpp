@@ -178,6 +178,7 @@ TEST(Sequences, AFrameThatFailsTwiceFailsTheJobOnceTheOthersAreDone) {
   FrameFarm farm;
   const JobId id = farm.submit_frames(test_sequence("1-5"));
   farm.join(1);
+  // Each job that renders frame 3 fails.
   farm.fails = {farm.job_of(id, 3)};
   while (farm.work()) {
     if (farm.in_state(id, FrameState::kDone).size() < 5) {
@@ -342,6 +343,7 @@ TEST(Sequences, ARestartKeepsDoneAndFailedFrames) {
   FrameFarm farm;
   const JobId id = farm.submit_frames(test_sequence("1-30"));
   farm.join(1);
+  // Each job that renders frame 2 fails.
   farm.fails = {farm.job_of(id, 2)};
   while (farm.in_state(id, FrameState::kDone).size() < 10 && farm.work()) {
     farm.fails.insert(farm.job_of(id, 2));

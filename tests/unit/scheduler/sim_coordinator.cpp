@@ -46,6 +46,7 @@ void SimCoordinator::start() {
     disk.stored = {};
     for (const input::BandStored& band : disk.bands) {
       const auto rows = scheduler_->wanted(id, band.band);
+      // A band on disk names the process that rendered it by its id, not by its instance.
       input::BandStored found = band;
       found.process = worker_process_id(found.instance);
       found.instance.clear();
@@ -123,6 +124,7 @@ void SimCoordinator::take(Step step, std::function<void()> then) {
   for (const Record& record : step.records) {
     note(record);
   }
+  // `stored` follows the scheduler's decisions at once; the film follows them later.
   for (const Action& action : step.actions) {
     if (const auto* lease = std::get_if<action::Lease>(&action)) {
       check_lease(*lease, held_);

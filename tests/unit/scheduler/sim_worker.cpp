@@ -145,7 +145,7 @@ SimWorker::Held* SimWorker::find(LeaseId id) {
 }
 
 void SimWorker::take(const action::Lease& lease) {
-  if (Held* held = find(lease.lease)) {
+  if (Held* held = find(lease.lease)) {  // confirmed after a reconnect
     held->epoch = epoch_;
     return;
   }

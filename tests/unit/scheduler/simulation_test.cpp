@@ -1,8 +1,8 @@
 // Simulates a whole farm in one thread and virtual time. Workers join, are killed, freeze and lose
 // their connection at random. Results are lost, late, repeated or reordered, some are wrong, and
 // bands fail. Disks are full, band logs are damaged, jobs are cancelled, and the coordinator
-// crashes at any moment. The invariants are checked after each step of the scheduler; at the end
-// every job is done and no row of its image is missing.
+// crashes at any moment. The invariants are checked after each step of the scheduler. In the end
+// every job is final, and no row of a finished image is missing.
 //
 // Each test has its own range of seeds. A failure prints its seed; BANDSAW_SEED=n in the
 // environment repeats that one, BANDSAW_SEEDS=n runs n seeds of each test.
@@ -31,7 +31,7 @@ struct Outcome {
 
 /// The events that may happen in a run.
 struct Weather {
-  bool chaos = true;    ///< all that one_thing_happens does
+  bool chaos = true;    ///< random failures (one_thing_happens), hanging bands, lost messages
   bool crashes = true;  ///< of the coordinator
   bool lies = false;    ///< some workers return wrong results
   /// This many of seven machines return wrong results for one row of five, all bands are audited,
