@@ -23,6 +23,7 @@ medium { name: "milk" albedo { rgb: [1, 0.75, 0.5] } density: 8 anisotropy: 0.3
   emission { rgb: [0, 0, 1] } }
 )";
 
+/// A cube without its top, which kLid adds, as OBJ.
 const std::string kCube =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
     "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\n";
