@@ -13,15 +13,15 @@ class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
 
-  /// SplitMix64.
+  /// Returns 64 random bits, by SplitMix64.
   std::uint64_t bits() {
     state_ += kSplitMixIncrement;
     return split_mix(state_);
   }
-  /// [0, 1)
+  /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
-  /// [0, n)
+  /// Uniform in [0, n).
   std::uint32_t below(std::uint32_t n) {
     return static_cast<std::uint32_t>((bits() >> 32) * n >> 32);
   }

@@ -97,7 +97,7 @@ TEST(PartFile, ADamagedHeaderIsDetected) {
   const test::TempDir folder;
   ASSERT_TRUE(write_part(folder / "a.band", {record()}, {2, Tone::kNone, false}).ok());
   std::fstream file(folder / "a.band", std::ios::binary | std::ios::in | std::ios::out);
-  file.seekp(12);
+  file.seekp(12);  // in the header
   file.put('x');
   file.close();
   const auto ignore = [](const BandRecord&) { return absl::OkStatus(); };

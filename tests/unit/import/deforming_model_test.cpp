@@ -1,6 +1,6 @@
 // Skins and morph targets that move while the shutter is open: vertices at both ends, and the
 // coverage of rendered pixels against closed forms. Each comparison of pixels allows 4 standard
-// errors (false alarms over seeds: below 1 % for all of them together; the seeds are fixed).
+// errors. With random seeds, fewer than 1 % of all runs would fail by chance; the seeds are fixed.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

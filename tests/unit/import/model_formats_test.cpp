@@ -208,7 +208,8 @@ TEST(Stl, HasATriangleAndItsNormal) {
   EXPECT_EQ(imported->scene.geometry.meshes[0].normals[0], (std::array<float, 3>{0, 0, 1}));
 }
 
-// A triangle whose third vertex is `up`; two units of one hundredth of a metre.
+// Returns a COLLADA file of a triangle whose third vertex is `up`. A unit is a hundredth of a
+// metre.
 std::string dae(const std::string& up_axis, const std::string& up) {
   return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="centimetre" meter="0.01"/><up_axis>)" +

@@ -1,4 +1,5 @@
-// Materials of scene files whose numbers are textures.
+// Materials of scene files: fields that are numbers, textures or both, the kinds that other
+// renderers have, and the error for each wrong one.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The file that names the worker of each row of an image.
+// The attribution file, which names the worker that rendered each row of an image.
 
 #include "coordinator/store/attribution_file.h"
 
