@@ -1,6 +1,5 @@
-// Casters are surfaces that may cast caustics: smooth metal and glass. The constructor lists their
-// primitives by material, with the sums of their areas. sample() chooses a material, a primitive by
-// its area, and a point.
+// The constructor lists the primitives of casters by material, with the sums of their areas.
+// sample() chooses a material, a primitive by its area, and a point.
 
 #include "renderlib/integrate/casters.h"
 
@@ -18,7 +17,8 @@ namespace {
 /// Maximum number of primitives that are listed.
 constexpr std::size_t kMaxPrimitives = std::size_t{1} << 18;
 
-/// Rougher metals cast no sharp light.
+/// Rougher metals cast no sharp light. Also the least factor of metal or transmission with which a
+/// material that blends several surfaces is a caster.
 constexpr double kRoughest = 0.5;
 
 bool is_caster(const Material& material) {
@@ -39,10 +39,10 @@ bool is_caster(const Material& material) {
   return std::holds_alternative<Dielectric>(material.kind);
 }
 
-/// A place on a shape, uniform except on ellipsoids: a position, and Hit::u and Hit::v.
+/// A random place on a shape, uniform except on ellipsoids.
 struct Place {
   Vec3 position;
-  Vec2 on_shape;
+  Vec2 on_shape;  ///< Hit::u and Hit::v of the place
 };
 
 Place place_on(const ShapeView& shape, double u, double v) {
@@ -115,6 +115,8 @@ std::optional<CasterSample> Casters::sample(double material, double primitive, d
   const auto found =
       std::upper_bound(primitives.begin(), primitives.end() - 1, primitive * total,
                        [](double area, const Primitive& one) { return area < one.area_up_to; });
+  // surface_at() computes the surface point from a ray and a hit: on a sphere or an ellipsoid from
+  // the end of the ray, on other shapes from Hit::u and Hit::v.
   const ShapeView shape = shape_view(scene_.geometry(), found->id, time);
   const Place place = place_on(shape, u, v);
   const Ray ray{

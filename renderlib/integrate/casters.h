@@ -12,16 +12,17 @@
 
 namespace bandsaw {
 
-/// A point on a caster.
+/// A random point on a caster.
 struct CasterSample {
   SurfacePoint point;
   double pdf = 0;  ///< by area, > 0
 };
 
+/// The casters of a scene, at which the photons of caustics start (photon_start.h).
 class Casters {
  public:
-  /// Collects the casters of the scene, which MUST outlive this object. If there are very many,
-  /// takes only some, at equal distances in their list.
+  /// Collects the casters of the scene, which MUST outlive this object. If there are more than 2^18
+  /// primitives, takes only every second, third, … of them.
   explicit Casters(const Scene& scene);
 
   bool empty() const { return materials_.empty(); }
@@ -31,8 +32,8 @@ class Casters {
   bool casts(MaterialId id) const { return casting_[index_of(id)]; }
 
   /// Returns a point at this time: first a material is chosen, each with the same probability, then
-  /// a primitive by its area, then a place on it. All numbers are in [0, 1). Returns std::nullopt
-  /// if the primitive has no area.
+  /// a primitive by its area, then a place on it. All numbers are in [0, 1). There MUST be casters.
+  /// Returns std::nullopt if the point or its pdf is not finite (a primitive without area).
   std::optional<CasterSample> sample(double material, double primitive, double u, double v,
                                      double time) const;
 

@@ -13,9 +13,10 @@
 namespace bandsaw {
 namespace {
 
+/// Fixed, so that the sums do not depend on the number of threads.
 constexpr std::uint32_t kChunks = 64;
 
-/// Paths find lamps of more steradians, as seen from the casters, well enough.
+/// Solid angle in steradians, as seen from the casters: paths find larger lamps well enough.
 constexpr double kLargestLamp = 0.5;
 
 bool has_emissive_surface(const Scene& scene) {
@@ -57,6 +58,8 @@ std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Cast
     power_by_angle += chunk.power_by_angle;
   }
   traced.lamp_angle = power > 0 ? power_by_angle / power : 0;
+  // The area of a disk falls with the power alpha - 1 = -1/3 of the map's number, its radius with
+  // the root of that.
   const double factor = pow(key.number + 1.0, -1.0 / 6);
   traced.map = PhotonMap(std::move(photons), factor, split_mix(key.seed ^ key.number),
                          preparation.pool, [&](const CausticPhoton& photon) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// The photon maps of a scene, and whether they pay.
+// Makes the photon maps of a scene, and decides whether they pay: whether the error falls by more
+// than they cost in time.
 
 #include <cstdint>
 #include <memory>
@@ -12,8 +13,8 @@
 
 namespace bandsaw {
 
-/// Returns the number of photons that are started for each map of an image: about half of its
-/// paths, between 2^15 and 2^19.
+/// Returns the number of photons that are started for each map of an image of this size in pixels:
+/// 8 for each pixel, half as many as the paths that share a map, but between 2^15 and 2^19.
 std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height);
 
 /// Traces and builds a map: a pure function of the scene and the key. The radii fall with the
@@ -26,11 +27,11 @@ std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Cast
 
 /// Returns true if the scene has what photon maps can find: complete casters and emissive surfaces,
 /// and neither motion, nor glass with priorities, nor mixtures with casters, nor hidden lamps,
-/// whose light the photons would not follow exactly as paths do.
+/// in which photons would not travel exactly as paths do.
 bool can_have_caustic_maps(const Scene& scene, const Casters& casters);
 
-/// Returns true if photon maps are better than paths: light arrives, and its lamps are small as
-/// seen from the casters.
+/// Returns true if photon maps are better than paths: photons arrive, and the lamps are small as
+/// seen from the casters, so that paths hardly find them.
 bool pays(const TracedMap& map);
 
 }  // namespace bandsaw

@@ -33,6 +33,8 @@ bool receives_caustics(const Bsdf& bsdf) {
 }
 
 std::uint32_t CausticMaps::number_of(std::uint64_t sample) {
+  // Samples with `unit` in [2^octave, 2^(octave + 1)) have maps of `root` units each; `first` is
+  // the number of the first of these maps.
   const std::uint64_t unit = sample / kMinSamplesOfMap;
   if (unit == 0) {
     return 0;
@@ -74,6 +76,7 @@ Rgb caustic_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf
     const Vec3 wi = vec3(photon.from);
     const double cosine = dot(wi, vec3(photon.normal));
     if (cosine > 0) {
+      // Both the value of the BSDF and the photon's irradiance contain the cosine.
       sum += evaluate(bsdf, wi).value * photon.power * static_cast<float>(density / cosine);
     }
   });

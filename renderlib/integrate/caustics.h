@@ -2,18 +2,17 @@
 
 // Caustics from photon maps. The light that travels from an emissive surface over one or more
 // casters (casters.h) to a receiver, and no other light, is estimated from photons
-// (trace_photons.h); path tracing leaves out just this light. The roles of surfaces divide all
-// paths:
+// (trace_photons.h); path tracing leaves out just this light. Every surface has one of three roles:
 //
 // - a caster scatters the photon or the path further,
-// - a receiver is a surface of which every sampled lobe is wide: the photons are scattered there
-//   towards the path,
+// - a receiver is a surface of which every sampled lobe is wide: the light of the photons is
+//   scattered there towards the camera,
 // - any other surface, a scattering in a medium, and a delta direction at a receiver end the chain.
 //
 // A chain is counted from the receiver towards the light. Beyond the first caster of a chain, path
 // tracing samples no emissive surface, and the emission that it hits is left out where light
 // sampling at the last caster could have produced it, because there the photons start. Delta
-// lights, environments and backgrounds are not concerned.
+// lights, environments and backgrounds are sampled as without photon maps.
 
 #include <cstdint>
 #include <utility>
@@ -39,15 +38,15 @@ inline CausticRole caustic_role(const Casters& casters, MaterialId material, con
                                    : CausticRole::kOther;
 }
 
-/// The photon maps of some samples of an image.
+/// The photon maps of some samples of an image. Consecutive samples share a map.
 class CausticMaps {
  public:
-  /// The fewest samples that have a map in common: an aligned range.
+  /// Number of samples that share one of the first maps.
   static constexpr std::uint64_t kMinSamplesOfMap = 16;
-  /// Returns the number of the map of a sample. The first four maps have 16 samples each, and
-  /// samples [16 * 4^k, 32 * 4^k) and [32 * 4^k, 64 * 4^k) have maps of 16 * 2^k samples. So the
-  /// number of maps grows with the root of the number of samples: a map costs as much as 10^5 to
-  /// 10^6 samples, and a band of many samples must not need more maps than a worker can keep.
+  /// Returns the number of the map of a sample. The first four maps have 16 samples each; in
+  /// general, samples [16 * 4^k, 64 * 4^k) have maps of 16 * 2^k samples each. So the number of
+  /// maps grows with the root of the number of samples: a map costs as much as 10^5 to 10^6
+  /// samples, and a band of many samples must not need more maps than a worker can keep.
   static std::uint32_t number_of(std::uint64_t sample);
 
   explicit CausticMaps(const Casters& casters) : casters_(&casters) {}
@@ -66,8 +65,8 @@ class CausticMaps {
   const PhotonMap* for_all_ = nullptr;
 };
 
-/// Returns the radiance that a receiver scatters along `wo`, of photons whose chain has at most
-/// `longest` casters.
+/// Returns the radiance that a receiver scatters towards `wo`. It comes from the photons of the map
+/// around the point; those with a chain of more than `longest` casters are left out.
 Rgb caustic_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf& bsdf,
                      const Vec3& wo, std::uint32_t longest);
 

@@ -17,14 +17,15 @@
 namespace bandsaw {
 namespace {
 
-/// Maps radiance of any size to [0, 1).
+/// Maps each channel v of a radiance to v / (1 + v), at most 1. Huge values map to 1, because
+/// infinity / infinity would not be a number.
 Rgb compressed(const Rgb& light) {
   const auto channel = [](float v) { return v < 1e30f ? v / (1 + v) : 1.0f; };
   return {channel(light.r), channel(light.g), channel(light.b)};
 }
 
-/// Returns the coordinates of the normal to the right and upwards in the camera's view, as
-/// (n + 1) / 2.
+/// Returns the components n of the normal along the camera's directions to the right and upwards,
+/// each as (n + 1) / 2.
 Vec2 seen_from_camera(const Camera& camera, const Vec3& normal) {
   const View view = view_of(camera);
   const Vec3 right = normalize(cross(view.look_at - view.position, view.up));
@@ -32,6 +33,7 @@ Vec2 seen_from_camera(const Camera& camera, const Vec3& normal) {
   return {(dot(normal, right) + 1) / 2, (dot(normal, up) + 1) / 2};
 }
 
+/// Returns the value of kGuideShape at the surface. `distance` is the length of the path up to it.
 Rgb shape(const Scene& scene, const SurfacePoint& point, const Vec3& direction, double distance) {
   Vec3 normal = bent_normal(scene.material(point.material).relief, scene.textures(), point);
   if (dot(point.geometric_normal, direction) > 0) {
@@ -42,6 +44,7 @@ Rgb shape(const Scene& scene, const SurfacePoint& point, const Vec3& direction, 
           static_cast<float>(distance)};
 }
 
+/// Returns true if the guide shows what is seen in the surface, and not the surface itself.
 bool is_followed(const Bsdf& bsdf) {
   if (const auto* metal = std::get_if<FuzzyMetalBsdf>(&bsdf)) {
     return metal->fuzz <= kMaxGuideFuzz;
@@ -78,6 +81,7 @@ Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
                     : shape(scene, *hit, path.ray.direction, distance);
     }
     path.throughput *= next->weight * static_cast<float>(1 / next->compression);
+    // If the path passes the boundary of a nested glass, the glasses around it change.
     if (dot(next->wi, hit->geometric_normal) * dot(path.ray.direction, hit->geometric_normal) > 0 &&
         nested_glass(scene.material(hit->material)) != nullptr) {
       path.nesting.here = path.nesting.beyond;

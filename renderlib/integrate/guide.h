@@ -1,6 +1,7 @@
 #pragma once
 
-// Guides of the denoiser: features of the first surface that is neither a mirror nor glass.
+// Guides of the denoiser: albedo, normal and distance of the first surface that is neither a mirror
+// nor glass. These images have hardly any noise, and the denoiser finds edges by them.
 
 #include <cstdint>
 
@@ -9,9 +10,10 @@
 
 namespace bandsaw {
 
-/// Returns the sample's value of kGuideAlbedo or kGuideShape. Follows the path of
-/// path_radiance() through mirrors, smooth glass and nearly smooth metal, at most kMaxGuideBounces
-/// times. All values are >= 0. Adds the number of rays to `rays`.
+/// Returns the sample's value; `integrator` MUST be kGuideAlbedo or kGuideShape
+/// (scene/guide_integrators.h defines their values). Follows the same path as path_radiance()
+/// through mirrors, smooth glass and nearly smooth metal, at most kMaxGuideBounces times. All
+/// values are >= 0. Adds the number of rays to `rays`.
 Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
                 const PixelSampler& sampler, std::uint64_t sample, std::uint64_t& rays);
 

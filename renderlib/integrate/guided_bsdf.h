@@ -1,7 +1,8 @@
 #pragma once
 
-// A BSDF together with the directions from which the field of path guiding expects light. The
-// direction is sampled from one of both, chosen at random; the pdf is that of the mixture (Müller,
+// A BSDF together with the directions from which the field of path guiding expects light. They are
+// stored as cones (guiding/guiding_cell.h). A direction is sampled either from the BSDF or from the
+// cones, chosen at random with probability share(); the pdf is that of the mixture (Müller,
 // Gross and Novák 2017, "Practical Path Guiding for Efficient Light-Transport Simulation", section
 // 5.2), so that the expected value does not depend on the field.
 
@@ -17,7 +18,8 @@ namespace bandsaw {
 /// directions on one side.
 bool can_be_guided(const Bsdf& bsdf);
 
-/// Returns the directions that guide the BSDF at `point`, seen along `wo`; none without a field.
+/// Returns the cones that guide the BSDF at `point`, seen from direction `wo`. Without a field, and
+/// where the BSDF cannot be guided, there are none, and their share() is 0.
 inline GuidingCones cones_at(const PathContext& context, const SurfacePoint& point,
                              const Bsdf& bsdf, const Vec3& wo) {
   const GuidingField* field = context.options.guiding;
@@ -31,8 +33,9 @@ inline GuidingCones cones_at(const PathContext& context, const SurfacePoint& poi
 
 struct GuidedSample {
   BsdfSample next;
-  /// The factor by which guiding changed the weight: pdf of the BSDF over that of the mixture.
-  /// Russian roulette divides it out, because paths that guiding samples often carry much light.
+  /// The factor by which guiding changed the weight: the pdf of the BSDF over that of the mixture.
+  /// Russian roulette divides it out: a direction that guiding prefers has a low weight because
+  /// much light is expected there, and such paths must not end early.
   double scaling = 1;
 };
 
@@ -40,7 +43,9 @@ struct GuidedSample {
 std::optional<GuidedSample> sample_mixture(const Bsdf& bsdf, const GuidingCones& cones, double u,
                                            double v, double lobe);
 
-/// Samples a direction from the mixture; the arguments are those of sample() in material/bsdf.h.
+/// Samples a direction from the mixture; the other arguments, and when it returns std::nullopt, are
+/// as for sample() in material/bsdf.h. `lobe` first chooses between BSDF and cones, and is then
+/// stretched to [0, 1) again.
 inline std::optional<GuidedSample> sample(const Bsdf& bsdf, const GuidingCones& cones, double u,
                                           double v, double lobe) {
   if (cones.share() > 0) {

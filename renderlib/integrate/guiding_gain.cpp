@@ -16,33 +16,35 @@ namespace {
 constexpr std::uint32_t kPixels = 512;
 constexpr std::uint64_t kSamples = 8;
 
-/// Pixels that are darker than this part of the mean count as if they had it: the noise of black
-/// pixels is not seen.
+/// A pixel darker than this part of the image's mean counts as if it were that bright: the noise of
+/// black pixels is not seen.
 constexpr double kDarkest = 1.0 / 16;
 
 /// Below these shares of the variance, the cells of paths, photon maps, and the cells of photons
 /// cost more than they gain (NOTES.md, "Whether it pays").
 constexpr double kMinShareOfPaths = 0.15;
-/// Where the variance is above this, paths find light so rarely that the pilot has too few records
-/// to tell, and guiding pays.
+/// Where the variance is above this, guiding pays: paths find light so rarely that the field, which
+/// was trained with few of them, cannot show it.
 constexpr double kRareLight = 1.5;
 constexpr double kMinShareOfMaps = 0.08;
 constexpr double kMinShareOfPhotons = 0.2;
 
-/// The second moment of photons' light is at least this many times what their cells tell: a cone is
-/// wider than the lamp that is seen in it.
+/// The second moment of the light of photons is at least this many times the one that their cells
+/// hold: a cone is wider than the lamp that is seen in it.
 constexpr double kMomentOfLamp = 2;
 
 /// Sums over the samples of a pixel.
 struct PixelStatistics {
-  double sum = 0;
-  double squares = 0;
-  double by_paths = 0;
-  double by_photons = 0;
-  double expected = 0;  ///< what the cells tell of the sum
+  double sum = 0;         ///< of the luminances
+  double squares = 0;     ///< of the squared luminances
+  double by_paths = 0;    ///< of the variances that GuidingGain::by_paths is about
+  double by_photons = 0;  ///< the same for GuidingGain::by_photons
+  double expected = 0;    ///< of the luminances that the cells predict
 };
 
-/// Adds what the cells at the surface tell, for a path that reaches it with this throughput.
+/// Adds what the cells at a surface predict. `reflected`: the path's luminance for an irradiance of
+/// 1 there. Moments are in units of the squared mean, so radiance^2 (moment - guided moment) is the
+/// variance that guiding removes, and radiance^2 (moment - 1) is all variance.
 void add_cells(const GuidingCells& cells, double reflected, PixelStatistics& to) {
   double expected = 0;
   if (cells.paths != nullptr && cells.paths->count > 0) {
@@ -58,7 +60,7 @@ void add_cells(const GuidingCells& cells, double reflected, PixelStatistics& to)
   to.expected += expected;
 }
 
-/// Follows the path to the first surface that can be guided, and adds its cells.
+/// Follows the path to the first surface that can be guided, and adds what its cells predict.
 void follow(const PathContext& context, const GuidingField& field, const Ray& camera_ray,
             PixelStatistics& to) {
   PathState path(camera_ray);
@@ -84,7 +86,7 @@ void follow(const PathContext& context, const GuidingField& field, const Ray& ca
   }
 }
 
-/// Takes the samples of a pixel that is chosen at random.
+/// Takes the samples of a pixel of the image that is chosen at random by the number `pixel`.
 PixelStatistics statistics_of(const Scene& scene, const RayGenerator& camera, const GuidingKey& key,
                               const GuidingField& field, const PathOptions& options,
                               std::uint32_t pixel) {

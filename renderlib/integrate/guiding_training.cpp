@@ -1,6 +1,6 @@
 // The rounds of the training: photons, a small round of paths, a large round of paths. Each is
 // divided among a fixed number of chunks, which the threads trace, and whose records are joined in
-// order. A pilot of the same rounds, with fewer photons and paths, tells whether that pays.
+// order. A pilot (the same rounds with fewer photons and paths) decides whether the training pays.
 
 #include "renderlib/integrate/guiding_training.h"
 
@@ -19,15 +19,17 @@
 namespace bandsaw {
 namespace {
 
+/// Fixed, so that the records do not depend on the number of threads.
 constexpr std::uint32_t kChunks = 64;
 
 /// Smaller and larger images are trained like images of this many pixels.
 constexpr std::uint64_t kMinTrainingPixels = 1 << 15;
 constexpr std::uint64_t kMaxTrainingPixels = 1 << 18;
-/// The pilot, from which the gain of guiding is estimated, is trained like this many.
+/// The pilot, from which the gain of guiding is estimated, is trained like an image of this many.
 constexpr std::uint64_t kPilotPixels = 1 << 13;
 
-/// Runs the chunks of a round and appends their records in order. Returns false if stopped.
+/// Runs the chunks of a round of `count` paths or photons, appends their records in order, and fits
+/// the field to all records. Returns false if stopped.
 template <class OfChunk>
 bool add_round(std::uint32_t round, std::uint64_t count, const Preparation& preparation,
                std::vector<GuidingRecord>& records, TrainedGuiding& trained,
@@ -76,7 +78,8 @@ std::optional<TrainedGuiding> train(const Scene& scene, const GuidingKey& key, s
   return trained;
 }
 
-/// Trains a pilot and returns what it promises; std::nullopt if stopped.
+/// Trains a field with few paths and photons, and returns the gain that it predicts; std::nullopt
+/// if stopped. Adds to `rays`.
 std::optional<GuidingGain> pilot(const Scene& scene, const GuidingKey& key, const Casters& casters,
                                  const CausticMaps* caustics, const Preparation& preparation,
                                  std::uint64_t& rays) {
@@ -96,7 +99,7 @@ std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const Gu
                                                     bool caustic_maps) {
   const auto casters = std::make_shared<const Casters>(scene);
   std::uint64_t rays = 0;
-  std::optional<GuidingGain> gain;  // set if it decides
+  std::optional<GuidingGain> gain;  // set if the gain decides what is used
   if (key.only_if_it_pays) {
     gain = pilot(scene, key, *casters, nullptr, preparation, rays);
     if (!gain) {
@@ -106,7 +109,7 @@ std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const Gu
   std::shared_ptr<const TracedMap> map;
   std::optional<CausticMaps> caustics;
   if (caustic_maps && (!gain || gain->maps_pay()) && can_have_caustic_maps(scene, *casters)) {
-    constexpr std::uint64_t kSeed = 0x5bd1e9a74c3f2d86;
+    constexpr std::uint64_t kSeed = 0x5bd1e9a74c3f2d86;  // arbitrary, for the map of the training
     map = make_caustic_map(scene, *casters,
                            {.seed = kSeed, .photons = photons_of_map(key.width, key.height)},
                            preparation);
@@ -119,7 +122,7 @@ std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const Gu
     }
   }
   const CausticMaps* const maps = caustics ? &*caustics : nullptr;
-  if (gain && maps != nullptr) {  // what is left for the field
+  if (gain && maps != nullptr) {  // the gain of a field for the light that is not in the maps
     gain = pilot(scene, key, *casters, maps, preparation, rays);
     if (!gain) {
       return nullptr;

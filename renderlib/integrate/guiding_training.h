@@ -18,12 +18,16 @@
 
 namespace bandsaw {
 
-/// Trains the field of the scene: 3/4 n paths and, if there are casters, 2 n photons, where n is
-/// the number of pixels of the image, clamped to [2^15, 2^18]. The first eight vertices of each
-/// path and each photon that arrives become records, which take at most 2 x 93 MB during the
-/// training. With `caustic_maps` and where they pay, the caustics of receivers come from a photon
-/// map (caustics.h), and the field does not learn them; that is for paths that take them from
-/// photon maps as well, which TrainedGuiding::casters tells. Returns nullptr if it was stopped.
+/// Trains the field of the scene: with 3/4 n paths and, if there are casters (surfaces that cast
+/// caustics, casters.h), with 2 n photons, where n is the number of pixels of the image, clamped to
+/// [2^15, 2^18]. The first eight vertices of each path and each photon that arrives become records,
+/// which take at most 2 x 93 MB during the training.
+///
+/// With key.only_if_it_pays, a small training decides first whether a field and photon maps pay; if
+/// not, the field is empty. With `caustic_maps` and where they pay, the paths of the training take
+/// caustics from a photon map (caustics.h), so the field does not learn them. Then
+/// TrainedGuiding::casters is set, and all paths that use the field MUST have photon maps too.
+/// Returns nullptr if it was stopped.
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
                                                     const Preparation& preparation,
                                                     bool caustic_maps = false);

@@ -13,7 +13,6 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the surface at the hit.
 SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   return surface_at(scene.geometry(), ray, hit, scene.features().uv);
 }
@@ -113,6 +112,7 @@ std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray
   for (std::uint32_t passed = 0; hit; ++passed) {
     SurfacePoint point = point_at(scene, ray, hit);
     if (scene.features().mixtures) {
+      // A mixture of materials is one of its parts, chosen at random for this sample.
       const double number = sampler.group(sample, group_alpha(bounce, passed))[1];
       point.material = part_at(scene.materials(), scene.textures(), point.material, point, number);
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Ray intersection that skips surfaces which are not there: holes cut by alpha, and boundaries of
-// glass inside a glass of higher priority.
+// Ray intersection that skips surfaces which are not there: holes cut by alpha, and hidden
+// boundaries, which are boundaries of a glass inside a glass of higher priority.
 
 #include <cstdint>
 #include <optional>
@@ -26,14 +26,16 @@ struct NestedDielectrics {
 /// order (t, instance, primitive) decides. Updates `nesting` for all hidden boundaries that are
 /// skipped. Boundaries of nested glasses that touch, within the offset of ray origins, are treated
 /// as one: the result belongs to the glass that is present on exactly one side of all of them. uv
-/// directions are set if the material needs them. Returns std::nullopt if nothing is hit. Adds the
-/// number of rays traced to `rays`.
+/// directions are set if the material needs them. `bounce` is the number of scatterings before the
+/// ray (0: a camera ray), which selects the random numbers. Returns std::nullopt if nothing is hit.
+/// Adds the number of rays traced to `rays`.
 std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray,
                                               const PixelSampler& sampler, std::uint64_t sample,
                                               std::uint32_t bounce, NestedDielectrics& nesting,
                                               std::uint64_t& rays);
 
-/// Sets the uv directions that the material of the point needs.
+/// Sets the directions of growing u and v (or the derivatives of the position by them) that the
+/// material of the point needs.
 void add_directions(const Scene& scene, SurfacePoint& point);
 
 }  // namespace bandsaw

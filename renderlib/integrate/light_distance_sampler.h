@@ -14,7 +14,8 @@
 
 namespace bandsaw {
 
-/// Mixture pdf of the distance at which light is sampled in one segment.
+/// Mixture pdf of the distance at which light is sampled in one segment. through_media.cpp makes
+/// one for each homogeneous segment.
 class LightDistanceSampler {
  public:
   /// Maximum number of pivots; further ones are ignored.

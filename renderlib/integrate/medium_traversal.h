@@ -18,8 +18,8 @@
 
 namespace bandsaw {
 
-/// A part of a ray inside one medium. Distances from the ray's origin, in scene units; `end` may be
-/// infinite.
+/// A part of a ray inside one medium. `begin` and `end` are distances from the ray's origin in
+/// scene units; `end` may be infinite.
 struct MediumSegment {
   double begin = 0;
   double end = 0;
@@ -49,6 +49,7 @@ class MediumTraversal {
   std::optional<MediumSegment> next();
 
  private:
+  /// A point where the ray crosses a boundary.
   struct Crossing {
     double t = 0;
     PrimitiveId shape;  ///< one id for all faces of a shape: the primitive is 0 for an instance
@@ -57,7 +58,7 @@ class MediumTraversal {
     bool inwards = false;
     bool on_rim = false;  ///< on an edge or corner of a mesh's triangle
   };
-  /// Nesting count for each region around a point. A count may be negative while
+  /// Counts for each region how many of its shapes contain a point. A count may be negative while
   /// boundaries at equal distance are processed.
   class Around {
    public:
@@ -68,10 +69,12 @@ class MediumTraversal {
       friend bool operator==(const Region&, const Region&) = default;
     };
     void add(const Region& region, int shapes);
-    /// Clamps negative counts to 0: a ray may enter a shape that is not closed more often than it
-    /// leaves it.
+    /// Called for the ray's origin, where a region's count is its exits minus its entries. Clamps
+    /// negative counts to 0: a ray may enter a shape that is not closed more often than it leaves
+    /// it.
     void forget_negative();
-    /// Returns the region that counts.
+    /// Returns the region that fills the point: of those with a positive count, the one with the
+    /// largest medium id, and of these the largest boundary. std::nullopt if there is none.
     std::optional<Region> top() const;
 
    private:
@@ -85,19 +88,23 @@ class MediumTraversal {
   };
   /// State of the search for boundaries along the ray.
   struct Search {
+    /// Number of crossings that are kept to recognise repeated hits of one edge.
     static constexpr std::size_t kRecent = 4;
     Hit last;
-    std::array<Crossing, kRecent> recent;
-    std::size_t found = 0;
+    std::array<Crossing, kRecent> recent;  ///< crossing number n is at n % kRecent
+    std::size_t found = 0;                 ///< number of crossings so far
   };
 
+  /// Number of crossings that are stored: the first ones on the ray.
   static constexpr std::size_t kKept = 8;
 
   bool is_of_mesh(const Hit& hit) const;
   bool varies(MediumId medium) const;
   /// Returns the next boundary crossing; std::nullopt at the end.
   std::optional<Crossing> find_next(Search& search);
+  /// Finds all crossings of the ray, and from them the media around its origin.
   void find_around_origin();
+  /// Returns the next crossing of the walk along the ray: a stored one, or one that is found again.
   std::optional<Crossing> take_crossing();
   /// Returns the segment's medium at the current place, without its begin and end.
   MediumSegment here() const;
@@ -106,14 +113,14 @@ class MediumTraversal {
   Ray ray_;
   double length_;
   std::uint64_t& rays_;
-  Around around_;
-  double at_ = 0;
+  Around around_;  ///< around the current place
+  double at_ = 0;  ///< distance of the current place from the ray's origin
   /// The first crossings are stored, so that most rays are traced only once.
   std::array<Crossing, kKept> kept_;
   std::size_t kept_size_ = 0;
-  std::size_t taken_ = 0;
-  Search beyond_kept_;
-  bool all_kept_ = true;
+  std::size_t taken_ = 0;  ///< number of stored crossings that take_crossing() has returned
+  Search beyond_kept_;     ///< continues after the last stored crossing
+  bool all_kept_ = true;   ///< there are no further crossings than the stored ones
 };
 
 /// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel; an

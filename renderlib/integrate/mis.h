@@ -41,8 +41,8 @@ struct PreviousVertex {
   /// True if light sampling could not have produced the next hit (camera rays, specular
   /// directions): its MIS weight is 1.
   bool delta = true;
-  /// Ratio of the distance pdf used for light sampling to the free-flight pdf at this vertex; 1 on
-  /// surfaces, where both strategies use the same point.
+  /// At a vertex in a medium: the pdf of its distance in light sampling over that in scattering
+  /// (free flight). 1 on surfaces, where both strategies use the same point.
   double distance_pdf_ratio = 1;
 };
 

@@ -1,5 +1,9 @@
 // The loop over the vertices of a path, and its steps (path_steps.h): emission, light sampling,
 // sampling of a direction, Russian roulette.
+//
+// A `Receiver` (light/receiver.h) is the point for which a light is sampled. A receiver of caustics
+// (CausticRole::kReceiver) is a rough surface whose caustics come from photon maps, if there are
+// any; a caster is a mirror, glass or metal that sends light there (caustics.h).
 
 #include "renderlib/integrate/path.h"
 
@@ -24,6 +28,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the point as the receiver of light on the side towards `wo`.
 Receiver receiver_of(const SurfacePoint& point, const Vec3& wo) {
   const bool outside = dot(wo, point.geometric_normal) >= 0;
   return {point.position, outside ? point.geometric_normal : -point.geometric_normal, point.time};
@@ -69,17 +74,18 @@ struct CompetingBsdfSampling {
   /// True if light is sampled on the far side of the surface. There, directions that pass the
   /// surface have MIS weight 1, so light sampling covers only lights that they cannot reach.
   bool beyond_surface = false;
-  /// True if photons find the light of emissive surfaces.
+  /// True if photons find the light of emissive surfaces, so that they are not sampled here.
   bool without_surfaces = false;
 };
 
-/// Returns true if photons find the light that emissive surfaces send to a caster after `casters`
-/// casters of a chain.
+/// Returns true if photons find the light that emissive surfaces send to this caster, before which
+/// the path met `casters` casters since the last receiver of caustics (PathState::chain).
 bool is_left_to_photons(const PathContext& context, std::uint32_t casters) {
   return context.options.caustics != nullptr && casters != kNoChain && casters < kMaxCausticChain;
 }
 
-/// Returns true if photons find the emission that the path hit from its last vertex at `light`.
+/// Returns true if photons find the emission at `light`, which the path hit from a caster. Photons
+/// start where light sampling at that caster, on the side that the path left, can sample the light.
 bool is_found_by_photons(const PathContext& context, const PathState& path,
                          const SurfacePoint& light) {
   if (path.chain == 0 || !is_left_to_photons(context, path.chain - 1)) {
@@ -152,8 +158,8 @@ bool has_free_passage(const Material& material) {
   return pane != nullptr && pane->free_passage;
 }
 
-/// Counts a sampled scattering. Returns false, and marks the path as truncated, if it may not
-/// happen.
+/// Counts a sampled scattering. Returns false, and marks the path as truncated, if `max_depth`
+/// forbids it; for a scattering that does not count, if there were kMaxUncounted of them.
 bool count(const PathContext& context, const BsdfSample& next, std::uint32_t depth,
            PathState& path) {
   const bool ends = next.counts ? context.is_at_end(path, depth) : path.uncounted == kMaxUncounted;
@@ -235,14 +241,16 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
   return bsdf_at(material, scene.textures(), point, wo, outside_index);
 }
 
-/// Returns the caustics that a receiver scatters along the path. Beyond an earlier receiver they
-/// are looked up in every second sample of a pixel and count twice: they are a small part of the
-/// light there, and looking them up takes longer than the rest of the scattering.
+/// Returns the light of caustics that a receiver of caustics scatters along the path. Beyond an
+/// earlier receiver they are looked up in every second sample of a pixel and count twice: they are
+/// a small part of the light there, and looking them up takes longer than the rest of the
+/// scattering.
 Rgb caustics_at(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
                 std::uint32_t depth, const PathState& path) {
   constexpr std::uint64_t kOneOf = 2;
   std::uint64_t counts = 1;
   if (path.after_receiver) {
+    // Which samples have the look-up is random for each pixel and depth.
     const double first = context.sampler.stream(0, group_bsdf(depth)).next() * kOneOf;
     if ((context.sample + static_cast<std::uint64_t>(first)) % kOneOf != 0) {
       return {};

@@ -40,11 +40,11 @@ struct PathOptions {
   /// with an equal share (splitting: Arvo and Kirk 1990, "Particle Transport and Image Synthesis").
   /// A power of two. Direction i of sample n uses the random numbers of sample n * branches + i.
   std::uint32_t branches = 1;
-  /// Guides the directions at surfaces if it is not null (integrate/guided_bsdf.h); changes no
-  /// expected value. MUST outlive the paths.
+  /// If not null, directions at surfaces are sampled from this field as well as from the BSDF
+  /// (integrate/guided_bsdf.h), which changes no expected value. MUST outlive the paths.
   const GuidingField* guiding = nullptr;
-  /// If not null, photons find the caustics (integrate/caustics.h), and `branches` MUST be 1. MUST
-  /// outlive the paths.
+  /// If not null, caustics come from these photon maps and not from paths (integrate/caustics.h),
+  /// and `branches` MUST be 1. MUST outlive the paths.
   const CausticMaps* caustics = nullptr;
 };
 

@@ -46,8 +46,8 @@ bool is_only_diffuse(const Material& material) {
 
 /// Traces a pixel's path and leaves in `path` the radiance that belongs to this pixel alone. Sets
 /// `primary` if the pixel can receive light from shared vertices, and `shared` if its second vertex
-/// is shared; the light of that vertex is not in `path`. `cones`: memory for those of `primary`,
-/// which guide nothing yet.
+/// is shared; the light of that vertex is not in `path`. `cones` is empty memory of the caller, in
+/// which the cones of `primary` are stored.
 void trace_own_path(const PathContext& context, PathState& path, GuidingCones& cones,
                     std::optional<PrimaryVertex>& primary, std::optional<SharedVertex>& shared) {
   const Ray camera_ray = path.ray;

@@ -24,13 +24,14 @@ namespace bandsaw {
 /// Maximum number of pixels that share their paths.
 inline constexpr std::size_t kMaxReusePixels = 8;
 
+/// One of the pixels that share their paths: inputs and results of one sample.
 struct ReusePixel {
   PixelSampler sampler;
   CameraRay camera_ray;  ///< camera ray of this sample
   /// Result: radiance arriving along `camera_ray`; set by `radiance_with_reuse()`.
   Rgb radiance = {};
-  /// `radiance_with_reuse()` adds the rays of this pixel's path and of the connections to its
-  /// second vertex.
+  /// Result: `radiance_with_reuse()` adds the rays of this pixel's path and of all shadow rays to
+  /// its second vertex, from whichever pixel.
   PathCounts counts = {};
 };
 

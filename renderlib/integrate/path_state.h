@@ -14,15 +14,17 @@ namespace bandsaw {
 /// below the 2^11 scatterings for which there are random numbers (sampling/sampler.h).
 inline constexpr std::uint32_t kMaxUncounted = 1000;
 
+/// Value of PathState::chain of a path that is in no chain of casters.
 inline constexpr std::uint32_t kNoChain = 0xffffffffu;
 
+/// What changes along a path.
 struct PathState {
   /// Starts a path with this ray. (As an aggregate, all of it would be zeroed first, including the
   /// large `NestedDielectrics`.)
   explicit PathState(const Ray& from) : ray(from) {}
 
-  Ray ray;  ///< unit direction
-  Rgb radiance = {};
+  Ray ray;            ///< unit direction
+  Rgb radiance = {};  ///< found so far, as seen by the camera
   Rgb throughput = gray(1);
   /// Product of the factors by which refraction and guiding scaled the throughput. Russian roulette
   /// divides it out, because it is no loss of energy.
@@ -30,36 +32,38 @@ struct PathState {
   PreviousVertex previous = {};
   /// Number of scatterings that do not count towards `max_depth` (BsdfSample::counts).
   std::uint32_t uncounted = 0;
-  /// Number of casters since the last receiver (integrate/caustics.h); kNoChain where there was
-  /// another scattering in between, or no receiver.
+  /// For photon maps (integrate/caustics.h, which defines casters and receivers): the number of
+  /// casters since the last receiver; kNoChain if the path had another scattering since then or has
+  /// met no receiver yet.
   std::uint32_t chain = kNoChain;
   bool after_receiver = false;     ///< a receiver of caustics has scattered the path
   bool truncated = false;          ///< see PathCounts::truncated
   NestedDielectrics nesting = {};  ///< glasses that contain the path
 };
 
-/// Constants of one path.
+/// What stays the same along a path. The objects MUST outlive it.
 struct PathContext {
   const Scene& scene;
   const PixelSampler& sampler;
   std::uint64_t sample = 0;
   const PathOptions& options;
-  std::uint64_t& rays;
+  std::uint64_t& rays;  ///< rays that are traced are added here
   /// Number of directions into which the path splits at the next surface with a pdf:
   /// PathOptions::branches until it has been split, then 1.
   std::uint32_t branches = 1;
 
-  /// Returns the context of one of the directions of a split.
+  /// Returns the context of direction number `which` of a split: it has a sample number of its own.
   PathContext branch(std::uint32_t which) const {
     return {scene, sampler, sample * branches + which, options, rays};
   }
+  /// Returns the random numbers of a group (sampling/sampler.h lists the groups).
   Sample4 numbers(std::uint32_t group) const { return sampler.group(sample, group); }
   /// Returns the numbers with which media that vary in space are tracked; without such media,
   /// numbers that are never used.
   NumberStream stream(std::uint32_t group) const {
     return scene.features().grids ? sampler.stream(sample, group) : NumberStream(0);
   }
-  /// Returns true if the path may not be scattered as number `depth`.
+  /// Returns true if `max_depth` forbids scattering number `depth` (counted from 0).
   bool is_at_end(const PathState& path, std::uint32_t depth) const {
     return depth - path.uncounted >= options.max_depth;
   }

@@ -1,7 +1,7 @@
 #pragma once
 
-// The steps of a path, from which path.cpp and path_reuse.cpp build their paths. Defined in
-// path.cpp.
+// The steps of a path. path.cpp defines them; path.cpp, path_reuse.cpp and the training of path
+// guiding build their paths from them.
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,8 @@
 #pragma once
 
-// Where the photons of caustics start: those of a photon map (trace_photons.h) and those that train
-// path guiding (training_photons.h).
+// Chooses where the photons of caustics start: those of a photon map (trace_photons.h) and those
+// that train path guiding (training_photons.h). They start at casters, which are surfaces that cast
+// caustics (casters.h), and not at lights: so no photon misses the casters.
 
 #include <cstdint>
 #include <optional>
@@ -13,7 +14,8 @@
 
 namespace bandsaw {
 
-/// Longer chains of casters are left to path tracing.
+/// Maximum number of casters that a photon meets one after the other. Light over more of them is
+/// left to path tracing.
 inline constexpr std::uint32_t kMaxCausticChain = 16;
 
 /// A random point of a caster, and a light that is sampled from there.
@@ -24,8 +26,9 @@ struct PhotonStart {
   double pdf = 0;  ///< pdf of the point by area, > 0
 };
 
-/// `sampler` and `sample` give the random numbers. Returns std::nullopt if no light can be sampled
-/// from the point.
+/// Chooses a point of a caster at random, and samples a light from there at this time. `sampler`
+/// and `sample` give the random numbers. Returns std::nullopt if the point's primitive has no area
+/// or no light can be sampled from the point.
 std::optional<PhotonStart> start_photon(const Scene& scene, const Casters& casters,
                                         const PixelSampler& sampler, std::uint64_t sample,
                                         double time);

@@ -10,14 +10,15 @@
 
 namespace bandsaw {
 
-/// Russian roulette may end a path from this scattering on.
+/// Russian roulette may end a path from this scattering on, counted from 1.
 inline constexpr std::uint32_t kRouletteDepth = 3;
 
 /// Paths whose throughput is at least this always survive.
 inline constexpr double kRouletteThroughput = 0.25;
 
-/// Applies Russian roulette after scattering `depth`, with the random number `number` in [0, 1).
-/// Returns false if the path ends.
+/// Applies Russian roulette after scattering `depth` (counted from 0), with the random number
+/// `number` in [0, 1). Returns false if the path ends. At least one path in 20 survives, so that no
+/// throughput grows more than 20 times.
 inline bool survives_roulette(const PathContext& context, std::uint32_t depth, double number,
                               PathState& path) {
   if (context.options.russian_roulette && depth + 1 >= kRouletteDepth) {

@@ -34,6 +34,8 @@ float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, do
   return scene.accel().occluded(spawn_ray(point, normalize(direction), distance)) ? 0.0f : 1.0f;
 }
 
+/// Returns the value of an integrator that shows only the first surface. Where the ray leaves the
+/// scene the value is black, for ambient occlusion white.
 Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const PixelSampler& sampler,
              std::uint64_t sample, std::uint64_t& rays) {
   NestedDielectrics nesting;

@@ -1,6 +1,7 @@
 #pragma once
 
-// The value of one sample of a pixel, for every integrator.
+// Computes one sample of a pixel with the integrator that the settings select.
+// render/pixel_sums.cpp calls it for every sample.
 
 #include <cstdint>
 
@@ -10,7 +11,8 @@
 namespace bandsaw {
 
 /// Returns the sample's value; the arguments are those of `path_radiance()`. Integrators that do
-/// not compute radiance trace only the camera ray, ambient occlusion one more ray.
+/// not compute radiance ignore `options`. Except for the guides of the denoiser, they trace only
+/// the camera ray, and for ambient occlusion one more ray.
 Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
                  PathCounts& counts);

@@ -1,6 +1,6 @@
-// The path flies through the segment by delta tracking (medium/tracking.h). At the collision where
-// it is scattered, a light is sampled and a direction is sampled. If it may not be scattered there,
-// its light is multiplied by the estimated transmittance instead.
+// The path crosses the segment by delta tracking (medium/tracking.h). At the collision where it is
+// scattered, a light and a direction are sampled. At the maximum depth, in local shading and in
+// media that do not scatter, its throughput is multiplied by the estimated transmittance instead.
 
 #include "renderlib/integrate/through_grid_medium.h"
 
@@ -15,13 +15,13 @@
 namespace bandsaw {
 namespace {
 
-/// One segment before scattering number `depth`.
+/// One segment of a ray in a medium that varies in space.
 struct Segment {
   const PathContext& context;
   const Ray& ray;
   const MediumSegment& part;
-  std::uint32_t number;
-  std::uint32_t depth;
+  std::uint32_t number;  ///< index of the segment along its ray
+  std::uint32_t depth;   ///< number of the path's next scattering
 
   const GridMedium& medium() const { return *part.varying; }
   double length() const { return part.end - part.begin; }
@@ -33,11 +33,11 @@ struct Segment {
   NumberStream stream() const { return context.stream(group_medium(depth, number, 3)); }
 };
 
-/// Returns the light-sampling estimate of the radiance that a collision scatters back along the
-/// ray, for a weight of 1.
+/// Returns the light-sampling estimate of the radiance that a collision at `position` scatters back
+/// along the ray, for a throughput of 1.
 Rgb sample_light(const Segment& segment, const Vec3& position) {
   const PathContext& context = segment.context;
-  const Sample4 which = segment.numbers(2);
+  const Sample4 which = segment.numbers(2);  // the fourth refines the selection among many lights
   const std::optional<LightSample> light =
       context.scene.lights().sample({position, std::nullopt, segment.ray.time},
                                     which[0] + which[3] * 0x1p-32, which[1], which[2]);
@@ -82,6 +82,7 @@ MediumEvent scatter(const Segment& segment, const Flight& flight, PathState& pat
                                                                         : MediumEvent::kEnded;
 }
 
+/// Lets the medium scatter the path or lets it pass, as delta tracking decides.
 MediumEvent fly_through(const Segment& segment, const GridRay& ray, PathState& path) {
   const Sample4 at = segment.numbers(0);
   NumberStream numbers = segment.stream();
@@ -95,8 +96,8 @@ MediumEvent fly_through(const Segment& segment, const GridRay& ray, PathState& p
   return is_black(path.throughput) ? MediumEvent::kEnded : MediumEvent::kPassed;
 }
 
-/// Lets the path pass the segment. `lit`: light that the medium scatters once is added (local
-/// shading).
+/// Lets the path pass the segment without scattering. If `lit` (local shading), adds the light that
+/// the medium scatters once.
 MediumEvent pass_through(const Segment& segment, const GridRay& ray, bool lit, PathState& path) {
   NumberStream numbers = segment.stream();
   if (!lit && !segment.medium().emits()) {

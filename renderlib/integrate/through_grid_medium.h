@@ -13,8 +13,9 @@
 
 namespace bandsaw {
 
-/// Advances the path, whose ray is `ray`, through segment number `number` of that ray, towards or
-/// as scattering number `depth`. The segment's medium MUST vary in space.
+/// Advances the path, whose ray is `ray`, through segment number `number` of that ray. `depth` is
+/// the number of the path's next scattering, which happens here if the medium scatters the path.
+/// The segment's medium MUST vary in space.
 MediumEvent through_grid_medium(const PathContext& context, const Ray& ray,
                                 const MediumSegment& segment, std::uint32_t number,
                                 std::uint32_t depth, PathState& path);

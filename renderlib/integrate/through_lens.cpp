@@ -20,6 +20,7 @@ void sample_light_through_lens(const PathContext& context, const LensView& lens,
     return;
   }
   path.previous = {.receiver = focus, .pdf = lens.pdf(path.ray.direction), .delta = false};
+  // Number 0 of this group is the time of the ray.
   const Sample4 numbers = context.numbers(kGroupTime);
   const std::optional<LightSample> light = lights.sample(focus, numbers[1], numbers[2], numbers[3]);
   if (!light || light->delta) {

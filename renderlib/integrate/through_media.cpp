@@ -20,10 +20,10 @@
 namespace bandsaw {
 namespace {
 
-/// One segment of homogeneous medium before scattering number `depth`.
+/// One segment of a ray in a homogeneous medium.
 struct Segment {
   const PathContext& context;
-  std::uint32_t depth;
+  std::uint32_t depth;   ///< number of the path's next scattering
   std::uint32_t number;  ///< index of the segment along its ray
   const Medium& medium;
   Vec3 origin;     ///< start of the segment
@@ -32,6 +32,7 @@ struct Segment {
   FreeFlight free_flight;
   double scatter_probability;  ///< probability that the path is scattered in the segment
 
+  /// Returns random numbers of the segment; group_medium() lists their uses.
   Sample4 numbers(std::uint32_t which) const {
     return context.numbers(group_medium(depth, number, which));
   }
@@ -74,12 +75,13 @@ Ray shadow_ray(const Segment& segment, const Vec3& position, const LightSample& 
   return ray;
 }
 
-/// Returns the light-sampling estimate of the radiance that one point of the segment scatters back
-/// along it.
+/// Samples a distance along the segment and a light from there. Returns the estimate of the
+/// radiance that the segment scatters back along the ray. `at`: random numbers.
 Rgb sample_light(const Segment& segment, const LightDistanceSampler& distances, const Sample4& at) {
   const PathContext& context = segment.context;
   const double distance = distances.sample(at[2], at[3]);
   const Vec3 position = segment.origin + segment.direction * distance;
+  // The fourth number refines the selection among many lights.
   const Sample4 which = segment.numbers(2);
   const std::optional<LightSample> light = context.scene.lights().sample(
       {position, std::nullopt, segment.time}, which[0] + which[3] * 0x1p-32, which[1], which[2]);
@@ -104,7 +106,8 @@ Rgb sample_light(const Segment& segment, const LightDistanceSampler& distances, 
          static_cast<float>(phase_pdf * weight / pdf);
 }
 
-/// Scatters the path at `distance` into a sampled direction.
+/// Scatters the path at `distance` into a sampled direction. `distance_pdf_ratio`:
+/// PreviousVertex::distance_pdf_ratio of the new vertex.
 MediumEvent scatter(const Segment& segment, double distance, double distance_pdf_ratio,
                     PathState& path) {
   const Sample4 at = segment.context.numbers(group_bsdf(segment.depth));
@@ -123,11 +126,13 @@ MediumEvent scatter(const Segment& segment, double distance, double distance_pdf
                                                                         : MediumEvent::kEnded;
 }
 
+/// Sets the throughput of a path that passes the segment; a path without throughput ends.
 MediumEvent pass(const Rgb& throughput, PathState& path) {
   path.throughput = throughput;
   return is_black(throughput) ? MediumEvent::kEnded : MediumEvent::kPassed;
 }
 
+/// Adds the light of the segment, and scatters the path in it or lets it pass.
 MediumEvent through_segment(const Segment& segment, double length, PathState& path) {
   const PathOptions& options = segment.context.options;
   path.radiance += path.throughput * own_radiance(segment.medium, length);
@@ -147,6 +152,7 @@ MediumEvent through_segment(const Segment& segment, double length, PathState& pa
   if (at[0] >= segment.scatter_probability) {
     return pass(segment.free_flight.after_passing(), path);
   }
+  // The number that decided to scatter is stretched to [0, 1) and used again.
   const double distance = segment.free_flight.sample(at[0] / segment.scatter_probability, at[1]);
   const double scattering_pdf = segment.scatter_probability * segment.free_flight.pdf(distance);
   return scatter(segment, distance, distances.pdf(distance) / scattering_pdf, path);

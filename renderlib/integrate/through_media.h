@@ -21,9 +21,10 @@ enum class MediumEvent {
   kEnded,      ///< the path ends
 };
 
-/// Advances the path along its ray by `length` (scene units, > 0, may be infinite), towards or as
-/// scattering number `depth`. At the maximum depth and with local shading the path is not
-/// scattered. The scene MUST have media (`SceneFeatures::media`).
+/// Advances the path along its ray by `length` (scene units, > 0, may be infinite). `depth` is the
+/// number of the path's next scattering, which happens here if a medium scatters the path. At the
+/// maximum depth and with local shading the path is not scattered. The scene MUST have media
+/// (`SceneFeatures::media`).
 MediumEvent through_media(const PathContext& context, double length, std::uint32_t depth,
                           PathState& path);
 

@@ -20,10 +20,10 @@ namespace {
 struct Photon {
   Ray ray;
   Rgb power;
-  double angle = 0;  ///< solid angle of the light
+  double angle = 0;  ///< solid angle of the lamp as seen from the first caster
 };
 
-/// The numbers of a photon.
+/// The random numbers of a photon.
 struct Numbers {
   const PixelSampler& sampler;
   std::uint64_t photon;
@@ -33,9 +33,10 @@ struct Numbers {
   }
 };
 
-/// Scatters the photon, which comes from `in`, at the caster. Its power changes by the BSDF as
-/// paths see it, which arrive from the other direction (Veach 1997, section 5.3: neither refraction
-/// nor shading normals are symmetric). Returns false if it is absorbed.
+/// Scatters the photon, which comes from direction `in`, at the caster. The direction is sampled
+/// from the BSDF, but the power changes by the BSDF of the opposite way, in which paths travel:
+/// neither refraction nor shading normals are symmetric (Veach 1997, section 5.3). Returns false if
+/// the photon is absorbed.
 bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& in,
                     const Sample4& numbers, Photon& photon) {
   const Material& material = scene.material(point.material);
@@ -59,7 +60,8 @@ bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& i
   return max_component(photon.power) > 0 && is_finite(photon.power);
 }
 
-/// Returns the photon that leaves a random point of a caster.
+/// Returns the photon that leaves a random point of a caster; std::nullopt if no emissive surface
+/// lights the point or the photon is absorbed. `photons`: their number, which share the power.
 std::optional<Photon> start(const Scene& scene, const Casters& casters, const Numbers& numbers,
                             std::uint64_t photons, std::uint64_t& rays) {
   std::optional<PhotonStart> at = start_photon(scene, casters, numbers.sampler, numbers.photon,
@@ -76,6 +78,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Nu
   }
   const Rgb passing =
       transmittance(scene, spawn_ray_to(point, light.target, 0), numbers.stream(0), rays);
+  // Factor 2, because one of the two sides of the caster was chosen.
   const double weight = 2 * cosine / (light.pdf * at->pdf * static_cast<double>(photons)) *
                         opacity(scene.material(point.material), scene.textures(), point);
   Photon photon{.ray = {},
@@ -126,8 +129,9 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
   }
 }
 
-/// Returns true if there is a surface around the point `to` of the photon's disk, and nothing
-/// stands between both.
+/// Returns true if there is a surface close to the point `to` of the photon's disk, and nothing
+/// stands between it and the photon. Close means at most a quarter of the radius below the disk's
+/// plane: lower surfaces do not get the photon's light (density_at() in guiding/photon_map.h).
 bool is_on_surface(const Scene& scene, const CausticPhoton& photon, const Vec3& to) {
   const Vec3 lift = vec3(photon.normal) * (photon.radius / 8.0);
   const Vec3 start = vec3(photon.position) + lift;
@@ -156,7 +160,7 @@ TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const Ph
 double share_on_surface(const Scene& scene, const CausticPhoton& photon) {
   constexpr int kAtRim = 4;
   constexpr int kAllOver = 16;
-  constexpr double kGoldenTurn = 0.381966011250105;
+  constexpr double kGoldenTurn = 0.381966011250105;  // the golden angle, as a part of a turn
   const Basis basis = orthonormal_basis(vec3(photon.normal));
   const auto is_there = [&](double turn, double distance) {
     const SinCos angle = sincos_turns(turn);
@@ -171,7 +175,8 @@ double share_on_surface(const Scene& scene, const CausticPhoton& photon) {
   if (found == kAtRim) {
     return 1;
   }
-  // Points with the density of the kernel.
+  // Points on a spiral, with the density of Epanechnikov's kernel, by which the photon spreads its
+  // power: `inside` is the part of the power within `distance`.
   found = 0;
   for (int i = 0; i < kAllOver; ++i) {
     const double inside = (i + 0.5) / kAllOver;

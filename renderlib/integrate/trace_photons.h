@@ -13,32 +13,33 @@
 
 namespace bandsaw {
 
-/// Some of the photons of a map.
+/// Some of the photons of a map: those with numbers in [first, last).
 struct PhotonChunk {
   std::uint64_t seed = 0;
-  std::uint32_t map = 0;      ///< number of the map
-  std::uint64_t photons = 0;  ///< number of photons of the map
-  std::uint64_t first = 0;    ///< photons [first, last)
+  std::uint32_t map = 0;      ///< number of the map (CausticMaps::number_of)
+  std::uint64_t photons = 0;  ///< number of photons that are started for the whole map
+  std::uint64_t first = 0;
   std::uint64_t last = 0;
 };
 
+/// The photons of a chunk.
 struct TracedPhotons {
-  std::vector<CausticPhoton> photons;  ///< those that arrived, in order
-  std::uint64_t rays = 0;
-  double power = 0;  ///< sum of the luminance of their power
-  /// Sum of luminance times the solid angle of the light as seen from the first caster, by the pdf
-  /// with which light sampling chose it.
+  std::vector<CausticPhoton> photons;  ///< those that arrived at a receiver, in order
+  std::uint64_t rays = 0;              ///< rays that were traced
+  double power = 0;                    ///< sum of the luminance of their power
+  /// Sum of luminance times solid angle. The angle is that of the lamp as seen from the caster
+  /// where the photon started, taken as 1 / the pdf of light sampling there.
   double power_by_angle = 0;
 };
 
 /// Traces the photons, each of which is a pure function of the scene, the seed, the map and its
 /// number. A photon starts at a random point of a caster, from which a light is sampled as for a
-/// surface. `casters` MUST be complete.
+/// surface. `casters` MUST be complete (Casters::complete).
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk);
 
-/// Returns the share of the photon's disk that lies on surfaces around it: estimated by short rays,
-/// first at the rim and, if some miss, all over the disk. Without that, a photon near an edge would
-/// lose the part of its power that falls beyond it.
+/// Returns the share, in (0, 1], of the photon's disk that lies on surfaces. It is estimated by
+/// short rays, first at the rim and, if some miss, all over the disk. PhotonMap divides the power
+/// by it; otherwise a photon near an edge would lose the power that falls beyond the edge.
 double share_on_surface(const Scene& scene, const CausticPhoton& photon);
 
 }  // namespace bandsaw

@@ -17,7 +17,7 @@ namespace bandsaw {
 namespace {
 
 /// The source of background light is placed at this many times the length of the longest ray of the
-/// path.
+/// path: so far away that its direction is the same for all points of a cell.
 constexpr double kFar = 1e6;
 
 /// Maximum number of vertices of a path that are recorded. It bounds the memory of the training.
@@ -29,12 +29,12 @@ struct Vertex {
   Vec3 normal;               ///< on the side of the path
   Vec3 direction;            ///< direction of the path from here
   double length = -1;        ///< length of the ray from here; negative: it left the scene
-  Rgb radiance;              ///< radiance of the path before the ray
-  Rgb throughput;            ///< throughput of the ray
-  double cosine_by_pdf = 0;  ///< 0: the path ended here
+  Rgb radiance;              ///< PathState::radiance before the ray was traced
+  Rgb throughput;            ///< PathState::throughput of the ray
+  double cosine_by_pdf = 0;  ///< cosine / pdf of `direction`; 0: the path ended here
 };
 
-/// A path and its vertices, whose memory is used again by the next path.
+/// A path and its vertices. The next path uses the memory of the vertices again.
 struct TrainingPath {
   explicit TrainingPath(const Ray& from, std::vector<Vertex>& scratch)
       : state(from), vertices(scratch) {
@@ -44,6 +44,7 @@ struct TrainingPath {
   std::vector<Vertex>& vertices;
   bool open = false;  ///< the ray of the last vertex has not met anything yet
 
+  /// Notes the length of the ray that left the last vertex.
   void end_ray(double length) {
     if (open) {
       vertices.back().length = length;
@@ -118,7 +119,9 @@ void trace_and_remember(const PathContext& context, TrainingPath& path) {
   }
 }
 
-/// Appends the records of the vertices.
+/// Appends the records of the vertices. The light that the path found after a vertex, divided by
+/// the throughput of the ray, is the radiance that arrives along the ray; times cosine / pdf it
+/// estimates the irradiance of the vertex. `camera_distance`: length of the camera ray.
 void add_records(const TrainingPath& path, double camera_distance, std::vector<GuidingRecord>& to) {
   double longest = camera_distance;
   for (const Vertex& vertex : path.vertices) {
@@ -144,8 +147,8 @@ void add_records(const TrainingPath& path, double camera_distance, std::vector<G
 }  // namespace
 
 PixelSampler training_sampler(const TrainingChunk& chunk) {
-  constexpr std::uint64_t kSeed = 0x9d1a5e3c7b2f8641;
-  constexpr std::uint32_t kBeyondImages = 1u << 24;
+  constexpr std::uint64_t kSeed = 0x9d1a5e3c7b2f8641;  // an arbitrary number
+  constexpr std::uint32_t kBeyondImages = 1u << 24;    // sides have at most 2^16 pixels
   return {kSeed, kBeyondImages + chunk.number, kBeyondImages + chunk.round};
 }
 

@@ -1,7 +1,7 @@
 // Photons are paths that begin at a caster, a surface of metal or glass that may cast a caustic. A
-// random point of a caster is chosen, a light is sampled from it, and the light goes on as its BSDF
-// says. Where a photon arrives at a surface whose directions can be guided, a record says from
-// which direction how much light came.
+// random point of a caster is chosen, a light is sampled from it, and the direction of the photon
+// is sampled from its BSDF. Where a photon arrives at a surface whose directions can be guided, a
+// record says from where it came and how much power it had.
 
 #include "renderlib/integrate/training_photons.h"
 
@@ -25,7 +25,7 @@ struct Photon {
   SurfacePoint from;  ///< where the ray starts
 };
 
-/// Adds a scattering at the surface to the photon, which comes along -`wo`. Returns false if it is
+/// Scatters the photon, which comes from direction `wo`, at the surface. Returns false if it is
 /// absorbed.
 bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& wo,
                     const Sample4& numbers, Photon& photon) {
@@ -41,7 +41,8 @@ bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& w
   return photon.power > 0 && std::isfinite(photon.power);
 }
 
-/// Returns the photon that leaves a random point of a caster, by its light and its BSDF.
+/// Returns the photon that leaves a random point of a caster; std::nullopt if no light reaches the
+/// point or the photon is absorbed.
 std::optional<Photon> start(const Scene& scene, const Casters& casters, const PixelSampler& sampler,
                             std::uint64_t sample, TrainingRecords& out) {
   const Shutter& shutter = shutter_of(scene.camera());
@@ -56,6 +57,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Pi
                                        : spawn_ray_to(at->point, light.target, 0);
   const double passing = visibility(scene, shadow_ray, out.rays);
   Photon photon;
+  // Factor 2, because one of the two sides of the caster was chosen.
   photon.power = 2 * passing * luminance(light.radiance) / light.pdf *
                  std::abs(dot(light.direction, at->normal)) / at->pdf;
   if (!(photon.power > 0) || !scatter_photon(scene, at->point, light.direction,
@@ -66,6 +68,8 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Pi
 }
 
 /// Follows the photon until it arrives at a surface that can be guided, and records that.
+/// `longest`: maximum number of scatterings up to there; `photons`, `mapped`: as for
+/// training_photons().
 void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sample,
             std::uint32_t longest, double photons, bool mapped, Photon photon,
             TrainingRecords& out) {
