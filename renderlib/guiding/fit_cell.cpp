@@ -1,6 +1,7 @@
-// Fits balls to the records of one cell: clusters of directions, seen from the cell's middle, are
-// split as long as that explains the records better. Then it is estimated by cross-validation what
-// share of the directions should be sampled towards the balls.
+// Fits the balls of a cell (guiding_cell.h) to its records. The directions of the light, as seen
+// from the cell's middle, begin as one cluster; clusters are split as long as that explains the
+// records better. Each becomes a ball. Then cross-validation finds the share of the directions that
+// should be sampled towards the balls.
 
 #include <algorithm>
 #include <cmath>
@@ -28,11 +29,11 @@ constexpr double kWidest = 0.5;
 /// chance does not decide alone.
 constexpr double kMaxShareOfRecord = 0.1;
 
-/// A ball is split only if that raises the mean logarithm of the pdf by this much, times the
-/// effective number of records: fewer records would be followed too closely.
+/// A cluster is split only if that raises the mean logarithm of the pdf by this much divided by the
+/// effective number of records: otherwise few records would be followed too closely.
 constexpr double kMinSplitGain = 3;
 
-/// Share of its weight that a ball keeps when it is split.
+/// Share of its weight that a cluster keeps when it is split.
 constexpr double kKept = 0.25;
 
 /// Light as seen from the middle of the cell.
@@ -42,7 +43,7 @@ struct Seen {
   double weight = 0;
 };
 
-/// A cone around directions, which are a range of the list of all.
+/// A cone around some of the directions: those with numbers in [first, last).
 struct Cluster {
   std::size_t first = 0;
   std::size_t last = 0;
@@ -52,8 +53,9 @@ struct Cluster {
   double one_minus_cos = 2;  ///< 1 - cos of the cone's half-angle
 };
 
+/// A split of a cluster into directions whose component `axis` is below `at`, and the others.
 struct Split {
-  double gain = 0;  ///< 0: none
+  double gain = 0;  ///< of the sum of the scores; 0: there is no split
   int axis = 0;
   double at = 0;
 };
@@ -83,6 +85,7 @@ double area_of(absl::Span<const GuidingRecord> records, const Vec3& normal) {
       low = std::min(low, record.position[axis]);
       high = std::max(high, record.position[axis]);
     }
+    // The extent of n uniform points is (n - 1) / (n + 1) of the whole on average.
     area *= (double{high} - low) * (n + 1) / std::max(1.0, n - 1);
   }
   return area;
@@ -148,6 +151,7 @@ Light light_of(const Place& place, absl::Span<const GuidingRecord> records) {
   return light;
 }
 
+/// Returns the cluster of directions [first, last).
 Cluster cluster_of(const Place& place, absl::Span<const Seen> seen, std::size_t first,
                    std::size_t last) {
   Cluster cluster;
@@ -174,14 +178,18 @@ Cluster cluster_of(const Place& place, absl::Span<const Seen> seen, std::size_t 
   }
   mean /= cluster.weight;
   spread /= cluster.weight;
-  // Uniform directions in a cone have half of its 1 - cos on average. Where the light comes from
-  // several distances, it moves against the axis when the point moves within the cell.
+  // The cone contains the farthest direction, with a margin for few records. But it is at most
+  // twice as wide as the mean tells (uniform directions in a cone have half of its 1 - cos on
+  // average), so that single directions far from the axis do not widen it. Where light comes from
+  // several distances, its direction changes relative to the axis when the point moves within the
+  // cell.
   const auto n = static_cast<double>(last - first);
   const double cone = std::min(farthest * (1 + 3 / n), 4 * mean) + place.extent2 * spread / 2;
   cluster.one_minus_cos = std::clamp(cone, 4e-6, 2.0);
   return cluster;
 }
 
+/// Returns the cluster's part of the mean logarithm of the pdf of all directions, up to a constant.
 double score(const Cluster& cluster) {
   return cluster.weight * log(cluster.weight / cluster.one_minus_cos);
 }

@@ -1,5 +1,5 @@
-// Keeps the newest fields. A thread that needs a field which another thread is training waits for
-// it.
+// Keeps the newest fields and maps. A thread that needs one which another thread is making waits
+// for it.
 
 #include "renderlib/guiding/guiding_cache.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The guiding fields of a scene (guiding_field.h) and its photon maps (photon_map.h), each made
-// when it is first used.
+// Keeps the guiding fields of a scene (guiding_field.h) and its photon maps (photon_map.h), each of
+// which is made when it is first used. Each Scene has one GuidingCache.
 
 #include <cstdint>
 #include <deque>
@@ -28,31 +28,35 @@ struct GuidingKey {
   friend bool operator==(const GuidingKey&, const GuidingKey&) = default;
 };
 
+/// A field and what its training cost.
 struct TrainedGuiding {
   GuidingField field;
   std::uint64_t paths = 0;    ///< training paths from the camera
   std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
   std::uint64_t rays = 0;     ///< rays of both, of pilots and of the first photon map
-  /// The casters whose caustics are taken from photon maps (integrate/caustics.h); null: there are
-  /// none, or maps do not pay.
+  /// The casters (surfaces that cast caustics) whose caustics are taken from photon maps
+  /// (integrate/caustics.h); null: there are none, or maps do not pay.
   std::shared_ptr<const Casters> casters;
 };
 
 /// The parameters of a photon map, besides the scene.
 struct PhotonMapKey {
   std::uint64_t seed = 0;
-  std::uint32_t number = 0;   ///< the radii of its photons fall with it
+  std::uint32_t number = 0;   ///< maps of higher numbers have smaller disks of photons
   std::uint64_t photons = 0;  ///< number of photons that are started
   friend bool operator==(const PhotonMapKey&, const PhotonMapKey&) = default;
 };
 
+/// A photon map and what is known from its making.
 struct TracedMap {
   PhotonMap map;
-  /// Mean solid angle of the lamps as seen from where their photons start, by power.
+  /// Mean solid angle in steradians of the lamps as seen from where their photons start, weighted
+  /// by power.
   double lamp_angle = 0;
   std::uint64_t rays = 0;
 };
 
+/// Thread-safe.
 class GuidingCache {
  public:
   using Trained = std::shared_ptr<const TrainedGuiding>;

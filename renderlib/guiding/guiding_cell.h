@@ -1,10 +1,10 @@
 #pragma once
 
-// The directions from which light arrives at one place: a few balls, each with the share of the
-// light that comes from it. Seen from a point near the place, a ball is a cone of directions, which
-// is sampled uniformly. As balls have positions, the cones follow the point (the parallax of
-// Ruppert, Herholz and Lensch 2020, "Robust Fitting of Parallax-Aware Mixtures for Path Guiding",
-// section 4, with cones in place of von Mises-Fisher lobes).
+// A cell holds the directions from which light arrives at one place: a few balls in space, each
+// with the share of the light that comes from it. Seen from a point near the place, a ball is a
+// cone of directions, which is sampled uniformly. As balls have positions, the cones follow the
+// point (the parallax of Ruppert, Herholz and Lensch 2020, "Robust Fitting of Parallax-Aware
+// Mixtures for Path Guiding", section 4, with cones in place of von Mises-Fisher lobes).
 
 #include <array>
 #include <cstdint>
@@ -28,15 +28,14 @@ struct GuidingBall {
 
 struct GuidingCell {
   std::uint32_t count = 0;  ///< number of balls
-  float irradiance = 0;     ///< by the light of the cell's records
-  /// Share of the directions that are best sampled towards the balls if there is no other light, in
-  /// [0, 1/2].
+  float irradiance = 0;     ///< at the place, estimated from the cell's records
+  /// Probability with which a direction is best sampled towards the balls if there is no other
+  /// light, in [0, 1/2]; otherwise it is sampled from the BSDF.
   float share = 0;
-  /// Expected second moment of a sampled direction's contribution at a diffuse surface, in units of
-  /// the squared mean, without guiding and with `share`; estimated from light that was left out of
-  /// the fit.
+  /// Expected second moment of a sampled direction's contribution at a diffuse surface without
+  /// guiding, in units of the squared mean. Estimated from light that was left out of the fit.
   float moment = 1;
-  float guided_moment = 1;
+  float guided_moment = 1;  ///< the same with guiding by `share`
   std::array<GuidingBall, kMaxBalls> balls;
 };
 
@@ -52,17 +51,17 @@ struct GuidingCells {
   const GuidingCell* photons = nullptr;
 };
 
-/// Shares of the directions that are sampled towards the balls of each.
+/// Probabilities with which a direction is sampled towards the balls of each of two cells.
 struct GuidingShares {
   double paths = 0;
   double photons = 0;
 };
 
-/// Returns the shares. Photons get the share of their light, at least an eighth and at most a half,
-/// unless their light is hardly noticeable.
+/// Returns the shares. Photons get the share of their light in all light, at least an eighth and at
+/// most a half, or 0 if their light is hardly noticeable.
 GuidingShares shares_of(const GuidingCells& cells);
 
-/// A cell as seen from a point: cones of directions.
+/// Cells as seen from a point: cones of directions, from which paths sample.
 class GuidingCones {
  public:
   /// Guides nothing. (The arrays are left uninitialised: they are large.)
@@ -85,13 +84,13 @@ class GuidingCones {
   void add(const GuidingCell& cell, double share, const Vec3& position, const Vec3& normal);
 
   static constexpr std::uint32_t kMaxCones = 2 * kMaxBalls;
-  // Axes, cosines of the half-angles, weights, and weights divided by the solid angles.
-  double x_[kMaxCones];
+  // For each cone:
+  double x_[kMaxCones];  ///< x, y, z: the axis, a unit vector
   double y_[kMaxCones];
   double z_[kMaxCones];
-  double one_minus_cos_[kMaxCones];
-  double weight_[kMaxCones];
-  double density_[kMaxCones];
+  double one_minus_cos_[kMaxCones];  ///< 1 - cos of the half-angle
+  double weight_[kMaxCones];         ///< probability of the cone; they sum to 1
+  double density_[kMaxCones];        ///< weight by solid angle
 };
 
 }  // namespace bandsaw

@@ -1,5 +1,5 @@
-// Each ball of a cell, as seen from a point, is a cone of directions. Cones are sampled uniformly,
-// with a probability by the light of their ball.
+// Each ball of a cell, as seen from a point, is a cone of directions. A cone is chosen with a
+// probability in proportion to the light of its ball, and a direction uniformly within it.
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 namespace bandsaw {
 namespace {
 
-/// Minimum of 1 - cos of a cone's half-angle: a sixth of a degree. The rounding error of a cosine
-/// is far below it.
+/// Minimum of 1 - cos of a cone's half-angle, which is then a sixth of a degree. The rounding error
+/// of a cosine is far below it.
 constexpr double kNarrowest = 4e-6;
 
 }  // namespace
@@ -60,6 +60,7 @@ void GuidingCones::add(const GuidingCell& cell, double share, const Vec3& positi
     const double radius = ball.radius;
     const double distance2 = length_squared(to);
     const double sin2 = radius * radius / distance2;
+    // Left out: balls around the point, and balls that are wholly below the surface.
     if (!(sin2 < 1) || dot(to, normal) <= -radius) {
       continue;
     }

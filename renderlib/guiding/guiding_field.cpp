@@ -11,10 +11,12 @@
 namespace bandsaw {
 namespace {
 
+/// Bounds the recursion where many records are at nearly the same point.
 constexpr int kMaxTreeDepth = 40;
 
+/// The longest side of a box.
 struct Extent {
-  int axis = 0;  ///< the longest
+  int axis = 0;
   float low = 0;
   float high = 0;
 };

@@ -1,7 +1,8 @@
 #pragma once
 
 // The field of path guiding: for places all over the scene's surfaces, the directions from which
-// light arrives there. Built from records, immutable.
+// light arrives there. It is built from records (guiding_record.h) and then never changes. Paths
+// look it up at each surface (integrate/guided_bsdf.h).
 
 #include <array>
 #include <cstdint>
@@ -14,10 +15,12 @@
 
 namespace bandsaw {
 
-/// The cells of one kind of records, in a binary tree over space.
+/// A binary tree over space. Each leaf has up to six cells (guiding_cell.h), by the main direction
+/// of the surface's normal. All are fitted to one kind of records: paths or photons.
 class GuidingTree {
  public:
-  /// A place is divided further while its effective number of records is above this.
+  /// A node is divided further while its effective number of records is above this: the square of
+  /// the sum of their weights over the sum of the squares.
   static constexpr double kRecordsOfLeaf = 48;
 
   GuidingTree() = default;
@@ -44,14 +47,16 @@ class GuidingTree {
   std::size_t bytes() const;
 
  private:
-  static constexpr std::uint32_t kNoCell = 0xffffffffu;
-  using Leaf = std::array<std::uint32_t, 6>;  ///< the cell of each side (side_of())
+  static constexpr std::uint32_t kNoCell = 0xffffffffu;  ///< a side without records
+  using Leaf = std::array<std::uint32_t, 6>;             ///< the cell of each side (side_of())
   /// A node in depth-first order: its first child follows it.
   struct Node {
     float split = 0;
     int axis = 3;            ///< 3: a leaf
     std::uint32_t next = 0;  ///< second child, or number of the leaf
   };
+  /// Makes the nodes of records [first, last), which it reorders, and appends to `starts` the first
+  /// record of each leaf.
   void split(std::vector<GuidingRecord>& records, std::size_t first, std::size_t last, int depth,
              std::vector<std::size_t>& starts);
 
@@ -60,15 +65,19 @@ class GuidingTree {
   std::vector<GuidingCell> cells_;
 };
 
+/// The trees of both kinds of records. Without records the field is empty and guides nothing.
 class GuidingField {
  public:
   GuidingField() = default;
+  /// Builds both trees on the threads of the pool.
   GuidingField(absl::Span<const GuidingRecord> records, Pool& pool);
 
+  /// Returns the cells of a point with this unit normal, on the side that receives light.
   GuidingCells find(const Vec3& position, const Vec3& normal) const {
     return {paths_.find(position, normal), photons_.find(position, normal)};
   }
   std::size_t cells() const { return paths_.cells() + photons_.cells(); }
+  /// Returns the memory of the field in bytes.
   std::size_t bytes() const { return paths_.bytes() + photons_.bytes(); }
 
  private:

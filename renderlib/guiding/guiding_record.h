@@ -1,6 +1,7 @@
 #pragma once
 
-// A record of the training of path guiding: light that arrived at a point of a surface.
+// A record of the training of path guiding: light that arrived at a point of a surface. `integrate`
+// makes records (training_paths.h, training_photons.h); GuidingField is fitted to them.
 
 #include <cstdint>
 

@@ -13,25 +13,32 @@
 namespace bandsaw {
 namespace {
 
+// Radii are found in a tree of places: boxes of space that are divided while they have more than
+// kPhotonsOfLeaf photons.
 constexpr std::uint32_t kPhotonsOfLeaf = 8;
-/// Fewer photons do not tell the area of one.
+/// The area of a photon is estimated from at least this many.
 constexpr std::uint32_t kEnough = 16;
+/// Bounds the recursion where many photons are at nearly the same point.
 constexpr int kMaxTreeDepth = 48;
-/// The least part of a place at which it is divided.
+/// A place is divided at a random point of its longest side, between this part and 1 minus it.
 constexpr double kFirstPart = 3.0 / 8;
-/// A place with this many photons or fewer has disks of this part of its photons if they are even
-/// there: if the halves of each part of it have the same power up to so many standard deviations
-/// and this part of the whole, and its normals add up to this part of their number.
+/// Even places (see below) of at most kMostOfEven photons have disks with the area of kPartOfEven
+/// of their photons.
 constexpr std::uint32_t kMostOfEven = 1024;
 constexpr double kPartOfEven = 1.0 / 4;
+// A place is even if its photons are as good as uniform on a flat surface: in it and in all places
+// below it, the powers of the two halves differ by at most kDeviations standard deviations plus
+// kSlope of their sum, and the sum of the normals is at least kFlat times as long as for equal
+// ones.
 constexpr double kDeviations = 3.5;
 constexpr double kSlope = 0.1;
 constexpr double kFlat = 0.97;
-/// There, a point sees about this many disks at least.
+/// In an even place one photon stands for several, but a point is still in about this many disks.
 constexpr double kSeen = 10;
-/// The largest radius, as a part of the diagonal of the box of all photons.
+/// The largest radius at a radius factor of 1, as a part of the diagonal of the box of all photons.
 constexpr double kLargestDisk = 1.0 / 16;
 
+/// A box of space; it begins empty.
 struct Box {
   Float3 low{std::numeric_limits<float>::max(), std::numeric_limits<float>::max(),
              std::numeric_limits<float>::max()};
@@ -70,7 +77,7 @@ double area_of(const Box& box) {
   return std::max({x * y, y * z, z * x});
 }
 
-/// A node of the tree from which the disks are found.
+/// A node of the tree from which the radii of the disks are found.
 struct Place {
   std::uint32_t first = 0;  ///< photons [first, last)
   std::uint32_t last = 0;
@@ -85,7 +92,8 @@ struct Place {
 };
 
 /// Divides the photons at this part of the longest side of their box. Returns the first photon of
-/// the second half; std::nullopt if there are few photons, or if they are in one point.
+/// the second half; std::nullopt if there are at most kPhotonsOfLeaf photons, if they are all at
+/// one point, or at the maximum depth.
 std::optional<std::uint32_t> divide(std::vector<CausticPhoton>& photons, std::uint32_t first,
                                     std::uint32_t last, int depth, const Box& box,
                                     float part = 0.5f) {
@@ -142,8 +150,9 @@ void add_places(std::vector<CausticPhoton>& photons, std::uint32_t first, std::u
   places[number] = place;
 }
 
-/// Returns one of the photons, with a probability in proportion to its power, with the power of
-/// all. It stands for all of them where they are close to each other compared with their disks.
+/// Returns one of the photons, chosen with a probability in proportion to its power, and gives it
+/// the power of all. It stands for all of them where they are close together compared with their
+/// disks.
 CausticPhoton stand_in(absl::Span<const CausticPhoton> photons, std::uint64_t seed) {
   double total = 0;
   for (const CausticPhoton& photon : photons) {
@@ -160,12 +169,12 @@ CausticPhoton stand_in(absl::Span<const CausticPhoton> photons, std::uint64_t se
   return one;
 }
 
-/// Sets the radii of the photons, and replaces photons that are close to each other compared with
-/// their disks.
+/// Sets the radii of the photons. Where photons are close together compared with their disks, one
+/// of them replaces them.
 std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double radius_factor,
                                       std::uint64_t seed) {
   std::vector<Place> places;
-  // The walls of a corner are apart.
+  // One tree for each main direction of the normals, so that the walls of a corner are apart.
   auto from = photons.begin();
   for (std::uint32_t side = 0; side < 6 && from != photons.end(); ++side) {
     const auto to = std::stable_partition(from, photons.end(), [&](const CausticPhoton& photon) {

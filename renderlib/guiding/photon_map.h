@@ -18,8 +18,9 @@
 
 namespace bandsaw {
 
+/// A photon that arrived at a surface.
 struct CausticPhoton {
-  Float3 position{};        ///< where it arrived
+  Float3 position{};
   float radius = 0;         ///< of its disk; set by PhotonMap
   Float3 normal{};          ///< geometric normal of the surface, unit, on the side of arrival
   std::uint32_t chain = 0;  ///< number of scatterings between the light and this surface
@@ -27,23 +28,25 @@ struct CausticPhoton {
   Rgb power{};
 };
 
-/// Immutable.
+/// Immutable after construction. integrate/caustic_maps.h makes the maps of a scene.
 class PhotonMap {
  public:
-  /// The number of photons in a disk of radius factor 1; more, where photons are even.
+  /// A disk is as large as the area of about this many photons, if the radius factor is 1. Where
+  /// photons are spread evenly it is larger.
   static constexpr double kPhotonsOfDisk = 20;
 
   PhotonMap() = default;
-  /// Builds the map; `radius_factor` > 0 scales all radii, `seed` decides which photons have disks
-  /// of the same radius. `share_on_surface` returns the share of the power of a photon, in (0, 1],
-  /// that falls on the surface around it when its disk has its radius; it is called on the threads
-  /// of the pool, and the power is divided by it. The map depends on its arguments and the order of
-  /// the photons, not on the threads.
+  /// Builds the map. `radius_factor` > 0 scales all radii. `seed` decides how space is divided into
+  /// parts whose photons have disks of one radius. `share_on_surface` is called for each photon,
+  /// when its radius is known, on the threads of the pool; it returns the share of the photon's
+  /// power, in (0, 1], that falls on the surface and not beyond an edge, and the power is divided
+  /// by it. The map depends on its arguments and the order of the photons, not on the threads.
   PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, std::uint64_t seed,
             Pool& pool, absl::FunctionRef<double(const CausticPhoton&)> share_on_surface);
 
-  /// Calls visit(photon, density) for each photon whose disk contains the point, whose surface has
-  /// the unit normal `normal` on this side; the irradiance is the sum of power * density.
+  /// Calls visit(photon, density) for each photon whose disk contains the point. `normal` is the
+  /// unit normal of the point's surface on the side whose irradiance is wanted: that is the sum of
+  /// power * density.
   template <class Visit>
   void visit(const Vec3& position, const Vec3& normal, const Visit& visit) const;
 
@@ -71,8 +74,9 @@ class PhotonMap {
   std::vector<Node> nodes_;
 };
 
-/// Returns the density of the power of a photon at a point, 1/area: the kernel of Epanechnikov over
-/// the disk, for points near its plane whose normal is similar. Zero elsewhere.
+/// Returns the density of a photon's power at a point, in 1 / area: Epanechnikov's kernel over the
+/// disk. It is 0 for points farther from the disk's plane than a quarter of the radius, and for
+/// normals that differ by more than 60 degrees, because those are of other surfaces.
 inline float density_at(const CausticPhoton& photon, const Float3& position, const Float3& normal) {
   const float x = position[0] - photon.position[0];
   const float y = position[1] - photon.position[1];
