@@ -14,8 +14,8 @@
 namespace bandsaw {
 namespace {
 
-/// Maximum weight of a half tile over the mean: a plan dominated by a few half tiles takes many
-/// passes in which most machines have little to do.
+/// Maximum weight of a half tile, over the mean weight: a plan dominated by a few half tiles takes
+/// many passes in which most machines have little to do.
 constexpr double kMaxOverMean = 8;
 /// Weight of a tile's own error; its neighbours have the rest, which reduces the noise of the
 /// estimate.
@@ -28,6 +28,7 @@ constexpr double kJudgedAfter = 8;
 
 constexpr int kLevels = 16;
 
+// Levels are written as hexadecimal digits.
 int level_of_digit(char digit) { return digit <= '9' ? digit - '0' : digit - 'a' + 10; }
 char digit_of(int level) { return "0123456789abcdef"[level]; }
 
@@ -41,6 +42,7 @@ double share_of(int level) {
   return share;
 }
 
+/// Returns the level whose factor is closest to `share`, by ratio.
 int level_of(double share) {
   int level = 0;
   while (level + 1 < kLevels && share * share < share_of(level) * share_of(level + 1)) {
@@ -172,7 +174,8 @@ double gain(const std::array<Pilot, 2>& parts) {
   return std::min(fall(before.variance, after.variance), fall(before.relative, after.relative));
 }
 
-/// Plans the tiles from one half of their pixels.
+/// Returns a level for each tile, planned from the errors of half 0 or 1 of their pixels; all of
+/// them level 6 if the plan does not pay.
 std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                          std::size_t half) {
   std::vector<TileError> all;

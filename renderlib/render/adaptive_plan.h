@@ -40,9 +40,11 @@ struct TileError {
 /// groups, which are independent of them.
 using HalfTileErrors = std::array<TileError, 2>;
 
+/// The level of uniform sampling.
 inline constexpr char kEvenLevel = '6';
 
-/// Sample allocation of each half tile after the pilot.
+/// Sample allocation of each half tile (half of the pixels of a tile, tile_samples.h) after the
+/// pilot.
 struct TilePlan {
   std::uint64_t pilot = 0;  ///< samples of all pixels
   /// One digit 0 to f for each half tile, in the order of TileGrid. Level l gives 2^((6 - l) / 2)
@@ -63,7 +65,7 @@ struct TilePlan {
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
 
-/// Returns the factor of this half tile's samples over uniform sampling.
+/// Returns the number of this half tile's samples over that of uniform sampling, 2^-4.5 to 8.
 double share_of(const TilePlan& plan, std::size_t half_tile);
 
 }  // namespace bandsaw

@@ -30,10 +30,11 @@ struct SampleRange {
   friend auto operator<=>(const SampleRange&, const SampleRange&) = default;
 };
 
-/// Returns true if the range is a node of the tree.
+/// Returns true if the range is a node of the tree; false for empty ranges.
 bool is_node(const SampleRange& range);
 
-/// Returns the number of blocks of the longest node that begins at `block`, which MUST be > 0.
+/// Returns the number of blocks of the longest node that begins at block number `block`, which MUST
+/// be > 0.
 constexpr std::uint64_t longest_at(std::uint64_t block) { return block & (~block + 1); }
 
 /// Returns the maximal aligned nodes of samples [0, samples), from left to right.
@@ -45,6 +46,7 @@ struct Halves {
   SampleRange left;
   SampleRange right;
 };
+/// `node` MUST be a node of two or more blocks.
 Halves split(const SampleRange& node);
 
 /// Rows [first, last) of the whole image, counted from the top.
@@ -80,14 +82,16 @@ struct Counters {
   std::uint64_t truncated_paths = 0;
   /// Scene::dropped_primitives; the same in all bands of a scene.
   std::uint64_t dropped_primitives = 0;
-  /// Sum of what path tracing used besides light and BSDF sampling; the same in all bands of an
-  /// image.
+  /// What path tracing used besides light and BSDF sampling: a sum of the two flags below. The same
+  /// in all bands of an image.
   std::uint32_t techniques = 0;
   static constexpr std::uint32_t kPathGuiding = 1;
   static constexpr std::uint32_t kPhotonMaps = 2;
-  /// Rays of the training and the pilots of guiding, once; the same in all bands of an image.
+  /// Rays of the training of guiding and of its pilots. The same in all bands of an image, so add()
+  /// does not sum it.
   std::uint64_t training_rays = 0;
 
+  /// Adds the counters of other samples of the same image.
   void add(const Counters& other);
   friend bool operator==(const Counters&, const Counters&) = default;
 };

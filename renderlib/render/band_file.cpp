@@ -1,5 +1,5 @@
-// Writer and Reader put and take numbers in the order of the format; a record is checked completely
-// before its sums are read.
+// Writer and Reader put and take numbers in the order of the format (band_file.h). The header and
+// the hash of a record are checked before its sums are read.
 
 #include "renderlib/render/band_file.h"
 
@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMagicSize = kBandRecordMagic.size();
 constexpr std::size_t kDigestSize = 64;
+/// Everything before the sums.
 constexpr std::uint64_t kHeaderSize =
     kMagicSize + 8 + kDigestSize + 3 * 4 + 8 + 2 * 8 + 2 * 4 + 2 * 8 + 2 * 4 + 7 * 8 + 4;
 constexpr std::uint64_t kHashSize = 8;

@@ -39,6 +39,7 @@ namespace bandsaw {
 /// First bytes of a record; also used to find the next record after a damaged one.
 inline constexpr std::array<char, 8> kBandRecordMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '4'};
 
+/// The content of a record.
 struct BandRecord {
   std::string package_digest;  ///< 64 lower-case hexadecimal digits
   RenderSettings settings;
@@ -51,7 +52,7 @@ struct BandRecord {
 std::uint64_t band_record_size(const Band& band, std::uint32_t width);
 
 /// Serialises a record. Returns INVALID_ARGUMENT if the record is inconsistent (digest, band,
-/// number of sums, cost).
+/// number of sums, counters, CPU time).
 absl::StatusOr<std::vector<std::byte>> encode_band_record(const BandRecord& record);
 
 struct DecodedBandRecord {
@@ -65,7 +66,8 @@ struct DecodedBandRecord {
 absl::StatusOr<DecodedBandRecord> decode_band_record(absl::Span<const std::byte> bytes,
                                                      std::uint64_t offset = 0);
 
-/// Returns one digest for each row, of its sums' bits: equal for equal pixels.
+/// Returns one digest for each row, of the bits of its sums: equal for equal pixels. The
+/// coordinator compares the digests of a band and of its audit.
 std::vector<std::uint64_t> row_digests(const BandPixels& pixels);
 
 }  // namespace bandsaw

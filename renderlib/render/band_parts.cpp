@@ -14,6 +14,7 @@ SampleRange range_at(const std::vector<std::uint32_t>& numbers, std::size_t i) {
   return {numbers[2 * i], std::uint64_t{numbers[2 * i]} + numbers[2 * i + 1]};
 }
 
+/// Returns the part with other samples of its half tiles.
 BandPart with_numbers(const BandPart& part, const std::vector<std::uint32_t>& numbers,
                       std::uint32_t width) {
   auto tiles = TileSamples::from_numbers(numbers, width, part.band.rows);
@@ -53,7 +54,7 @@ std::pair<BandPart, BandPart> halves_of(const BandPart& part, std::uint32_t widt
     return {{{halves.left, part.band.rows}, {}}, {{halves.right, part.band.rows}, {}}};
   }
   const std::vector<std::uint32_t> numbers = part.tiles.numbers();
-  bool single = true;
+  bool single = true;  // no half tile takes more than one block
   for (std::size_t i = 0; 2 * i < numbers.size(); ++i) {
     single = single && range_at(numbers, i).blocks() <= 1;
   }
@@ -63,6 +64,8 @@ std::pair<BandPart, BandPart> halves_of(const BandPart& part, std::uint32_t widt
   std::vector<std::uint32_t> right(numbers.size());
   for (std::size_t i = 0; 2 * i < numbers.size(); ++i) {
     const SampleRange all = range_at(numbers, i);
+    // Half tiles with several blocks are halved; the others go to the left. If no half tile has
+    // several blocks, each goes to the left or right by the number of its map.
     Halves halves{all, {}};
     if (all.blocks() > 1) {
       halves = split(all);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Parts of a band that need few photon maps each, so that the memory of the maps of a band is
-// bounded.
+// Divides the samples of a band into parts that need few photon maps each (integrate/caustics.h),
+// so that the memory of the maps is bounded. render_band.cpp renders the parts one after the other.
 
 #include <cstdint>
 #include <utility>
@@ -12,8 +12,8 @@
 
 namespace bandsaw {
 
-/// A band and the samples that its half tiles (tile_samples.h) take. The rows of `tiles` are those
-/// of the band.
+/// A band and the samples that its half tiles take (tile_samples.h). If `tiles` is whole(), all
+/// pixels take the samples of the band; otherwise its rows are those of the band.
 struct BandPart {
   Band band;
   TileSamples tiles;

@@ -18,6 +18,8 @@
 namespace bandsaw {
 namespace {
 
+// The numbers in the scenes are arbitrary.
+
 Texture checked_image() {
   ImageTexture image;
   image.width = 4;
@@ -249,6 +251,7 @@ SceneDescription of_other_materials() {
   return scene;
 }
 
+/// Renders two blocks of samples of the scene and adds the sums of its pixels to the hash.
 void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings,
                 const Kernel& kernel) {
   Pool pool(1);
@@ -264,7 +267,8 @@ void add_render(Hash64& hash, const SceneDescription& description, const RenderS
   hash.add(pixels->counters.rays);
 }
 
-/// Path tracing without a pilot, which would take longer than these renders.
+/// Returns settings of path tracing without guiding and photon maps: their pilot, which decides
+/// whether they pay, would take longer than these renders.
 RenderSettings path(std::uint32_t width, std::uint32_t height, std::uint32_t max_depth,
                     std::uint64_t seed) {
   return {.width = width,

@@ -1,7 +1,7 @@
 #pragma once
 
-// The canary: a small render that every program performs at start. Machines whose hashes differ do
-// not render the same pixels.
+// The canary: a small render that every program performs at start. Machines whose hashes of it
+// differ would not render the same pixels, so a coordinator refuses a worker whose hash differs.
 
 #include <cstdint>
 
@@ -9,9 +9,9 @@ namespace bandsaw {
 
 struct Kernel;  // renderlib/render/kernel.h
 
-/// Returns a hash of the pixel sums of built-in scenes that use every feature, and of the
-/// elementary functions, as `kernel` computes them. Takes a few milliseconds. `kernel` is one of
-/// kernels(); nullptr selects the first of them.
+/// Returns a hash of the pixel sums of built-in scenes with every kind of shape, material, light,
+/// texture, camera and medium, and of values of the elementary functions, as `kernel` computes
+/// them. Takes a few milliseconds. `kernel` is one of kernels(); nullptr selects the first of them.
 std::uint64_t canary(const Kernel* kernel = nullptr);
 
 }  // namespace bandsaw

@@ -36,11 +36,14 @@ constexpr double kOfSquares = 1.5;
 // alternatives that were tried).
 constexpr double kDeviations = 3;
 
+/// Mean of a channel of a pixel, and the variance of that mean.
 struct Estimated {
   double mean = 0;
   double variance = 0;
 };
 
+/// Returns the estimate for channel k, by the formulas of ErrorSums::add(). The variances of the
+/// nodes are weighed by the squares of their numbers of samples.
 Estimated of_channel(absl::Span<const NodeSums> nodes, std::size_t k) {
   const auto half = static_cast<double>(nodes[0].samples);
   const double a = nodes[0].sums[k];
@@ -67,6 +70,7 @@ double quantile(std::vector<float>& values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
+/// Returns ErrorEstimate::worst_share.
 double share_of_worst(std::vector<float> variances) {
   constexpr std::size_t kMinPixels =
       64;  // In smaller images one pixel is a large part of the image.

@@ -1,7 +1,7 @@
 #pragma once
 
 // Error estimate of an image without a reference, from sums of samples that are independent or
-// stratified.
+// stratified. Film::error() makes it; jobs with an error target stop by it.
 //
 // With Owen-scrambled points, an estimate from the variance of single samples would be 3 to 54
 // times too large. So the estimate is made from the difference of the two halves of a power-of-two
@@ -52,8 +52,9 @@ struct ErrorEstimate {
 /// A black image with fewer samples than this is inconclusive: no path may have reached its lights.
 inline constexpr std::uint64_t kBlackSamples = 1024;
 
-/// Returns ErrorEstimate::at_most() of an image with `samples` samples per pixel; a negative number
-/// if the error is unknown.
+/// Returns ErrorEstimate::at_most() of an image with `samples` samples per pixel. Returns a
+/// negative number if the error is unknown: without an estimate, if it is not finite, or if the
+/// image is black and has fewer than kBlackSamples.
 double known_error(const std::optional<ErrorEstimate>& estimate, std::uint64_t samples);
 
 /// Sums of a pixel over one node of its samples.
@@ -65,13 +66,14 @@ struct NodeSums {
 /// Accumulates the variances of pixels.
 class ErrorSums {
  public:
-  /// Adds a pixel whose first two nodes have equally many samples. With the means a and b of the
+  /// Adds a pixel: its contiguous nodes from sample 0 on, of which the first two MUST have equally
+  /// many samples. With the means a and b of the
   /// first two nodes, v = (a - b)^2 / 4 is the variance of their common mean. The variance of a
   /// further node of mean e is estimated by (e - (a + b) / 2)^2 - v, which is unbiased.
   void add(absl::Span<const NodeSums> nodes);
   /// Ends a group of pixels: those added since the last call. The errors of pixels in one group
   /// (render/pixel_groups.h) may be correlated by path reuse, those of other pixels are not; the
-  /// margin accounts for it.
+  /// margin accounts for that.
   void end_group();
 
   /// Returns the estimate. At least one pixel MUST have been added, and its group ended.

@@ -81,7 +81,8 @@ struct Strip {
   }
 };
 
-/// Strips are whole rows, or each row's part of each half tile, in order.
+/// The division of the image into strips: whole rows, or each row's part of each half tile, in
+/// order.
 class FilmStrips {
  public:
   FilmStrips(const TileGrid& grid, bool half_tiles) : grid_(grid), half_tiles_(half_tiles) {}
@@ -109,6 +110,8 @@ class FilmStrips {
 };
 
 }  // namespace
+
+/// The content of a film.
 struct Film::Rows {
   FilmStrips strips;
   RowStore store;
@@ -135,6 +138,7 @@ struct Film::Rows {
     }
   }
 
+  /// Returns the errors of Film::add() that do not concern memory.
   absl::Status check(const BandPixels& pixels, const TileSamples& tiles) const;
   /// Inserts the sums of a row; `row` holds the sums of its pixels.
   void insert(std::uint32_t y, const SampleRange& samples, absl::Span<const double> row,

@@ -1,11 +1,12 @@
 #pragma once
 
-// The accumulation buffer of an image. Accepts bands in any order, stores every row's sums as nodes
-// of the summation tree (render/band.h), merges siblings when both are present, and produces the
-// image.
+// The accumulation buffer of an image. It accepts bands (some rows, some samples) in any order,
+// stores every row's sums as nodes of the summation tree (render/band.h), merges siblings when both
+// are present, and produces the image.
 //
-// If half tiles take their own samples in a pass (render/tile_samples.h), a pixel's sum is the tree
-// of those samples, and its value is their mean.
+// In adaptive sampling, half tiles (half of the pixels of a tile) take their own samples in a pass
+// (render/tile_samples.h). Then a pixel's sum is the tree of those samples, and its value is their
+// mean.
 
 #include <cstdint>
 #include <memory>
@@ -24,7 +25,7 @@ namespace bandsaw {
 
 class Film {
  public:
-  /// Granularity at which pixels may have different samples: rows, or half tiles.
+  /// Units whose pixels always have the same samples: rows, or half tiles (for adaptive sampling).
   enum class Grain { kRows, kHalfTiles };
 
   /// Creates an empty film. Memory grows as rows arrive: 24 bytes per pixel for each unmerged node;
@@ -43,7 +44,7 @@ class Film {
   absl::Status add(const BandPixels& pixels, const TileSamples& tiles = {});
 
   /// Returns true if the samples [0, samples) are covered in every row: rendered, or skipped by
-  /// half tiles that need no more.
+  /// half tiles to which the plan gives no more.
   bool complete(std::uint64_t samples) const;
 
   /// The image of the samples that are present. A pixel is the mean of its first n samples. The
@@ -77,7 +78,7 @@ class Film {
   /// if error() is std::nullopt.
   std::vector<HalfTileErrors> tile_errors() const;
 
-  /// Returns the number of samples of each pixel that a snapshot shows.
+  /// Returns the number of samples of each pixel that a snapshot shows, in all three channels.
   Image counts() const;
 
   std::uint32_t width() const;

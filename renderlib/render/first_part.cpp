@@ -36,7 +36,7 @@ std::uint64_t first_part_samples(std::uint64_t samples) {
   for (std::uint64_t at = whole; at < samples;) {
     const std::uint64_t blocks = std::bit_floor(SampleRange{at, samples}.blocks());
     const std::uint64_t last = std::min(at + blocks * kBlockSamples, samples);
-    // A further node goes to the smaller part.
+    // A further node goes to the smaller part, to the first one if both are equal.
     (first > second ? second : first) += last - at;
     at = last;
   }

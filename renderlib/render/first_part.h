@@ -1,6 +1,7 @@
 #pragma once
 
-// The number of samples in Film::first_part(), for images that are read from files.
+// Computes how many samples Film::first_part() has, for images that are read from files. (A film
+// divides the samples of each pixel into two parts; the denoiser compares their images.)
 
 #include <cstdint>
 #include <vector>
@@ -9,8 +10,8 @@
 
 namespace bandsaw {
 
-/// Returns how many of a pixel's samples are in its first part, about half of them; 0 if it has a
-/// single block of samples or less, which has no parts.
+/// Returns how many of a pixel's samples are in its first part, about half of them; 0 if there is
+/// only one block (kBlockSamples) or less, which has no parts.
 std::uint64_t first_part_samples(std::uint64_t samples);
 
 /// Returns the share of the first part in the samples of each of `pixels` pixels, (0, 1), as

@@ -14,9 +14,11 @@
 
 namespace bandsaw {
 
+/// Hashes what is added, in this order.
 class Hash64 {
  public:
   void add(std::uint64_t word) {
+    // The second factor is one of the constants of SplitMix64.
     state_ = std::rotl(state_ ^ (word * kSplitMixIncrement), 29) * 0xbf58476d1ce4e5b9u + 1;
   }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }

@@ -1,4 +1,5 @@
-// Selects the kernel. This file is compiled for the oldest processor that the program runs on.
+// Selects the kernel, and calls it for Scene::build() and render_band(). This file is compiled for
+// the oldest processor that the program runs on.
 
 #include "renderlib/render/kernel.h"
 

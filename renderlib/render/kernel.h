@@ -16,9 +16,10 @@
 
 namespace bandsaw {
 
-/// Implementations of Scene::build, render_band and others, which have the same parameters.
+/// The functions of a kernel; Scene::build (scene/scene.h) and render_band (render_band.h), which
+/// call them, describe their parameters.
 struct Kernel {
-  /// "avx2", "neon" or "plain".
+  /// "avx2", "neon", "wasm" or "plain".
   const char* name;
   absl::StatusOr<std::shared_ptr<const Scene>> (*build)(const Kernel& kernel,
                                                         SceneDescription description, Pool& pool,

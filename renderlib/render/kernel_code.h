@@ -1,7 +1,8 @@
 #pragma once
 
-// The functions of a kernel other than Scene::build_with. They are compiled once for each kernel
-// and MUST only be called through `Kernel`, because the machine may not have the instructions.
+// The functions of a kernel (kernel.h) other than Scene::build_with. They are compiled once for
+// each kernel and MUST only be called through `Kernel`, because the machine may not have the
+// instructions.
 
 #include "renderlib/render/hash64.h"
 #include "renderlib/render/render_band.h"

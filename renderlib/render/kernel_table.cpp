@@ -1,4 +1,5 @@
-// Defines the function table of one kernel. Compiled once for each kernel, with its flags.
+// Defines the function table of one kernel. This file is compiled once for each kernel, with the
+// compiler flags of its instruction set.
 
 #include "renderlib/base/simd.h"
 #include "renderlib/render/kernel.h"

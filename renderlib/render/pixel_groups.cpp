@@ -1,5 +1,5 @@
-// Collects the pixels of a half tile (one colour of the tile's checkerboard) and sorts them by the
-// number of their group, which a fixed table gives for each place in a tile.
+// Collects the pixels of a half tile (those in even or in odd groups of the tile) and sorts them by
+// the number of their group, which a fixed table gives for each place in a tile.
 
 #include "renderlib/render/pixel_groups.h"
 

@@ -1,8 +1,10 @@
 #pragma once
 
-// Groups of pixels that share their paths (integrate/path_reuse.h), in the scenes that do so.
+// Groups of pixels that share their paths (integrate/path_reuse.h), in scenes with path reuse.
+// Tiles are squares of 16 x 16 pixels, and half tiles the two halves of their pixels
+// (tile_samples.h).
 //
-// In a whole tile, they are the groups of the pattern (render/tile_pattern.h). In a tile at the
+// In a whole tile, the groups are those of the pattern (render/tile_pattern.h). In a tile at the
 // edge of the image, the pixels of each half are divided into groups of at most eight, in the order
 // of the pattern. A group is a function of the size of the image and of the place of its half tile
 // in it, so bands of any rows agree about it.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Computes the sums of a band's pixels as defined in band.h: pixel by pixel or, if the scene shares
-// paths, a group of pixels (pixel_groups.h) at a time.
+// Computes the sums of a band's pixels as defined in band.h: pixel by pixel or, if pixels of the
+// scene share paths, a group of pixels (pixel_groups.h) at a time. render_band.cpp calls it.
 
 #include <array>
 #include <atomic>
@@ -34,14 +34,15 @@ class PixelSums {
   /// Returns true if add_groups() computes the sums, otherwise add_run() does.
   bool in_groups() const { return reuses_paths_; }
 
-  /// Writes three sums for each pixel of [first, last) in row y that takes samples; `sums` holds
-  /// the sums of the band. Checks `stop` at least once per block; once it is set, the sums are
-  /// unspecified.
+  /// Writes three sums (r, g, b) for each pixel of [first, last) in row y that takes samples.
+  /// `sums` holds the sums of the whole band. Adds to `counters`. Checks `stop` at least once per
+  /// block; once it is set, the sums are unspecified.
   void add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last, const TileSamples& tiles,
                absl::Span<double> sums, Counters& counters) const;
 
-  /// The same for the groups [first, last) of a half tile. A group of which only some pixels lie in
-  /// the band is traced as a whole; the other pixels are neither written nor counted.
+  /// The same for the groups [first, last) of a half tile (tile_samples.h). A group of which only
+  /// some pixels lie in the band is traced as a whole; the other pixels are neither written nor
+  /// counted.
   void add_groups(const PixelGroups& groups, std::uint32_t first, std::uint32_t last,
                   const TileSamples& tiles, absl::Span<double> sums, Counters& counters) const;
 
@@ -53,7 +54,7 @@ class PixelSums {
     friend Sum operator+(const Sum& p, const Sum& q) { return {p.r + q.r, p.g + q.g, p.b + q.b}; }
     friend Sum operator*(double s, const Sum& p) { return {s * p.r, s * p.g, s * p.b}; }
   };
-  using Sums = std::array<Sum, kMaxReusePixels>;
+  using Sums = std::array<Sum, kMaxReusePixels>;  ///< one for each pixel of a group
   /// Scratch memory of add_group(), allocated once per unit of work.
   struct Scratch {
     std::vector<ReusePixel> pixels;
@@ -63,11 +64,14 @@ class PixelSums {
   bool in_band(const PixelPlace& place) const {
     return place.y >= band_.rows.first && place.y < band_.rows.last;
   }
+  /// Takes these samples of the pixels of a group, which may be a single pixel, and writes the sums
+  /// of those in the band.
   void add_group(absl::Span<const PixelPlace> places, const SampleRange& samples,
                  absl::Span<double> sums, Scratch& scratch, Counters& counters) const;
   /// Returns the sums of one block, which may be truncated.
   Sums leaf(absl::Span<const PixelPlace> places, const SampleRange& samples,
             absl::Span<ReusePixel> pixels, Counters& counters) const;
+  /// Takes one sample of each pixel; `pixels` receive its radiance.
   void sample(absl::Span<const PixelPlace> places, std::uint64_t sample,
               absl::Span<ReusePixel> pixels) const;
   CameraRay camera_ray(const PixelSampler& sampler, const PixelPlace& place,

@@ -4,8 +4,8 @@
 
 namespace bandsaw {
 
-/// Incremented by hand with every change that alters pixels. A worker renders for a farm only if
-/// both have the same version.
+/// Incremented by hand with every change that alters pixels. A worker renders for a coordinator
+/// only if both have the same version.
 inline constexpr std::uint32_t kPixelVersion = 24;
 
 }  // namespace bandsaw

@@ -1,5 +1,6 @@
-// Units divides the band among threads. Each thread of the pool renders one unit after the other; a
-// row is reported when its last unit is done.
+// Implements Kernel::render_band: trains path guiding and makes photon maps where they pay, then
+// renders the pixels. Units divides the band among threads. Each thread of the pool renders one
+// unit after the other; a row is reported when its last unit is done.
 
 #include <algorithm>
 #include <atomic>
@@ -71,16 +72,17 @@ class Units {
   }
 
  private:
+  /// Number of groups in a whole half tile.
   static constexpr std::uint32_t kGroups = kTileSide * kTileSide / 2 / kMaxReusePixels;
 
   const PixelSums& sums_;
   RowRange rows_;
   TileGrid grid_;
-  std::uint32_t strip_rows_;   ///< rows of a whole strip
-  std::uint32_t first_strip_;  ///< strips are counted from the top of the image
-  std::uint32_t size_ = 1;     ///< pixels, or groups, of a unit
-  std::uint32_t per_half_tile_ = 1;
-  std::uint32_t per_strip_ = 1;
+  std::uint32_t strip_rows_;         ///< rows of a whole strip
+  std::uint32_t first_strip_;        ///< strips are counted from the top of the image
+  std::uint32_t size_ = 1;           ///< pixels, or groups, of a unit
+  std::uint32_t per_half_tile_ = 1;  ///< units of a half tile, if pixels share paths
+  std::uint32_t per_strip_ = 1;      ///< units of a strip
 };
 
 /// The parameters that all parts of a band share.
@@ -141,7 +143,7 @@ absl::StatusOr<BandPixels> render_part(const Render& render, const BandPart& par
   return pixels;
 }
 
-/// Returns a preparation that reports its steps as 0 rows.
+/// Returns a preparation that reports each of its steps as a progress of 0 rows.
 Preparation preparation_of(Pool& pool, const std::atomic<bool>& stop, const RowsDone& progress) {
   return {pool, stop, progress ? [&progress] { progress(0); } : std::function<void()>()};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-// Facade of the renderer: renders one band of an image on all threads of a pool.
+// Facade of the renderer: renders one band (some rows, some samples: band.h) of an image on all
+// threads of a pool.
 
 #include <atomic>
 #include <functional>
@@ -19,8 +20,9 @@ namespace bandsaw {
 /// (integrate/preparation.h); MUST be fast and thread-safe.
 using RowsDone = std::function<void(std::uint32_t)>;
 
-/// Renders the band. The pixels depend only on scene, settings and band. `tiles` says which samples
-/// half tiles take, for rows that include the band's; sums of pixels without samples are zero.
+/// Renders the band. The pixels depend only on scene, settings, band and `tiles`. `tiles` says
+/// which samples half tiles take (tile_samples.h), for rows that include the band's; by default,
+/// all take those of the band. Sums of pixels without samples are zero. `progress` may be empty.
 /// Checks `stop` at least once per row of a tile and returns CANCELLED if it is set. Returns
 /// INVALID_ARGUMENT if settings or band are out of range.
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,

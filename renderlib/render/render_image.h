@@ -1,7 +1,7 @@
 #pragma once
 
-// Renders a whole image, or some of its rows, on this machine: the bands that a farm would
-// distribute, one after the other.
+// Renders a whole image, or some of its rows, on this machine, band by band as a farm would
+// distribute it. Commands that render without a farm use it.
 
 #include <atomic>
 #include <functional>
@@ -22,8 +22,8 @@ namespace bandsaw {
 /// node by node.
 std::vector<SampleRange> passes_of(std::uint64_t samples);
 
-/// Returns the bands of these passes over `rows`, pass by pass, from the top. Each holds at most
-/// kBandPixels pixels, or one row.
+/// Returns the bands of the passes of samples [0, samples) over `rows`, pass by pass, from the top.
+/// Each holds at most kBandPixels pixels, or one row.
 std::vector<Band> bands_of(std::uint64_t samples, const RowRange& rows, std::uint32_t width);
 inline constexpr std::uint64_t kBandPixels = std::uint64_t{1} << 20;
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Allocator for rows of sums of equal length, memory-mapped in slabs (base/mapped_buffer.h).
+// Allocator for rows of sums, all of the same length, in memory-mapped slabs
+// (base/mapped_buffer.h). A film (film.h) keeps its sums here.
 
 #include <cstdint>
 #include <string>
@@ -15,9 +16,9 @@ namespace bandsaw {
 
 class RowStore {
  public:
-  using Slot = std::uint32_t;
+  using Slot = std::uint32_t;  ///< number of a row
 
-  /// `length` (>= 1) is the number of doubles in a row; The slabs are files without a name in
+  /// `length` (>= 1) is the number of doubles in a row. The slabs are files without a name in
   /// `folder`; "" keeps them in memory.
   RowStore(std::size_t length, std::string folder);
 
@@ -27,6 +28,7 @@ class RowStore {
   absl::Status reserve(std::size_t rows);
   /// Returns a row with unspecified content. It MUST have been reserved.
   Slot take();
+  /// Frees a row for a later take().
   void give_back(Slot slot) { free_.push_back(slot); }
 
   absl::Span<double> row(Slot slot);

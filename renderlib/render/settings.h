@@ -23,7 +23,7 @@ inline constexpr std::uint64_t kMaxPixels = 64'000'000;
 inline constexpr std::uint32_t kMaxDepth = 1024;
 inline constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 30;
 
-/// Returns INVALID_ARGUMENT naming the field, its range and the value.
+/// Returns INVALID_ARGUMENT, with the field, its range and the value, if a field is out of range.
 absl::Status validate(const RenderSettings& settings);
 
 }  // namespace bandsaw

@@ -9,6 +9,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns false if the last block of the range is truncated.
 bool whole(const SampleRange& range) { return range.samples() == range.blocks() * kBlockSamples; }
 
 bool siblings(const SampleRange& left, const SampleRange& right) {

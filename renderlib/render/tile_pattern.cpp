@@ -1,5 +1,5 @@
-// The pattern states for each pixel of a tile the number of its group. Tiles use it mirrored at
-// random, by a hash of their position.
+// The pattern states for each pixel of a tile the number of its group. Each tile uses it mirrored
+// horizontally, vertically, both or not at all, as a hash of the tile's position says.
 
 #include "renderlib/render/tile_pattern.h"
 

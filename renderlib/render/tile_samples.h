@@ -1,6 +1,7 @@
 #pragma once
 
-// Tiles, and the samples that they take in a pass.
+// Tiles of an image, and the samples that they take in a pass (a range of samples that is rendered
+// of the whole image).
 //
 // The image is divided into tiles of 16 x 16 pixels from its top left; tiles at the right and lower
 // edge may be smaller. The pixels of a tile form 32 groups of eight (render/tile_pattern.h). The
@@ -51,7 +52,7 @@ class HalfRow {
   std::array<std::uint32_t, kTileSide / 2> xs_ = {};
   std::uint32_t count_ = 0;
 };
-/// Returns the part of row y in a half tile; `half` is 0 or 1.
+/// Returns the part of row y of the image in half 0 or 1 of the tile in this column of tiles.
 HalfRow half_row(const TileGrid& grid, std::uint32_t column, std::uint32_t half, std::uint32_t y);
 
 /// The samples that each half tile of some rows of an image takes. A value type; by default all
@@ -84,8 +85,9 @@ class TileSamples {
   std::uint64_t count(std::uint32_t width, const Band& band) const;
   /// Returns the part for some of the rows.
   TileSamples of(const RowRange& rows) const;
-  /// Returns the part for a band with some of the rows and a node within the pass. The first half
-  /// of a pass takes the first half of each half tile's samples, or its only block.
+  /// Returns the part for a band with some of the rows and a node of samples within the pass: the
+  /// band takes the corresponding part of each half tile's samples. For example, the first half of
+  /// a pass takes the first half of them, or the only block.
   TileSamples of(const SampleRange& pass, const Band& band) const;
 
   /// Returns two numbers for each half tile in the order of TileGrid: its first sample and its
@@ -112,6 +114,8 @@ class TileSamples {
   std::uint32_t first_tile_row_ = 0;
   std::vector<Taken> taken_;
 };
+
+// The coordinator checks bands of workers with these functions.
 
 /// Returns INVALID_ARGUMENT if the sums of a pixel without samples are not zero. `tiles` covers at
 /// least the band's rows.

@@ -12,8 +12,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns numbers in [0, 1) that are evenly distributed over neighbours and over any range:
-/// multiples of the golden ratio.
+/// Returns a number in [0, 1) for half tile i; they are evenly distributed over neighbours and over
+/// any range of i: the fractions of the multiples of the golden ratio (2654435769 / 2^32).
 double spread(std::size_t i) {
   return static_cast<std::uint32_t>(i * 2'654'435'769u) / 4'294'967'296.0;
 }

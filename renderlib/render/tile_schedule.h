@@ -1,6 +1,8 @@
 #pragma once
 
-// Schedule of the samples that a plan gives to half tiles.
+// Schedule of the samples that a plan (adaptive_plan.h) gives to half tiles (tile_samples.h). The
+// coordinator makes one for each adaptive job. A pass is a range of samples that is rendered of the
+// whole image.
 
 #include <array>
 #include <cstdint>
@@ -14,22 +16,24 @@ namespace bandsaw {
 
 /// Decides which samples half tiles take in each pass after the pilot.
 ///
-/// A half tile has the first samples of its own sequence: 4, 5, 6 or 7 quarters of 2^k. If samples
-/// were left out here and there, the rest would not form nets of Sobol' points, and in smooth
-/// regions the error falls by nets. A half tile takes its next quarter when its share is due. Half
-/// tiles of equal share take it in different passes, spread evenly over the image, so that on
-/// average they have what is due. If all levels of a half of the image are 6, it takes the passes
-/// as they are.
+/// A half tile always has the first samples of its own sequence: 4, 5, 6 or 7 quarters of 2^k. If
+/// some samples were left out, the others would not form nets of Sobol' points; but in smooth
+/// regions the error falls with each complete net. A half tile takes its next quarter when the plan
+/// gives it that many samples. Half tiles of equal share take it in different passes, spread evenly
+/// over the image, so that on average they have what the plan gives. If all levels of a half of the
+/// image are 6 (uniform), it takes the samples of each pass.
 class TileSchedule {
  public:
   /// `plan.levels` has one digit 0 to f for each half tile.
   TileSchedule(const TileGrid& grid, const TilePlan& plan);
 
-  /// Returns the samples for `pass`, which MUST follow the previous one.
+  /// Returns the samples for `pass`, which MUST follow the previous one; the first pass follows the
+  /// pilot.
   TileSamples next(const SampleRange& pass);
 
  private:
-  /// Returns the samples of half tile i: the longest node after the samples that it has, or none.
+  /// Returns the samples of half tile i in the pass: the next node after the samples that it has,
+  /// or none if too few are due.
   SampleRange node_of(std::size_t i, const SampleRange& pass) const;
 
   TileGrid grid_;

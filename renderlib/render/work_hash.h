@@ -1,6 +1,7 @@
 #pragma once
 
-// Hash that identifies what was rendered, independently of the job's number: job numbers are reused
+// A hash that identifies what was rendered: workers send it with their bands, and the coordinator
+// compares it with that of the job. The job's number is not enough, because numbers are reused
 // after a coordinator's journal is restored from a copy or reset.
 
 #include <cstdint>
@@ -10,7 +11,8 @@
 
 namespace bandsaw {
 
-/// Returns a hash of the package's digest, in hexadecimal, and of the settings; never 0.
+/// Returns a hash of the settings and of `manifest`, the digest of the scene package in
+/// hexadecimal; never 0.
 std::uint64_t work_hash(absl::string_view manifest, const RenderSettings& settings);
 
 }  // namespace bandsaw
