@@ -26,19 +26,19 @@ constexpr FilterSettings kSettings = {
         .color_reach = 0.7f, .albedo_reach = 2, .normal_reach = 0.3f, .depth_reach = 0.025f},
     FitSettings{
         .color_reach = 1.5f, .albedo_reach = 2, .normal_reach = 0.3f, .depth_reach = 0.05f}};
-/// Shares of the rendered value and of each filter in a pixel's value.
+/// Shares of the rendered value (first) and of each filter in a pixel's value; their sum is 1.
 using Shares = std::array<Map, 1 + kFilters>;
 
 float channel(const Rgb& color, std::size_t c) {
   return c == 0 ? color.r : c == 1 ? color.g : color.b;
 }
 
-/// Sums over the pixels of a row whose values may be used.
+/// Sums over all channels of the pixels of a row whose values may be used.
 struct RowSums {
   double value = 0;
-  double raw = 0;
-  double clean = 0;
-  double variance = 0;
+  double raw = 0;       ///< estimated squared errors as rendered
+  double clean = 0;     ///< estimated squared errors of the result
+  double variance = 0;  ///< the parts of `clean` that are noise
 
   void add(const RowSums& other) {
     value += other.value;
@@ -48,7 +48,7 @@ struct RowSums {
   }
 };
 
-/// A strip of the image.
+/// A strip of the image: some rows that are filtered together with the rows around them.
 struct Strip {
   const DenoiseInput& input;
   const ImageMeans& means;
@@ -92,10 +92,12 @@ class Selection {
     return planes_.halves[h][c].at(x, plane_row(y));
   }
   bool valid(int x, int y) const { return planes_.valid.at(x, plane_row(y)) > 0; }
-  /// Returns 1 / (brightness^2 + a little), so that errors of all pixels count alike.
+  /// Returns 1 / (brightness^2 + a little) for each pixel, so that relative errors are compared.
+  /// The little is 3 % of the squared mean of the image, so that dark pixels do not dominate.
   Map scales() const;
   Map error_of(std::size_t candidate, const Map& scale) const;
   void choose();
+  /// Returns true if the pixel stays as it was rendered.
   bool is_rendered(int x, int y) const;
   /// Returns half `h` of the result at a pixel, for channel `c`.
   float mixed(int x, int y, std::size_t h, std::size_t c) const;
@@ -124,7 +126,8 @@ Map Selection::scales() const {
   return scales;
 }
 
-/// Returns the estimated squared error of candidate 0 (the rendered value) or of a filter.
+/// Returns the estimated squared error, times `scale`, of candidate 0 (the rendered value) or k
+/// (filter k - 1), smoothed within surfaces.
 Map Selection::error_of(std::size_t candidate, const Map& scale) const {
   Map error(size_.pixels());
   each([&](int x, int y, std::size_t i) {
@@ -228,6 +231,7 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
       RowSums pixel;
       add_pixel(x, y, pixel);
       const std::size_t i = size_.index(x, y);
+      // Bounded, because sums of larger values would exceed the range of float.
       errors[i] = static_cast<float>(std::clamp(pixel.clean / 3, -1e30, 1e30));
       variances[i] = static_cast<float>(std::min(pixel.variance / 3, 1e30));
       of_row.add(pixel);
@@ -263,7 +267,8 @@ CleanError total_of(const std::vector<RowSums>& rows, std::size_t pixels) {
           .bias_share = all.clean > 0 ? std::clamp(1 - all.variance / all.clean, 0.0, 1.0) : 0};
 }
 
-/// Returns the rows of a strip: about a quarter of a megapixel, an even number.
+/// Returns the number of rows of a strip: those of about a quarter of a megapixel, but at least 64,
+/// and even.
 int rows_of_strip(int width) {
   constexpr int kPixels = 1 << 18;
   constexpr int kMinRows = 64;

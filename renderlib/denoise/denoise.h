@@ -11,17 +11,19 @@
 
 namespace bandsaw {
 
-/// All images have the same size and are not empty.
+/// A rendered image, and two guide images that show the surfaces almost without noise. All images
+/// have the same size and are not empty.
 struct DenoiseInput {
   Image mean;   ///< mean of all samples of each pixel, linear radiance
   Image first;  ///< mean of the first of two independent parts of the samples
   /// Share of that part in each pixel's samples, (0, 1).
   std::vector<float> first_share;
-  Image albedo;  ///< by the integrator kGuideAlbedo
-  Image shape;   ///< by the integrator kGuideShape
+  Image albedo;  ///< guide: by the integrator kGuideAlbedo (scene/guide_integrators.h)
+  Image shape;   ///< guide: normal and distance, by the integrator kGuideShape
 };
 
-/// Estimated errors over all channels of all pixels.
+/// Estimated errors over all channels of all pixels. "Raw" is the image as rendered, "clean" the
+/// result.
 struct CleanError {
   double mean = 0;        ///< mean value of the image
   double rmse_raw = 0;    ///< RMSE of the image as rendered
@@ -38,6 +40,7 @@ struct CleanError {
   friend bool operator==(const CleanError&, const CleanError&) = default;
 };
 
+/// The result of denoise().
 struct Denoised {
   Image image;
   /// Estimated error of each pixel: the root of the mean square over its channels and over the
@@ -46,12 +49,13 @@ struct Denoised {
   CleanError total;
 };
 
-/// `fit` is a kernel's. The result has the same bits for any number of threads and any kernel.
-/// Where the estimated error of the filtered value is not below that of the rendered one, and where
-/// a value is not finite, the pixel stays as it was rendered. The image is filtered in strips of
-/// `strip_rows` rows, an even number; 0: as many as have about a quarter of a megapixel. In
-/// addition to input and result, this needs less than 350 bytes for each pixel of a strip and of
-/// the rows around it. The bits do not depend on `strip_rows`.
+/// Removes the noise. `fit` is that of any kernel (render/kernel.h). The result has the same bits
+/// for any number of threads and any kernel. Where the estimated error of the filtered value is not
+/// below that of the rendered one, and where a value is not finite, the pixel stays as it was
+/// rendered. The image is filtered in strips of `strip_rows` rows, an even number; 0: as many as
+/// have about a quarter of a megapixel. In addition to input and result, this needs less than 350
+/// bytes for each pixel of a strip and of the rows around it. The bits do not depend on
+/// `strip_rows`.
 Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int strip_rows = 0);
 
 }  // namespace bandsaw

@@ -1,6 +1,6 @@
 // Every second pixel of every second row is a centre. TileFit fits a linear function of the
-// position and the guides at each centre, eight centres at a time; Evaluation then computes each
-// pixel's value from the functions of the centres around it.
+// position and the guides at each centre, eight centres at a time (a Float8 holds one number for
+// each). Evaluation then computes each pixel's value from the functions of the centres around it.
 
 #include "renderlib/denoise/fit.h"
 
@@ -55,6 +55,7 @@ struct Models {
 
 using AllModels = std::array<Models, kFilters>;
 
+/// Fits the functions at the centres of a tile, for both filters and both halves.
 class TileFit {
  public:
   /// `first_row`: the row of centres that is row 0 of the models.
@@ -79,6 +80,7 @@ class TileFit {
  private:
   /// Fits eight centres: column i of row j in the tile.
   void fit_centres(int column, int row, int i, int j);
+  /// Solves the equations of both halves and stores the coefficients. `row` is one of the models.
   void store(int column, int row, std::size_t filter, NormalEquations (&equations)[2]);
 
   const FitInput& input_;
@@ -99,7 +101,7 @@ struct GuideDistances {
         normal(d[3] * d[3] + d[4] * d[4]),
         depth(d[kDepthGuide] * per_depth * (d[kDepthGuide] * per_depth)) {}
 
-  /// Returns the factor of the pixel's weight.
+  /// Returns the factor of the pixel's weight by which it falls with these distances.
   Float8 similarity(const FitSettings& settings) const {
     const auto per_square = [](float reach) { return Float8(1.0f / (reach * reach)); };
     return falling(
@@ -173,13 +175,14 @@ void TileFit::store(int column, int row, std::size_t filter, NormalEquations (&e
   }
 }
 
-/// Evaluates the models at the pixels of rows.
+/// Computes the filtered values of rows from the models of one filter.
 class Evaluation {
  public:
   /// `first_row` as in TileFit.
   Evaluation(const FitInput& input, int first_row, const Models& models, FitOutput& output)
       : input_(input), first_row_(first_row), models_(models), output_(output) {}
 
+  /// Computes the values of row y.
   void run(int y) {
     for (int parity = 0; parity < 2; ++parity) {
       for (int i = 0; 2 * i < input_.width; i += kFitLanes) {
@@ -189,13 +192,15 @@ class Evaluation {
   }
 
  private:
+  /// Weighted sums of eight pixels, for each half.
   struct Sums {
     Float8 values[2][3];
     Float8 weights[2];
   };
-  /// Adds the models of the centres at column i + k and row cy / 2, for pixels at (dx, dy) from
-  /// them.
+  /// Adds the models of eight centres to the sums of the eight pixels (2 (i + lane) + parity, y).
+  /// The centres are at column i + lane + k of centres and at row cy of pixels.
   void add_centres(int i, int parity, int y, int k, int cy, Sums& sums) const;
+  /// Computes these eight pixels.
   void evaluate(int i, int parity, int y);
 
   const FitInput& input_;

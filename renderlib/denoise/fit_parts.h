@@ -1,6 +1,8 @@
 #pragma once
 
 // Internal to fit(): the sizes of windows and tiles, distances between patches, and least squares.
+// A centre is a pixel at which a function is fitted, one of every two by two pixels (fit.h). A
+// patch is the square around a pixel by which pixels are compared.
 
 #include <cstddef>
 #include <vector>
@@ -50,11 +52,12 @@ class PatchDistances {
   static constexpr int kColumns = kTileColumns + kFitLanes;  ///< columns of each parity
 
   void compare(int x, int y, int dx, int dy);
+  /// Writes the distances of the patches of all centres of the tile for one offset.
   void sum_patches(float* to) const;
 
   const FitInput& input_;
   std::size_t half_;
-  std::vector<float> all_;
+  std::vector<float> all_;                 ///< the distances, in the order of to()
   float differences_[2][kRows][kColumns];  ///< differences of pixels, by parity of column
 };
 
@@ -65,7 +68,8 @@ struct NormalEquations {
   NormalEquations();
   /// Adds a pixel.
   void add(const Float8& weight, const Float8 (&terms)[kTerms], const Float8 (&value)[3]);
-  /// Adds a small multiple of the sum of the weights to the diagonal, except for the first term.
+  /// Adds a small multiple of the sum of the weights to the diagonal, except for the first term, so
+  /// that the equations can be solved.
   void add_ridge();
   /// Replaces `values` by the coefficients, for each term and channel.
   void solve();

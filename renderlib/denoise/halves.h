@@ -1,6 +1,7 @@
 #pragma once
 
-// Estimates the error of an image that another filter has cleaned, from two parts of its samples.
+// Estimates the error of an image that another denoiser has cleaned (OpenImageDenoise, which the
+// command line can use), from two parts of its samples.
 
 #include "renderlib/denoise/denoise.h"
 

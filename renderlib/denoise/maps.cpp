@@ -23,6 +23,7 @@ Guide guide_at(const FitInput& input, int x, int y) {
   return guide;
 }
 
+/// Returns a factor of the weight of b for the pixel with guides a, in [0, 1].
 float similarity(const Guide& a, const Guide& b) {
   float distance = 0;
   for (std::size_t g = 0; g < kGuides; ++g) {

@@ -24,12 +24,13 @@ struct MapSize {
   }
 };
 
-/// Replaces each value by the mean of those up to `radius` away in x and y, inside the image.
+/// Replaces each value by the mean of those up to `radius` pixels away in x and y, inside the
+/// image.
 void smooth(Map& map, const MapSize& size, int radius, Pool& pool);
 
-/// Smooths maps of the wanted rows within surfaces: the mean of the pixels up to two away, with
-/// weights that fall with the distance and with the difference of the guides. Rows that are not
-/// wanted count as outside.
+/// Smooths maps of the rows FitInput::wanted within surfaces: each value becomes the mean of the
+/// pixels up to two away, with weights that fall with the distance and with the difference of the
+/// guides. Other rows count as outside of the image.
 class SurfaceSmoothing {
  public:
   static constexpr int kRadius = 2;

@@ -1,19 +1,22 @@
-// Weighted least squares for eight pixels at a time: add() adds a sample to the normal equations,
-// solve() solves them by the factorisation L D L^T. A ridge keeps them regular.
+// Weighted least squares for eight centres of the fit (fit.h) at a time: add() adds a pixel to the
+// normal equations, solve() solves them by the factorisation L D L^T. A ridge keeps them regular.
 
 #include "renderlib/denoise/fit_parts.h"
 
 namespace bandsaw {
 namespace {
 
-/// Relative to the guides' range. Without it, a guide that is constant in the window would make the
-/// equations singular.
+/// The ridge is this many times the sum of the weights. Without it, a guide that is constant in the
+/// window would make the equations singular.
 constexpr float kRidge = 1e-5f;
-constexpr float kMinPivot = 1e-6f;  ///< relative to the diagonal's element
+/// Least element of D, relative to the element of the matrix on the diagonal: smaller ones are
+/// rounding errors.
+constexpr float kMinPivot = 1e-6f;
 
 /// A symmetric matrix as L D L^T: D on the diagonal, L below it.
 using Factors = Float8[kTerms][kTerms];
 
+/// Replaces the lower triangle of a matrix by its factors. `inverse` receives 1 / D.
 void factorize(Factors& a, Float8 (&inverse)[kTerms]) {
   for (std::size_t j = 0; j < kTerms; ++j) {
     const Float8 least = a[j][j] * Float8(kMinPivot) + Float8(1e-30f);

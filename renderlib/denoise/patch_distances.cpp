@@ -1,6 +1,7 @@
 // For a tile of pixels, computes the distance of the patch around each pixel from that around each
-// pixel of its window. Differences of pixels are computed once for each offset, and then summed up
-// over patches. Even and odd columns are stored apart, because centres are two pixels apart.
+// pixel of its window (fit_parts.h). Differences of pixels are computed once for each offset (dx,
+// dy) within the window, and then summed up over patches. Even and odd columns are stored apart,
+// because centres are two pixels apart.
 
 #include "renderlib/denoise/fit_parts.h"
 

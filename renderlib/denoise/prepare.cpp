@@ -10,9 +10,11 @@
 namespace bandsaw {
 namespace {
 
-constexpr float kMaxDepthValue = 1e15f;  ///< the squares of larger values exceed float
-constexpr int kAround = 2;               ///< radius in which bright pixels are looked for
-/// Differences below this share of the brightness are no differences, whatever the noise.
+/// Limit of radiance and depth: the sums of squares of larger values exceed the range of float.
+constexpr float kMaxDepthValue = 1e15f;
+constexpr int kAround = 2;  ///< radius in which bright pixels are looked for
+/// Least standard deviation of a half, as a share of the brightness around a pixel: smaller
+/// differences are never taken for detail.
 constexpr float kMinNoise = 3e-3f;
 
 using Channels = std::array<float, 3>;
@@ -46,7 +48,7 @@ struct Parts {
   Map valid;
 };
 
-/// `first_pixel`: the index of the first pixel in the image.
+/// Returns the halves of some rows. `first_pixel`: the index of their first pixel in the image.
 Parts parts_of(const DenoiseInput& input, std::size_t first_pixel, const MapSize& size) {
   Parts parts;
   for (auto& half : parts.values) {
@@ -136,8 +138,8 @@ FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const R
   FitInput out;
   out.width = size.width;
   out.height = size.height;
-  Map noise(size.pixels());
-  Map around(size.pixels());
+  Map noise(size.pixels());   // squared differences of the halves, then their mean around a pixel
+  Map around(size.pixels());  // mean of the channels, then the same around a pixel
   {
     Parts parts = parts_of(input, first_pixel, size);
     const std::array halves{limited(parts.values[0], parts.values[1], size, pool),

@@ -1,6 +1,6 @@
 #pragma once
 
-// Prepares images for the fit: their halves, variances and guides as planes.
+// Prepares images for fit(): planes of their two halves, of the variances and of the guides.
 
 #include "renderlib/denoise/denoise.h"
 #include "renderlib/denoise/maps.h"
@@ -9,7 +9,7 @@ namespace bandsaw {
 
 /// Means over the whole image.
 struct ImageMeans {
-  float brightness = 0;  ///< mean value of the channels of all pixels whose values may be used
+  float brightness = 0;  ///< mean of all channels of pixels that are finite and not too large
   float depth = 1;       ///< mean depth of the pixels that show a surface
 };
 ImageMeans means_of(const DenoiseInput& input);
@@ -19,8 +19,8 @@ inline constexpr int kDenoiseReach = 24;
 
 /// Returns the planes of `rows` of the image; `rows.first` is even. In each half, a pixel that is
 /// brighter than all pixels up to two away in the other half is scaled down to the brightest of
-/// them. It shows a single bright path, which a filter would spread over the pixels around it. Up
-/// to 5 rows at each end differ from those of the whole image, because they lack neighbours.
+/// them. Such a pixel shows a single bright path, which a filter would spread over its neighbours.
+/// Up to 5 rows at each end differ from those of the whole image, because they lack neighbours.
 FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const RowSpan& rows,
                      Pool& pool);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// A plane of floats whose even and odd columns are stored apart, so that eight pixels that are two
-// columns apart are one vector.
+// A plane of floats whose even and odd columns are stored apart: the filter (fit.cpp) processes
+// every second pixel, and then eight such pixels are adjacent in memory and load as one vector.
 
 #include <cstddef>
 
@@ -23,8 +23,8 @@ class SplitPlane {
         rows_(height + 2 * kMargin + kBeyond),
         data_(2 * static_cast<std::size_t>(stride_) * static_cast<std::size_t>(rows_), 0.0f) {}
 
-  /// Returns a pointer to pixel (`parity`, y), `parity` 0 or 1; element i is pixel (2 i + parity,
-  /// y).
+  /// Returns a pointer to the even (`parity` 0) or odd (1) pixels of row y: element i is pixel
+  /// (2 i + parity, y). i may be negative, within the margin.
   const float* row(int parity, int y) const { return data_.data() + start(parity, y); }
   float* row(int parity, int y) { return data_.data() + start(parity, y); }
   float& at(int x, int y) { return row(x & 1, y)[x >> 1]; }

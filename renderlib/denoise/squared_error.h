@@ -1,13 +1,19 @@
 #pragma once
 
+// The estimate of the error of filtered values, on which all errors of the denoiser are based
+// (denoise.cpp, halves.cpp). It compares a filtered part of the samples with the other part as
+// rendered.
+
 namespace bandsaw {
 
 /// Estimates the squared error of the mean of two values, each of which was computed from one part
 /// of the samples: `a` from the first, `b` from the second. `first` and `second` are the unfiltered
-/// means of the parts, and `share` is the share of the first part. With the variance v of a part's
-/// value, E (a - second)^2 = error^2(a) + v(second), because the parts are independent, and
-/// v(second) = share (first - second)^2 on average. The same holds with the parts exchanged. The
-/// mean's squared error is that of `a` and `b` on average, minus share (1 - share) (a - b)^2.
+/// means of the parts, and `share` is the share of the first part in the samples.
+///
+/// Let v be the variance of a part's value. E (a - second)^2 = error^2(a) + v(second), because the
+/// parts are independent, and v(second) = share (first - second)^2 on average. The same holds with
+/// the parts exchanged. The squared error of the mean, share a + (1 - share) b, is the mean of the
+/// squared errors of `a` and `b` with the same weights, minus share (1 - share) (a - b)^2.
 template <class T>
 T squared_error(T a, T b, T first, T second, T share) {
   const T apart = (first - second) * (first - second);
@@ -16,9 +22,9 @@ T squared_error(T a, T b, T first, T second, T share) {
   return share * of_a + (1 - share) * of_b - share * (1 - share) * ((a - b) * (a - b));
 }
 
-/// Returns the larger of an estimated squared error and its part that is variance, share (1 -
-/// share) (a - b)^2. The estimate alone may be far too small, even negative, because two parts of
-/// one Sobol' sequence differ more than independent ones.
+/// Returns an estimated squared error, but at least the part of it that is noise: `variance` is
+/// share (1 - share) (a - b)^2. The estimate alone may be far too small, even negative, because two
+/// parts of one Sobol' sequence differ more than independent ones.
 template <class T>
 T at_least_variance(T squared_error, T variance) {
   return squared_error > variance ? squared_error : variance;
