@@ -20,14 +20,16 @@ inline constexpr int kLastTone = 1;
 
 /// Returns "none" or "filmic".
 absl::string_view tone_name(Tone tone);
+/// Returns the tone with this name; std::nullopt if there is none.
 std::optional<Tone> tone_named(absl::string_view name);
 
 inline constexpr double kMaxExposure = 30;
 
+/// How an image is written to a file.
 struct Display {
-  double exposure = 0;  ///< for 8-bit files: stops, [-kMaxExposure, kMaxExposure]
-  Tone tone = Tone::kNone;
-  bool half = false;  ///< EXR files store halves instead of floats
+  double exposure = 0;      ///< for 8-bit files: stops, [-kMaxExposure, kMaxExposure]
+  Tone tone = Tone::kNone;  ///< for 8-bit files
+  bool half = false;        ///< EXR files store halves instead of floats
   friend bool operator==(const Display&, const Display&) = default;
 };
 

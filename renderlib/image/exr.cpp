@@ -17,16 +17,19 @@ namespace bandsaw {
 namespace {
 
 constexpr float kMaxHalf = 65504;
-/// Maximum length of a layer's name, in bytes: a channel's name has 255 at most.
+/// Maximum length of a layer's name, in bytes. A channel's name has 255 at most, of which the
+/// suffix needs two.
 constexpr std::size_t kMaxLayerName = 200;
 
+/// Frees memory of tinyexr, which allocates by malloc.
 struct Free {
   void operator()(unsigned char* bytes) const { std::free(bytes); }
 };
 
+/// A channel of the file.
 struct Channel {
   std::string name;
-  bool half = false;
+  bool half = false;  ///< stored as halves
   std::vector<float> values;
 };
 

@@ -14,7 +14,8 @@ namespace bandsaw {
 
 /// Encodes scan lines from the top, with channels R, G, B and those of the layers, ZIP compressed.
 /// Floats are exact; halves are rounded to nearest and clamped to +-65504. Returns INVALID_ARGUMENT
-/// if a layer has another size, RESOURCE_EXHAUSTED if the image is too large to encode.
+/// if a layer has another size or a name of more than 200 bytes, RESOURCE_EXHAUSTED if the image is
+/// too large to encode. `half`: R, G and B are stored as halves.
 absl::StatusOr<std::vector<std::byte>> encode_exr(const Image& image, bool half,
                                                   const Layers& layers = {});
 

@@ -37,6 +37,7 @@ Rgbe rgbe(const Rgb& pixel) {
   return {mantissa(p.r), mantissa(p.g), mantissa(p.b), static_cast<std::uint8_t>(exponent + 128)};
 }
 
+/// Writes the run-length coded rows.
 class RowWriter {
  public:
   explicit RowWriter(std::vector<std::byte>& out) : out_(out) {}
@@ -64,6 +65,7 @@ class RowWriter {
   }
 
  private:
+  /// Writes values [from, to) of channel c as they are.
   void literal(const std::vector<Rgbe>& row, std::size_t c, std::size_t from, std::size_t to) {
     while (from < to) {
       const std::size_t count = std::min<std::size_t>(to - from, 128);
@@ -96,6 +98,7 @@ std::vector<std::byte> encode_hdr(const Image& image) {
       row[x] = rgbe(image.at(x, y));
     }
     if (runs) {
+      // A row begins with 2, 2 and the width.
       for (const std::size_t byte :
            {std::size_t{2}, std::size_t{2}, row.size() >> 8, row.size() & 255}) {
         writer.put(byte);

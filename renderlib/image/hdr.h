@@ -11,7 +11,7 @@
 namespace bandsaw {
 
 /// Encodes the image, rows from the top. Each channel is rounded to nearest, within 1/256 of the
-/// pixel's largest channel; up to 1.7e38. Negative values and NaN become 0.
+/// pixel's largest channel. Values above 1.7e38 become that; negative values and NaN become 0.
 std::vector<std::byte> encode_hdr(const Image& image);
 
 }  // namespace bandsaw

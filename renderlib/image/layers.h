@@ -1,6 +1,7 @@
 #pragma once
 
-// Additional images stored beside the main image in one EXR file.
+// Layers: additional images (albedo, normals, depth, numbers of samples) that are stored beside the
+// main image in one EXR file.
 
 #include <string>
 #include <vector>

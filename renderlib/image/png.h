@@ -1,6 +1,6 @@
 #pragma once
 
-// PNG encoder; the only file that compiles stb_image_write.
+// PNG encoder, using stb_image_write.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Downscaling of images for display.
+// Downscaling of images for display, in the terminal and in the dashboard.
 
 #include <cstdint>
 

@@ -23,22 +23,24 @@ enum class ImageFormat {
   kExr,  ///< OpenEXR (image/exr.h), linear: exact floats, or halves
 };
 
-/// Returns the format of a path's suffix, in any case. Returns INVALID_ARGUMENT naming the
-/// supported suffixes.
+/// Returns the format of a path's suffix, in upper or lower case. Returns INVALID_ARGUMENT, with
+/// the supported suffixes, for any other suffix.
 absl::StatusOr<ImageFormat> image_format_of(const std::string& path);
 
 /// Encodes the image. Layers are stored in EXR files only; other formats contain the image alone.
+/// Returns INVALID_ARGUMENT if the image is empty, its number of pixels is wrong or a layer does
+/// not fit it; RESOURCE_EXHAUSTED if it is too large for PNG or EXR.
 absl::StatusOr<std::vector<std::byte>> encode_image(const Image& image, ImageFormat format,
                                                     const Display& display = {},
                                                     const Layers& layers = {});
 
-/// Writes the image. Returns INVALID_ARGUMENT for an unknown suffix, otherwise the system's error:
-/// PERMISSION_DENIED, NOT_FOUND, RESOURCE_EXHAUSTED (disk full) …
+/// Writes the image. Returns INVALID_ARGUMENT for an unknown suffix, the errors of encode_image(),
+/// or the system's error: PERMISSION_DENIED, NOT_FOUND, RESOURCE_EXHAUSTED (disk full) …
 absl::Status write_image(const Image& image, const std::string& path, const Display& display = {},
                          const Layers& layers = {});
 
-/// Checks, before rendering, that write_image() can begin: the suffix is known, and the folder
-/// exists and is writable.
+/// Called before rendering. Returns OK if write_image() can begin: the suffix is known, and the
+/// folder exists and is writable.
 absl::Status check_writable(const std::string& path);
 
 }  // namespace bandsaw
