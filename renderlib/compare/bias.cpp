@@ -13,6 +13,7 @@
 namespace bandsaw {
 namespace {
 
+/// Blocks of fewer values are left out.
 constexpr std::uint64_t kMinValues = 8;
 
 /// Running mean and variance (Welford 1962).
@@ -52,6 +53,7 @@ double upper_tail(double x) {
 // Returns the bound b for which the largest absolute value of `tests` independent standard normal
 // values exceeds b with probability 1 %.
 double bound_of(std::uint32_t tests) {
+  // The probability that a single one exceeds the bound; then bisection finds the bound.
   const double one = -expm1(log1p(-0.01) / tests);
   double low = 0;
   double high = 12;
@@ -62,18 +64,19 @@ double bound_of(std::uint32_t tests) {
   return high;
 }
 
-// Converts Student's t to the standard normal value of the same probability (Wallace 1959, "Bounds
-// on Normal Approximations to Student's and the Chi-Square Distributions").
+// Converts Student's t of so many values to the standard normal value >= 0 of the same two-sided
+// probability (Wallace 1959, "Bounds on Normal Approximations to Student's and the Chi-Square
+// Distributions").
 double as_normal(double t, std::uint64_t values) {
   const auto freedom = static_cast<double>(values - 1);
   return std::sqrt(freedom * log1p(t * t / freedom)) * (8 * freedom + 1) / (8 * freedom + 3);
 }
 
-// Sums over all pixels.
+// Sums over the whole image.
 struct Totals {
-  Moments groups;
-  double difference = 0;
-  double light = 0;
+  Moments groups;         // of the mean differences of groups
+  double difference = 0;  // of all pixels
+  double light = 0;       // of all pixels of the reference
 };
 
 // Adds the finite pixels of a group.

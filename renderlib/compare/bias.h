@@ -1,6 +1,7 @@
 #pragma once
 
-// Statistical test for bias: noise has no sign, a bias has one.
+// Statistical test of whether an image differs from a reference by more than noise: the differences
+// of noise have random signs, those of a bias have one sign.
 
 #include <cstdint>
 
@@ -8,8 +9,8 @@
 
 namespace bandsaw {
 
-/// Result of the test. Blocks are the tiles of the image (render/tile_samples.h). The values tested
-/// are mean differences in luminance over the groups of pixels that may share paths
+/// Result of the test. Blocks are the tiles of 16 x 16 pixels (render/tile_samples.h). The values
+/// tested are mean differences in luminance over the groups of pixels that may share paths
 /// (render/pixel_groups.h): the noise of different groups is independent. For each block, Student's
 /// t of the mean is computed from the values' spread, which includes the noise of the reference.
 /// Blocks of fewer than 8 values are left out.

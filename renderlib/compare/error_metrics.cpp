@@ -20,14 +20,16 @@ namespace {
 /// Added to divisors, so that ratios for dark pixels do not dominate.
 constexpr double kDivisorOffset = 0.01;
 
+/// Sums over all finite channel values.
 struct Sums {
   double squares = 0;
   double relative = 0;
-  double coded_squares = 0;
+  double coded_squares = 0;  ///< of sRGB-coded values
   double reference = 0;
   std::uint64_t count = 0;
 };
 
+/// Returns the sRGB-coded value in [0, 1].
 double shown(float linear) { return srgb_curve(clamped(gray(linear)).r); }
 
 /// Returns the channel's contribution to the relative mean squared error.
@@ -45,8 +47,8 @@ double add_channel(float image, float reference, Sums& sums) {
 }
 
 struct PixelError {
-  double relative_squares = 0;
-  double largest = 0;
+  double relative_squares = 0;  ///< sum over the channels
+  double largest = 0;           ///< largest absolute difference
 };
 
 PixelError add_pixel(const Rgb& image, const Rgb& reference, Sums& sums,

@@ -47,6 +47,7 @@ Image exposed(const Image& image, double factor) {
   return out;
 }
 
+// A geometric series of factors of the radiance.
 struct Exposures {
   double first = 1;
   double step = 1;

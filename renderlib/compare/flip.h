@@ -1,8 +1,8 @@
 #pragma once
 
-// FLIP, a perceptual difference of images that are viewed alternately: Andersson et al. 2020,
-// "FLIP: A Difference Evaluator for Alternating Images", HPG. HDR-FLIP for images brighter than a
-// screen: Andersson et al. 2021, "Visualizing Errors in Rendered High Dynamic Range Images",
+// FLIP, the difference that a viewer sees between two images shown alternately: Andersson et al.
+// 2020, "FLIP: A Difference Evaluator for Alternating Images", HPG. HDR-FLIP for images brighter
+// than a screen: Andersson et al. 2021, "Visualizing Errors in Rendered High Dynamic Range Images",
 // Eurographics short papers.
 
 #include "renderlib/compare/plane.h"
@@ -17,12 +17,13 @@ inline constexpr double kPixelsPerDegree = 67;
 /// the same size.
 Plane flip(const Image& image, const Image& reference, double pixels_per_degree = kPixelsPerDegree);
 
-/// Returns the maximum error over a range of exposures and through a film curve (section 3). The
-/// range is from the exposure for the reference's maximum to that for its median.
+/// Returns the error per pixel, in [0, 1], of HDR-FLIP: the maximum of flip() over a range of
+/// exposures, each through a film curve (section 3 of the second paper). The range is from the
+/// exposure for the reference's maximum to that for its median. The images MUST have the same size.
 Plane hdr_flip(const Image& image, const Image& reference,
                double pixels_per_degree = kPixelsPerDegree);
 
-/// Returns true if any value of the image is brighter than a screen.
+/// Returns true if any value of the image is above 1, the brightest that a screen shows.
 bool beyond_screen(const Image& image);
 
 }  // namespace bandsaw

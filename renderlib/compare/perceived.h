@@ -1,6 +1,7 @@
 #pragma once
 
-// Conversions of single pixels to perceptual colour spaces. The white point is that of sRGB (D65).
+// Conversions of single pixels to perceptual colour spaces, for FLIP and SSIM. The white point is
+// that of sRGB (D65); "linear" is linear RGB with the primaries of sRGB.
 
 #include "renderlib/math/rgb.h"
 #include "renderlib/math/vec.h"

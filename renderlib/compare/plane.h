@@ -1,6 +1,6 @@
 #pragma once
 
-// Single-channel images and their filters.
+// Single-channel images and their filters, for FLIP and SSIM.
 
 #include <cstdint>
 #include <vector>
@@ -9,6 +9,7 @@
 
 namespace bandsaw {
 
+/// An image of one number a pixel.
 struct Plane {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -22,7 +23,7 @@ struct Plane {
 /// Returns the mean of all values; the plane MUST NOT be empty.
 double mean(const Plane& plane);
 
-/// Weights for offsets -radius to radius.
+/// A filter kernel: weights for offsets -radius to radius.
 using FilterWeights = std::vector<double>;
 
 /// Returns exp(-(x / deviation)^2 / 2) for |x| <= radius, not normalised.
@@ -30,8 +31,8 @@ FilterWeights gaussian(double deviation, int radius);
 
 double sum(const FilterWeights& kernel);
 
-/// Filters the plane by one kernel along x and another along y; edges are clamped. Kernels have an
-/// odd size.
+/// Filters the plane by one kernel along x and another along y; beyond the edges the outermost
+/// value is repeated. Kernels have an odd size.
 Plane filtered(const Plane& plane, const FilterWeights& along_x, const FilterWeights& along_y);
 
 }  // namespace bandsaw
