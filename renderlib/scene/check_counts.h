@@ -1,7 +1,7 @@
 #pragma once
 
-// Checks that BVHs and the numbers of primitives can hold a scene. Only counts are needed, so the
-// check can run before memory is allocated.
+// Checks that a scene has no more primitives than BVHs can hold and their numbers can count. Only
+// counts are needed, so the check can run before memory is allocated.
 
 #include <cstdint>
 
@@ -14,7 +14,8 @@ namespace bandsaw {
 /// Maximum number of positions of a mesh: triangles refer to their corners by 32-bit indices.
 inline constexpr std::uint64_t kMaxMeshPositions = std::uint64_t{1} << 32;
 
-/// Numbers of loose shapes and instances in one space.
+/// Numbers of the shapes and instances that are in one BVH: those of the scene outside of groups
+/// and meshes, or those of one group.
 struct ShapeCounts {
   std::uint64_t spheres = 0;
   std::uint64_t quads = 0;

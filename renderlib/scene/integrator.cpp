@@ -1,4 +1,4 @@
-// Names of integrators, in the order of the enum.
+// The names of the integrators are a table in the order of the enum.
 
 #include "renderlib/scene/integrator.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Integrators: the arriving light, or simpler properties of the first surface.
+// Integrators: what a sample of a pixel computes. Some return the arriving light, others a property
+// of the first surface (integrate/sample_value.h).
 
 #include <optional>
 
@@ -38,8 +39,11 @@ constexpr bool computes_radiance(Integrator integrator) {
 }
 
 /// Returns "path", "direct", "normals", "depth", "albedo", "ambient_occlusion", "path_lights",
-/// "path_scattering", "path_guided" or "path_plain".
+/// "path_scattering", "path_guided" or "path_plain"; for the guides of the denoiser
+/// (guide_integrators.h) "guide_albedo" or "guide_shape".
 absl::string_view integrator_name(Integrator integrator);
+/// The inverse of integrator_name(), except for the guides of the denoiser; std::nullopt for any
+/// other name.
 std::optional<Integrator> integrator_named(absl::string_view name);
 
 /// Scene parameters of kDirect and kAmbientOcclusion.

@@ -15,6 +15,7 @@
 namespace bandsaw {
 namespace {
 
+/// Checks absorption, scattering or emission per unit of length.
 absl::Status check_rates(const std::string& field, const Rgb& rates) {
   for (const float rate : {rates.r, rates.g, rates.b}) {
     if (!(rate >= 0 && rate <= kMaxPerUnit)) {

@@ -3,8 +3,9 @@
 // Media of a scene and the regions they fill: closed shapes, and everything around them.
 //
 // The medium at a point depends on the point alone, not on the path of the light. Among the closed
-// shapes that contain the point, the medium with the highest number counts, i.e. the one that the
-// scene names last; outside all shapes the fog; without fog, none.
+// shapes that contain the point, the one whose medium has the highest number counts, i.e. the
+// medium that the scene names last. Outside of all shapes the medium is the fog; without fog there
+// is none.
 //
 // A medium may vary in space as given by grids (medium/medium.h). Their numbers are given in the
 // space of the medium, which moves with its boundary: the space of the boundary's frame
@@ -23,6 +24,7 @@
 
 namespace bandsaw {
 
+/// The media, the grids by which they vary, and where they are.
 struct Media {
   std::vector<Medium> media;
   std::vector<VolumeGrid> grids;  ///< MediumGrids refers to them
@@ -31,7 +33,9 @@ struct Media {
   /// visible, the scene's own geometry contains it as well; otherwise it is invisible. Placements
   /// change the region of a medium, not its density: coefficients are per unit of world space.
   Geometry boundaries;
-  std::optional<MediumId> fog;  ///< unbounded; MUST NOT be is_endless_glow, nor have grids
+  /// The medium outside of all boundaries, without end. MUST NOT have grids, nor emit where it
+  /// neither absorbs nor scatters (is_endless_glow): it would be infinitely bright.
+  std::optional<MediumId> fog;
 
   bool has_boundaries() const {
     return !boundaries.spheres.empty() || !boundaries.instances.empty();
@@ -52,8 +56,8 @@ Mesh unit_cube();
 /// Returns the sphere of radius 1 around the origin, as a group; a sphere is an instance of it.
 Shapes unit_ball();
 
-/// Returns INVALID_ARGUMENT: "media[1].g: must be in [-0.999, 0.999], is 2", "boundaries.meshes[0]:
-/// must be closed, has 4 open edges".
+/// Returns INVALID_ARGUMENT if something is wrong, such as "media[1].g: must be in [-0.999, 0.999],
+/// is 2" or "boundaries.meshes[0]: must be closed, has 4 open edges".
 absl::Status validate(const Media& media);
 
 }  // namespace bandsaw

@@ -1,6 +1,7 @@
 #pragma once
 
-// The spaces of media (scene/media.h): maps from the world to the space of each medium.
+// The spaces in which media vary (scene/media.h): maps from the world to the space of the medium in
+// each boundary, which is that of the boundary's frame. A Scene holds one MediumSpaces.
 
 #include <cstdint>
 #include <vector>
@@ -23,9 +24,8 @@ class MediumSpaces {
   Transform to_medium(const Geometry& boundaries, std::uint32_t boundary, double time) const;
 
  private:
-  std::vector<FrameId> frames_;  ///< by instance
-  /// Maps by instance; unused for instances that move.
-  std::vector<Transform> still_;
+  std::vector<FrameId> frames_;   ///< the original frame of each instance
+  std::vector<Transform> still_;  ///< the map of each instance; unused for instances that move
 };
 
 }  // namespace bandsaw

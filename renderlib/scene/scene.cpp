@@ -21,6 +21,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns true if the parallelogram of these edges has a finite area > 0.
 bool has_area(const Vec3& u, const Vec3& v) {
   // Scaled, so that the area of tiny shapes does not underflow.
   const double size = std::max(max_abs(u), max_abs(v));
@@ -65,6 +66,7 @@ bool may_be_hit(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) 
   return true;
 }
 
+/// Removes the triangles of the mesh that no ray can hit, and returns their number.
 std::size_t clean_mesh(Mesh& mesh) {
   zero_if_not_finite(mesh.normals);
   zero_if_not_finite(mesh.normals_at_close);
@@ -91,8 +93,8 @@ std::size_t clean_shapes(Shapes& shapes) {
                        [](const Triangle& t) { return !has_area(t.b - t.a, t.c - t.a); });
 }
 
-/// The meshes of earlier scenes, which have been cleaned, and the number of triangles that each
-/// lost by it.
+/// The meshes of earlier scenes, which were cleaned there, and the number of triangles that each
+/// lost.
 using CleanMeshes = std::map<const Mesh*, std::size_t>;
 
 /// Removes quads and triangles, including those of meshes, whose area is zero or not finite (e.g.
@@ -199,7 +201,6 @@ Scene::Scene(const Kernel& kernel, SceneDescription description)
 
 Scene::~Scene() = default;
 
-/// Adds the meshes of this scene with what was made of them, if the kernel may use it.
 void Scene::add_meshes_to(const Kernel& kernel, std::map<const Mesh*, std::size_t>& clean,
                           std::vector<const Accel*>& accels) const {
   if (&kernel != kernel_ || traversal_ != Traversal::kBvh) {

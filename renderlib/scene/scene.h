@@ -25,18 +25,22 @@ struct Kernel;       // renderlib/render/kernel.h
 class GuidingCache;  // renderlib/guiding/guiding_cache.h
 
 class Scene;
+/// Other scenes whose BVHs of meshes may be used again, such as those of earlier frames.
 using EarlierScenes = absl::Span<const std::shared_ptr<const Scene>>;
 
+/// Made by build() and never changed afterwards.
 class Scene {
  public:
   /// Validates the description (scene/validate.h), removes and counts primitives that no ray can
   /// hit, and builds the BVHs and lights. Returns INVALID_ARGUMENT: "spheres[3].radius: must be >
-  /// 0, is -1". `forced`: features to enable in addition to those that the scene uses; this costs
-  /// time and changes no pixel; for tests. `traversal`: how rays find their primitives; changes no
-  /// pixel. `kernel`: the code that builds the scene and renders its bands, one of kernels()
-  /// (renderlib/render/kernel.h); changes no pixel. nullptr selects the first of them. `earlier`:
-  /// other scenes, such as those of other frames. Where the description has the same mesh as one of
-  /// them, its BVH is used again. This changes no pixel.
+  /// 0, is -1". The other parameters change no pixel:
+  /// - `forced`: features to enable in addition to those that the scene uses, for tests; this costs
+  ///   time.
+  /// - `traversal`: how rays find their primitives.
+  /// - `kernel`: the code that builds the scene and renders its bands, one of kernels()
+  ///   (renderlib/render/kernel.h); nullptr selects the first of them.
+  /// - `earlier`: where the description has the same mesh object as one of these scenes, the BVH of
+  ///   the mesh is used again.
   static absl::StatusOr<std::shared_ptr<const Scene>> build(SceneDescription description,
                                                             Pool& pool,
                                                             const SceneFeatures& forced = {},
@@ -59,8 +63,9 @@ class Scene {
     const std::optional<GridMedium>& medium = grid_media_[index_of(id)];
     return medium ? &*medium : nullptr;
   }
-  /// Returns the map from the world to the space of the medium in a boundary
-  /// (scene/medium_spaces.h). features().grids MUST be set.
+  /// Returns the map from the world to the space of the medium in a boundary at this time.
+  /// `boundary` is Hit::id.instance of boundary_accel() (scene/medium_spaces.h). features().grids
+  /// MUST be set.
   Transform to_medium(std::uint32_t boundary, double time) const {
     return medium_spaces_.to_medium(description_.media.boundaries, boundary, time);
   }
@@ -84,8 +89,8 @@ class Scene {
   bool reuses_paths() const { return reuses_paths_; }
   /// Returns the number of primitives that were removed because no ray can hit them.
   std::size_t dropped_primitives() const { return dropped_; }
-  /// Returns the cache of the fields of path guiding. A field is a pure function of the scene and
-  /// its key, and is made when it is first used. Synchronised.
+  /// Returns the cache of the fields of path guiding and of photon maps. Each is a pure function of
+  /// the scene and a key, and is made when it is first used. Thread-safe.
   GuidingCache& guiding() const { return *guiding_; }
 
   ~Scene();
@@ -99,6 +104,8 @@ class Scene {
       Traversal traversal, const EarlierScenes& earlier);
 
   Scene(const Kernel& kernel, SceneDescription description);
+  /// If a scene of this kernel may use the meshes of this one again: adds to `clean` each mesh with
+  /// the number of triangles that it lost, and to `accels` the BVHs that contain them.
   void add_meshes_to(const Kernel& kernel, std::map<const Mesh*, std::size_t>& clean,
                      std::vector<const Accel*>& accels) const;
   const Kernel* kernel_;

@@ -8,6 +8,7 @@
 
 namespace bandsaw {
 
+/// Made by Scene::build (scene.cpp).
 struct SceneFeatures {
   bool lights = false;    ///< lights that can be sampled (next-event estimation)
   bool alpha = false;     ///< surfaces that are not fully opaque
@@ -35,7 +36,7 @@ inline constexpr std::array<NamedFeature, 7> kEachFeature = {{
 }};
 static_assert(sizeof(SceneFeatures) == kEachFeature.size(), "every feature is in the table");
 
-/// All features: those of the general kernel.
+/// All features; tests force them on.
 inline constexpr SceneFeatures kAllFeatures = [] {
   SceneFeatures all;
   for (const NamedFeature& each : kEachFeature) {
@@ -44,7 +45,7 @@ inline constexpr SceneFeatures kAllFeatures = [] {
   return all;
 }();
 
-/// Returns the union of both.
+/// Returns the features that are set in `a` or `b`.
 constexpr SceneFeatures operator|(SceneFeatures a, const SceneFeatures& b) {
   for (const NamedFeature& each : kEachFeature) {
     a.*each.feature = a.*each.feature || b.*each.feature;

@@ -10,8 +10,7 @@
 namespace bandsaw {
 namespace {
 
-/// Returns true if the frame, without its parents, has the same transform as at `interval.open`
-/// throughout.
+/// Returns true if the frame, without its parents, has the same transform throughout the interval.
 bool stands(const Frame& frame, const Interval& interval) {
   const Transform at_open = motion_at(frame, interval.open);
   const bool ends_there = motion_at(frame, interval.close) == at_open;

@@ -1,14 +1,14 @@
 #pragma once
 
-// Removes motion from instances that do not move during the shutter interval, so that it costs
-// nothing.
+// Makes instances static that have keys of motion but do not move during the shutter interval, so
+// that their motion costs no time. Scene::build calls it.
 
 #include "renderlib/geometry/shapes.h"
 
 namespace bandsaw {
 
-/// Gives instances whose frames are static during Geometry::shutter a fixed placement, equal to the
-/// bit to the animated one at any time of it.
+/// Gives instances whose frames are static during Geometry::shutter a fixed placement and no frame.
+/// The placement has the bits that the frames give at any time of that interval.
 void make_static(Geometry& geometry);
 
 /// Returns true if any instance still moves or deforms.

@@ -20,7 +20,8 @@ enum class MeshVertices {
   kFinite,  ///< finite values only, as in scene packages
 };
 
-/// Returns true for a mesh that has been checked before and is not checked again.
+/// A function that returns true for a mesh that has been checked before and need not be checked
+/// again.
 using IsChecked = std::function<bool(const Mesh&)>;
 
 /// Returns INVALID_ARGUMENT with the field's path, the allowed range and the value:

@@ -17,10 +17,12 @@
 
 namespace bandsaw {
 
+/// Returns the error "<field>: <why>".
 inline absl::Status invalid(absl::string_view field, absl::string_view why) {
   return absl::InvalidArgumentError(absl::StrCat(field, ": ", why));
 }
 
+/// Returns the name of an entry: "spheres[3]".
 inline std::string item(absl::string_view list, std::size_t index) {
   return absl::StrCat(list, "[", index, "]");
 }
@@ -41,6 +43,7 @@ inline absl::Status check_point(const std::string& field, const Vec3& p) {
   return absl::OkStatus();
 }
 
+/// Checks that the channels are finite and in [0, most]; `most` may be infinite.
 inline absl::Status check_color(const std::string& field, const Rgb& color, float most) {
   for (const float value : {color.r, color.g, color.b}) {
     if (!(value >= 0 && value <= most) || !std::isfinite(value)) {
@@ -60,8 +63,8 @@ absl::Status check_materials(const std::vector<Material>& materials,
                              const std::vector<Texture>& textures);
 
 /// Checks shapes, meshes, groups, frames and instances (validate_geometry.cpp). `prefix` is
-/// prepended to the names of fields in errors; `materials` is the number of materials. `checked` as
-/// in validate().
+/// prepended to the names of fields in errors; `materials` is the number of materials (of media, if
+/// the shapes are boundaries of media). `vertices` and `checked` are those of validate().
 absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
                             std::size_t materials, MeshVertices vertices,
                             const IsChecked& checked = {});

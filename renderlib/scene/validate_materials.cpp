@@ -176,7 +176,7 @@ absl::Status check_conductor(const std::string& field, const ConductorIndex& ind
              : invalid(field + ".eta", "must be above 0 in each channel");
 }
 
-/// A number of a material and its name.
+/// A number of a material, and the name of its field.
 struct NamedNumber {
   const char* name;
   const Number& number;
@@ -190,6 +190,7 @@ absl::Status check_numbers(const std::string& field, std::initializer_list<Named
   return absl::OkStatus();
 }
 
+/// Checks the parameters of a kind of material; called by std::visit.
 struct CheckKind {
   const std::string& field;
   const std::vector<Texture>& textures;
@@ -272,8 +273,8 @@ struct CheckKind {
   absl::Status operator()(const Mix& m) const { return reflectance("amount", m.amount); }
 };
 
-/// Checks the parts of a mixture, materials[index]. `parts` has the number of parts of each
-/// material before it, and gets its own.
+/// Checks the parts of materials[index] if it is a mixture. `parts` has the number of parts of each
+/// material before it (1 if that is no mixture), and gets the number of this one.
 absl::Status check_mixture(const std::vector<Material>& materials, std::size_t index,
                            std::vector<std::uint64_t>& parts) {
   const std::string field = item("materials", index);
