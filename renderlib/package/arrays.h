@@ -1,7 +1,7 @@
 #pragma once
 
-// Conversion between flat arrays and bytes. Blobs are little-endian, and so is every supported
-// machine.
+// Conversion between arrays and the bytes of blobs (flat arrays, the parts of a scene package).
+// Blobs are little-endian, and so is every supported machine.
 
 #include <bit>
 #include <cstddef>

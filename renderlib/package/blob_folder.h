@@ -1,6 +1,7 @@
 #pragma once
 
-// Blobs as files named `<folder>/<digest in hexadecimal>`, written once and never changed.
+// Reads blobs (the parts of a scene package, named by their SHA-256) from files
+// `<folder>/<digest in hexadecimal>`, which are written once and never changed.
 
 #include <string>
 #include <utility>

@@ -1,7 +1,8 @@
 #pragma once
 
-// Interface that returns the bytes of a blob, given its digest. It is implemented by a folder, by a
-// worker's cache and by a map in memory.
+// Interface that returns the bytes of a blob, given its digest (SHA-256). A blob is a flat array to
+// which the manifest of a scene package refers. A folder, a worker's cache and a map in memory
+// implement the interface.
 
 #include <cstddef>
 #include <map>
@@ -33,6 +34,7 @@ class BlobSource {
 /// Blobs in memory; used by the importer and by tests.
 class BlobMap : public BlobSource {
  public:
+  /// Adds a blob and returns its digest.
   wire::Digest put(SharedBytes bytes);
   wire::Digest put(std::vector<std::byte> bytes) { return put(SharedBytes(std::move(bytes))); }
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;

@@ -1,5 +1,5 @@
-// Decoder reads the manifest field by field, fetches the blobs that it names, and checks their
-// sizes. Parts that an earlier package has are taken from DecodedParts.
+// Decoder fetches the blobs that the manifest names, checks their sizes, and makes shapes, meshes
+// and textures of them. Parts that an earlier package has are taken from DecodedParts.
 
 #include "renderlib/package/package.h"
 
@@ -164,6 +164,7 @@ absl::Status decode_texture(const package::Texture& from, const std::string& fie
   return manifest_error(field, "is of no kind that this program knows");
 }
 
+/// Reads the parts of one package. `field` and `prefix` are names of fields in error messages.
 class Decoder {
  public:
   Decoder(BlobSource& blobs, DecodedParts* parts) : blobs_(blobs), parts_(parts) {}
@@ -277,7 +278,7 @@ class Decoder {
     return absl::OkStatus();
   }
 
-  // Adds the mesh to the list.
+  // Adds the mesh to the list: that of an earlier package if its message is the same.
   absl::Status add_mesh(const package::Mesh& from, const std::string& field, MeshList& to) {
     const std::string message = parts_ != nullptr ? from.SerializeAsString() : "";
     if (std::shared_ptr<const Mesh> known = parts_ != nullptr ? parts_->mesh(message) : nullptr) {

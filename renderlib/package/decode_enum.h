@@ -8,8 +8,9 @@
 
 namespace bandsaw {
 
-/// Converts an enum of the protocol to the enum `To`, whose values count from 0 in the same order.
-/// `first` is the protocol's first value: 1 if its 0 means "unspecified".
+/// Converts an enum of proto/package.proto to the enum `Ours`, whose values count from 0 in the
+/// same order. `first` and `last` are the first and last valid value of the protocol; `first` is 1
+/// if its 0 means "unspecified". Returns INVALID_ARGUMENT, which names `field`, for other values.
 template <class Ours>
 absl::StatusOr<Ours> decode_enum(int value, int first, int last, const std::string& field) {
   if (value < first || value > last) {

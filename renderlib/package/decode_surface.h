@@ -1,7 +1,7 @@
 #pragma once
 
-// Decodes the parts of a manifest that are not geometry. Checks only the form, not the values
-// (scene/validate.h).
+// Decodes the parts of a manifest (proto/package.proto) that are not geometry: camera, filter,
+// local shading, background. Checks only the form, not the values (scene/validate.h).
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"
@@ -9,12 +9,13 @@
 
 namespace bandsaw {
 
-/// Decodes a camera. `field` names it in messages. This function and those below return
-/// INVALID_ARGUMENT if the part is missing or a list has a wrong length.
+/// Decodes a camera. `field`, here and below, is its name in error messages. This function and
+/// those below return INVALID_ARGUMENT if a list has a wrong length or an enum an unknown value.
 absl::StatusOr<Camera> decode_camera(const package::Camera& from, const std::string& field);
 /// Returns the default filter if the manifest has none.
 absl::StatusOr<PixelFilter> decode_filter(const package::Manifest& manifest);
 absl::StatusOr<LocalShading> decode_local_shading(const package::Manifest& manifest);
+/// Returns INVALID_ARGUMENT also if the manifest has no background.
 absl::StatusOr<Background> decode_background(const package::Manifest& manifest);
 absl::StatusOr<Vec3> decode_vec3(const google::protobuf::RepeatedField<double>& list,
                                  const std::string& field);

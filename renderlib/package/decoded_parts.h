@@ -1,7 +1,8 @@
 #pragma once
 
-// The large parts of packages that are in use. If a package that is decoded later has equal parts,
-// it shares them. So for each frame of a sequence only the parts that change are read.
+// Remembers the large parts (meshes and blobs) of decoded packages as long as a scene uses them. If
+// a package that is decoded later has equal parts, it shares them. So for each frame of an
+// animation only the parts that change are read. decode_package() (package.h) uses it.
 
 #include <cstddef>
 #include <map>
@@ -14,7 +15,7 @@
 
 namespace bandsaw {
 
-/// Not synchronised. It keeps no part alive.
+/// Not thread-safe. It keeps no part alive.
 class DecodedParts {
  public:
   /// Returns the mesh whose message in a manifest (package::Mesh) has these bytes; nullptr: none is

@@ -25,14 +25,14 @@ namespace {
 
 std::uint32_t number(TextureId id) { return static_cast<std::uint32_t>(id); }
 
-/// Enums are declared in the same order; some of the protocol's have an additional 0 for
-/// "unspecified".
+/// Converts an enum to one of the protocol. Both are declared in the same order; `first` is 1 if
+/// the protocol's has an additional 0 for "unspecified".
 template <class Theirs, class Ours>
 Theirs as(Ours ours, int first = 0) {
   return static_cast<Theirs>(static_cast<int>(ours) + first);
 }
 
-/// Adds bytes that several scenes may share, unless they are known, and refers to them.
+/// Sets `ref` to the bytes. Adds them to `blobs`, unless they were in the last package (`parts`).
 void put_shared(const SharedBytes& bytes, BlobMap& blobs, EncodedParts* parts, package::Blob& ref) {
   ref.set_size(bytes.size());
   if (const wire::Digest* known = parts != nullptr ? parts->digest_of(bytes) : nullptr) {
@@ -132,6 +132,7 @@ void encode_texture(const Texture& texture, BlobMap& blobs, EncodedParts* parts,
   std::visit(EncodeTexture{blobs, parts, to}, texture);
 }
 
+/// Adds arrays to the blobs and refers to them in messages of the manifest.
 class Encoder {
  public:
   Encoder(BlobMap& blobs, EncodedParts* parts) : blobs_(blobs), parts_(parts) {}

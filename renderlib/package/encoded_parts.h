@@ -1,7 +1,7 @@
 #pragma once
 
-// Large parts of the package that was encoded last, so that the package of the next frame of a
-// sequence does not hash them again.
+// Remembers the large parts (meshes, texels, grids) of the package that was encoded last, so that
+// encode_package() (package.h) need not hash them again for the next frame of an animation.
 
 #include <cstddef>
 #include <memory>
@@ -20,13 +20,14 @@ class EncodedParts {
  public:
   /// Returns true for a mesh of the last package.
   bool knows(const Mesh& mesh) const { return meshes_.contains(&mesh); }
-  /// Returns the message of a mesh of the last package (package::Mesh), which becomes part of this
-  /// one; nullptr: it was not in it.
+  /// If the mesh (the same object) was in the last package, makes it a part of the present one and
+  /// returns its serialised message (package::Mesh); otherwise nullptr.
   const std::string* message_of(const Mesh& mesh);
-  /// Returns the digest of bytes of the last package with the same address, which become part of
-  /// this one; nullptr: they were not in it.
+  /// If these bytes (at the same address) were in the last package, makes them a part of the
+  /// present one and returns their digest; otherwise nullptr.
   const wire::Digest* digest_of(const SharedBytes& bytes);
 
+  /// Adds a part to the present package.
   void add(std::shared_ptr<const Mesh> mesh, std::string message);
   void add(SharedBytes bytes, const wire::Digest& digest);
   /// Ends the present package: forgets the parts that were not in it.

@@ -1,6 +1,7 @@
 #pragma once
 
-// Conversion of environments and delta lights to and from proto/package.proto.
+// Conversion of environments and delta lights to and from messages of proto/package.proto, for
+// encode.cpp and decode.cpp.
 
 #include <vector>
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Limits of a manifest; further limits are in proto/wire/limits.h and renderlib/render/settings.h.
+// Limits of the texts in a manifest (proto/package.proto). Further limits are in
+// proto/wire/limits.h and renderlib/render/settings.h.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Checks the head of a manifest and the counts that follow from the sizes of its blobs.
-// for_each_blob() visits all blobs in a fixed order.
+// Checks the head of a manifest (its settings and texts) and the counts of shapes, which follow
+// from the sizes of the blobs. for_each_blob() visits all blobs in a fixed order.
 
 #include "renderlib/package/manifest.h"
 
@@ -171,7 +171,7 @@ absl::Status for_each_mesh_blob(const Meshes& meshes, const std::string& name, V
   return absl::OkStatus();
 }
 
-// Appends the blobs of the manifest's or of a group's shapes.
+// Calls visit(blob, path) for the blobs of the shapes of a manifest or group, as for_each_blob().
 template <class Message, class Visit>
 absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Visit& visit) {
   if (m.has_spheres()) {
@@ -196,7 +196,8 @@ absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Vi
   return absl::OkStatus();
 }
 
-// Returns all blob fields of a manifest with their paths, in a fixed order.
+// Calls visit(blob, path of its field) for all blobs of a manifest, in a fixed order, until it
+// returns an error.
 template <class Visit>
 absl::Status for_each_blob(const package::Manifest& m, Visit visit) {
   for (int i = 0; i < m.texture_size(); ++i) {

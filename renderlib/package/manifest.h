@@ -1,6 +1,7 @@
 #pragma once
 
-// Parsing of manifests, with all checks that need no blobs.
+// Parsing of manifests (the messages that describe scene packages, proto/package.proto), with all
+// checks that need no blobs.
 
 #include <string>
 
@@ -11,15 +12,16 @@
 
 namespace bandsaw {
 
-/// Returns INVALID_ARGUMENT if the bytes are too many, no manifest or of another format, or if
-/// name, size, depth or warnings are out of range.
+/// Returns INVALID_ARGUMENT if the bytes are too many, no manifest, or of another format; if name,
+/// image size, depth, another setting or a text is out of range; or if there are more shapes than a
+/// BVH can hold.
 absl::StatusOr<package::Manifest> parse_manifest(const std::string& bytes);
 
-/// Returns INVALID_ARGUMENT: "scene package: <field>: <what is wrong>".
+/// Makes the error INVALID_ARGUMENT "scene package: <field>: <what is wrong>".
 absl::Status manifest_error(const std::string& field, const std::string& what);
 
-/// Returns the blob's digest and size. Returns INVALID_ARGUMENT naming `field` if the digest's
-/// length or the size is out of range.
+/// Returns the blob's digest and size. Returns INVALID_ARGUMENT, which names `field`, if the digest
+/// has a wrong length or the size is above the limit.
 absl::StatusOr<BlobRef> blob_ref(const package::Blob& blob, const std::string& field);
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
 #pragma once
 
-// Conversion of media to and from a manifest. The shapes of their boundaries and the numbers of
-// their grids are blobs, which encode.cpp and decode.cpp convert.
+// Conversion of media to and from a manifest (proto/package.proto). The shapes of their boundaries
+// and the numbers of their grids are blobs, which encode.cpp and decode.cpp convert.
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"

@@ -1,7 +1,9 @@
 #pragma once
 
-// Scene packages (proto/package.proto): encodes scene descriptions, and decodes them with every
-// index, count, value and digest checked.
+// Scene packages: the form in which a scene is sent over the network. A package is a manifest (a
+// message of proto/package.proto) and the blobs (flat arrays) that it names by their SHA-256. This
+// file encodes scene descriptions, and decodes them with every index, count, value and digest
+// checked.
 
 #include <string>
 #include <vector>
@@ -16,13 +18,13 @@
 
 namespace bandsaw {
 
-/// The data of a package besides the scene itself.
+/// The data of a package besides the scene itself: defaults for rendering it, and texts.
 struct PackageInfo {
   std::string name;
-  std::uint32_t width = 600;
-  std::uint32_t height = 400;
+  std::uint32_t width = 600;   ///< pixels
+  std::uint32_t height = 400;  ///< pixels
   std::uint32_t max_depth = 32;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings;  ///< of the importer
   Integrator integrator = Integrator::kPath;
   Display display = {};
   std::vector<std::string> model_cameras = {};  ///< names of the cameras of its models
@@ -40,8 +42,8 @@ struct BlobRef {
 std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs,
                            EncodedParts* parts = nullptr);
 
-/// Returns the data of a manifest that needs no blobs; checks its form. Returns INVALID_ARGUMENT
-/// naming the field.
+/// Returns the data of a manifest that needs no blobs. Returns INVALID_ARGUMENT, with the field, if
+/// parse_manifest() (manifest.h) does.
 absl::StatusOr<PackageInfo> package_info(const std::string& manifest);
 
 /// Returns every blob to which a manifest refers, each once. Returns INVALID_ARGUMENT if the
@@ -53,10 +55,10 @@ absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest);
 absl::StatusOr<std::vector<BlobRef>> missing_blobs(const std::string& manifest,
                                                    const DecodedParts& parts);
 
-/// Returns the scene, which is valid (scene/validate.h). Returns INVALID_ARGUMENT naming the field
+/// Returns the scene, which is valid (scene/validate.h). Returns INVALID_ARGUMENT, with the field
 /// that is wrong, and NOT_FOUND or DATA_LOSS from `blobs`. With `parts`, meshes, texels and grids
-/// of packages that were decoded with it and are still in use are shared, not read again; the
-/// others are added to it.
+/// are shared with packages that were decoded with the same `parts` and are still in use; they are
+/// not read again. The others are added to `parts`.
 absl::StatusOr<SceneDescription> decode_package(const std::string& manifest, BlobSource& blobs,
                                                 DecodedParts* parts = nullptr);
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Conversion of instances and frames to and from a manifest.
+// Conversion of instances, and of the frames (moving coordinate systems) in which they are placed,
+// to and from a manifest (proto/package.proto).
 
 #include <string>
 

@@ -8,9 +8,10 @@
 
 namespace bandsaw {
 
-/// Returns the render settings of a package, at the given size in pixels. If only a width or only a
-/// height is given, the aspect ratio is kept, rounded to the nearest pixel.
-/// validate(RenderSettings) refuses sides above kMaxSide.
+/// Returns the render settings of a package, at the given size in pixels. Without `width` and
+/// `height` the size is that of the package. If only one of them is given, the other follows from
+/// the aspect ratio of the package, rounded to the nearest pixel. The result may be invalid (sides
+/// above kMaxSide); validate(RenderSettings) refuses it then.
 RenderSettings settings_of(const PackageInfo& scene, std::optional<std::uint32_t> width,
                            std::optional<std::uint32_t> height);
 
