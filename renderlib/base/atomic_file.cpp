@@ -17,6 +17,7 @@
 namespace bandsaw {
 namespace {
 
+/// Number of names that are tried for the temporary file.
 constexpr int kAttempts = 1000;
 /// Length of ".4194304.999.part", which contains Linux's largest process id.
 constexpr std::size_t kTemporarySuffix = 17;
@@ -44,13 +45,14 @@ absl::Status write_all(int file, absl::Span<const std::byte> bytes, const std::s
   return absl::OkStatus();
 }
 
-/// Creates a new file in the folder of `path`. (mkstemp is not used because its mode ignores the
-/// umask, which cannot be read without changing it.)
+/// An open temporary file.
 struct Temporary {
   int file = -1;
   std::string path;
 };
 
+/// Creates a new file in the folder of `path`. (mkstemp is not used because its mode ignores the
+/// umask, which cannot be read without changing it.) `what`, here and below, begins error messages.
 absl::StatusOr<Temporary> make_temporary(const std::string& path, const std::string& what) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     std::string name = absl::StrCat(path, ".", ::getpid(), ".", attempt, ".part");
@@ -65,6 +67,7 @@ absl::StatusOr<Temporary> make_temporary(const std::string& path, const std::str
   return errno_status(EEXIST, absl::StrCat(what, ": too many files named *.part beside it"));
 }
 
+/// Writes and syncs the file, and closes it in any case.
 absl::Status fill(int file, absl::Span<const std::byte> bytes, const std::string& what) {
   absl::Status status = write_all(file, bytes, what);
   if (status.ok() && ::fsync(file) != 0) {

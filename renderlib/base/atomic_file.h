@@ -1,6 +1,7 @@
 #pragma once
 
-// Writes files atomically: temporary file in the same folder, fsync, rename, fsync of the folder.
+// Writes files atomically: the bytes go to a temporary file in the same folder, which is synced and
+// renamed; then the folder is synced. So a crash leaves the old file or the complete new one.
 
 #include <cstddef>
 #include <string>
@@ -11,7 +12,9 @@
 
 namespace bandsaw {
 
-/// Writes the file. On any error the target is unchanged and no temporary file remains.
+/// Writes the file. Returns FAILED_PRECONDITION if the path exists and is not a regular file,
+/// otherwise the system's error (file.h, errno_status). On any error no temporary file remains, and
+/// the target is unchanged, unless only the sync of the folder failed.
 absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes);
 
 /// Returns OK if write_file_atomically() could begin: the folder exists and is writable, and the

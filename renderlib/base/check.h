@@ -1,7 +1,7 @@
 #pragma once
 
-// BANDSAW_CHECK(condition, "why it holds") detects bugs in this program: it prints and aborts. Bad
-// input never reaches it.
+// BANDSAW_CHECK(condition, "why it holds") detects bugs in this program: if the condition is false,
+// it prints and aborts. Bad input never reaches it.
 
 #include <cstdio>
 #include <cstdlib>

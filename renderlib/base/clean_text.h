@@ -8,8 +8,10 @@
 
 namespace bandsaw {
 
-/// Returns `text` as valid UTF-8 without control characters (each offending byte becomes '?'), cut
-/// between characters to at most `most_bytes`.
+/// Returns `text` as valid UTF-8 without control characters, cut between characters to at most
+/// `most_bytes`. Each control character, and each byte that is not part of a UTF-8 character,
+/// becomes
+/// '?'.
 std::string clean_text(std::string_view text, std::size_t most_bytes);
 
 }  // namespace bandsaw

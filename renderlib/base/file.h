@@ -23,11 +23,11 @@ absl::Status errno_status(int error, const std::string& what);
 /// An open file descriptor that closes itself.
 class File {
  public:
-  /// Opens a file with the `flags` of open(2); O_CLOEXEC is added. Only the owner can read a new
-  /// file.
+  /// Opens a file with the `flags` of open(2); O_CLOEXEC is added. A new file has mode 0600. Here
+  /// and below, an error is that of errno_status() unless a comment says otherwise.
   static absl::StatusOr<File> open(const std::string& path, int flags);
-  /// Opens a file for reading. Returns INVALID_ARGUMENT if it is not a regular file; does not wait
-  /// for the writer of a pipe.
+  /// Opens a file for reading; `flags` are further ones of open(2). Returns INVALID_ARGUMENT if it
+  /// is not a regular file; does not wait for the writer of a pipe.
   static absl::StatusOr<File> open_regular(const std::string& path, int flags = 0);
   File(File&& other) noexcept : fd_(std::exchange(other.fd_, -1)), path_(std::move(other.path_)) {}
   File& operator=(File&& other) noexcept;

@@ -15,10 +15,11 @@
 
 namespace bandsaw {
 
+/// The allocator of HugeVector. Memory is aligned to 64 bytes, or to a huge page if it is as large.
 template <class T>
 struct HugePages {
   using value_type = T;
-  static constexpr std::size_t kPage = std::size_t{2} << 20;
+  static constexpr std::size_t kPage = std::size_t{2} << 20;  ///< size of a huge page
 
   HugePages() = default;
   template <class U>
@@ -46,6 +47,7 @@ struct HugePages {
   void deallocate(T* memory, std::size_t count) {
     ::operator delete(memory, alignment(count * sizeof(T)));
   }
+  /// Default-initialises: numbers keep what is in the memory.
   template <class U>
   void construct(U* element) {
     ::new (static_cast<void*>(element)) U;

@@ -1,7 +1,8 @@
 #pragma once
 
-// A map that keeps values from one round of work to the next. A value that a round does not use is
-// removed at the end of that round.
+// A map that keeps values from one round of work to the next, such as from the encoding of one
+// frame of an animation to that of the next. A value that a round does not use is removed at its
+// end.
 
 #include <map>
 #include <utility>

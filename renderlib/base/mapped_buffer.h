@@ -1,8 +1,8 @@
 #pragma once
 
 // Large memory that the operating system provides page by page: anonymous, or backed by a file, so
-// that it can be written out instead of filling memory. The file has no name and disappears with
-// the buffer, also after a crash.
+// that the system can write pages to disk instead of filling memory. The file has no name and
+// disappears with the buffer, also after a crash. Films keep their sums in it (render/row_store.h).
 
 #include <cstddef>
 #include <string>

@@ -13,7 +13,8 @@ namespace bandsaw {
 /// The file MUST NOT be truncated while it is mapped; it may be replaced or removed.
 class MappedFile {
  public:
-  /// `flags` are those of File::open_regular. Returns NOT_FOUND if the file does not exist.
+  /// `flags` and errors are those of File::open_regular: NOT_FOUND if the file does not exist,
+  /// INVALID_ARGUMENT if it is not a regular file.
   static absl::StatusOr<MappedFile> open(const std::string& path, int flags = 0);
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;

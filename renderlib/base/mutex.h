@@ -11,6 +11,9 @@
 
 #include "absl/base/thread_annotations.h"  // also included by gRPC; defines GUARDED_BY
 
+// GUARDED_BY(m): a member may be accessed only while m is held. REQUIRES(m): the caller of a
+// function holds m. EXCLUDES(m): the caller does not hold m. BANDSAW_TSA(x): an attribute, for
+// clang only.
 #if defined(__clang__)
 #define BANDSAW_TSA(x) __attribute__((x))
 #else
@@ -42,6 +45,7 @@ class BANDSAW_TSA(capability("mutex")) Mutex {
 };
 #endif
 
+/// Holds the mutex as long as the object exists.
 class BANDSAW_TSA(scoped_lockable) MutexLock {
  public:
   explicit MutexLock(Mutex& mutex) BANDSAW_TSA(acquire_capability(mutex)) : mutex_(mutex) {

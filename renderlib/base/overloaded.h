@@ -2,7 +2,8 @@
 
 namespace bandsaw {
 
-/// Combines several lambdas into one visitor of a variant.
+/// Combines several lambdas into one visitor for std::visit:
+/// `Overloaded{[](const A&) { … }, [](const B&) { … }}`.
 template <class... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;

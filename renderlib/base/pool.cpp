@@ -7,9 +7,10 @@
 
 namespace bandsaw {
 
+/// The indices of one call of parallel_for().
 struct Pool::Range {
-  std::int64_t next = 0;     // guarded by Pool::mutex_
-  std::int64_t running = 0;  // guarded by Pool::mutex_
+  std::int64_t next = 0;     // the first index that no thread has taken; guarded by Pool::mutex_
+  std::int64_t running = 0;  // number of calls of `body` that run; guarded by Pool::mutex_
   std::int64_t count = 0;
   absl::FunctionRef<void(std::int64_t)> body;
 };

@@ -1,9 +1,9 @@
 #pragma once
 
 // Thread pool that processes index ranges. Several callers may run ranges at the same time: a free
-// thread takes its next index from the oldest range that has one left, so that the end of one band
-// and the start of the next overlap. Programs for WebAssembly have one thread, which does the work
-// itself.
+// thread takes its next index from the oldest range that has one left. So when the last indices of
+// one band (a unit of rendering work) are running, free threads begin the next band. Programs for
+// WebAssembly have one thread, which does the work itself.
 
 #include <cstdint>
 #include <deque>
@@ -48,11 +48,13 @@ class Pool {
 
  private:
   struct Range;
+  /// What each thread does until the pool is destroyed.
   void run() EXCLUDES(mutex_);
 
   Mutex mutex_;
-  CondVar work_;
-  CondVar done_;
+  CondVar work_;  ///< a range was added, or the pool stops
+  CondVar done_;  ///< a range was completed
+  /// The ranges that have indices left, oldest first; each is a variable of its parallel_for().
   std::deque<Range*> ranges_ GUARDED_BY(mutex_);
   bool stopping_ GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;

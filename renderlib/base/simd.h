@@ -1,7 +1,7 @@
 #pragma once
 
-// Selects Float8, eight floats at a time, for the instruction set of the compilation. All versions
-// compute the same bits, except about_fused and about_fused_minus;
+// Selects Float8, a vector of eight floats, for the instruction set of the compilation. All
+// versions compute the same bits, except about_fused() and about_fused_minus().
 // renderlib/base/simd_plain.h defines the operations.
 
 #if defined(__AVX2__) && defined(__FMA__)

@@ -1,8 +1,8 @@
 #pragma once
 
-// Float8, eight floats at a time, in plain C++. This file defines the operations. The versions for
-// other instruction sets are equal to the bit (tests/unit/base/simd_test.cpp);
-// renderlib/base/simd.h selects one.
+// Float8, a vector of eight floats, in plain C++. This file defines the operations. The versions
+// for other instruction sets compute the same bits (tests/unit/base/simd_test.cpp), except
+// about_fused() and about_fused_minus(). renderlib/base/simd.h selects one.
 
 #include <algorithm>
 #include <array>
@@ -32,6 +32,7 @@ inline float fused(float a, float b, float c) {
   return static_cast<float>(std::bit_cast<double>(bits));
 }
 
+/// The result of a comparison: true or false for each of the eight lanes.
 class Mask8 {
  public:
   explicit Mask8(unsigned bits) : bits_(bits) {}
@@ -57,6 +58,7 @@ class Float8 {
   static Float8 from_bytes(const Object& object) {
     return Float8(std::bit_cast<std::array<float, kLanes>>(object));
   }
+  /// The inverse of from_bytes().
   template <class Object>
   void to_bytes(Object& object) const {
     object = std::bit_cast<Object>(v_);
