@@ -56,12 +56,14 @@ double fractal(const Vec3& p, int first, int last) {
   return sum;
 }
 
-/// `broad` is the height without its finer octaves; the sea floor is smooth.
+/// Returns the colour of the sea. `broad` is the height without its finer octaves: the floor of the
+/// open sea is smooth.
 Vec3 sea(double height, double broad) {
   const Vec3 open = lerp(kDeepSea, kOpenSea, rise(-0.55, -0.1, broad));
   return lerp(open, kShelf, rise(-kShelfDepth, 0, height));
 }
 
+/// Returns the colour of land. `latitude` is the absolute value of its sine.
 Vec3 land(double height, double rain, double latitude) {
   const double dry = rise(0.02, 0.3, 0.32 - 1.6 * std::abs(latitude - 0.32) - 1.3 * rain);
   const double cold = rise(0.68, 0.84, latitude + 0.25 * height - 0.12 * rain);
@@ -75,7 +77,8 @@ Vec3 land(double height, double rain, double latitude) {
 /// Returns the colour of a point on the unit sphere that is not below polar ice. Octaves that
 /// cannot be seen are not computed, because most of the planet is sea.
 Vec3 uncovered(const Vec3& p, double latitude, double rain, int octaves) {
-  constexpr int kBroad = 4;
+  constexpr int kBroad = 4;  // number of coarse octaves
+  // Bound of the sum of the finer octaves: noise is at most 0.87.
   constexpr double kMaxFine = 2 * 0.87 / (1 << kBroad);
   const Vec3 at = p * kContinents + kLandAt;
   const double broad = fractal(at, 0, kBroad) - kSeaLevel;

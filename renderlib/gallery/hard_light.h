@@ -1,6 +1,7 @@
 #pragma once
 
-// Meshes of the scenes in hard_light/, as OBJ files.
+// Meshes of the scenes in gallery/hard_light (scenes whose light is hard to find), as the text of
+// OBJ files.
 
 #include <string>
 

@@ -18,11 +18,11 @@ double dot2(const Vec2& a, const Vec2& b) { return a.x * b.x + a.y * b.y; }
 Vec2 minus(const Vec2& a, const Vec2& b) { return a + b * -1; }
 Vec2 unit(const Vec2& a) { return a * (1 / std::sqrt(dot2(a, a))); }
 
-/// A ring of vertices.
+/// A ring of vertices around the y axis.
 struct Ring {
-  Vec2 at;
-  Vec2 normal;
-  double v = 0;
+  Vec2 at;       ///< radius and height
+  Vec2 normal;   ///< its radial and its vertical component
+  double v = 0;  ///< of the uv coordinates
 };
 
 /// The rings of a profile's pieces: a piece spans the rings `low` and `low` + 1. Two pieces that

@@ -16,8 +16,9 @@ namespace bandsaw::gallery {
 /// profile has at least two points, no two consecutive ones equal; around >= 3.
 std::string lathe_obj(absl::Span<const Vec2> profile, int around);
 
-/// Returns points of a smooth curve through `corners`, `steps` for each span (Catmull and Rom 1974,
-/// "A class of local interpolating splines"); radii stay >= 0.
+/// Returns points of a smooth curve through `corners` (at least two), `steps` (>= 1) for each span
+/// between two of them (Catmull and Rom 1974, "A class of local interpolating splines"); radii stay
+/// >= 0.
 std::vector<Vec2> smooth_profile(absl::Span<const Vec2> corners, int steps);
 
 }  // namespace bandsaw::gallery

@@ -53,6 +53,7 @@ std::string cube_bytes() {
 
 std::string triple(const Vec3& v) { return absl::StrFormat("[%.6g, %.6g, %.6g]", v.x, v.y, v.z); }
 
+/// Returns a node that places the cube at `centre`, scaled to `size`.
 std::string block(Mesh mesh, const Vec3& centre, const Vec3& size) {
   return absl::StrFormat(R"({"mesh": %d, "translation": %s, "scale": %s})", mesh, triple(centre),
                          triple(size));

@@ -31,6 +31,7 @@ struct Frame {
   Environment environment;
 };
 
+/// Draws one image of an environment (`face` 0 to 5 of a cube, otherwise 0).
 Image draw(Rgb (*sky)(const Vec3&), const Frame& frame, std::uint32_t face, std::uint32_t width,
            std::uint32_t height) {
   constexpr int kFine = 8;

@@ -10,7 +10,8 @@
 namespace bandsaw::gallery {
 namespace {
 
-constexpr int kAround = 28;
+// Profiles are lists of points (radius, height); lathe.h turns them around the y axis.
+constexpr int kAround = 28;  // vertices of a ring
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Surfaces of revolution in the scene `room`, as OBJ files; lengths in centimetres.
+// Surfaces of revolution in the scene `room`, as the text of OBJ files; lengths in centimetres.
 
 #include <string>
 

@@ -31,10 +31,10 @@ void append(std::string& bytes, const T& value) {
 /// Returns a *.vol file of the function's values at the centres of cells, each clamped to [0, 1].
 std::string vol_file(const std::array<std::int32_t, 3>& cells, const Box& box,
                      const std::function<double(const Vec3&)>& value) {
-  std::string bytes = "VOL\3";
-  append(bytes, std::int32_t{3});
+  std::string bytes = "VOL\3";     // version 3
+  append(bytes, std::int32_t{3});  // encoding: 8 bits
   append(bytes, cells);
-  append(bytes, std::int32_t{1});
+  append(bytes, std::int32_t{1});  // channels
   for (const Vec3& corner : {box.low, box.high}) {
     append(bytes, std::array<float, 3>{static_cast<float>(corner.x), static_cast<float>(corner.y),
                                        static_cast<float>(corner.z)});
@@ -61,6 +61,7 @@ double ramp(double a, double b, double x) {
   return t * t * (3 - 2 * t);
 }
 
+/// Returns the density of the smoke; vol_file() clamps it.
 double smoke_at(const Vec3& p) {
   // The column bends with the wind, and whirls push it aside.
   const Vec3 whirl{noise(p * 1.1 + Vec3{0, 0, 7}), 0, noise(p * 1.1 + Vec3{5, 2, 0})};
@@ -72,6 +73,7 @@ double smoke_at(const Vec3& p) {
   return density * ramp(0.5, 1.1, p.y) * ramp(4, 2.6, p.y);
 }
 
+/// Returns the temperature of the flames, relative to the hottest place.
 double heat_at(const Vec3& p) {
   const Vec3 whirl{noise(Vec3{p.x, 0.6 * p.y, p.z} * 3.4), 0,
                    noise(Vec3{p.x, 0.6 * p.y, p.z} * 3.4 + Vec3{9, 4, 1})};

@@ -1,6 +1,7 @@
 #pragma once
 
-// The smoke and the fire of the scene `campfire`, as *.vol files of 8 bits a number.
+// The smoke and the fire of the scene `campfire`, as the content of *.vol files (grids of numbers,
+// import/volume/vol_file.cpp) with 8 bits a number.
 
 #include <string>
 
