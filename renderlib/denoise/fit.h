@@ -2,7 +2,8 @@
 
 // First-order regression of an image's two halves on its guides, with weights from the opposite
 // half (Bitterli et al. 2016, "Nonlinearly Weighted First-order Regression for Denoising Monte
-// Carlo Renderings", section 4).
+// Carlo Renderings", section 4). The two halves are not parts of the area of the image: each is a
+// whole image, the means of one of two independent parts of the samples of each pixel.
 //
 // For every second pixel of every second row (a centre) and each half, a linear function of the
 // position and the guides is fitted to the pixels of a window, by weighted least squares. The
@@ -20,9 +21,9 @@
 
 namespace bandsaw {
 
-inline constexpr std::size_t kGuides = 6;  ///< albedo r, g, b; normal x, y; depth
-inline constexpr std::size_t kFirstNormal = 3;
-inline constexpr std::size_t kDepthGuide = 5;
+inline constexpr std::size_t kGuides = 6;       ///< albedo r, g, b; normal x, y; depth
+inline constexpr std::size_t kFirstNormal = 3;  ///< index of the first guide of the normal
+inline constexpr std::size_t kDepthGuide = 5;   ///< index of the depth
 
 /// Rows [first, last).
 struct RowSpan {
@@ -38,18 +39,19 @@ struct FitInput {
   int width = 0;
   int height = 0;
   RowSpan wanted;
-  std::array<std::array<SplitPlane, 3>, 2> halves;  ///< radiance of the two halves, in [0, 1e15]
-  std::array<SplitPlane, 2> variance;               ///< variance of a half: sum over channels, > 0
-  std::array<SplitPlane, kGuides> guides;           ///< each in [0, 1]
+  /// Radiance of the two halves, by channel, in [0, 1e15].
+  std::array<std::array<SplitPlane, 3>, 2> halves;
+  std::array<SplitPlane, 2> variance;      ///< variance of a half: sum over channels, > 0
+  std::array<SplitPlane, kGuides> guides;  ///< each in [0, 1]
   SplitPlane valid;  ///< 1 for pixels whose values may be used, otherwise 0, as in the margin
 };
 
+/// Settings of one filter: pixels that differ from the centre by more than a reach count little.
 struct FitSettings {
-  /// Patches that differ by more than this many standard deviations count little.
-  float color_reach = 1;
-  float albedo_reach = 2;  ///< guides that differ by more than this count little
-  float normal_reach = 0.3f;
-  float depth_reach = 0.1f;  ///< relative to the centre's depth
+  float color_reach = 1;      ///< difference of patches, in standard deviations
+  float albedo_reach = 2;     ///< difference of the albedo
+  float normal_reach = 0.3f;  ///< difference of the normal's components
+  float depth_reach = 0.1f;   ///< difference of the depth, relative to the centre's
 };
 
 /// The filters that are computed at the same time, because they compare the same patches.

@@ -130,6 +130,7 @@ struct Light {
   double effective = 0;  ///< number of equal records with as much information
 };
 
+/// Returns the light as seen from the place. Records without light or at the source are left out.
 Light light_of(const Place& place, absl::Span<const GuidingRecord> records) {
   Light light;
   for (const GuidingRecord& record : records) {

@@ -20,12 +20,14 @@ namespace bandsaw {
 /// Maximum number of balls of a cell.
 inline constexpr std::uint32_t kMaxBalls = 8;
 
+/// A ball from which a part of the light comes.
 struct GuidingBall {
   Float3 center;
   float radius = 0;  ///< > 0
   float weight = 0;  ///< share of the light, > 0; the weights of a cell sum to 1 at most
 };
 
+/// Made by fit_cell(); a GuidingField (guiding_field.h) holds many.
 struct GuidingCell {
   std::uint32_t count = 0;  ///< number of balls
   float irradiance = 0;     ///< at the place, estimated from the cell's records

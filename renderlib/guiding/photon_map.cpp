@@ -45,6 +45,7 @@ struct Box {
   Float3 high{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest(),
               std::numeric_limits<float>::lowest()};
 
+  /// Extends the box so that it contains the box from `from` to `to`.
   void add(const Float3& from, const Float3& to) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low[axis] = std::min(low[axis], from[axis]);
@@ -238,7 +239,7 @@ PhotonMap::PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, s
   photons_ = with_disks(std::move(photons), radius_factor, seed);
   split(0, static_cast<std::uint32_t>(photons_.size()), 0);
   set_boxes();
-  constexpr std::size_t kRun = 1024;
+  constexpr std::size_t kRun = 1024;  // photons that a thread takes at a time
   const std::size_t runs = (photons_.size() + kRun - 1) / kRun;
   pool.parallel_for(static_cast<std::int64_t>(runs), [&](std::int64_t run) {
     const auto first = static_cast<std::size_t>(run) * kRun;

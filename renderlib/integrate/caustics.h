@@ -24,6 +24,7 @@
 
 namespace bandsaw {
 
+/// The role of a surface for caustics, as described above.
 enum class CausticRole { kOther, kCaster, kReceiver };
 
 /// Returns true if all lobes of the BSDF that have a pdf are wide, so that photons around a point

@@ -90,7 +90,7 @@ void follow(const PathContext& context, const GuidingField& field, const Ray& ca
 PixelStatistics statistics_of(const Scene& scene, const RayGenerator& camera, const GuidingKey& key,
                               const GuidingField& field, const PathOptions& options,
                               std::uint32_t pixel) {
-  constexpr std::uint64_t kSeed = 0x3c6ef372fe94f82b;
+  constexpr std::uint64_t kSeed = 0x3c6ef372fe94f82b;  // an arbitrary number
   const Sample4 place = PixelSampler(kSeed, pixel, 0).group(0, kGroupCamera);
   const double x = std::floor(place[0] * key.width);
   const double y = std::floor(place[1] * key.height);
@@ -143,6 +143,7 @@ std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& k
   GuidingGain gain;
   for (const PixelStatistics& pixel : pixels) {
     const double of_pixel = pixel.sum / kAll;
+    // The brightness to which the pixel's errors are relative.
     const double unit = std::max({of_pixel, pixel.expected / kAll, kDarkest * mean});
     if (unit > 0) {
       const double variance = (pixel.squares - kAll * of_pixel * of_pixel) / (kAll - 1);

@@ -68,6 +68,7 @@ class MediumTraversal {
       std::uint32_t boundary = 0;  ///< as in Scene::to_medium(); 0 if the medium does not vary
       friend bool operator==(const Region&, const Region&) = default;
     };
+    /// Adds `shapes` (1 or -1) to the region's count; ignored if there are too many regions.
     void add(const Region& region, int shapes);
     /// Called for the ray's origin, where a region's count is its exits minus its entries. Clamps
     /// negative counts to 0: a ray may enter a shape that is not closed more often than it leaves
@@ -78,6 +79,7 @@ class MediumTraversal {
     std::optional<Region> top() const;
 
    private:
+    /// Returns nullptr if there are too many regions.
     int* count_of(const Region& region);
     struct Entry {
       Region region;

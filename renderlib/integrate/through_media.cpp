@@ -158,6 +158,7 @@ MediumEvent through_segment(const Segment& segment, double length, PathState& pa
   return scatter(segment, distance, distances.pdf(distance) / scattering_pdf, path);
 }
 
+/// Advances the path through the part `part` of `ray`, which is segment number `number`.
 MediumEvent through_homogeneous_medium(const PathContext& context, const Ray& ray,
                                        const MediumSegment& part, std::uint32_t number,
                                        std::uint32_t depth, PathState& path) {

@@ -7,6 +7,7 @@
 // sampling (medium/free_flight.h) and equiangular sampling (medium/equiangular.h), see
 // light_distance_sampler.h. This is the transport through homogeneous media; for media that vary in
 // space see through_grid_medium.h.
+//
 // Emission that the scattered path hits is weighted against light sampling by the power heuristic,
 // over the product of distance pdf and direction pdf.
 

@@ -158,8 +158,8 @@ TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const Ph
 }
 
 double share_on_surface(const Scene& scene, const CausticPhoton& photon) {
-  constexpr int kAtRim = 4;
-  constexpr int kAllOver = 16;
+  constexpr int kAtRim = 4;                          // points at the rim of the disk
+  constexpr int kAllOver = 16;                       // points all over the disk
   constexpr double kGoldenTurn = 0.381966011250105;  // the golden angle, as a part of a turn
   const Basis basis = orthonormal_basis(vec3(photon.normal));
   const auto is_there = [&](double turn, double distance) {

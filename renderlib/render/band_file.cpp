@@ -21,6 +21,7 @@ constexpr std::uint64_t kHeaderSize =
     kMagicSize + 8 + kDigestSize + 3 * 4 + 8 + 2 * 8 + 2 * 4 + 2 * 8 + 2 * 4 + 7 * 8 + 4;
 constexpr std::uint64_t kHashSize = 8;
 
+/// Appends numbers to bytes.
 class Writer {
  public:
   explicit Writer(std::vector<std::byte>& bytes) : bytes_(bytes) {}

@@ -72,8 +72,8 @@ double quantile(std::vector<float>& values, double share) {
 
 /// Returns ErrorEstimate::worst_share.
 double share_of_worst(std::vector<float> variances) {
-  constexpr std::size_t kMinPixels =
-      64;  // In smaller images one pixel is a large part of the image.
+  // In smaller images one pixel is a large part of the image.
+  constexpr std::size_t kMinPixels = 64;
   if (variances.size() < kMinPixels) {
     return 0;
   }

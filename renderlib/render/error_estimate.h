@@ -67,9 +67,9 @@ struct NodeSums {
 class ErrorSums {
  public:
   /// Adds a pixel: its contiguous nodes from sample 0 on, of which the first two MUST have equally
-  /// many samples. With the means a and b of the
-  /// first two nodes, v = (a - b)^2 / 4 is the variance of their common mean. The variance of a
-  /// further node of mean e is estimated by (e - (a + b) / 2)^2 - v, which is unbiased.
+  /// many samples. With the means a and b of the first two nodes, v = (a - b)^2 / 4 is the variance
+  /// of their common mean. The variance of a further node of mean e is estimated by (e - (a + b) /
+  /// 2)^2 - v, which is unbiased.
   void add(absl::Span<const NodeSums> nodes);
   /// Ends a group of pixels: those added since the last call. The errors of pixels in one group
   /// (render/pixel_groups.h) may be correlated by path reuse, those of other pixels are not; the
