@@ -35,7 +35,8 @@ struct CleanError {
   /// Returns a bound of the clean image's relative error, which stop rules compare with their
   /// target.
   double at_most() const { return kMargin * relative_clean(); }
-  /// The largest ratio of true and estimated error in 19 of 20 images (NOTES.md).
+  /// Covers the ratios of true and estimated error in the first measurements of NOTES.md; not
+  /// calibrated with many seeds.
   static constexpr double kMargin = 1.4;
   friend bool operator==(const CleanError&, const CleanError&) = default;
 };

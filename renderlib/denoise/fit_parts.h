@@ -2,7 +2,8 @@
 
 // Internal to fit(): the sizes of windows and tiles, distances between patches, and least squares.
 // A centre is a pixel at which a function is fitted, one of every two by two pixels (fit.h). A
-// patch is the square around a pixel by which pixels are compared.
+// patch is the square around a pixel by which pixels are compared. A half is the image of one of
+// two parts of the samples.
 
 #include <cstddef>
 #include <vector>

@@ -68,6 +68,7 @@ class PhotonMap {
   };
   /// Makes the nodes of photons [first, last), which it sorts.
   void split(std::uint32_t first, std::uint32_t last, int depth);
+  /// Computes the boxes of all nodes.
   void set_boxes();
 
   std::vector<CausticPhoton> photons_;

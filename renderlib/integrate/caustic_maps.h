@@ -25,9 +25,9 @@ std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Cast
                                                   const PhotonMapKey& key,
                                                   const Preparation& preparation);
 
-/// Returns true if the scene has what photon maps can find: complete casters and emissive surfaces,
-/// and neither motion, nor glass with priorities, nor mixtures with casters, nor hidden lamps,
-/// in which photons would not travel exactly as paths do.
+/// Returns true if photon maps can be made: the scene has casters, all of which can be sampled, and
+/// emissive surfaces; and it has no motion, no glass with priorities, no mixtures with casters and
+/// no hidden lamps, with which photons would not travel exactly as paths do.
 bool can_have_caustic_maps(const Scene& scene, const Casters& casters);
 
 /// Returns true if photon maps are better than paths: photons arrive, and the lamps are small as

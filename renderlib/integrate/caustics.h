@@ -9,10 +9,10 @@
 //   scattered there towards the camera,
 // - any other surface, a scattering in a medium, and a delta direction at a receiver end the chain.
 //
-// A chain is counted from the receiver towards the light. Beyond the first caster of a chain, path
-// tracing samples no emissive surface, and the emission that it hits is left out where light
-// sampling at the last caster could have produced it, because there the photons start. Delta
-// lights, environments and backgrounds are sampled as without photon maps.
+// A chain is counted from the receiver towards the light. At the casters of a chain, path tracing
+// samples no emissive surface. Emission that a path hits after a caster is left out where light
+// sampling at that caster could have produced it, because there the photons start. Delta lights,
+// environments and backgrounds are sampled as without photon maps.
 
 #include <cstdint>
 #include <utility>

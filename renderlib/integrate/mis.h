@@ -16,10 +16,12 @@
 // - Among the pixels that reuse paths: the pdfs with which each pixel samples a shared vertex, by
 //   the balance heuristic (path_reuse.cpp).
 //
-// The weight is 1 where only one strategy can produce the light: delta lights (light sampling
-// alone), and emission hit by camera rays, after specular directions, beyond a surface that the
-// path passed (unless lights are sampled on both of its sides: is_diffuse_behind), or behind a
-// hidden boundary of nested glass (BSDF sampling alone).
+// The weight is 1 where only one strategy can produce the light:
+//
+// - Light sampling alone: delta lights.
+// - BSDF sampling alone: emission that is hit by camera rays, after specular directions, behind a
+//   hidden boundary of nested glass, or beyond a surface that the path passed. The exception are
+//   surfaces that sample lights on both of their sides (is_diffuse_behind).
 
 #include "renderlib/light/receiver.h"
 

@@ -17,8 +17,8 @@ inline constexpr std::uint32_t kRouletteDepth = 3;
 inline constexpr double kRouletteThroughput = 0.25;
 
 /// Applies Russian roulette after scattering `depth` (counted from 0), with the random number
-/// `number` in [0, 1). Returns false if the path ends. At least one path in 20 survives, so that no
-/// throughput grows more than 20 times.
+/// `number` in [0, 1). Returns false if the path ends. The survival probability is at least 1/20,
+/// so that no throughput grows more than 20 times.
 inline bool survives_roulette(const PathContext& context, std::uint32_t depth, double number,
                               PathState& path) {
   if (context.options.russian_roulette && depth + 1 >= kRouletteDepth) {

@@ -144,7 +144,8 @@ bool is_on_surface(const Scene& scene, const CausticPhoton& photon, const Vec3& 
 }  // namespace
 
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk) {
-  // The numbers are those of a pixel beyond the largest image.
+  // The random numbers are those of a pixel outside of the largest image, whose sides have 2^16
+  // pixels.
   constexpr std::uint32_t kBeyondImages = 1u << 24;
   const PixelSampler sampler(chunk.seed, kBeyondImages, kBeyondImages + chunk.map);
   TracedPhotons out;

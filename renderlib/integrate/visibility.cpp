@@ -1,5 +1,5 @@
-// One any-hit query, or, if the scene has surfaces that are partly transparent, all hits along the
-// ray in order, whose transparencies are multiplied.
+// Visibility is one any-hit query. Only if the scene has surfaces that are partly transparent, all
+// hits along the ray are found in order, and their transparencies are multiplied.
 
 #include "renderlib/integrate/visibility.h"
 

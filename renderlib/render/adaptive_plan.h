@@ -5,11 +5,12 @@
 // A rule that decides from a pixel's own samples whether the pixel needs further samples is biased,
 // because it stops pixels that happened to see little light: a pixel lit by one of a hundred
 // samples can converge to 14 % of its value. Here a pixel's own samples never decide how many
-// samples it gets. The first samples of all pixels are a pilot. After the pilot, the number of
-// samples is planned once: for the even pixels of every tile from the pilot of the image's odd
-// pixels alone, and for the odd pixels from the pilot of the even ones. The Owen scrambles of
-// different pixels are independent (sampling/sampler.h), so given the plan, a pixel's value is the
-// mean of all its samples and unbiased.
+// samples it gets. The first samples of all pixels are a pilot. A fixed pattern divides the pixels
+// of every tile into an even and an odd half (tile_samples.h). After the pilot, the number of
+// samples is planned once: for the even half of every tile from the pilot of the image's odd pixels
+// alone, and for the odd half from the pilot of the even pixels. The Owen scrambles of different
+// pixels are independent (sampling/sampler.h). So, given the plan, a pixel's value is the mean of
+// all its samples and unbiased.
 //
 // Samples are distributed for two errors at once: the mean squared error, which --error bounds, and
 // the mean of squared errors over squared values (relMSE), which corresponds to visible noise in

@@ -39,17 +39,16 @@ class Film {
 
   /// Adds rows of samples that are not covered. Returns FAILED_PRECONDITION, without changing
   /// anything, if some samples of a row are covered already; RESOURCE_EXHAUSTED if memory or disk
-  /// is full. `tiles` says which samples the half tiles of the band took. For a film of
-  /// rows it MUST be TileSamples::whole(): all pixels took the samples of the band.
+  /// is full. `tiles` says which samples the half tiles of the band took. For a film of rows it
+  /// MUST be TileSamples::whole(): all pixels took the samples of the band.
   absl::Status add(const BandPixels& pixels, const TileSamples& tiles = {});
 
   /// Returns true if the samples [0, samples) are covered in every row: rendered, or skipped by
   /// half tiles to which the plan gives no more.
   bool complete(std::uint64_t samples) const;
 
-  /// The image of the samples that are present. A pixel is the mean of its first n samples. The
-  /// range [0, n) is divided into the largest nodes of the binary tree over the samples that fit; n
-  /// is the largest number for which all of them are present. They are summed as the tree
+  /// The image of the samples that are present. A pixel is the mean of its samples [0, n), where n
+  /// is the largest number for which they are all present. They are summed as the summation tree
   /// prescribes, and the mean is rounded to float once. Rows without samples are black and counted
   /// in `missing_rows`.
   struct Snapshot {

@@ -17,9 +17,9 @@
 
 namespace bandsaw {
 
-/// Returns the passes that make up samples [0, samples): one block, one block, two, four, …, so
-/// that each pass doubles the samples and leaves two halves for the error estimate; then the rest,
-/// node by node.
+/// Returns the passes (ranges of samples, each rendered of all rows) that make up samples
+/// [0, samples): one block, one block, two, four, …, so that each pass doubles the samples and
+/// leaves two halves for the error estimate; then the rest, node by node (band.h).
 std::vector<SampleRange> passes_of(std::uint64_t samples);
 
 /// Returns the bands of the passes of samples [0, samples) over `rows`, pass by pass, from the top.
