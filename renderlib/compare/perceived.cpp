@@ -1,4 +1,4 @@
-// Conversions between linear RGB, XYZ relative to white, the opponent colour space of FLIP, and CIE
+// Converts between linear RGB, XYZ relative to white, the opponent colour space of FLIP, and CIE
 // L*a*b*.
 
 #include "renderlib/compare/perceived.h"

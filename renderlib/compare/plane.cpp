@@ -1,4 +1,5 @@
-// Separable filters: rows first, then columns. Beyond the border the outermost value is repeated.
+// Filters are separable: rows are filtered first, then columns. Beyond the border the outermost
+// value is repeated.
 
 #include "renderlib/compare/plane.h"
 

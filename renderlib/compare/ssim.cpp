@@ -1,4 +1,4 @@
-// SSIM after Wang et al. 2004, on grey values, with Gaussian windows.
+// Computes SSIM as in Wang et al. 2004 (ssim.h), on grey values, with Gaussian windows.
 
 #include "renderlib/compare/ssim.h"
 
@@ -11,7 +11,7 @@
 namespace bandsaw {
 namespace {
 
-// Section III.B, equations 13 and 14, with L = 1.
+// The constants of section III.B, equations 13 and 14, with L = 1, the range of the values.
 constexpr double kC1 = 0.01 * 0.01;
 constexpr double kC2 = 0.03 * 0.03;
 

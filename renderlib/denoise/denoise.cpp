@@ -85,9 +85,11 @@ class Selection {
       }
     });
   }
-  /// Returns the row of the planes, and the index of a pixel in the image.
+  /// Returns the row of the planes that is row y here.
   int plane_row(int y) const { return y + planes_.wanted.first; }
+  /// Returns the index of a pixel in the whole image.
   std::size_t in_image(int x, int y) const { return size_.index(x, strip_.first + plane_row(y)); }
+  /// Returns half h as it was rendered, for channel c.
   float half(std::size_t h, std::size_t c, int x, int y) const {
     return planes_.halves[h][c].at(x, plane_row(y));
   }

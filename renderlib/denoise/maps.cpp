@@ -1,4 +1,4 @@
-// Box filters of maps, and a smoothing whose weights fall with differences of the guides.
+// Smooths maps: by a box filter, and by weights that fall with differences of the guides.
 
 #include "renderlib/denoise/maps.h"
 

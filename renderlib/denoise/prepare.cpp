@@ -12,7 +12,7 @@ namespace {
 
 /// Limit of radiance and depth: the sums of squares of larger values exceed the range of float.
 constexpr float kMaxDepthValue = 1e15f;
-constexpr int kAround = 2;  ///< radius in which bright pixels are looked for
+constexpr int kAround = 2;  ///< radius, in pixels, of the neighbours that limit a bright pixel
 /// Least standard deviation of a half, as a share of the brightness around a pixel: smaller
 /// differences are never taken for detail.
 constexpr float kMinNoise = 3e-3f;

@@ -269,11 +269,11 @@ std::vector<Cluster> clusters_of(const Place& place, absl::Span<Seen> seen) {
   return whole;
 }
 
-/// The pdfs with which a direction that carries light would be sampled.
+/// The pdfs with which a direction that carries light would be sampled by two strategies.
 struct Densities {
   double weight = 0;
-  double cosine = 0;    ///< pdf by the cosine
-  double clusters = 0;  ///< pdf by the clusters
+  double cosine = 0;    ///< pdf of sampling by the cosine, as a diffuse BSDF does
+  double clusters = 0;  ///< pdf of sampling the cones of the clusters
 };
 
 /// Fits clusters to each half of the directions and returns the densities of the other half, which
@@ -304,9 +304,9 @@ std::vector<Densities> crossed_densities(const Place& place, absl::Span<const Se
 }
 
 /// Returns the expected second moment of light over pdf, in units of the squared mean, where the
-/// clusters are sampled with probability `share`, otherwise the cosine. The light is taken to be as
-/// dense as the clusters say, but not less dense than the cosine: where the clusters have a hole,
-/// sampling them only takes samples away.
+/// clusters are sampled with probability `share`, otherwise the cosine. The light is taken to have
+/// the density of the clusters, but at least that of the cosine: in directions that no cluster
+/// covers, sampling the clusters only takes samples away.
 double second_moment(absl::Span<const Densities> densities, double share) {
   double sum = 0;
   for (const Densities& at : densities) {

@@ -1,4 +1,4 @@
-// Exposure, and the filmic tone curve: a rational function of each channel.
+// Applies the exposure and the filmic tone curve, a rational function of each channel.
 
 #include "renderlib/image/display.h"
 

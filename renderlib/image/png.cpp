@@ -1,4 +1,4 @@
-// PNG by stb_image_write, which is compiled here and nowhere else.
+// Encodes PNG by stb_image_write, which is compiled here and nowhere else.
 
 #include "renderlib/image/png.h"
 
@@ -25,6 +25,7 @@ namespace {
 // stb counts bytes in int, and its compressor doubles its buffer; this size is safe.
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 29;
 
+/// Called by stb with parts of the file; `context` is the vector to which they are appended.
 void append(void* context, void* data, int size) {
   auto& bytes = *static_cast<std::vector<std::byte>*>(context);
   const auto* begin = static_cast<const std::byte*>(data);

@@ -1,5 +1,5 @@
-// The transfer function of sRGB, by the elementary functions of renderlib/math, so that the bits
-// are equal on all machines.
+// Computes the transfer function of sRGB by the elementary functions of renderlib/math, so that the
+// bits are equal on all machines.
 
 #include "renderlib/image/srgb.h"
 

@@ -1,4 +1,4 @@
-// Blobs in memory by digest.
+// Implements BlobMap, which keeps blobs in memory by their digests.
 
 #include "renderlib/package/blob_source.h"
 

@@ -1,5 +1,5 @@
-// Weak references to parts that earlier packages have decoded: a part can be found as long as a
-// scene holds it.
+// Holds weak references to parts of packages that were decoded earlier: a part can be found as long
+// as a scene holds it.
 
 #include "renderlib/package/decoded_parts.h"
 

@@ -23,7 +23,7 @@ constexpr double kOwnTile = 0.5;
 /// Minimum gain in error at equal samples for which a plan pays: samples in noisy regions take 1.1
 /// to 1.4 times the time of others (tests/bench/README.md).
 constexpr double kMinGain = 1.25;
-/// A plan is evaluated at this multiple of the pilot's samples.
+/// The gain of a plan is predicted for images with this many times the samples of the pilot.
 constexpr double kJudgedAfter = 8;
 
 constexpr int kLevels = 16;

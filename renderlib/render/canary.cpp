@@ -100,7 +100,7 @@ SceneDescription every_feature() {
   return scene;
 }
 
-/// The same scene through a lens and with a wide pixel filter.
+/// Returns the scene of every_feature(), through a lens and with a wide pixel filter.
 SceneDescription through_a_lens() {
   SceneDescription scene = every_feature();
   auto& camera = std::get<PerspectiveCamera>(scene.camera);
@@ -110,7 +110,7 @@ SceneDescription through_a_lens() {
   return scene;
 }
 
-/// The same scene with an orthographic camera.
+/// Returns the scene of every_feature() with an orthographic camera.
 SceneDescription flat_view() {
   SceneDescription scene = every_feature();
   scene.camera =
@@ -120,8 +120,8 @@ SceneDescription flat_view() {
   return scene;
 }
 
-/// The same scene lit by an environment and by so many delta lights that a light tree selects among
-/// them.
+/// Returns the scene of every_feature(), lit by an environment and by so many delta lights that a
+/// light tree selects among them.
 SceneDescription lit_from_outside() {
   SceneDescription scene = every_feature();
   Environment environment;
@@ -150,7 +150,7 @@ SceneDescription lit_from_outside() {
   return scene;
 }
 
-/// The same scene with media in a ball, in a cube and everywhere else.
+/// Returns the scene of every_feature() with media in a ball, in a cube and everywhere else.
 SceneDescription in_smoke() {
   SceneDescription scene = every_feature();
   Media& media = scene.media;
@@ -165,8 +165,8 @@ SceneDescription in_smoke() {
   return scene;
 }
 
-/// The same scene with a cloud that varies in space and a fire in its midst, both turned by a
-/// frame.
+/// Returns the scene of every_feature() with a glowing cloud that varies in space and moves with a
+/// turned frame.
 SceneDescription in_a_cloud() {
   SceneDescription scene = every_feature();
   Media& media = scene.media;
@@ -221,8 +221,8 @@ SceneDescription outdoors() {
   return scene;
 }
 
-/// The same scene with the materials of other renderers, and all properties that materials can
-/// have.
+/// Returns the scene of every_feature() with the materials of other renderers, and all properties
+/// that materials can have.
 SceneDescription of_other_materials() {
   SceneDescription scene = every_feature();
   const auto texture = [](std::uint32_t i) { return TextureId{i}; };

@@ -1,4 +1,4 @@
-// Memory for rows of sums, taken in slabs of 8 MiB. Rows that are given back are used again.
+// Takes memory for rows of sums in slabs of about 8 MiB. Rows that are given back are used again.
 
 #include "renderlib/render/row_store.h"
 

@@ -1,6 +1,6 @@
-// A strip is a run of pixels of a film. It keeps the nodes that have arrived: sums over aligned
-// ranges of samples, which form a binary tree. Two nodes that are siblings in the tree are merged,
-// except the two halves that the error estimate needs.
+// A strip is some pixels of a row of a film that always have the same samples. It keeps the nodes
+// that have arrived: sums over aligned ranges of samples, which form a binary tree. Two nodes that
+// are siblings in the tree are merged, except the two halves that the error estimate needs.
 
 #include "renderlib/render/strip_nodes.h"
 
@@ -12,6 +12,7 @@ namespace {
 /// Returns false if the last block of the range is truncated.
 bool whole(const SampleRange& range) { return range.samples() == range.blocks() * kBlockSamples; }
 
+/// Returns true if the two nodes are the halves of one node of the tree.
 bool siblings(const SampleRange& left, const SampleRange& right) {
   return left.last == right.first && left.blocks() == right.blocks() &&
          left.first_block() % (2 * left.blocks()) == 0;

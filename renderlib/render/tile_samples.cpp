@@ -1,5 +1,5 @@
-// The samples that half tiles (the units of adaptive sampling) take in a pass are a list with a
-// range of samples for each, row by row of tiles; an empty list stands for uniform sampling.
+// TileSamples stores a list with a range of samples for each half tile (the unit of adaptive
+// sampling), row by row of tiles. An empty list stands for uniform sampling.
 
 #include "renderlib/render/tile_samples.h"
 

@@ -1,4 +1,4 @@
-// The unit shapes of boundaries, and the validation of media, grids and boundaries.
+// Makes the unit shapes of boundaries, and validates media, grids and boundaries.
 
 #include "renderlib/scene/media.h"
 
