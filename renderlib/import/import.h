@@ -1,7 +1,8 @@
 #pragma once
 
-// Imports scene files and models. Runs in its own confined process (import/main.cpp); coordinator
-// and workers never do this.
+// The interface of this folder: converts a scene file, a foreign scene or a model to the
+// description that is encoded as a scene package. Called only by the confined process
+// bandsaw-import (import/main.cpp), never by the coordinator or a worker.
 
 #include <map>
 #include <optional>
@@ -15,14 +16,14 @@
 
 namespace bandsaw {
 
-/// A file that the user named in addition to the scene. It may be in any folder, so its bytes are
-/// passed.
+/// A file that the user named in addition to the scene. It may lie outside of the scene's folder,
+/// which the confined process cannot read, so its bytes are passed.
 struct GivenFile {
   std::string name;  ///< for messages
   std::string bytes;
 };
 
-/// One frame of a sequence.
+/// The choice of one frame of a sequence.
 struct FrameChoice {
   double number = 0;          ///< its time is number / fps
   std::optional<double> fps;  ///< frames per second, [0.01, 10000]; absent: the scene's
@@ -33,12 +34,13 @@ struct FrameChoice {
 /// Choices of the user in addition to the scene.
 struct ImportChoices {
   std::optional<GivenFile> environment =
-      {};                   ///< equirectangular image that replaces its background
-  std::string camera = {};  ///< name of one of its models' cameras; empty for the scene's own
+      {};                   ///< equirectangular image that replaces the scene's background
+  std::string camera = {};  ///< name of a camera of the scene's models; empty: the scene's own
   std::map<std::string, std::string> parameters = {};  ///< parameters of a Mitsuba scene
   bool strict = false;                                 ///< a warning is an error
   std::optional<FrameChoice> frame = {};  ///< absent: the scene at time 0, models without animation
-  std::string animation = {};             ///< name of its models' animation
+  /// Name of the animation of the scene's models; empty: with a frame the first, otherwise none.
+  std::string animation = {};
   /// A folder that contains the folder of a Mitsuba scene: files below it may be read. Empty: only
   /// files below the scene's own folder.
   std::string folder = {};
@@ -49,11 +51,12 @@ absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const Import
 
 /// Reads a scene file (*.textproto, *.json), a scene of pbrt-v4 (*.pbrt, *.pbrt.gz) or Mitsuba
 /// (*.xml), or a single model, which is framed under a default sky unless it has cameras and
-/// lights. Only files below the folder of `path` are read. Returns INVALID_ARGUMENT:
-/// "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1", and NOT_FOUND or
-/// PERMISSION_DENIED with the file's name. `memory` is passed to the imports of all frames of one
-/// scene: files that an earlier import has read are not read again, and the imported scenes share
-/// their equal parts.
+/// lights. Only files below the folder of `path` (for Mitsuba, below `choices.folder` if it is set)
+/// are read. An invalid value is INVALID_ARGUMENT, for example
+/// "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1"; a file that is missing or
+/// outside of the folder is NOT_FOUND or PERMISSION_DENIED with its name. `memory` is passed to the
+/// imports of all frames of one scene: files that an earlier import has read are not read again,
+/// and the imported scenes share their equal parts. nullptr: nothing is kept.
 absl::StatusOr<ImportedScene> import_scene(const std::string& path,
                                            const ImportChoices& choices = {},
                                            ImportMemory* memory = nullptr);
@@ -67,8 +70,8 @@ struct SceneAsText {
 };
 
 /// Converts a scene of pbrt-v4 or Mitsuba, or a single model. The scene is read as import_scene
-/// does it, so that the text is known to be good; errors are the same. Ignores `environment` and
-/// `camera`. INVALID_ARGUMENT also for a scene file of ours.
+/// does it, so that the text is known to be valid; errors are the same. Ignores `environment` and
+/// `camera` of the choices. Returns INVALID_ARGUMENT also for a scene file of ours.
 absl::StatusOr<SceneAsText> scene_as_text(const std::string& path,
                                           const ImportChoices& choices = {});
 

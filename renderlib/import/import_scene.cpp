@@ -51,13 +51,14 @@ bool has_light(const SceneDescription& scene) {
   });
 }
 
+/// Returns a camera that sees all placed meshes, for the scene's image size.
 Camera framed(const ImportedScene& out) {
   const Geometry& geometry = out.scene.geometry;
   return frame(geometry, geometry.instances, static_cast<double>(out.info.width) / out.info.height);
 }
 
-/// Returns the camera of a scene file that defines none: one of a model's, or one that frames the
-/// model.
+/// Returns the camera of a scene file that defines none or names a model's camera: a camera of a
+/// model, or one that frames the only model. It is an error if there are neither.
 absl::StatusOr<MovingCamera> camera_of_a_model(const Field& root, const scene::Scene& from,
                                                const SceneDraft& draft) {
   if (from.has_camera()) {
@@ -78,7 +79,8 @@ void set_camera(MovingCamera camera, SceneDescription& scene) {
   scene.camera_at_close = std::move(camera.at_close);
 }
 
-/// Reads a scene at one time: all but its tracks.
+/// Reads a scene at one time. Its tracks, which change numbers of the scene file over time, have
+/// been evaluated in `from`.
 absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft& draft) {
   SceneDescription& scene = draft.out.scene;
   RETURN_IF_ERROR(read_settings(root, from, draft.out.info));
@@ -114,7 +116,8 @@ absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft&
   return absl::OkStatus();
 }
 
-/// Returns the shutter interval of the frame in the scene's time; at time 0 without a frame.
+/// Returns the shutter interval in seconds of the scene's time; it begins at the frame's time, or
+/// at 0 without a frame.
 absl::StatusOr<Shutter> shutter_of_frame(const Field& root, const scene::Scene& from,
                                          const std::optional<FrameChoice>& frame) {
   ASSIGN_OR_RETURN(const double own_fps, read_fps(root, from));
@@ -177,7 +180,7 @@ scene::Background as_proto(const Background& sky) {
   return out;
 }
 
-/// Returns the scene file of a model that has been read alone (read_model_alone).
+/// Returns a scene file that shows the same as a model that has been read alone (read_model_alone).
 scene::Scene scene_of_model(const SceneDraft& draft) {
   scene::Scene scene;
   scene.add_model()->set_file(draft.file);
@@ -212,6 +215,8 @@ bool is_foreign(const std::string& path) {
   return is_pbrt(lower) || is_mitsuba(lower);
 }
 
+/// Converts a foreign scene to the message of a scene file. Further frames get the result of the
+/// first, which is kept in `draft.memory`.
 absl::StatusOr<std::shared_ptr<const ConvertedScene>> convert(const std::string& path,
                                                               const ImportChoices& choices,
                                                               const SceneDraft& draft) {
@@ -250,6 +255,7 @@ absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
   if (draft.shutter == Shutter{}) {
     return MovingCamera{framed(draft.out)};
   }
+  // A draft has a shutter interval at time 0 until one is set.
   SceneDraft at_zero(draft.folder, draft.file, draft.memory);
   ASSIGN_OR_RETURN(const Model model, read_model(real, false, at_zero, animation));
   at_zero.out.scene.geometry.instances = model.instances;
@@ -298,7 +304,7 @@ absl::Status read_any(const std::string& path, const ImportChoices& choices, Sce
       "model .gltf, .glb, .obj, .fbx, .dae, .3ds, .ply, .stl or another format of Assimp"));
 }
 
-/// Runs the checks that need the whole scene.
+/// Runs the checks that need the whole scene. With `strict`, the first warning becomes an error.
 absl::Status check_whole(const ImportChoices& choices, const SceneDraft& draft) {
   const std::vector<std::string>& warnings = draft.out.info.warnings;
   if (choices.strict && !warnings.empty()) {

@@ -1,6 +1,7 @@
-// bandsaw-import: reads one foreign file and leaves it in a folder in a form that needs no parser,
-// or one error on standard output. Started by the client commands
-// (coordinator/cli/scene/import_process.h); can be run by hand.
+// bandsaw-import: reads one foreign file and writes it to a folder in a form that needs no parser.
+// If that fails, it writes one error to standard output. Started by the client commands and the
+// dashboard (coordinator/cli/scene/import_process.h); can be run by hand. FOLDER must exist;
+// SECONDS and BYTES limit the CPU time and the memory.
 //
 //   bandsaw-import scene FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
@@ -12,15 +13,16 @@
 //   bandsaw-import frames FILE FOLDER SECONDS BYTES frame=N [CHOICE ...]
 //
 // does the same for one frame after the other: it reads their numbers from standard input, one a
-// line, and answers each with the line "done". FOLDER then has the package of that frame alone. The
+// line, and answers each with the line "done" when FOLDER has the package of that frame alone. The
 // files of the scene are read once. SECONDS is the CPU time for all frames together. The choice
 // frame=N must be given, but its N is not used;
 //
 //   bandsaw-import text FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
-// leaves a foreign scene as one of ours: FOLDER/text, FOLDER/warnings (one a line), and FOLDER/list
-// with a line for each file that the scene names: "made NAME", whose bytes are in FOLDER/0,
-// FOLDER/1 and so on, or "found NAME" for a file below the folder of FILE;
+// converts a foreign scene to a Bandsaw scene file: it leaves FOLDER/text, FOLDER/warnings (one a
+// line), and FOLDER/list with a line for each file that the scene names: "made NAME" for a file
+// that the converter made, or "found NAME" for a file below the folder of FILE. The bytes of the
+// made files are in FOLDER/0, FOLDER/1 and so on, in the order of the list;
 //
 //   bandsaw-import unzip FILE FOLDER SECONDS BYTES
 //
@@ -31,8 +33,8 @@
 //
 // leaves FOLDER/image: width and height as uint32, then float RGB, rows from the top.
 //
-// Exit 0: done. Exit 1: "CODE: message" on standard output, CODE as absl::StatusCodeToString writes
-// it.
+// It exits with 0 when all is done. Otherwise it exits with 1 after a line "CODE: message" on
+// standard output, with CODE as absl::StatusCodeToString writes it.
 
 #include <sys/prctl.h>
 
@@ -89,6 +91,9 @@ absl::Status write_file(const std::string& path,
   return good ? absl::OkStatus() : errno_status(error, path);
 }
 
+// The functions import_to, frames_to, read_picture_to, text_to and unzip_to implement the modes
+// scene, frames, image, text and unzip.
+
 absl::Status import_to(const std::string& path, const std::string& folder,
                        const ImportChoices& choices) {
   ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path, choices));
@@ -109,7 +114,7 @@ class FrameImports {
   FrameImports(std::string path, std::string folder, ImportChoices choices)
       : path_(std::move(path)), folder_(std::move(folder)), choices_(std::move(choices)) {}
 
-  /// Replaces the package in the folder.
+  /// Replaces the package in the folder by that of the frame `number`.
   absl::Status import(double number) {
     choices_.frame->number = number;
     ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path_, choices_, &memory_));
@@ -126,7 +131,8 @@ class FrameImports {
   }
 
  private:
-  /// Writes the blobs that are new, and removes the files that are not used any more.
+  /// Writes the blobs that are not yet in the folder, and removes those that this frame does not
+  /// use.
   absl::Status update_files(const BlobMap& blobs, const std::set<wire::Digest>& used) {
     const BlobFolder out(folder_);
     for (const wire::Digest& digest : written_) {
@@ -147,7 +153,7 @@ class FrameImports {
   const std::string folder_;
   ImportChoices choices_;
   ImportMemory memory_;
-  std::set<wire::Digest> written_;
+  std::set<wire::Digest> written_;  ///< blobs in the folder
 };
 
 /// Imports the frames whose numbers are on standard input, until that ends.
@@ -234,15 +240,15 @@ constexpr char kUsage[] =
     "[frame=N [fps=F] "
     "[shutter=SHARE]] [animation=NAME]";
 
-// Reads a file that the user named, not another file, so it may be in any folder. Here it is only
-// copied.
+// Reads a file that the user named on the command line. It may be in any folder, because no file of
+// unknown origin has named it. Here its bytes are only copied, not parsed.
 absl::StatusOr<GivenFile> read_given(const std::string& path) {
   ASSIGN_OR_RETURN(std::string bytes, read_whole_file(path, kMaxImageFileBytes));
   return GivenFile{name_of(path), std::move(bytes)};
 }
 
-// Sets a number of the chosen frame. Returns false if `value` is none, or if `key` is no such
-// choice.
+// Reads frame=N, fps=F or shutter=SHARE. Returns false if `value` is not a number in the permitted
+// range, if `key` is another one, or if fps or shutter come before frame.
 bool read_frame_choice(absl::string_view key, absl::string_view value, ImportChoices& choices) {
   double number = 0;
   if (!absl::SimpleAtod(value, &number) || !std::isfinite(number)) {
@@ -331,7 +337,7 @@ absl::Status run_without_exceptions(int argc, char** argv) {
 }  // namespace bandsaw
 
 int main(int argc, char** argv) {
-  // Without a parent process nobody would read the result.
+  // The process is killed when its parent ends, because then nobody would read the result.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const absl::Status status = bandsaw::run_without_exceptions(argc, argv);
   if (!status.ok()) {

@@ -23,7 +23,8 @@ void add(const aiQuaternion& q, std::vector<double>& to) {
   to.insert(to.end(), {q.x, q.y, q.z, q.w});
 }
 
-/// Returns a curve of the keys; std::nullopt if none is usable.
+/// Returns a curve of the keys, whose values have `width` numbers; `ticks` are ticks per second.
+/// Returns std::nullopt if no key is usable.
 template <class Key>
 std::optional<Curve> curve_of(const Key* keys, unsigned count, std::size_t width, double ticks) {
   std::vector<double> times;
@@ -56,6 +57,7 @@ NodeMotion motion_of_channel(const aiNodeAnim& channel, double ticks) {
 
 /// Returns the weights of the morph targets over time; std::nullopt if no key is usable.
 std::optional<Curve> weights_of_channel(const aiMeshMorphAnim& channel, double ticks) {
+  // Each key has a number for every target, so a damaged number could demand all the memory.
   constexpr unsigned kMaxTargets = 10'000;
   unsigned targets = 0;
   for (unsigned i = 0; i < channel.mNumKeys; ++i) {

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::uint64_t kMaxModelFileBytes = std::uint64_t{8} << 30;
 
-// Reads from bytes in memory: Assimp seeks often, and so the file can be closed at once.
+// A stream that reads from bytes in memory. Assimp seeks often, which is fast here, and the file
+// need not stay open.
 class BytesStream : public Assimp::IOStream {
  public:
   /// `bytes` MUST outlive this object.

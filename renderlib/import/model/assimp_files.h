@@ -1,7 +1,7 @@
 #pragma once
 
-// The files that Assimp can open: those of the scene's folder, read only, or a glTF document in
-// memory.
+// File systems for Assimp, which opens files only through them: AssimpFiles for the files of the
+// scene's folder, read only, and PlainGltfFiles for a rewritten glTF document in memory.
 
 #include <assimp/IOSystem.hpp>
 
@@ -18,18 +18,19 @@ namespace bandsaw {
 /// which owns its AssimpFiles.
 struct RefusedFiles {
   std::vector<std::string> missing;  ///< names as in the model
-  std::vector<std::string> outside;  ///< messages
+  std::vector<std::string> outside;  ///< error messages for files outside of the scene's folder
 };
 
 /// A model that Assimp opens.
 struct ModelSource {
-  std::string path;                        ///< real path; for one in memory, where it would be
+  std::string path;  ///< real path; for a model in memory, the path that it would have
   std::optional<absl::string_view> bytes;  ///< set for a model in memory; MUST outlive the reading
 };
 
 class AssimpFiles : public Assimp::IOSystem {
  public:
-  /// Other files than the model are relative to its folder.
+  /// The names of other files than the model are relative to the model's folder. `folder` and
+  /// `refused` MUST outlive this object.
   AssimpFiles(const SceneFolder& folder, const ModelSource& model, RefusedFiles& refused)
       : folder_(folder), model_(model), model_folder_(folder_of(model.path)), refused_(refused) {}
 
@@ -39,6 +40,7 @@ class AssimpFiles : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override;
 
  private:
+  /// Returns the real path of a file. Errors as SceneFolder::resolve.
   absl::StatusOr<std::string> find(const std::string& file) const;
   bool is_in_memory(const char* file) const { return model_.bytes && file == model_.path; }
   const SceneFolder& folder_;

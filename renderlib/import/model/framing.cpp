@@ -12,10 +12,11 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kVerticalFov = 35;  // degrees: little distortion
-constexpr double kMargin = 0.94;
-const Vec3 kToCamera = {0.55, 0.38, 1};
+constexpr double kVerticalFov = 35;      // degrees: little distortion
+constexpr double kMargin = 0.94;         // share of the image that the model may fill
+const Vec3 kToCamera = {0.55, 0.38, 1};  // from the model: front, a little right and above
 
+// Calls `visit` with the world position of each vertex at time 0. Instances of groups are left out.
 template <class Visit>
 void for_each_vertex(const Geometry& geometry, const std::vector<Instance>& instances,
                      Visit visit) {

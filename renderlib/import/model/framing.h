@@ -1,6 +1,6 @@
 #pragma once
 
-// Camera and background for a model that has neither camera nor light.
+// Makes a camera for a model that has none, and a background for a model without lights.
 
 #include <vector>
 

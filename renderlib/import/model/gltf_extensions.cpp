@@ -99,6 +99,7 @@ GltfTexture texture_of(const Json& from) {
   const bool finite = std::all_of(to.transform.m.begin(), to.transform.m.end(),
                                   [](double v) { return std::isfinite(v); });
   to.transform = finite ? to.transform : UvTransform{};
+  // Assimp stores fewer than 64 sets; the limit keeps the conversion to an integer defined.
   to.uv_set = uv_set >= 0 && uv_set < 64 ? static_cast<unsigned>(uv_set) : 0;
   return to;
 }
@@ -142,7 +143,7 @@ std::optional<GltfVolume> volume_of(const Json& material) {
   return to;
 }
 
-/// Adds the features of an extension that are not rendered.
+/// Returns the features of a material's extensions that are not rendered, as texts of warnings.
 std::vector<std::string> unsupported_features_of(const Json& material) {
   std::vector<std::string> out;
   const auto has = [&](const char* name, const char* factor) {

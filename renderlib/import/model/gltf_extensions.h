@@ -1,7 +1,8 @@
 #pragma once
 
-// Reads the parts of a glTF file that Assimp 5.2 does not pass on from its JSON: used extensions,
-// transforms of textures, strength of emission, nodes of cameras, number of scenes.
+// Reads those parts of a glTF file from its JSON that Assimp 5.2 does not pass on: used extensions,
+// transforms of textures, strength of emission, nodes of cameras, number of scenes. The functions
+// that convert materials and nodes (model_*.cpp) combine them with Assimp's result.
 
 #include <array>
 #include <limits>
@@ -16,24 +17,24 @@
 
 namespace bandsaw {
 
-/// A textureInfo of a material; its key is the member's name: "baseColorTexture",
-/// "clearcoatNormalTexture".
+/// A textureInfo of a material.
 struct GltfTexture {
   unsigned uv_set = 0;
   UvTransform transform;  ///< KHR_texture_transform, for uvs whose v = 0 is the bottom row
 };
 
-/// KHR_materials_specular: share of the reflection along the normal that the index gives.
+/// KHR_materials_specular: scales the reflectance at normal incidence (F0) that follows from the
+/// index of refraction.
 struct GltfSpecular {
   double factor = 1;
-  std::array<double, 3> color{1, 1, 1};
+  std::array<double, 3> color{1, 1, 1};  ///< linear RGB, also multiplied
   bool has_maps = false;
 };
 
 /// KHR_materials_volume: the inside of the mesh.
 struct GltfVolume {
   double thickness = 0;  ///< 0 for a thin pane
-  /// The distance after which white light has the colour; infinite if nothing is absorbed.
+  /// Distance after which white light has `attenuation_color`; infinite if nothing is absorbed.
   double attenuation_distance = std::numeric_limits<double>::infinity();
   std::array<double, 3> attenuation_color{1, 1, 1};
 };
@@ -43,11 +44,12 @@ struct GltfMaterial {
   std::optional<GltfVolume> volume;
   std::vector<std::string>
       unsupported;  ///< features that are not rendered, as in UnsupportedFeatures
+  /// Keyed by the member's name in the JSON: "baseColorTexture", "clearcoatNormalTexture".
   std::map<std::string, GltfTexture> textures;
   std::optional<double> emissive_strength;    ///< KHR_materials_emissive_strength
   std::optional<double> index_of_refraction;  ///< KHR_materials_ior
   std::optional<GltfSpecular> specular;
-  double coat_normal_scale = 1;  ///< KHR_materials_clearcoat
+  double coat_normal_scale = 1;  ///< KHR_materials_clearcoat: scale of clearcoatNormalTexture
   bool unlit = false;            ///< KHR_materials_unlit
 };
 
@@ -64,7 +66,7 @@ struct GltfExtensions {
   std::size_t lights_with_range = 0;  ///< lights with KHR_lights_punctual's range, which is ignored
 };
 
-/// `root` is the JSON of a plain glTF file, whose references have been checked.
+/// `root` is the JSON of a plain glTF file (gltf/plain_gltf.h), whose references have been checked.
 GltfExtensions read_gltf_extensions(const gltf::Json& root);
 
 }  // namespace bandsaw

@@ -117,7 +117,7 @@ class Walk {
   const Json* lights_in_ = extension(root_, kLights);
   std::vector<std::pair<const Json*, bool>> stack_;  ///< with a flag: children have been visited
   std::map<const Json*, std::size_t> numbers_;       ///< indices of the nodes, parents first
-  std::set<const Json*> seen_;
+  std::set<const Json*> seen_;                       ///< materials that were added
   Loaded cameras_;  ///< cameras that were added, with their indices
   Loaded lights_;
   Loaded first_meshes_;     ///< meshes, with Assimp's number of their first primitive

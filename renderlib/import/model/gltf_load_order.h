@@ -1,7 +1,8 @@
 #pragma once
 
-// Computes the order in which Assimp 5.2 loads the objects of a glTF file. It identifies objects
-// that have no name or share one.
+// Computes the order in which Assimp 5.2 loads the objects of a glTF file. By their place in this
+// order, objects of Assimp's result are matched with those of the JSON, because names may be
+// missing or shared.
 
 #include <cstddef>
 #include <map>

@@ -1,6 +1,7 @@
 #pragma once
 
-// A model file as Assimp has read it, before anything is evaluated at a time.
+// A model file as Assimp has read it, before its animation is evaluated at a time. It is kept while
+// the frames of a sequence are imported (draft/import_memory.h).
 
 #include <assimp/Importer.hpp>
 
@@ -20,10 +21,10 @@ struct aiScene;
 
 namespace bandsaw {
 
-/// A mesh that no animation changes, as it was added to a scene.
+/// A mesh that no animation changes, converted for the scene.
 struct StillMesh {
   std::shared_ptr<const Mesh> mesh;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings;  ///< of the conversion; repeated for each frame
 };
 
 /// Still meshes of one model, keyed by Assimp's number, by whether they have colours, and by the

@@ -55,7 +55,7 @@ UvTransform uv_transform_of(const aiUVTransform& from) {
 }
 
 /// Returns true if the image is 8-bit and its texels look like directions, 0.5 + 0.5 n, that mostly
-/// point away from the surface.
+/// point away from the surface: the mean of x and y is about 0 and that of z near 1.
 bool looks_like_normals(const ImageTexture& image) {
   if (image.format == ImageTexture::Format::kFloat32 || image.channels != 3) {
     return false;
@@ -113,7 +113,8 @@ MaterialReader::MaterialReader(ModelFile& file, unsigned index)
   }
 }
 
-// In formats in which dead names are common, a missing texture is ignored with a warning.
+// Finds the textures whose files are missing. Called for formats in which names of missing files
+// are common: there such a texture is left out with a warning.
 void MaterialReader::name_dead_files() {
   for (unsigned type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
     for (unsigned index = 0; index < material_.GetTextureCount(aiTextureType(type)); ++index) {

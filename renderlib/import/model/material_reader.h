@@ -1,6 +1,7 @@
 #pragma once
 
-// Reads one material of a model: its numbers, colours and textures as Assimp stores them.
+// Reads one material of a model: its numbers, colours and textures as Assimp stores them. Used by
+// model_classic.cpp and model_metallic_roughness.cpp, which decide what the values mean.
 
 #include <assimp/material.h>
 
@@ -19,7 +20,7 @@ namespace bandsaw {
 
 class MaterialReader {
  public:
-  /// `file` MUST outlive this object.
+  /// `file` MUST outlive this object; `index` is Assimp's number of the material.
   MaterialReader(ModelFile& file, unsigned index);
 
   const aiMaterial& material() const { return material_; }
@@ -28,33 +29,36 @@ class MaterialReader {
   const GltfMaterial* gltf() const;
   SceneDraft& draft() const { return file_.draft; }
 
-  /// Returns a number of the material, clamped to [least, most]; std::nullopt if it is absent or
-  /// not finite.
+  /// Returns the number under Assimp's key, such as "$mat.opacity", clamped to [least, most];
+  /// std::nullopt if it is absent or not finite.
   std::optional<double> number(const char* key, double least, double most) const;
-  /// Returns a colour of the material, each channel clamped to [0, most].
+  /// Returns a colour of the material, each channel clamped to [0, most]; std::nullopt if it is
+  /// absent.
   std::optional<Rgb> color(const char* key, float most) const;
   /// Returns the fourth number of such a colour, in [0, 1]; 1 if there is none.
   double alpha_of(const char* key) const;
 
-  /// A texture by Assimp's kind and number, and the meaning of its texels.
+  /// A texture of the material, by Assimp's kind and its number within the kind.
   struct Slot {
     aiTextureType type;
     unsigned index = 0;
   };
+  /// The meaning of a texture's texels: sRGB colours, linear numbers, or numbers in the alpha
+  /// channel.
   enum class As { kColor, kNumber, kAlpha };
-  /// Returns true if the material has the texture; false if its file is missing and that is only a
-  /// warning.
+  /// Returns false if the material does not have the texture, or if the texture's file is missing
+  /// in a format in which that is only a warning.
   bool has(Slot slot) const;
-  /// Returns the texture with its wrap mode, filter, transform and uv set, or a white one. Errors
-  /// name the material.
+  /// Returns the texture with its wrap mode, filter, transform and uv set, its texels multiplied by
+  /// `factor`; a white texture if has() is false. Errors name the material.
   absl::StatusOr<TextureId> map(Slot slot, As as, const Rgb& factor = {1, 1, 1});
   absl::StatusOr<TextureId> white() const { return file_.draft.textures.constant({1, 1, 1}); }
   /// Returns an opacity map: the alpha of the image, or its brightness if it has none.
   absl::StatusOr<TextureId> opacity_map(Slot slot);
   /// Returns the normal map of a height map.
   absl::StatusOr<TextureId> bump_map(Slot slot);
-  /// Returns an index_map that gives F0 of `index` (> 1) times the map
-  /// (MetallicRoughness::index_map).
+  /// Returns a texture for MetallicRoughness::index_map with which F0 is the texel of the slot
+  /// times the F0 of `index` (> 1).
   absl::StatusOr<TextureId> index_map(Slot slot, double index);
   /// Returns true if a height map actually contains normals, which is common.
   bool holds_normals(Slot slot) const;
@@ -62,6 +66,7 @@ class MaterialReader {
   /// Adds a warning such as "its specular map is left out".
   void unsupported(const std::string& what) { file_.unsupported.add(what, called_); }
 
+  /// Adds the material to the draft. Returns its id and the uv sets that its textures use.
   ModelMaterial add(const Material& material) const;
 
  private:
@@ -77,7 +82,7 @@ class MaterialReader {
   const aiMaterial& material_;
   ModelTextures textures_;
   std::string called_;                ///< name in messages: "\"steel\"", or its number
-  std::set<std::string> dead_files_;  ///< names as in the model
+  std::set<std::string> dead_files_;  ///< missing textures, named as in the model
   std::vector<unsigned> uv_sets_;  ///< Assimp's numbers of the two uv sets that the material uses
 };
 

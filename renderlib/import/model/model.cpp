@@ -124,6 +124,7 @@ Transform upright(const aiScene& scene) {
   return determinant(turned) == 1 && unturned ? turned * *unturned : Transform{};
 }
 
+// Applies `by` to everything that is placed in the model's space.
 void turn(const Transform& by, Model& model) {
   for (Frame& frame : model.frames) {
     if (frame.parent == kNoFrame) {
@@ -164,7 +165,8 @@ absl::Status gltf_failure(const std::string& name, const absl::Status& why) {
                       absl::StrCat(name, is_broken ? ": cannot be read: " : ": ", why.message()));
 }
 
-/// Returns the animation with its nodes keyed by their number in the loaded tree.
+/// Returns the animation with its nodes keyed by their number in Assimp's tree instead of their
+/// index in the file. `numbers` maps the latter to the former.
 std::optional<Animation> renumbered(std::optional<Animation> animation,
                                     const std::map<std::size_t, std::size_t>& numbers) {
   if (!animation) {
@@ -222,7 +224,7 @@ const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& fold
   return scene;
 }
 
-/// Reads the file, without evaluating it at a time.
+/// Reads the file, without evaluating its animation.
 absl::StatusOr<std::shared_ptr<LoadedModel>> load_model(const ModelSource& source,
                                                         const AnimationChoice& animation,
                                                         const SceneFolder& folder) {

@@ -1,7 +1,7 @@
 #pragma once
 
 // Reads model files of every format that Assimp supports, as meshes, materials and placements of
-// the scene.
+// the scene. Used for models that a scene file names and for a model that is rendered alone.
 
 #include <optional>
 #include <string>
@@ -27,11 +27,11 @@ struct ModelCamera {
 /// A model whose meshes, materials and textures have been added to the draft; its placements have
 /// not.
 struct Model {
-  std::vector<Frame> frames = {};         ///< frames of moving nodes, in the model's space
-  std::vector<Instance> instances = {};   ///< in the model's own space, or in a frame above
-  std::vector<Instance> filled = {};      ///< the same for Media::boundaries
+  std::vector<Frame> frames = {};         ///< moving coordinate systems: one for each moving node
+  std::vector<Instance> instances = {};   ///< placed in the model's space, or in one of `frames`
+  std::vector<Instance> filled = {};      ///< closed meshes with a medium inside, placed likewise
   std::vector<ModelCamera> cameras = {};  ///< in the order of the nodes
-  std::vector<DeltaLight> lights = {};
+  std::vector<DeltaLight> lights = {};    ///< in the model's space
 };
 
 /// Returns the camera transformed by `placement`.
@@ -44,10 +44,11 @@ bool is_model_file(const std::string& path);
 /// Reads a model. `path` is a real path below the draft's folder. Without `with_materials` no
 /// texture is read, and the materials of the placements are unspecified. Omitted and repaired parts
 /// are warnings of the draft. Messages begin with the file's name. Returns INVALID_ARGUMENT if the
-/// model is broken or has no triangles, and NOT_FOUND or PERMISSION_DENIED for a file that it
-/// needs. `animation` chooses one of its animations, which is evaluated over the draft's shutter
-/// interval: nodes move during the interval, and vertices of skins and morph targets have one
-/// position at its begin and one at its end.
+/// model is broken or has no triangles, NOT_FOUND for a file that it needs or for the animation,
+/// and PERMISSION_DENIED for a file outside of the scene's folder. `animation` chooses one of its
+/// animations, which is evaluated over the draft's shutter interval: nodes move during the
+/// interval, and vertices of skins and morph targets have one position at its begin and one at its
+/// end.
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft,
                                  const AnimationChoice& animation = {});
 

@@ -18,12 +18,12 @@ using As = MaterialReader::As;
 using Slot = MaterialReader::Slot;
 constexpr float kMaxRadiance = 1e30f;
 
-/// The numbers of the material that have a meaning.
+/// The numbers of the material; implausible ones have been replaced.
 struct Classic {
   Rgb base;
-  bool textured = false;
-  Rgb specular;         ///< black if there is no highlight
-  double exponent = 0;  ///< exponent of Blinn's highlight
+  bool textured = false;  ///< the base colour has a texture
+  Rgb specular;           ///< black if there is no highlight
+  double exponent = 0;    ///< exponent of Blinn's highlight
   std::optional<double> index;
   Rgb glow;
   bool glow_map = false;
@@ -31,8 +31,8 @@ struct Classic {
   bool opacity_map = false;
 };
 
-// Returns true if the highlight is disabled by the exponent or by the illumination model; many
-// exporters write its colour nevertheless.
+// Returns false if the exponent or the illumination model disables the highlight; many exporters
+// write the highlight's colour nevertheless.
 bool shines(const MaterialReader& reader, double exponent) {
   int model = aiShadingMode_Phong;
   reader.material().Get(AI_MATKEY_SHADING_MODEL, model);
@@ -92,8 +92,9 @@ void set_gloss(const Classic& from, MetallicRoughness& to) {
     to.base_color.factor = from.specular;
     return;
   }
-  // A material that is not a metal reflects little, whatever Ks is: according to its index, or at
-  // most like glass.
+  // A material that is not a metal reflects little, whatever Ks is: as much as its index gives, or
+  // without an index at most as much as glass, whose F0 is 0.04. From r = sqrt(F0) the index
+  // follows as (1 + r) / (1 - r).
   constexpr double kGlass = 0.04;
   const double f0 = std::sqrt(std::min(kGlass, double{luminance(from.specular)}));
   to.index_of_refraction =

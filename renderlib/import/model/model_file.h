@@ -1,6 +1,6 @@
 #pragma once
 
-// State that the parts of the model reader share.
+// State that the functions which convert one model share: read_source() in model.cpp makes it.
 
 #include <optional>
 #include <string>
@@ -23,7 +23,8 @@ enum class ModelKind {
   kOther,
 };
 
-/// The parts are those of a LoadedModel (model/loaded_model.h).
+/// A model that is being converted to the draft. The references to the scene, the JSON's values,
+/// the animation and the still meshes are those of a LoadedModel (model/loaded_model.h).
 struct ModelFile {
   const aiScene& scene;
   const std::string& path;  ///< real path

@@ -15,8 +15,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the absorption for which white light has the colour after the distance (Beer and
-/// Lambert).
+/// Returns the absorption per unit with which white light has the volume's colour after the
+/// volume's distance (Beer and Lambert).
 Rgb absorption_of(const GltfVolume& volume) {
   const auto channel = [&](double color) {
     constexpr double kMinColor = 1e-6;  // darker colours are practically opaque

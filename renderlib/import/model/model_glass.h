@@ -1,6 +1,7 @@
 #pragma once
 
-// Solid glass of glTF: KHR_materials_transmission with KHR_materials_volume.
+// Reads the solid glass of glTF: materials with KHR_materials_transmission and
+// KHR_materials_volume.
 
 #include <optional>
 #include <vector>
@@ -17,8 +18,9 @@ namespace bandsaw {
 /// the latter adds a warning.
 std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Material& material);
 
-/// Converts the closed meshes of `model` with such a material to glass. Open ones stay thin panes,
-/// with a warning.
+/// Gives the closed meshes of `model` the glass of their material, with a medium inside if the
+/// glass absorbs light. Open meshes stay thin panes, with a warning. `materials` have Assimp's
+/// order.
 void fill_glass(const std::vector<ModelMaterial>& materials, ModelFile& file, Model& model);
 
 }  // namespace bandsaw

@@ -56,6 +56,7 @@ std::size_t directional_lights(const Model& model) {
       [](const DeltaLight& light) { return std::holds_alternative<DirectionalLight>(light); }));
 }
 
+/// Returns true if the scene's validation accepts the position (light/check_lights.cpp).
 bool is_place(const Vec3& p) { return is_finite(p) && max_abs(p) <= 1e30; }
 
 SpotLight spot_of(const aiLight& from, const Vec3& position, const Vec3& direction,

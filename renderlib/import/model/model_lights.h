@@ -1,6 +1,6 @@
 #pragma once
 
-// Delta lights of a model file.
+// Converts lights of a model file to delta lights: lights from a point or from one direction.
 
 #include "renderlib/import/model/model.h"
 #include "renderlib/import/model/model_file.h"
@@ -9,9 +9,9 @@ struct aiLight;
 
 namespace bandsaw {
 
-/// Appends the light of a node with this transform. Lights that are not supported (area or ambient
-/// lights, other falloffs than with the square of the distance) are omitted or approximated with a
-/// warning.
+/// Appends the light of a node to `model.lights`; `node` is the node's transform to the model's
+/// space. Area and ambient lights are omitted, and a falloff other than with the square of the
+/// distance is replaced by that one, each with a warning.
 void add_model_light(const aiLight& from, const Transform& node, ModelFile& file, Model& model);
 
 }  // namespace bandsaw

@@ -10,7 +10,7 @@
 namespace bandsaw {
 namespace {
 
-// Textures that are not rendered, with their names in messages.
+// Adds a warning for each texture that is not rendered.
 void name_unused_textures(MaterialReader& reader) {
   constexpr struct {
     aiTextureType type;
@@ -20,6 +20,7 @@ void name_unused_textures(MaterialReader& reader) {
                  {aiTextureType_DISPLACEMENT, "displacement"},
                  {aiTextureType_SHEEN, "sheen"}};
   for (const auto& [type, what] : kUnused) {
+    // glTF's sheen has a warning already (GltfMaterial::unsupported).
     const bool is_named = type == aiTextureType_SHEEN && reader.kind() == ModelKind::kGltf;
     if (reader.has({type}) && !is_named) {
       reader.unsupported(absl::StrCat("its ", what, " map is left out"));
@@ -30,8 +31,8 @@ void name_unused_textures(MaterialReader& reader) {
   }
 }
 
-// KHR_materials_unlit is meant to show its base colour independently of light, which no surface
-// does.
+// KHR_materials_unlit is meant to show its base colour whatever the light is. No surface does so;
+// it becomes a diffuse one.
 absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
   reader.unsupported("is unlit, which is taken as a diffuse surface");
   const Rgb base = reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1});

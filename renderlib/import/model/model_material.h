@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads the materials of a model; its meshes then refer to them.
+
 #include <optional>
 
 #include "absl/status/statusor.h"
@@ -13,7 +15,8 @@ class MaterialReader;
 
 inline constexpr unsigned kNoUvSet = ~0u;
 
-/// A material of a model in the draft, and the mesh's uv sets that become the first and second set.
+/// A material of a model in the draft, and Assimp's numbers of the uv sets that its meshes use as
+/// their first and second set. kNoUvSet: there is no second set.
 struct ModelMaterial {
   MaterialId id{};
   unsigned uv_set = 0;
@@ -26,10 +29,10 @@ struct ModelMaterial {
   std::optional<Glass> glass = std::nullopt;
 };
 
-/// Reads a material. Metallic-roughness materials, including glTF's, become MetallicRoughness; the
-/// older kinds become Diffuse, Emissive or MetallicRoughness (model_classic.cpp). Returns
-/// NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT for a texture, with the names of the model and
-/// the material.
+/// Reads the material with Assimp's number `index`. Metallic-roughness materials, including glTF's,
+/// become MetallicRoughness; the older kinds become Diffuse, Emissive or MetallicRoughness
+/// (model_classic.cpp). Returns NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT for a texture,
+/// with the names of the model and the material.
 absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned index);
 
 /// These functions implement read_model_material() for the two kinds.

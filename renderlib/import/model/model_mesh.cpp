@@ -93,7 +93,8 @@ std::vector<std::array<float, 2>> uvs(const aiMesh& from, unsigned uv_set) {
   return to;
 }
 
-// Decodes vertex colours of formats other than glTF, which are sRGB.
+// Returns the vertex colours in linear RGB; in formats other than glTF they are sRGB. Empty if
+// there are none, or if all are white or unset.
 std::vector<std::array<float, 3>> colors(const aiMesh& from, ModelKind kind) {
   if (!from.HasVertexColors(0)) {
     return {};
@@ -162,7 +163,8 @@ class MeshReader {
   std::vector<std::string>& warnings_;
 };
 
-// Assimp gives colours of three channels an alpha of 0.
+// Returns true if a vertex colour is transparent. If every alpha is 0, the file has none: Assimp
+// gives colours of three channels an alpha of 0.
 bool has_clear_colors(const aiMesh& from) {
   const auto any = [&](auto has) {
     return from.HasVertexColors(0) &&
@@ -239,7 +241,7 @@ absl::StatusOr<Mesh> read_mesh(ModelFile& file, unsigned number, const ModelMate
   return mesh;
 }
 
-/// Returns a mesh that no animation changes. It is kept, and shared by further frames.
+/// Returns a mesh that no animation changes. It is kept for further frames, which share it.
 absl::StatusOr<std::shared_ptr<const Mesh>> still_mesh(ModelFile& file, unsigned number,
                                                        const ModelMaterial& material,
                                                        bool with_colors) {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Converts the meshes of a model, in their poses at the imported time.
+
 #include <optional>
 #include <vector>
 
@@ -9,13 +11,15 @@
 
 namespace bandsaw {
 
+/// A mesh that was added to the draft, with its material.
 struct ModelMesh {
   MeshId mesh{};
   MaterialId material{};
-  bool skinned = false;  ///< its vertices are in the model's space, whatever its node is
+  bool skinned = false;  ///< its vertices are in the model's space and not in that of its node
 };
 
-/// Keyed by Assimp's number; absent for meshes without a triangle that can be rendered.
+/// Indexed by Assimp's number of the mesh; absent for meshes without a triangle that can be
+/// rendered.
 using ModelMeshes = std::vector<std::optional<ModelMesh>>;
 
 /// Adds the meshes to the draft: triangles only. A mesh whose pose changes while the shutter is

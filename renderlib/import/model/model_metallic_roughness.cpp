@@ -52,7 +52,7 @@ absl::Status read_emission(MaterialReader& reader, Emission& to) {
           ? *reader.gltf()->emissive_strength
           : reader.number("$mat.emissiveIntensity", 0, double{kMaxRadiance}).value_or(1);
   const Rgb color = reader.color("$clr.emissive", kMaxRadiance).value_or(Rgb{}) *
-                    static_cast<float>(std::clamp(strength, 0.0, 1e8));
+                    static_cast<float>(std::clamp(strength, 0.0, 1e8));  // 1e30 * 1e8 is finite
   const auto least = [](float v) { return std::min(v, kMaxRadiance); };
   to.radiance.factor = {least(color.r), least(color.g), least(color.b)};
   int both = reader.kind() == ModelKind::kGltf ? 0 : 1;
@@ -142,8 +142,9 @@ absl::Status read_layers(MaterialReader& reader, MetallicRoughness& to) {
   return absl::OkStatus();
 }
 
-// Converts KHR_materials_pbrSpecularGlossiness without images as in its appendix: the metallic
-// share for which the mixture of 0.04 and the base colour is as bright as the specular colour.
+// Converts KHR_materials_pbrSpecularGlossiness without its image. A specular colour brighter than
+// 0.5 is taken as that of a metal: the metallic share m is the one for which the mixture
+// (1 - m) 0.04 + m is as bright as the specular colour.
 void from_glossiness(MaterialReader& reader, double glossiness, MetallicRoughness& to) {
   to.roughness.factor = 1 - glossiness;
   to.metallic.factor = 0;

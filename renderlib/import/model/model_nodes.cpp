@@ -79,6 +79,8 @@ bool has_usable_cameras(const ModelFile& file) {
 std::vector<Key> keys_of(const NodeMotion& motion, const Shutter& shutter) {
   std::vector<double> times = motion.times_between(shutter.open, shutter.close);
   if (!motion.is_linear()) {
+    // Interpolation between keys only approximates curves that are not linear, so it gets more
+    // keys.
     constexpr int kParts = 16;
     for (int i = 1; i < kParts; ++i) {
       times.push_back(shutter.open + (shutter.close - shutter.open) * i / kParts);
@@ -102,9 +104,8 @@ std::vector<Key> keys_of(const NodeMotion& motion, const Shutter& shutter) {
 }
 
 // Visits all nodes of the file's tree and collects instances, cameras and lights in `model`.
-// `flattened` counts the instances that a transform without an inverse has made flat; they are left
-// out. The traversal uses an explicit stack, because the depth of the tree is determined by the
-// file.
+// `flattened` counts the instances whose transform has no inverse: it would make them flat, so they
+// are left out. The traversal uses an explicit stack, because the file can make the tree deep.
 class Walk {
  public:
   Walk(ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
@@ -141,9 +142,10 @@ class Walk {
   std::size_t flattened = 0;
 
  private:
-  /// Place of a node, and where it is at three times, in the model's space.
+  /// The place of a node for its instances, and its transforms to the model's space at three times
+  /// of the shutter interval.
   struct NodePlace {
-    Transform in_frame;  ///< place in `frame`, or in the model's space
+    Transform in_frame;  ///< transform to `frame`, or to the model's space if that is kNoFrame
     FrameId frame = kNoFrame;
     Transform at_open;
     Transform in_middle;
@@ -163,6 +165,7 @@ class Walk {
                     parent.at_open * local(shutter.open),
                     parent.in_middle * local(middle_of(shutter)),
                     parent.at_close * local(shutter.close)};
+    // A moving node becomes a frame. Without keys it rests where it is in the middle.
     if (motion != nullptr && !motion->rests(shutter.open, shutter.close)) {
       if (std::vector<Key> keys = keys_of(*motion, shutter); !keys.empty()) {
         place.in_frame = Transform{};

@@ -1,5 +1,7 @@
 #pragma once
 
+// Converts the tree of nodes of a model to placements, cameras and lights.
+
 #include <assimp/matrix4x4.h>
 
 #include "renderlib/import/model/model.h"

@@ -1,7 +1,8 @@
 #pragma once
 
-// Poses of a model at a time: its nodes, morph targets and skins. Without an animation this is the
-// rest pose: initial weights, and every bone at its node.
+// Computes the pose of a model at a time: where its nodes are, and the vertices of its morph
+// targets and skins. Without an animation this is the rest pose: the weights of the file, and every
+// bone at its node.
 
 #include <cstddef>
 #include <map>
@@ -18,16 +19,17 @@ struct aiScene;
 
 namespace bandsaw {
 
-/// A model's nodes at a time: transforms in the model's space, by number (parents first).
+/// A model's nodes at a time: their transforms to the model's space. A node's number is its place
+/// in the order of Assimp's tree, parents first.
 struct NodePlaces {
   std::vector<Transform> by_number;
   std::map<std::string, std::size_t> by_name;  ///< if several share a name, the first
   std::map<unsigned, std::size_t> of_meshes;   ///< the first node of each mesh
 };
-/// `animation` may be nullptr.
+/// `time` is in seconds. `animation` may be nullptr: the nodes rest.
 NodePlaces node_places(const aiScene& scene, const Animation* animation, double time);
 
-/// The values that a mesh's vertices depend on.
+/// The values on which a mesh's vertices depend.
 struct MeshPose {
   std::vector<double> weights =
       {};  ///< weights of the morph targets; empty: the weights in the file are used
@@ -44,8 +46,8 @@ struct Vertices {
 };
 
 /// Returns a mesh's vertices in a pose. Morph targets are added by their weights; a target whose
-/// number of vertices differs is omitted. A skin transforms vertices and normals to the model's
-/// space, each by the weighted mean of its bones' transforms (linear blend skinning; glTF 2.0,
+/// number of vertices differs is omitted. A skin transforms each vertex and its normal to the
+/// model's space by the weighted mean of its bones' transforms (linear blend skinning; glTF 2.0,
 /// 3.7.3.3).
 Vertices posed_vertices(const aiMesh& from, const MeshPose& pose);
 

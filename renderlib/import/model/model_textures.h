@@ -1,6 +1,6 @@
 #pragma once
 
-// Images of a model, embedded or in files, as textures of the draft.
+// Finds the images of a model, embedded or in files, and adds them to the draft as textures.
 
 #include <string>
 
@@ -26,7 +26,7 @@ class ModelTextures {
   /// Returns OK if find() would find a file or an embedded image, otherwise its error.
   absl::Status locate(const std::string& file) const { return source_of(file).status(); }
 
-  /// Returns the texels only. Errors are those of find().
+  /// Returns the decoded image without adding a texture. Errors are those of find().
   absl::StatusOr<ImageTexture> decoded(const std::string& file) const;
 
   /// Returns true if the image has an alpha channel. Errors are those of find().

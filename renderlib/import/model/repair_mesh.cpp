@@ -16,6 +16,7 @@ bool is_good_normal(const std::array<float, 3>& n) {
   return std::isfinite(squared) && squared > 0;
 }
 
+/// Keeps only the values at the indices `kept`, which rise.
 template <class T>
 void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   if (values.empty()) {
