@@ -1,6 +1,7 @@
 #pragma once
 
-// An animation of a model's nodes.
+// Animations of models: the motion of nodes and the weights of morph targets over time, in seconds.
+// gltf/gltf_animation.h and model/assimp_animation.h read them; the folder model evaluates them.
 
 #include <compare>
 #include <cstddef>
@@ -17,7 +18,7 @@ namespace bandsaw {
 
 /// Movement of one node. A property without a curve keeps its value of the rest pose.
 struct NodeMotion {
-  Vec3 translate;  ///< rest pose
+  Vec3 translate;  ///< the rest pose: this and the next two
   Quaternion rotate;
   Vec3 scale{1, 1, 1};
   std::optional<Curve> translation = std::nullopt;  ///< width 3
@@ -41,14 +42,16 @@ struct AnimationChoice {
   friend auto operator<=>(const AnimationChoice&, const AnimationChoice&) = default;
 };
 
-/// Returns the index of the chosen animation in `names`; std::nullopt: none, the model is in its
-/// rest pose. Returns NOT_FOUND: "has no animation \"run\"; there are \"walk\", \"jump\"".
+/// Returns the index of the chosen animation in `names`; std::nullopt if none is chosen: the model
+/// is in its rest pose. If there is no such name, the error is NOT_FOUND:
+/// "has no animation \"run\"; there are \"walk\", \"jump\"".
 absl::StatusOr<std::optional<std::size_t>> choose(const AnimationChoice& choice,
                                                   const std::vector<std::string>& names);
 
 struct Animation {
   std::string name;
-  /// Moving nodes, keyed by their number in the loaded tree, parents first.
+  /// Moving nodes, keyed by their number in Assimp's tree, parents first (for a glTF file until it
+  /// is loaded: by their index in the file).
   std::map<std::size_t, NodeMotion> nodes = {};
   /// Weights of morph targets, keyed by the same numbers; the width is the number of targets.
   std::map<std::size_t, Curve> weights = {};

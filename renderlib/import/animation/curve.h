@@ -38,11 +38,12 @@ class Curve {
   /// Returns the unit quaternion of the numbers x, y, z, w; the width MUST be 4. Keys of length 0
   /// stand for no rotation.
   Quaternion rotation_at(double time) const;
-  /// Returns true if the value is the same at all times of [from, to].
+  /// Returns true if the value is the same at all times of [from, to]. Not for kSmooth, whose
+  /// tangents depend on further keys.
   bool rests(double from, double to) const;
 
  private:
-  /// Place of a time between two keys; `next` equals `key` before the first and after the last.
+  /// The two keys around a time; `next` equals `key` before the first key and after the last one.
   struct Place {
     std::size_t key = 0;
     std::size_t next = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Input of the converters of other renderers' scenes.
+// The input of the converters of other renderers' scenes (convert_pbrt, convert_mitsuba).
 
 #include <map>
 #include <string>

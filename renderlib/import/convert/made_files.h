@@ -1,6 +1,7 @@
 #pragma once
 
-// Files that a converter makes: meshes, images.
+// Collects the files that the converter of a foreign scene makes, meshes and images, and names
+// them.
 
 #include <map>
 #include <string>

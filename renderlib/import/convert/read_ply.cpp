@@ -342,7 +342,7 @@ class PlyReader {
     for (std::uint64_t i = 0; i < element.count; ++i) {
       std::vector<std::uint32_t> corners;
       RETURN_IF_ERROR(read_row(element, row, corners));
-      std::size_t copies = 1;
+      std::size_t copies = 1;  // an attribute of a face is repeated for each of its triangles
       if (is_vertex) {
         RETURN_IF_ERROR(add_vertex(vertex, row));
       } else if (is_face) {
@@ -363,6 +363,7 @@ class PlyReader {
     return absl::OkStatus();
   }
 
+  /// Returns true for positions, normals and uvs, which are no attributes.
   static bool is_reserved(const std::string& name, const std::vector<std::size_t>& members,
                           const Element& element) {
     static const std::vector<std::string> names = {"x", "y", "z", "nx", "ny",     "nz",
@@ -371,6 +372,8 @@ class PlyReader {
            std::find(names.begin(), names.end(), name) != names.end();
   }
 
+  /// Reads one vertex, face or other row: its numbers to `row`, in the order of the properties, and
+  /// the vertex indices of a face to `corners`.
   absl::Status read_row(const Element& element, std::vector<double>& row,
                         std::vector<std::uint32_t>& corners) {
     constexpr double kMaxCorners = 1e6;

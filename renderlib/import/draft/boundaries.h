@@ -1,6 +1,7 @@
 #pragma once
 
-// Boundaries of media.
+// Makes boundaries of media: closed meshes that separate a medium, such as smoke or the inside of
+// glass, from its surroundings. Used for shapes of a scene file and for glass of glTF.
 
 #include <optional>
 

@@ -1,5 +1,5 @@
 // Decodes an environment map and repairs its values: infinite or too large ones become the largest
-// good value, all other bad ones 0.
+// valid value, NaN and negative ones 0.
 
 #include "renderlib/import/draft/environment_image.h"
 

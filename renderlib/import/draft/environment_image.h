@@ -1,6 +1,6 @@
 #pragma once
 
-// Environment maps from image files.
+// Reads environment maps, which are images of the light from all directions, from image files.
 
 #include <string>
 
@@ -10,8 +10,9 @@
 
 namespace bandsaw {
 
-/// Clamps texels of a float image to [0, 1e30], because light must be finite: NaN and negative
-/// numbers become 0, larger ones 1e30. Returns the number of changed texels.
+/// Repairs the numbers of a float image that are not in [0, 1e30], because light must be finite:
+/// larger ones become the largest valid number of the image, all others 0. Returns the number of
+/// changed numbers.
 std::size_t repair_light(ImageTexture& image);
 
 /// Adds the image of a file to the draft's textures. Repaired texels cause a warning that begins

@@ -21,9 +21,9 @@ struct LoadedModel;     // import/model/loaded_model.h
 struct ImportMemory {
   /// Models, keyed by their real path and by the chosen animation.
   std::map<std::pair<std::string, AnimationChoice>, std::shared_ptr<LoadedModel>> models = {};
-  TextureStore::Memory images = {};
+  TextureStore::Memory images = {};                      ///< decoded images
   std::shared_ptr<const ConvertedScene> converted = {};  ///< the scene, if it is a foreign one
-  EncodedParts encoded = {};
+  EncodedParts encoded = {};  ///< meshes and texels of the last frame, with their digests
 };
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
 #pragma once
 
-// Files that fields of a scene name: those that a converter of a foreign scene made, then those of
-// the scene's folder.
+// Finds a file that a field of the scene names: first among the files that the converter of a
+// foreign scene made, then in the scene's folder.
 
 #include <cstdint>
 #include <string>
@@ -15,8 +15,8 @@ struct NamedFile {
   std::string key;                    ///< identifies the file: its real path, or "made:NAME"
   const std::string* made = nullptr;  ///< bytes of a file that a converter made, owned by the draft
 
-  /// Returns the bytes. RESOURCE_EXHAUSTED or INVALID_ARGUMENT: more than `max_bytes`; NOT_FOUND:
-  /// it disappeared.
+  /// Returns the bytes. The error is RESOURCE_EXHAUSTED or INVALID_ARGUMENT if there are more than
+  /// `max_bytes`, NOT_FOUND if the file has disappeared.
   absl::StatusOr<std::string> read(std::uint64_t max_bytes) const;
 };
 

@@ -1,7 +1,6 @@
 // place() copies frames and instances to another place. A frame without a parent gets the frame of
 // the place as its parent, and an instance without a frame gets that frame; both are transformed by
-// the place. The indices of the other frames are shifted, because the copies follow those that are
-// there.
+// the place. Indices of frames are shifted, because the copied frames follow those of `to`.
 
 #include "renderlib/import/draft/placements.h"
 

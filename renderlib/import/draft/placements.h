@@ -1,7 +1,7 @@
 #pragma once
 
-// Instances and frames in one space, the scene or a group, before they are added to the scene's
-// geometry.
+// Instances of meshes and groups, and moving coordinate systems (Frame), in one space: the scene or
+// a group. They are collected here before they are added to the scene's geometry.
 
 #include <optional>
 #include <vector>
@@ -34,10 +34,11 @@ struct Place {
   FrameId frame = kNoFrame;
 };
 
+/// Appends the frame and returns its index in `to`.
 FrameId add_frame(Frame frame, Placements& to);
 
-/// Adds all placements of `what` to `to` at a place; `material` replaces their materials. Returns
-/// false if a placement would be singular.
+/// Adds all placements of `what` to `to` at a place; `material`, if set, replaces their materials.
+/// Returns false if a placement would be singular; then `to` has a part of them.
 bool place(const Placements& what, const Place& at, std::optional<MaterialId> material,
            Placements& to);
 

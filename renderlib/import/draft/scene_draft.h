@@ -1,6 +1,6 @@
 #pragma once
 
-// The scene under construction.
+// The scene while it is being read: each reader of a part of a scene file or of a model adds to it.
 
 #include <map>
 #include <memory>
@@ -44,7 +44,7 @@ struct SceneDraft {
   std::shared_ptr<const std::map<std::string, std::string>> made_files =
       std::make_shared<const std::map<std::string, std::string>>();
   ImportMemory* const memory;
-  ImportedScene out;
+  ImportedScene out;  ///< the result, to which all parts are added
   TextureStore textures{out.scene.textures, out.info.warnings,
                         memory == nullptr ? nullptr : &memory->images};
   std::map<std::string, MaterialId> materials;      ///< keyed by name in the scene file
@@ -63,7 +63,7 @@ struct SceneDraft {
   AnimationChoice animation;         ///< animation of models whose entry names none
 
   Contents world;
-  /// Destination of shapes and placements that are read: the scene, or the group that is being read
+  /// Destination of the shapes and placements that are read: the scene, or a group while it is read
   /// (see InGroup in scene_file/read_groups.cpp).
   Shapes* shapes = &out.scene.geometry;
   Contents* placed = &world;

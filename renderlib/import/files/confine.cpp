@@ -89,6 +89,7 @@ constexpr std::array kForbidden = {
 constexpr sock_filter statement(std::uint16_t code, std::uint32_t value) {
   return {code, 0, 0, value};
 }
+/// `yes` and `no` are numbers of statements to skip.
 constexpr sock_filter jump(std::uint16_t code, std::uint32_t value, std::uint8_t yes,
                            std::uint8_t no) {
   return {code, yes, no, value};
@@ -158,6 +159,7 @@ absl::Status limit(__rlimit_resource resource, std::uint64_t most, const char* w
 
 absl::Status limit_resources(const Confinement& to) {
   RETURN_IF_ERROR(limit(RLIMIT_CORE, 0, "cannot limit core dumps"));
+  // More than enough: files are read whole, one after the other.
   RETURN_IF_ERROR(limit(RLIMIT_NOFILE, 64, "cannot limit open files"));
   RETURN_IF_ERROR(limit(RLIMIT_CPU, to.cpu_seconds, "cannot limit CPU time"));
   RETURN_IF_ERROR(limit(RLIMIT_FSIZE, to.file_bytes, "cannot limit file sizes"));
@@ -205,6 +207,7 @@ absl::Status confine_to_folders(const Confinement& to) {
   const long rules =
       syscall(SYS_landlock_create_ruleset, &attributes, sizeof(attributes.handled_access_fs), 0);
   if (rules < 0) {
+    // The kernel has no Landlock.
     return absl::OkStatus();
   }
   const int fd = static_cast<int>(rules);

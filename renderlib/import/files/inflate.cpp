@@ -16,7 +16,8 @@ namespace bandsaw {
 namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 18;
-constexpr int kGzipOrZlib = 15 + 32;  // zlib's windowBits
+// zlib's windowBits: 15 is the largest window; + 32 detects the header, a minus means none.
+constexpr int kGzipOrZlib = 15 + 32;
 constexpr int kRaw = -15;
 
 /// Inflates one member from the front of the stream's input to the end of `out`.
@@ -33,7 +34,8 @@ absl::Status inflate_member(z_stream& stream, std::uint64_t max_bytes, std::stri
       return absl::ResourceExhaustedError(
           absl::StrCat("is larger than ", max_bytes, " bytes when it is decompressed"));
     }
-    // All input is there from the start, so a pass without progress is the end of a truncated one.
+    // All input is there from the start. So if zlib reports that it needs more, the data are
+    // truncated.
     if (result != Z_OK && result != Z_STREAM_END) {
       return absl::InvalidArgumentError("its compressed data are damaged or truncated");
     }

@@ -15,9 +15,9 @@ enum class DeflateKind {
   kRaw,   ///< without a header, as in zip files
 };
 
-/// Returns the decompressed bytes. INVALID_ARGUMENT: damaged or truncated, or bytes follow the end
-/// (except for further members of a gzip file); RESOURCE_EXHAUSTED: more than `max_bytes`. Messages
-/// have no file name.
+/// Returns the decompressed bytes. The error is INVALID_ARGUMENT if the data are damaged or
+/// truncated, or if bytes follow their end (except for further members of a gzip file), and
+/// RESOURCE_EXHAUSTED for more than `max_bytes`. Messages have no file name.
 absl::StatusOr<std::string> inflate(absl::string_view bytes, DeflateKind kind,
                                     std::uint64_t max_bytes);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+// Decodes file names of models that are percent-encoded, as URIs are.
+
 #include <string>
 
 #include "absl/strings/string_view.h"

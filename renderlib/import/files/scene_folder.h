@@ -1,6 +1,7 @@
 #pragma once
 
-// The only folder that an import reads: the scene file's folder and the folders below it.
+// The only folder that an import reads, with the folders below it: that of the scene file, or a
+// wider one that the user named.
 
 #include <cstdint>
 #include <map>
@@ -12,8 +13,8 @@ namespace bandsaw {
 
 class SceneFolder {
  public:
-  /// Returns the folder of `scene_path`, with symbolic links resolved. Returns NOT_FOUND or
-  /// PERMISSION_DENIED with the file's name.
+  /// Returns the folder of `scene_path`, with symbolic links resolved. The error is NOT_FOUND or
+  /// PERMISSION_DENIED with the file's name, or INVALID_ARGUMENT if `scene_path` is a folder.
   static absl::StatusOr<SceneFolder> of(const std::string& scene_path);
 
   /// Returns the folder `folder`, below which `scene_path` must be. Errors as `of`;
@@ -24,7 +25,8 @@ class SceneFolder {
   /// Returns the real path of the regular file to which `name` refers in a file of `folder`
   /// (absolute, below this one). Messages contain `name` and a remedy, but not the referring file.
   /// Returns PERMISSION_DENIED if the path is absolute or outside the scene's folder, also by a
-  /// symbolic link, and NOT_FOUND if there is no such file.
+  /// symbolic link, NOT_FOUND if there is no such file, and INVALID_ARGUMENT if the name is empty
+  /// or that of a folder.
   absl::StatusOr<std::string> resolve(const std::string& name, const std::string& folder) const;
 
   /// The same for a file in `folder` itself, ignoring case. Of several files, the first in byte
@@ -35,7 +37,7 @@ class SceneFolder {
   const std::string& path() const { return path_; }
 
   /// From now on, each file that resolve() finds is added to `files`: its name below the folder ->
-  /// its real path. nullptr: no longer. `files` MUST outlive the calls.
+  /// its real path. nullptr ends this. `files` MUST outlive the calls of resolve().
   void record_to(std::map<std::string, std::string>* files) { found_ = files; }
 
  private:

@@ -1,5 +1,5 @@
 // Finds the directory at the end of the archive, reads its entries with all checks, and inflates an
-// entry on request.
+// entry on request. The records are those of APPNOTE.TXT, section 4.3.
 
 #include "renderlib/import/files/zip_archive.h"
 
@@ -67,10 +67,11 @@ class Reader {
 };
 
 struct Directory {
-  std::uint64_t at = 0;
+  std::uint64_t at = 0;  ///< offset of the first entry
   std::uint64_t entries = 0;
 };
 
+/// Returns the offset of the end record. A comment, whose length has 16 bits, may follow it.
 std::optional<std::uint64_t> find_end(absl::string_view bytes) {
   constexpr std::size_t kMaxComment = 65'535;
   if (bytes.size() < kEndBytes) {
@@ -92,9 +93,9 @@ absl::StatusOr<Directory> find_directory(absl::string_view bytes) {
   }
   Reader in(bytes, *end + 4);
   const std::uint32_t disk = in.u16();
-  in.number(2 + 2);
+  in.number(2 + 2);  // disk of the directory, number of entries on it
   Directory directory{0, in.u16()};
-  in.u32();
+  in.u32();  // size of the directory
   directory.at = in.u32();
   if (disk != 0 && disk != 0xffff) {
     return damaged("it is a part of several");
@@ -102,6 +103,7 @@ absl::StatusOr<Directory> find_directory(absl::string_view bytes) {
   if (*end < kLocator64Bytes || Reader(bytes, *end - kLocator64Bytes).u32() != kLocator64) {
     return directory;
   }
+  // The locator has the offset of the zip64 record, which has 64-bit numbers.
   const std::uint64_t at64 = Reader(bytes, *end - kLocator64Bytes + 8).number(8);
   if (at64 > bytes.size() || bytes.size() - at64 < kEnd64Bytes ||
       Reader(bytes, at64).u32() != kDirectoryEnd64) {
@@ -112,7 +114,7 @@ absl::StatusOr<Directory> find_directory(absl::string_view bytes) {
   return directory;
 }
 
-/// Replaces numbers that are in the zip64 extra field.
+/// Replaces the entry's numbers that are too large for 32 bits by those of the zip64 extra field.
 void read_extra(absl::string_view extra, ZipArchive::Entry& entry) {
   constexpr std::uint32_t kZip64 = 1;
   Reader in(extra, 0);
@@ -234,6 +236,8 @@ absl::StatusOr<ZipArchive> ZipArchive::open(absl::string_view bytes) {
 
 absl::StatusOr<std::string> ZipArchive::read(const Entry& entry) const {
   Reader in(bytes_, entry.header_at);
+  // Of the local header only its last two values are used: the lengths of the name and the extra
+  // field there may differ from those of the directory.
   const bool has_header = in.u32() == kLocalHeader;
   in.text(kLocalHeaderBytes - 4 - 2 - 2);
   const std::uint32_t name_bytes = in.u16();

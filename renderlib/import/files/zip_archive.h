@@ -1,6 +1,7 @@
 #pragma once
 
-// Reads zip archives whose entries are stored or deflated (APPNOTE.TXT of PKWARE, with zip64).
+// Reads zip archives whose entries are stored or deflated (APPNOTE.TXT of PKWARE, with zip64). Used
+// by bandsaw-import to unpack a scene that is sent as one file.
 
 #include <cstdint>
 #include <string>
@@ -27,16 +28,16 @@ class ZipArchive {
     bool is_deflated = false;
   };
 
-  /// Reads the directory of the archive. `bytes` MUST outlive the object. INVALID_ARGUMENT: not a
-  /// zip file, damaged, encrypted, an unknown compression, two files of one name, a name that is
-  /// not safe (absolute, with "..", a control character or a backslash), or a symbolic link.
-  /// RESOURCE_EXHAUSTED: a bound above is exceeded.
+  /// Reads the directory of the archive. `bytes` MUST outlive the object. The error is
+  /// INVALID_ARGUMENT if it is not a zip file, is damaged or encrypted, or has an unknown
+  /// compression, two files of one name, a name that is not safe (is_safe_name) or a symbolic link;
+  /// it is RESOURCE_EXHAUSTED if a bound above is exceeded.
   static absl::StatusOr<ZipArchive> open(absl::string_view bytes);
 
   const std::vector<Entry>& entries() const { return entries_; }
 
-  /// Returns the bytes of an entry. INVALID_ARGUMENT: damaged, or not of the size or checksum that
-  /// the directory claims.
+  /// Returns the bytes of an entry. The error is INVALID_ARGUMENT if they are damaged, or if their
+  /// size or checksum is not that of the directory.
   absl::StatusOr<std::string> read(const Entry& entry) const;
 
  private:
@@ -47,7 +48,7 @@ class ZipArchive {
 
 /// Returns true if a file of this name, joined to a folder, lies below the folder: not empty,
 /// relative, without empty parts, ".", "..", backslashes and control characters, at most 1,000
-/// bytes.
+/// bytes and 255 in each part.
 bool is_safe_name(absl::string_view name);
 
 }  // namespace bandsaw

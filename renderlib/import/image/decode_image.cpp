@@ -54,8 +54,9 @@ bool is_pfm(absl::string_view bytes) {
 
 /// Decodes a portable float map, the exact format that renderlib/image writes and stb_image does
 /// not support: "PF" (or "Pf", which is expanded), width, height, scale (its sign is the byte
-/// order), then rows from the bottom. Values may be anything including NaN: it is a measurement,
-/// not a colour of a scene. Returns INVALID_ARGUMENT if it is broken or truncated.
+/// order), then rows from the bottom. Values may be anything including NaN, because such an image
+/// is the result of a rendering and not an input of a scene. Returns INVALID_ARGUMENT if it is
+/// broken or truncated.
 absl::StatusOr<Image> decode_pfm(absl::string_view bytes) {
   const std::size_t channels = take_word(bytes) == "PF" ? 3 : 1;
   Image image;
@@ -100,7 +101,7 @@ Pixels<T> owned(T* pixels) {
 struct Shape {
   int width = 0;
   int height = 0;
-  int channels = 0;
+  int channels = 0;  ///< of the file: 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha
 };
 
 absl::Status failure() {
@@ -145,8 +146,8 @@ int read_endless(void* user, char* to, int size) {
   const std::size_t real = std::min(wanted, source.rest.size());
   std::memcpy(to, source.rest.data(), real);
   source.rest.remove_prefix(real);
-  // A large request fills stb_image's buffer ahead and may be truncated; a pixel of four bytes may
-  // not.
+  // A request for more than the four bytes of a pixel only fills stb_image's buffer ahead: it may
+  // get fewer bytes. A smaller request must get all.
   constexpr std::size_t kPixel = 4;
   if (real == wanted || (real > 0 && wanted > kPixel)) {
     return static_cast<int>(real);
@@ -165,7 +166,8 @@ void skip_endless(void* user, int size) {
 
 int at_end(void*) { return 0; }
 
-// Bytes in the decoder's memory, which is freed with the last reference.
+// Returns an image whose texels stay in the decoder's memory, which is freed with the last
+// reference.
 template <class T>
 ImageTexture texture_of(Pixels<T> pixels, const Shape& shape, int channels,
                         ImageTexture::Format format) {

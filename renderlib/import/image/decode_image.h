@@ -13,19 +13,21 @@
 
 namespace bandsaw {
 
-/// Maximum size of an image file.
+/// Maximum size of an image file, because stb_image takes the size as an int.
 inline constexpr std::uint64_t kMaxImageFileBytes = std::uint64_t{2} << 30;
 
 /// Warning about an image with an alpha channel.
 inline constexpr char kAlphaWarning[] = "its alpha channel is left out";
 
-/// Treatment of images with one channel.
+/// Whether a grey image is expanded to three equal channels or keeps its single one.
 enum class Gray { kExpanded, kKept };
 
 /// Decodes an image file. PNG, JPEG, TGA, BMP, PNM and WebP become 8-bit sRGB with three channels
-/// (or one, if `gray`); alpha and a second byte of depth are omitted with a warning. HDR and EXR
+/// (or one, if the file is grey and `gray` is kKept); alpha and the second byte of channels with 16
+/// bits are omitted with a warning. HDR and EXR
 /// become linear floats. The texels are in the decoder's memory, not copied. Sizes are checked
-/// before anything is decoded. Returns INVALID_ARGUMENT with the reason, without the file's name.
+/// before anything is decoded. Returns INVALID_ARGUMENT, or RESOURCE_EXHAUSTED for a file of 2 GiB
+/// or more, with the reason, without the file's name.
 absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
                                           std::vector<std::string>& warnings,
                                           Gray gray = Gray::kExpanded);
@@ -36,7 +38,8 @@ absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes);
 /// Returns true if the file has an alpha channel; false if it cannot be read.
 bool image_has_alpha(absl::string_view bytes);
 
-/// Decodes an image file, PFM included, to linear floats.
+/// Decodes an image file, PFM included, to linear floats without alpha, for `bandsaw compare` and
+/// for light maps that a converter resamples. Errors as decode_image().
 absl::StatusOr<Image> decode_picture(absl::string_view bytes);
 
 }  // namespace bandsaw

@@ -1,6 +1,6 @@
 #pragma once
 
-// Textures of the imported scene; the same image with the same use is stored once.
+// Adds textures to the imported scene. The same image with the same use is decoded and stored once.
 
 #include <array>
 #include <map>
@@ -36,9 +36,11 @@ class TextureStore {
                Memory* memory = nullptr)
       : textures_(textures), warnings_(warnings), memory_(memory) {}
 
+  /// Returns the texture of one value; equal ones are stored once.
   TextureId constant(const Rgb& value);
   TextureId add(Texture texture);
 
+  /// How a material uses an image.
   struct Use {
     ImageTexture::Wrap wrap = ImageTexture::Wrap::kRepeat;
     ImageTexture::Filter filter = ImageTexture::Filter::kBilinear;
@@ -55,10 +57,11 @@ class TextureStore {
       kIndexMap,    ///< the texels scale the reflectance F0 of the index of refraction `by`
     } become = Become::kThemselves;
     double by = 1;
-    bool alpha_is_known = false;  ///< no warning, because the material defines the use of alpha
+    bool alpha_is_known = false;  ///< no warning of an unused alpha: the material says what it is
   };
   /// Adds an image unless it is already stored. `key` identifies the image, `name` is its name in
-  /// errors and warnings; `read` is called if the image is not stored yet.
+  /// errors and warnings; `read` returns the bytes of its file, and is called if the image is not
+  /// stored yet. Returns the error of `read`, or INVALID_ARGUMENT if it is not an image.
   absl::StatusOr<TextureId> image(const std::string& key, const std::string& name, const Use& use,
                                   absl::FunctionRef<absl::StatusOr<std::string>()> read);
 

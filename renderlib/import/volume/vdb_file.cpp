@@ -1,5 +1,6 @@
-// OpenVDB's *.vdb, by the library: fog volumes of floats, halves or doubles, and vectors of three
-// floats. Everything happens on this thread; the library starts none for reading.
+// Reads *.vdb files by the library OpenVDB: fog volumes of floats, halves or doubles, and vectors
+// of three floats, which become bricks: cubes of 8 x 8 x 8 cells. Everything happens on this
+// thread; the library starts none for reading. Cross-compiled programs are built without OpenVDB.
 
 #ifndef BANDSAW_NO_OPENVDB
 

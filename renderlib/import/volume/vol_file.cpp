@@ -1,4 +1,4 @@
-// Mitsuba's *.vol: little-endian, without gaps,
+// Reads Mitsuba's *.vol files. They have these values, little-endian and without gaps:
 //
 //   "VOL", uint8 version = 3
 //   int32 encoding: 1 float32; 2 float16; 3 uint8 (n stands for n / 255)

@@ -1,6 +1,7 @@
 #pragma once
 
-// Files with grids of numbers over space: Mitsuba's *.vol and OpenVDB's *.vdb.
+// Reads files with grids of numbers over space, from which media such as smoke are made: Mitsuba's
+// *.vol and OpenVDB's *.vdb.
 
 #include <cstdint>
 #include <string>
@@ -24,8 +25,8 @@ struct FileGrid {
 /// Returns true if the file is of a kind that read_volume() reads, by its name.
 bool is_volume_file(const std::string& name);
 
-/// Reads the grid called `grid` of a file, or if that is empty, the only one or the one called
-/// `otherwise`; a *.vol file has one grid without a name. Errors do not name the file:
+/// Reads the grid called `grid` of a file. If `grid` is empty, reads the one called `otherwise`,
+/// or else the only one. A *.vol file has one grid without a name. Errors do not name the file:
 /// INVALID_ARGUMENT if it is damaged, of another kind, or if a number is not finite;
 /// RESOURCE_EXHAUSTED if it is too large.
 absl::StatusOr<FileGrid> read_volume(const std::string& path, const std::string& grid,
