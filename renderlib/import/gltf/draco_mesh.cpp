@@ -59,6 +59,7 @@ class Dequantizer {
     return largest_ > 0 ? 3 : static_cast<std::size_t>(from_.num_components());
   }
 
+  /// Sets `to` to the value at `at`; returns false if libdraco cannot convert it.
   bool read(draco::AttributeValueIndex at, std::array<float, kMaxComponents>& to) const {
     Raw raw{};
     if (from_.data_type() == draco::DT_FLOAT32) {

@@ -20,8 +20,8 @@ namespace bandsaw::gltf {
 
 class DracoMesh {
  public:
-  /// Decodes a stream. Messages begin with `place`. Returns INVALID_ARGUMENT if it is not a mesh or
-  /// is damaged.
+  /// Decodes a stream. Messages begin with `place`, the path of the primitive in the file. Returns
+  /// INVALID_ARGUMENT if it is not a mesh or is damaged.
   static absl::StatusOr<DracoMesh> decode(absl::string_view bytes, std::string place);
   DracoMesh(DracoMesh&&) noexcept;
   DracoMesh& operator=(DracoMesh&&) noexcept;

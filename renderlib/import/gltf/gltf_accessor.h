@@ -1,7 +1,8 @@
 #pragma once
 
-// Reads accessors of a glTF file as plain numbers: any component type, normalised or not, strided,
-// sparse or without a buffer view.
+// Reads accessors of a glTF file as plain numbers: of any component type, normalised or not,
+// strided or sparse. An accessor without a buffer view holds zeros. Used to rewrite the file
+// (plain_gltf.h) and to read its animations.
 
 #include <array>
 #include <cstdint>

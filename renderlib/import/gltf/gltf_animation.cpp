@@ -14,7 +14,7 @@
 namespace bandsaw::gltf {
 namespace {
 
-/// Maximum length of an animation, in seconds, as of all times in a scene.
+/// Maximum time of a key, in seconds: the bound of all times in a scene (kMaxTime).
 constexpr double kMaxSeconds = 1e9;
 
 absl::StatusOr<std::vector<double>> read_times(const Json& root, std::size_t accessor,
@@ -76,7 +76,7 @@ absl::StatusOr<Curve> read_sampler(const Json& root, const Json& sampler, const 
                interpolation);
 }
 
-/// Returns the list's numbers as doubles if it has `count` of them.
+/// Returns the list's numbers as doubles if it has `count` of them; otherwise an empty list.
 std::vector<double> numbers_of(const Json& node, const char* name, std::size_t count) {
   std::vector<double> out;
   for (const Json& value : items(node, name)) {
@@ -85,6 +85,7 @@ std::vector<double> numbers_of(const Json& node, const char* name, std::size_t c
   return out.size() == count ? out : std::vector<double>();
 }
 
+/// Returns the rest pose of a node: a motion without curves.
 NodeMotion rest_of(const Json& node) {
   NodeMotion motion;
   if (const auto t = numbers_of(node, "translation", 3); !t.empty()) {

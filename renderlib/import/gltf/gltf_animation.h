@@ -13,7 +13,8 @@
 
 namespace bandsaw::gltf {
 
-/// Returns the names of the file's animations, in its order; may be empty or shared.
+/// Returns the names of the file's animations, in its order. A name may be empty, and several
+/// animations may share one.
 std::vector<std::string> animation_names(const Json& root);
 
 /// Returns animation number `index`, which MUST exist. Its nodes are keyed by their index in the

@@ -1,6 +1,6 @@
 #pragma once
 
-// Access to a glTF file's buffers and buffer views.
+// Gives access to the bytes of a glTF file's buffers and buffer views, and limits their total size.
 
 #include <cstdint>
 #include <map>

@@ -25,21 +25,23 @@ absl::Status damaged(absl::string_view place, absl::string_view what);
 
 /// Returns the member `name` of the object `in`; nullptr if there is none or `in` is no object.
 const Json* find(const Json& in, absl::string_view name);
+/// The same, but nullptr also if the member is no object, or no list.
 const Json* object(const Json& in, absl::string_view name);
 const Json* list(const Json& in, absl::string_view name);
-/// The same for a list; an empty list if there is none.
+/// Returns a list; an empty one if there is none.
 const Json& items(const Json& in, absl::string_view name);
 std::optional<double> number(const Json& in, absl::string_view name);
 /// Returns a string; empty if there is none.
 std::string text(const Json& in, absl::string_view name);
-/// Returns `in.extensions.name`.
+/// Returns the object `in.extensions.name`; nullptr if there is none.
 const Json* extension(const Json& in, absl::string_view name);
 /// Removes `in.extensions.name`, and `in.extensions` if it becomes empty.
 void remove_extension(Json& in, absl::string_view name);
 /// Returns the object's name; may be empty.
 std::string name_in(const Json& in);
 
-/// Returns a whole number in [0, 2^53], as used for counts, offsets and indices.
+/// Returns a whole number in [0, 2^53], as used for counts, offsets and indices; std::nullopt if
+/// `value` is not one.
 std::optional<std::size_t> whole(const Json& value);
 /// Returns the member `name` as such a number, or `otherwise` if there is no such member; without
 /// `otherwise` it is required. Returns INVALID_ARGUMENT if it is missing or no whole number;
@@ -48,7 +50,7 @@ absl::StatusOr<std::size_t> whole_of(const Json& in, absl::string_view name,
                                      absl::string_view place,
                                      std::optional<std::size_t> otherwise = std::nullopt);
 
-/// Returns the object with number `index` of the root's list `name`.
+/// Returns the object with number `index` of the root's list `name`; nullptr if there is none.
 const Json* item(const Json& root, absl::string_view name, double index);
 /// The same for the index in `in.member`.
 const Json* item_of(const Json& root, absl::string_view name, const Json& in,

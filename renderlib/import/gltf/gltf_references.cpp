@@ -91,8 +91,8 @@ absl::Status check_member(const Json& root, const Json& in, const Reference& ref
   return absl::OkStatus();
 }
 
-/// Checks that every member "…Texture" at any depth refers to a texture. The depth is that of the
-/// JSON.
+/// Checks that every member "…Texture" at any depth refers to a texture. The recursion is as deep
+/// as the JSON, whose depth parse_json() limits.
 absl::Status check_textures(const Json& root, const Json& in, const std::string& place) {
   if (!in.is_object()) {
     return absl::OkStatus();

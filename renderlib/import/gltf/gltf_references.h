@@ -1,5 +1,8 @@
 #pragma once
 
+// Checks a glTF file before it is rewritten (plain_gltf.h), so that later code can follow every
+// index without a check.
+
 #include "absl/status/status.h"
 #include "renderlib/import/gltf/gltf_json.h"
 

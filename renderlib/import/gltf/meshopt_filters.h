@@ -1,8 +1,8 @@
 #pragma once
 
-// The filters of EXT_meshopt_compression (its appendix B). libmeshoptimizer has them too, but with
-// approximate reciprocals whose bits differ between CPU models; these give the same bits
-// everywhere.
+// The filters of EXT_meshopt_compression (its appendix B), which meshopt_view.h applies to decoded
+// streams. libmeshoptimizer has them too, but with approximate reciprocals whose bits differ
+// between CPU models; these give the same bits everywhere.
 
 #include <cstddef>
 #include <string>

@@ -93,6 +93,7 @@ class Rewriter {
     return absl::OkStatus();
   }
 
+  /// Checks that the vertices of each node's mesh refer only to joints of the node's skin.
   absl::Status check_joints() const {
     const Json& nodes = items(from_, "nodes");
     for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -108,6 +109,7 @@ class Rewriter {
     return absl::OkStatus();
   }
 
+  /// Makes the WebP image of a texture its only image, and rewrites the images that are used.
   absl::Status rewrite_textures() {
     std::vector<bool> used(items(from_, "images").size(), false);
     const Json& textures = items(from_, "textures");
@@ -139,6 +141,7 @@ class Rewriter {
     const std::string uri = text(from, "uri");
     Json& to = plain_.root["images"][index];
     if (!is_used) {
+      // It stays as a name that is never opened, so that the other images keep their numbers.
       to = {{"uri", "unused"}};
     } else if (find(from, "bufferView") != nullptr) {
       ASSIGN_OR_RETURN(const std::size_t view, whole_of(from, "bufferView", place));

@@ -1,7 +1,8 @@
 #pragma once
 
 // Rewrites a glTF 2.0 file so that any reader understands it: attributes are floats, indices are
-// 32-bit, nothing is sparse, compressed or outside of one buffer.
+// 32-bit, nothing is sparse, compressed or outside of one buffer. model/model.cpp lets Assimp read
+// the result.
 
 #include <cstddef>
 #include <optional>
@@ -30,10 +31,10 @@ inline constexpr char kPlainBuffer[] = "plain.bin";
 /// Reads the model at `path` (real, below `scene`) and the buffers to which it refers. Images in
 /// files stay there; all others are moved to the buffer. Animations other than the chosen one,
 /// tangents and attributes that glTF does not define are omitted. Everything else keeps its place
-/// and number. Returns NOT_FOUND if there is no such animation,
-/// INVALID_ARGUMENT if the file is damaged or requires an extension that replaces vertices or
-/// images by unreadable bytes, NOT_FOUND or PERMISSION_DENIED for a buffer's file, and
-/// RESOURCE_EXHAUSTED for more than 8 GiB of vertices.
+/// and number. Returns NOT_FOUND if there is no such animation, INVALID_ARGUMENT if the file is
+/// damaged or requires an extension that replaces vertices or images by unreadable bytes, NOT_FOUND
+/// or PERMISSION_DENIED for a buffer's file, and RESOURCE_EXHAUSTED for more than 8 GiB of
+/// vertices.
 absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene,
                                           const AnimationChoice& choice = {});
 

@@ -14,7 +14,7 @@ namespace bandsaw::gltf {
 namespace {
 
 constexpr char kDraco[] = "KHR_draco_mesh_compression";
-constexpr int kTriangles = 4;
+constexpr int kTriangles = 4;  // glTF's mode of a primitive that is a list of triangles
 
 /// An attribute of glTF 2.0, 3.7.2.1; a name that ends in "_" is followed by a number.
 struct Semantic {

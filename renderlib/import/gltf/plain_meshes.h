@@ -25,8 +25,8 @@ class PlainMeshes {
   /// index is not below the number of vertices.
   absl::StatusOr<Json> mesh(std::size_t index);
 
-  /// Returns a number above all joints to which the vertices of meshes[index] refer with a weight
-  /// other than zero; 0 if mesh() has not been called for it.
+  /// Returns 1 + the largest joint to which a vertex of meshes[index] refers with a weight other
+  /// than zero; 0 if there is none. mesh(index) MUST have been called.
   std::uint32_t joints_of(std::size_t index) const;
 
  private:
@@ -34,7 +34,7 @@ class PlainMeshes {
   struct Added {
     std::size_t accessor = 0;
     std::size_t count = 0;
-    std::uint32_t largest = 0;  ///< largest index
+    std::uint32_t largest = 0;  ///< largest index, if it holds indices
   };
   /// A Draco stream and the numbers of its attributes; empty for other primitives.
   struct Stream {
@@ -62,7 +62,7 @@ class PlainMeshes {
   /// primitives share accessors.
   std::map<std::pair<std::size_t, bool>, Added> floats_;
   std::map<std::size_t, Added> indices_;
-  std::map<std::size_t, std::uint32_t> joints_;
+  std::map<std::size_t, std::uint32_t> joints_;  ///< results of joints_of()
 };
 
 }  // namespace bandsaw::gltf

@@ -1,5 +1,6 @@
-// Named spectra. Measured indices of refraction are facts of the cited papers, at the wavelengths
-// where a line between them is within a hundredth of the curve, as far as the papers go.
+// Named spectra: indices of refraction of metals and glasses, and illuminants. The tables hold
+// measured values of the cited papers. Wavelengths are left out where linear interpolation between
+// the others is within a hundredth of the paper's curve.
 
 #include <array>
 #include <cmath>
@@ -12,6 +13,7 @@
 namespace bandsaw::spectrum {
 namespace {
 
+/// Complex index of refraction, eta + i k, at a wavelength.
 struct Index {
   double nm;
   double eta;

@@ -158,6 +158,7 @@ Metal metal_rgb(const Sampled& eta, const Sampled& k) {
     const double target = std::clamp(f[c], 0.0, most);
     const double more = metal.eta[c] + 1;
     const double less = metal.eta[c] - 1;
+    // Solves ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2) = target for k^2.
     const double square = (target * more * more - less * less) / (1 - target);
     metal.k[c] = std::clamp(std::sqrt(std::max(square, 0.0)), 0.0, 100.0);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
-// Spectra to linear RGB with sRGB primaries, by the CIE 1931 standard observer (2 degrees).
+// Converts spectra to linear RGB with sRGB primaries, by the CIE 1931 standard observer (2
+// degrees). Used by the converters of pbrt and Mitsuba, whose scenes contain spectra.
 
 #include <array>
 #include <optional>
@@ -24,14 +25,16 @@ struct Sampled {
   double at(double nm) const;
 };
 
-/// Returns the spectrum of "wavelength value" pairs. INVALID_ARGUMENT: an odd number of numbers,
-/// none, more than 100,000, not finite, or wavelengths that do not increase.
+/// Returns the spectrum of pairs of a wavelength and a value. The error is INVALID_ARGUMENT for an
+/// odd number of numbers, no pairs or more than 100,000, numbers that are not finite, and
+/// wavelengths that do not increase.
 absl::StatusOr<Sampled> from_pairs(const std::vector<double>& numbers);
 
 /// Parses a file of pairs, a pair a line (*.spd); # begins a comment.
 absl::StatusOr<Sampled> parse_spd(absl::string_view text);
 
-/// Returns the radiation of a black body in relative units: its largest value is 1. `kelvin` > 0.
+/// Returns the visible radiation of a black body, relative to its maximum over all wavelengths,
+/// which may be invisible. `kelvin` > 0.
 Sampled blackbody(double kelvin);
 
 /// Returns the colour of a light: the integral with the colour matching functions, scaled so that
@@ -51,13 +54,14 @@ struct Metal {
   Rgb3 eta;
   Rgb3 k;
 };
-/// Returns the index whose reflectance at normal incidence is the colour of the spectral
-/// reflectance: what a spectral renderer shows. eta is factor_rgb of the spectrum.
+/// Returns an index for each channel whose reflectance at normal incidence is the colour that a
+/// spectral renderer shows: factor_rgb() of the spectral reflectance. eta is factor_rgb() of its
+/// spectrum, and k follows.
 Metal metal_rgb(const Sampled& eta, const Sampled& k);
 
 /// Returns a spectrum by the name that it has in pbrt: "metal-Cu-eta", "metal-Cu-k" (Ag, Al, Au,
 /// Cu, CuZn, MgO, TiO2), "glass-BK7" (BAF10, FK51A, LASF9, F5, F10, F11), "stdillum-D65",
-/// "stdillum-A". std::nullopt: not known here.
+/// "stdillum-A". Returns std::nullopt for other names.
 std::optional<Sampled> named(absl::string_view name);
 
 /// Wavelength of the d line, at which indices of refraction are stated.
