@@ -26,7 +26,7 @@ class PlainMeshes {
   absl::StatusOr<Json> mesh(std::size_t index);
 
   /// Returns 1 + the largest joint to which a vertex of meshes[index] refers with a weight other
-  /// than zero; 0 if there is none. mesh(index) MUST have been called.
+  /// than zero; 0 if there is none, or if mesh() has not been called for it.
   std::uint32_t joints_of(std::size_t index) const;
 
  private:

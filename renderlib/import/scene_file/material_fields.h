@@ -1,6 +1,7 @@
 #pragma once
 
-// Fields that several kinds of materials in a scene file have.
+// Reads fields that several kinds of materials in a scene file have. In each function `in` is the
+// message of the material's kind, and `from` is the value of the field.
 
 #include <optional>
 #include <string>

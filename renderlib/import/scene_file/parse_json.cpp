@@ -11,9 +11,9 @@
 namespace bandsaw {
 namespace {
 
-// Returns line and column of a JSON error. Protobuf reports broken JSON as the cause, up to 40
-// characters of the text, and a line with a caret below the position. If those characters occur
-// once in the file, they determine line and column.
+// Returns ":LINE:COLUMN" of a JSON error; "" if it is unknown. Protobuf reports broken JSON as the
+// cause, up to 40 characters of the text, and a line with a caret below the position. If those
+// characters occur once in the file, they determine line and column.
 std::string place_of(absl::string_view text, absl::string_view excerpt, std::size_t caret) {
   const std::size_t found = text.find(excerpt);
   if (excerpt.empty() || found == text.npos || text.find(excerpt, found + 1) != text.npos) {

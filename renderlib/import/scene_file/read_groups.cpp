@@ -1,5 +1,5 @@
-// A group's shapes and models are read once into a Contents; each instance copies its placements,
-// transformed, into the scene or into another group.
+// A group's shapes and models are read once into a Contents (draft/placements.h); each instance
+// copies its placements, transformed, into the scene or into another group.
 
 #include "renderlib/import/scene_file/read_groups.h"
 
@@ -36,13 +36,14 @@ double random_number(std::uint64_t seed, std::uint64_t copy, std::uint64_t use) 
   return static_cast<double>(x >> 11) * 0x1p-53;
 }
 
+/// Copies on a regular grid that are moved, turned and scaled at random.
 struct Grid {
-  std::uint64_t count[3];
-  Vec3 step;
-  Vec3 origin;
-  Vec3 jitter;
-  double turn = 0;
-  double least = 1;
+  std::uint64_t count[3];  ///< copies along x, y, z
+  Vec3 step;               ///< from copy to copy
+  Vec3 origin;             ///< place of the first copy
+  Vec3 jitter;             ///< maximum of the random translation along each axis
+  double turn = 0;         ///< maximum of the random rotation about y, in degrees
+  double least = 1;        ///< the random scale is in [least, most]
   double most = 1;
   std::uint64_t seed = 0;
 };
@@ -84,6 +85,7 @@ absl::StatusOr<Grid> read_grid(const Field& in, const scene::Grid& from) {
   return grid;
 }
 
+/// Returns the transform of copy `number`; x varies fastest.
 Transform copy_of(const Grid& grid, std::uint64_t number) {
   const std::uint64_t i = number % grid.count[0];
   const std::uint64_t j = number / grid.count[0] % grid.count[1];
@@ -186,8 +188,8 @@ absl::StatusOr<const Contents*> find_group(const Field& in, const std::string& n
                                      "; within a group only earlier ones are known"));
 }
 
-/// Adds `what` at the placement or with the keys of `in`, transformed by `copy`. Returns false like
-/// place().
+/// Adds `what` to `to`, placed by `placement` or, if there are keys, moving according to `keys`;
+/// `copy` is applied after either. Returns false if a placement would be singular.
 bool place_copy(const Placements& what, const Transform& placement, const Transform& copy,
                 const std::vector<Key>& keys, std::optional<MaterialId> material, Placements& to) {
   if (what.instances.empty()) {

@@ -1,5 +1,8 @@
 #pragma once
 
+// Reads groups of a scene file, which are shapes and models with a name, and instances, each of
+// which places a group once or many times.
+
 #include "absl/status/status.h"
 #include "proto/scene.pb.h"
 #include "renderlib/import/draft/scene_draft.h"
@@ -13,8 +16,8 @@ using InstanceList = google::protobuf::RepeatedPtrField<scene::Instance>;
 /// read.
 absl::Status read_groups(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// Reads the instances of the scene or of a group into SceneDraft::placed. The groups to which they
-/// refer MUST have been read.
+/// Reads the instances of the scene or of a group, which is `parent`, into SceneDraft::placed. The
+/// groups to which they refer MUST have been read.
 absl::Status read_instances(const Field& parent, const InstanceList& instances, SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -14,6 +14,7 @@
 namespace bandsaw {
 namespace {
 
+/// Reads the required colour `name`; `given`: it is present.
 absl::StatusOr<Rgb> read_brightness(const Field& in, const std::string& name, bool given,
                                     const scene::Color& from) {
   if (!given) {
@@ -55,11 +56,13 @@ absl::StatusOr<Vec3> read_axis(const Field& in, const scene::SpotLight& from,
   return normalize(target - position);
 }
 
-/// Reads `up` and sets the sides of an image that is projected along the unit vector `axis`.
+/// Reads `up` and sets the directions `right` and `up` of an image that is projected along the unit
+/// vector `axis`.
 absl::Status read_sides(const Field& in, const Numbers& from, bool mirrored, const Vec3& axis,
                         ProjectedImage& image) {
   ASSIGN_OR_RETURN(const Vec3 up, read_vec3(in, "up", from, Vec3{0, 1, 0}));
   const Vec3 right = length_squared(up) > 0 ? cross(axis, normalize(up)) : Vec3{};
+  // The sine of the angle between axis and up must be above 1e-12.
   if (!(length_squared(right) > 1e-24)) {
     return in.error("up", from.empty()
                               ? "is [0, 1, 0] unless written, and the light shines along it; write "

@@ -7,7 +7,8 @@
 
 namespace bandsaw {
 
-/// Adds the file's delta lights to the scene. Returns INVALID_ARGUMENT with the field's name.
+/// Adds the scene file's delta lights (directional, point, spot, projector) to the scene. Returns
+/// INVALID_ARGUMENT with the field's name.
 absl::Status read_lights(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -103,6 +103,7 @@ absl::StatusOr<Material> read_thin_dielectric(const Field& in, const scene::Thin
   return pane;
 }
 
+/// Reads a thin sheet, such as paper or a leaf, that reflects and transmits light diffusely.
 absl::StatusOr<Material> read_sheet(const Field& in, const scene::DiffuseTransmission& from,
                                     SceneDraft& draft) {
   DiffuseTransmission sheet;

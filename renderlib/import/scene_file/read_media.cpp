@@ -17,6 +17,7 @@
 namespace bandsaw {
 namespace {
 
+/// Reads a coefficient per scene unit and multiplies it by `density`; 0 if it is not `given`.
 absl::StatusOr<Rgb> read_rates(const Field& in, const std::string& name, bool given,
                                const scene::Color& color, double density) {
   if (!given) {
@@ -146,8 +147,6 @@ absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& placed, Me
                                            "box or a sphere"));
 }
 
-// A boundary whose medium varies in space gets a frame of its own with the placement, because the
-// medium varies in the space of that frame. Other boundaries are placed directly.
 void give_space(const Transform& placement, Instance& boundary, const SceneDraft& draft,
                 Placements& to) {
   const MediumId inside = medium_in(boundary.material);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Reads media of a scene file and their boundaries.
+// Reads media of a scene file (fog, smoke, liquids), and makes their boundaries: the closed shapes
+// that a medium fills.
 
 #include <optional>
 
@@ -11,7 +12,7 @@
 
 namespace bandsaw {
 
-/// Reads all media and the fog.
+/// Reads all media, and the name of the fog, the one medium without a boundary.
 absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
 /// Returns the medium with this name, which is the value of `in`'s field `field`. Returns
@@ -19,17 +20,17 @@ absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft&
 absl::StatusOr<MediumId> find_medium(const Field& in, const std::string& field,
                                      const std::string& name, const SceneDraft& draft);
 
-/// Adds the boundary of a medium as an instance of Media::boundaries: a sphere, a box from `low` to
-/// `high`, or a mesh of the scene. Returns INVALID_ARGUMENT for `in`'s field "interior" if the mesh
-/// is open.
+/// Return the boundary of the medium `inside` as an instance in Media::boundaries (scene/media.h),
+/// which the caller places: a sphere, a box from `low` to `high`, or an instance of a mesh of the
+/// scene. The latter returns INVALID_ARGUMENT for `in`'s field "interior" if the mesh is open.
 Instance boundary_of(const Sphere& sphere, MediumId inside, SceneDraft& draft);
 Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft);
 absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& mesh, MediumId inside,
                                      SceneDraft& draft);
 
-/// Places a boundary without a frame, one of boundary_of(), at `placement` in the space of `to`. If
-/// its medium varies in space, the placement becomes a frame of `to`, so that the medium's space is
-/// the one in which the boundary is given (scene/media.h).
+/// Places a boundary that boundary_of() returned and that has no frame at `placement` in the space
+/// of `to`. If its medium varies in space, the placement becomes a frame of `to`: the medium then
+/// varies in the space in which the boundary is given, before it is placed (scene/media.h).
 void give_space(const Transform& placement, Instance& boundary, const SceneDraft& draft,
                 Placements& to);
 

@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr float kMaxMetalIndex = 100;
+constexpr float kMaxMetalIndex = 100;  // of eta and k: far above any metal's
 
 absl::StatusOr<ConductorIndex> read_index(const Field& in, const scene::Conductor& from) {
   ConductorIndex index;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Materials of a scene file whose surface is a microfacet distribution.
+// Reads the materials of a scene file whose surface is a microfacet distribution.
 
 #include "absl/status/statusor.h"
 #include "proto/scene.pb.h"
@@ -9,7 +9,7 @@
 
 namespace bandsaw {
 
-/// `in` is the message itself.
+/// In each function `in` is the message `from`. They return INVALID_ARGUMENT with the field's name.
 absl::StatusOr<Microfacets> read_microfacets(const Field& in, const scene::Microfacets& from,
                                              SceneDraft& draft);
 absl::StatusOr<Material> read_conductor(const Field& in, const scene::Conductor& from,

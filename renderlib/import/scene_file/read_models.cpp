@@ -23,7 +23,7 @@ AnimationChoice animation_of(const scene::Model& from, const SceneDraft& draft) 
   return from.animation().empty() ? draft.animation : AnimationChoice{from.animation()};
 }
 
-// Returns an error about a model's file at the field that names it.
+// Reads a model's file. Errors are at the field that names the file.
 absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const scene::Model& from,
                                                        SceneDraft& draft) {
   if (from.file().empty()) {
@@ -59,8 +59,8 @@ absl::StatusOr<std::shared_ptr<const Model>> find_file(const Field& in, const sc
   return model;
 }
 
-/// Adds the delta lights of a model. They do not move; for moving models, they are placed as when
-/// the shutter opens.
+/// Adds the delta lights of a model, which do not move: `to_world` of a moving model is that when
+/// the shutter opens. In a group they are left out.
 void add_lights(const std::string& file, const Model& model, const Transform& to_world,
                 SceneDraft& draft) {
   if (draft.placed != &draft.world) {
@@ -75,6 +75,7 @@ void add_lights(const std::string& file, const Model& model, const Transform& to
   }
 }
 
+/// Adds `what` to `to`, placed by `placement` or, if there are keys, moving according to `keys`.
 absl::Status place_model(const Field& in, const Placements& what, const Transform& placement,
                          const std::vector<Key>& keys, std::optional<MaterialId> material,
                          Placements& to) {
@@ -85,7 +86,7 @@ absl::Status place_model(const Field& in, const Placements& what, const Transfor
              : in.error("scale", "is too large or too small for this model");
 }
 
-/// Adds the media inside a model's meshes, each with its own placement.
+/// Returns the boundaries of the medium that fills a model's meshes, one for each placed mesh.
 absl::StatusOr<Placements> read_interior(const Field& in, const scene::Model& from,
                                          const Model& model, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));

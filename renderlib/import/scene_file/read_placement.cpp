@@ -1,5 +1,6 @@
-// Reads scale, rotations and translation, or a matrix. If two keys rotate about the same axis by
-// more than the shortest rotation between them, further keys are added in between.
+// Reads scale, rotations and translation, or a matrix. Between keys the shortest rotation is used.
+// So if the angles of two keys about one axis differ by more than kMaxTurn, further keys are added
+// in between, and full turns are not lost.
 
 #include "renderlib/import/scene_file/read_placement.h"
 
@@ -15,8 +16,8 @@
 namespace bandsaw {
 namespace {
 
-/// Maximum rotation about one axis between two keys, so that the shortest rotation is the whole
-/// rotation.
+/// Maximum rotation about one axis between two keys, well below the 180 degrees from which on the
+/// shortest rotation would be another one.
 constexpr double kMaxTurn = 90;  // degrees
 constexpr double kMaxKeys = 100'000;
 
@@ -83,6 +84,7 @@ absl::StatusOr<Transform> read_any_placement(const Field& in, const Message& fro
   return placement;
 }
 
+/// Reads the 12 numbers of a 3 x 4 matrix, row by row.
 template <class Message>
 absl::StatusOr<Transform> read_matrix(const Field& in, const Message& from) {
   constexpr int kNumbers = 12;

@@ -16,7 +16,8 @@ absl::StatusOr<Transform> read_placement(const Field& in, const scene::Model& fr
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Instance& from);
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Copy& from);
 
-/// Reads the keys of a Model or an Instance; empty if it has none.
+/// Reads the keys of a Model or an Instance, its placements at increasing times; empty if it has
+/// none. All functions return INVALID_ARGUMENT with the field's name.
 absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Model& from);
 absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Instance& from);
 

@@ -32,7 +32,6 @@ absl::StatusOr<Number> read_number(const Field& in, const char* name, bool given
   return to;
 }
 
-/// Reads the base colour.
 template <class From>
 absl::StatusOr<TextureId> read_base_color(const Field& in, const From& from, SceneDraft& draft) {
   return read_reflectance(
@@ -74,7 +73,8 @@ absl::StatusOr<double> read_index(const Field& in, const scene::Principled& from
     return from.has_index_of_refraction() ? from.index_of_refraction() : 1.5;
   }
   RETURN_IF_ERROR(check_range(in, "specular", from.specular(), 0, 1));
-  // Reflectance 0.08 specular at normal incidence; with transmission not 0, as in Mitsuba 3.
+  // The reflectance at normal incidence is 0.08 times `specular`. With transmission, `specular` has
+  // a lower bound above 0, as in Mitsuba 3.
   const double least = from.has_spec_trans() ? 1e-3 : 0;
   return 2 / (1 - std::sqrt(0.08 * std::max(least, from.specular()))) - 1;
 }

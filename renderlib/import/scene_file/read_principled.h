@@ -1,6 +1,6 @@
 #pragma once
 
-// The principled materials of a scene file.
+// Reads the principled materials of a scene file, those of Disney's model.
 
 #include "absl/status/statusor.h"
 #include "proto/scene.pb.h"
@@ -9,8 +9,8 @@
 
 namespace bandsaw {
 
-/// These functions read the material of kind `principled` or `thin_principled` of `in`.
-/// INVALID_ARGUMENT with the field's name.
+/// These functions read a material of kind `principled` or `thin_principled`, whose message is
+/// `in`. They return INVALID_ARGUMENT with the field's name.
 absl::StatusOr<Material> read_principled(const Field& in, const scene::Principled& from,
                                          SceneDraft& draft);
 absl::StatusOr<Material> read_thin_principled(const Field& in, const scene::ThinPrincipled& from,

@@ -9,7 +9,8 @@
 
 namespace bandsaw {
 
-/// Reads the rotations of the field `rotate` of `in`, applied in the order written.
+/// Reads the rotations of the field `rotate` of `in`, a camera or a background, applied in the
+/// order written; the identity if there are none. Returns INVALID_ARGUMENT with the field's name.
 absl::StatusOr<Transform> read_rotation(
     const Field& in, const google::protobuf::RepeatedPtrField<scene::Rotation>& list);
 

@@ -1,6 +1,7 @@
-// Reads each shape as values of geometry/shapes.h. A shape that moves becomes a group in a frame; a
-// shape with a medium inside also becomes a boundary. `seen` holds the placed shapes that have a
-// surface, `filled` the boundaries of media.
+// Reads each shape as values of geometry/shapes.h. A shape that moves becomes a group in a frame, a
+// moving coordinate system (geometry/frame.h). A shape with a medium inside also becomes a boundary
+// of that medium. Contents::seen holds the placed shapes that have a surface, Contents::filled the
+// boundaries.
 
 #include "renderlib/import/scene_file/read_shapes.h"
 
@@ -39,6 +40,7 @@ absl::Status read_quad(const Field& in, const scene::Quad& from, MaterialId mate
   ASSIGN_OR_RETURN(quad.u, read_direction(in, "u", from.u()));
   ASSIGN_OR_RETURN(quad.v, read_direction(in, "v", from.v()));
   const Vec3 normal = cross(normalize(quad.u), normalize(quad.v));
+  // The sine of the angle between the sides must be above 1e-12.
   if (!(length_squared(normal) > 1e-24)) {
     return in.error("v", "must not be parallel to u: the quad would have no area");
   }
@@ -135,7 +137,7 @@ void add_moved(const Shapes& shape, const Vec3& by, Shapes& to) {
   }
 }
 
-/// Returns the keys of a linear motion while the shutter is open; it MUST have a duration.
+/// Returns a frame that moves linearly while the shutter is open; the shutter MUST have a duration.
 Frame sliding(const Vec3& velocity, const Shutter& shutter) {
   Frame frame;
   frame.keys.emplace_back(shutter.open, translation(velocity * shutter.open));
@@ -155,7 +157,7 @@ void add_moving(Shapes shape, const Vec3& velocity, SceneDraft& draft) {
   to.instances.push_back(instance);
 }
 
-/// Returns the medium inside a sphere or a box.
+/// Returns the boundary of the medium inside a sphere or a box.
 absl::StatusOr<Instance> read_boundary(const Field& in, const scene::Shape& from,
                                        SceneDraft& draft) {
   if (from.kind_case() != scene::Shape::kSphere && from.kind_case() != scene::Shape::kBox) {
@@ -175,7 +177,8 @@ absl::StatusOr<Instance> read_boundary(const Field& in, const scene::Shape& from
   return boundary_of(low, high, medium, draft);
 }
 
-/// A static boundary in the world needs no placement.
+/// Adds the medium inside a sphere that rests in the scene: such a boundary is stored as a sphere,
+/// not as an instance.
 absl::Status read_filled_sphere(const Field& in, const scene::Shape& from, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
   return read_shape(in, from, filled_with(medium), draft.out.scene.media.boundaries);

@@ -24,7 +24,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the value of an enum whose values are 0 to `last`.
+/// Checks a number of the file, which may be any, and returns it as an enum with the values 0 to
+/// `last`.
 template <class Ours>
 absl::StatusOr<Ours> read_enum(const Field& in, const std::string& name, int value, int last) {
   if (value < 0 || value > last) {
@@ -33,7 +34,8 @@ absl::StatusOr<Ours> read_enum(const Field& in, const std::string& name, int val
   return static_cast<Ours>(value);
 }
 
-// Reads one or two finite numbers; one counts for both if `one_for_both`.
+// Reads two finite numbers, or one that counts for both if `one_for_both`; `otherwise` twice if the
+// list is empty.
 absl::StatusOr<Vec2> read_vec2(const Field& in, const std::string& name, const Numbers& list,
                                bool one_for_both, double otherwise) {
   if (list.empty()) {
@@ -121,6 +123,7 @@ MaybeId read_part(const Field& in, const std::string& name, const scene::Texture
   return draft.textures.constant(gray(otherwise));
 }
 
+// Reads the size of a checker's fields: one number, or `most` (2 or 3) numbers.
 absl::StatusOr<Vec3> read_size(const Field& in, const scene::CheckerTexture& from, int most) {
   const Numbers& list = from.size();
   if (list.size() > 1 && list.size() != most) {
@@ -282,7 +285,8 @@ MaybeId read_kind(const Field& in, const scene::Texture& from, float most, Scene
   return in.error("is empty: write color, image, checker, noise, ramp, mix, product or use");
 }
 
-// Kinds whose colours are defined elsewhere or are combined from several.
+// Returns true for the kinds that read_kind() does not compare with `most`: their colours are
+// defined elsewhere or are products.
 bool may_pass(const scene::Texture& from) {
   return from.has_image() || from.has_product() || from.kind_case() == scene::Texture::kUse;
 }

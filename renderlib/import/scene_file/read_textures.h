@@ -7,11 +7,12 @@
 
 namespace bandsaw {
 
-/// Reads the named textures of the scene into the draft, before its materials.
+/// Reads the named textures of the scene file into SceneDraft::named_textures; MUST be called
+/// before materials are read.
 absl::Status read_textures(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// Reads the texture of `in`, which is defined there or referred to by name. No channel may be
-/// above `most` anywhere.
+/// Reads the texture of `in`, which is defined there or referred to by name. It is
+/// INVALID_ARGUMENT, with the field's name, if a channel is above `most` anywhere.
 absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& from, float most,
                                        SceneDraft& draft);
 

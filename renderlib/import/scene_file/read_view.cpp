@@ -24,6 +24,7 @@ namespace bandsaw {
 
 namespace {
 
+/// Reads the image file that the field `name` of `in` names, for an environment map.
 absl::StatusOr<TextureId> read_image(const Field& in, const std::string& name,
                                      const std::string& file, SceneDraft& draft) {
   if (file.empty()) {
@@ -41,6 +42,7 @@ absl::StatusOr<TextureId> read_image(const Field& in, const std::string& name,
   return image.ok() ? image : in.error(name, image.status().message());
 }
 
+/// Reads strength and rotation of an environment map.
 template <class Message>
 absl::Status read_placement(const Field& in, const Message& from, Environment& to) {
   constexpr double kMaxStrength = 1e6;
@@ -113,6 +115,7 @@ absl::StatusOr<View> read_view(const Field& in, const scene::Camera& from) {
     return in.error("up", "must not be zero");
   }
   const Vec3 ahead = normalize(view.look_at - view.position);
+  // The sine of the angle between the view direction and up must be above 1e-12.
   if (!(length_squared(cross(ahead, normalize(view.up))) > 1e-24)) {
     return in.error("up", from.up().empty()
                               ? "is [0, 1, 0] unless written, and the camera looks along it; write "

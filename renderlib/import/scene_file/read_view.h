@@ -1,6 +1,8 @@
 #pragma once
 
-// Reads the other settings of a scene file: camera, size of the image, background, depth.
+// Reads the settings of a scene file that are not shapes, materials, lights or media: camera, size
+// of the image, background, depth. Functions that return a StatusOr return INVALID_ARGUMENT with
+// the field's name.
 
 #include "absl/status/statusor.h"
 #include "proto/scene.pb.h"
@@ -13,13 +15,14 @@ namespace bandsaw {
 /// Reads the camera; the scene MUST have one. The camera gets `shutter`.
 absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from,
                                    const Shutter& shutter);
-/// Returns the shutter of the frame at `time`. The scene file, or the default, gives it relative to
-/// that time.
+/// Returns the shutter interval of the frame at `time`, in seconds of the scene's time. The scene
+/// file gives it relative to the frame's time; by default it is that time alone.
 absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from, double time);
 /// Reads the frames per second, or returns the default.
 absl::StatusOr<double> read_fps(const Field& root, const scene::Scene& from);
 /// Reads the pixel filter, or returns the default.
 absl::StatusOr<PixelFilter> read_filter(const Field& root, const scene::Scene& from);
+/// Reads the parameters of the integrators that do not trace paths; defaults where they are absent.
 absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::Scene& from);
 /// Reads image and integrator settings that are present.
 absl::Status read_settings(const Field& root, const scene::Scene& from, PackageInfo& info);

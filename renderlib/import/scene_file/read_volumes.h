@@ -1,6 +1,7 @@
 #pragma once
 
-// Reads the grids of media of a scene file.
+// Reads the grids of numbers with which media of a scene file vary in space (density, albedo,
+// emission, temperature), from volume files.
 
 #include "absl/status/statusor.h"
 #include "proto/scene.pb.h"
@@ -9,8 +10,8 @@
 
 namespace bandsaw {
 
-/// Reads the grids of a medium, the message of `in`, which are added to the scene's. A file that is
-/// used several times in the same place is added once.
+/// Reads the grids of a medium, the message of `in`, and adds them to the scene's. A grid that
+/// several media use with the same settings is added once.
 absl::StatusOr<MediumGrids> read_grids(const Field& in, const scene::Medium& from,
                                        SceneDraft& draft);
 

@@ -5,8 +5,9 @@
 
 namespace bandsaw {
 
-/// Returns `; did you mean "radius"?` with the known name nearest to `name`, or an empty string if
-/// none is near (Levenshtein distance above a third of the length, at least 1).
+/// Returns `; did you mean "radius"?`, the end of an error message, with the known name nearest to
+/// `name`. Returns an empty string if none is near: the Levenshtein distance of a near one is 1, or
+/// at most a third of the length of `name`.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
 #pragma once
 
-// Selects cameras of models by name: the name of the node, or the camera's own if several nodes
-// share that name, or "FILE/NODE" if several models have such a node.
+// Selects cameras of models by name. A camera is called by the name of its node, by its own name if
+// no node has the name, or by "FILE/NODE", for example if several models have such a node.
 
 #include <string>
 #include <vector>
@@ -15,13 +15,13 @@
 
 namespace bandsaw {
 
-/// Adds a model's cameras, transformed by `to_world`, to the draft: once for each file, and not for
-/// models in groups, which have no place of their own.
+/// Adds a model's cameras, transformed by `to_world`, to the draft. Does nothing if cameras of the
+/// same file have been added, or if the model is in a group, which has no place of its own.
 void add_cameras(const std::string& file, const Model& model, const Transform& to_world,
                  SceneDraft& draft);
 
-/// Returns the names of the cameras that have a unique name; only the first ones if there are more
-/// than a package can list.
+/// Returns a name for each camera that one of the names above identifies; only the first ones if
+/// there are more than a package can list.
 std::vector<std::string> names_of(const std::vector<FoundCamera>& cameras);
 
 /// Returns the camera that the scene file names, with the lens and shutter of the scene file. The
@@ -33,7 +33,8 @@ absl::StatusOr<MovingCamera> use_camera(const Field& root, const scene::Scene& f
 /// Returns a camera of a model with the shutter of the scene.
 MovingCamera with_shutter(const FoundCamera& camera, const Shutter& shutter);
 
-/// Returns the camera that the user named, with the lens of its file. The same errors.
+/// Returns the camera that the user named, with the lens of its model's file. Errors as
+/// use_camera(), with the name of the scene file.
 absl::StatusOr<MovingCamera> chosen_camera(const std::string& name, const SceneDraft& draft);
 
 }  // namespace bandsaw
