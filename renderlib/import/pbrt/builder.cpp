@@ -1,4 +1,5 @@
-// Colours and spectra of parameters, warnings, and small helpers for all parts of the conversion.
+// Converts colours and spectra of parameters to linear RGB, stores warnings, and has small helpers
+// for all parts of the conversion.
 
 #include "renderlib/import/pbrt/builder.h"
 
@@ -163,7 +164,7 @@ absl::StatusOr<std::optional<spectrum::Sampled>> spectrum_of(const Parameter& pa
   if (const auto known = spectrum::named(name)) {
     return known;
   }
-  spectrum::Sampled flat{{500}, {1}};
+  spectrum::Sampled flat{{500}, {1}};  // 1 at all wavelengths
   if (absl::StartsWith(name, "metal-") || absl::StartsWith(name, "glass-") ||
       absl::StartsWith(name, "stdillum-") || absl::StartsWith(name, "illum-")) {
     builder.warn(parameter.place,

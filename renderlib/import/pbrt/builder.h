@@ -1,6 +1,7 @@
 #pragma once
 
-// The scene under construction, and the state that all parts of the conversion share.
+// The Builder holds the scene file that a pbrt scene is converted to, and the state that all parts
+// of the conversion share. "Our scene" is that scene file (proto/scene.proto).
 
 #include <map>
 #include <optional>
@@ -23,7 +24,7 @@ using spectrum::Rgb3;
 /// Name of the empty medium inside of clear glass that lies in a medium.
 inline constexpr char kVacuum[] = "vacuum";
 
-/// A medium as it was defined.
+/// A medium as MakeNamedMedium defined it.
 struct MediumSource {
   std::string type;
   Parameters parameters;
@@ -48,8 +49,8 @@ struct Builder {
 
   /// Factor of all light: exposure time x ISO / 100 of the film.
   double light_factor = 1;
-  double start_time = 0;  ///< when the motion starts
-  double end_time = 1;
+  double start_time = 0;  ///< seconds, when the motion starts (TransformTimes)
+  double end_time = 1;    ///< seconds, when it ends
   bool has_motion = false;
   Extent extent;
 
@@ -59,24 +60,24 @@ struct Builder {
   std::map<std::string, std::shared_ptr<const Surface>> materials;
   std::map<std::string, MediumSource> media;
   std::map<std::string, std::string> made_media;  ///< serialised medium -> name in our scene
-  /// Media that some shape bounds from one side only, without being closed, with the first place.
+  /// Media on either side of a surface that is not closed, with the place of the first one.
   std::map<std::string, Place> open_media;
-  std::set<std::string> taken_media;
+  std::set<std::string> taken_media;  ///< names of media in use
   bool needs_vacuum = false;
   std::map<std::string, std::string> material_names;  ///< serialised material -> name
   std::set<std::string> taken_names;                  ///< names of materials in use
   std::map<std::string, int> name_counts;             ///< names made from a label
-  std::set<std::string> taken_textures;
-  std::map<std::string, int> texture_counts;
-  scene::Group* group = nullptr;  ///< between ObjectBegin and ObjectEnd
-  int helper_groups = 0;
+  std::set<std::string> taken_textures;               ///< names of textures in use
+  std::map<std::string, int> texture_counts;          ///< names made from a texture's name
+  scene::Group* group = nullptr;                      ///< between ObjectBegin and ObjectEnd
+  int helper_groups = 0;  ///< number of groups that add_helper_group() made
 
   void warn(const Place& place, absl::string_view what);
   /// Adds the warning unless the same text was a warning before.
   void warn_once(const Place& place, absl::string_view what);
   /// Warns of each parameter that was not used.
   void warn_of_unused(const Parameters& parameters);
-  std::set<std::string> warned;
+  std::set<std::string> warned;  ///< texts of warn_once()
 };
 
 // Write values into messages of a scene file.
@@ -88,7 +89,7 @@ void set_vec3(const Vec3& v, google::protobuf::RepeatedField<double>* to);
 /// Meaning of a colour.
 enum class ColorUse {
   kReflectance,  ///< in [0, 1]
-  kLight,        ///< spectra that are not RGB have luminance 1
+  kLight,        ///< RGB is kept, other spectra are scaled to luminance 1
   kUnbounded,    ///< >= 0
 };
 
@@ -102,14 +103,17 @@ absl::StatusOr<Rgb3> color(const Parameters& parameters, const std::string& name
 absl::StatusOr<std::optional<spectrum::Sampled>> spectrum_of(const Parameter& parameter,
                                                              Builder& builder);
 
-/// Returns the bytes of a file of the scene's folder; std::nullopt after a warning that it is
-/// missing; `instead` completes the warning with the substitute. PERMISSION_DENIED: it lies
-/// outside.
+/// Returns the bytes of a file of the scene's folder. Returns std::nullopt if it is missing, after
+/// a warning that ends with `instead`, which names the substitute. The error is PERMISSION_DENIED
+/// if the file lies outside of the folder.
 absl::StatusOr<std::optional<std::string>> read_or_warn(const std::string& name, const Place& place,
                                                         absl::string_view instead,
                                                         Builder& builder);
 
-// Each of these converts a directive (textures.cpp, materials.cpp …).
+// Each of these converts a directive and adds the result to the builder (textures.cpp,
+// materials.cpp, shapes.cpp, lights.cpp). The type is the first word of the directive ("sphere");
+// for a texture it is "spectrum" or "float", and `kind` is that word ("imagemap"). `label` begins
+// the name of the material.
 absl::Status add_texture(const std::string& name, const std::string& type, const std::string& kind,
                          Parameters parameters, const State& state, Builder& builder);
 absl::StatusOr<std::shared_ptr<const Surface>> make_surface(const std::string& type,

@@ -1,7 +1,7 @@
 #pragma once
 
-// The current graphics state, the states that AttributeBegin has saved, and the named coordinate
-// systems.
+// Holds the current graphics state of a pbrt scene while its directives are executed, the states
+// that AttributeBegin has saved, and the named coordinate systems.
 
 #include <map>
 #include <string>
@@ -16,8 +16,9 @@ class GraphicsState {
  public:
   State& current() { return current_; }
 
-  /// Replaces the active transformations, or multiplies them from the right. INVALID_ARGUMENT: a
-  /// number is not finite or beyond 1e30.
+  /// Replaces the active transformations, or multiplies them from the right. Active are those at
+  /// the start or the end of the motion, or both (ActiveTransform). The error is INVALID_ARGUMENT
+  /// if a number is not finite or beyond 1e30.
   absl::Status set(const Place& place, const Transform& to);
   absl::Status concatenate(const Place& place, const Transform& by);
 
@@ -25,9 +26,10 @@ class GraphicsState {
   /// Returns false if there is no system of this name.
   bool use_system(const std::string& name);
 
-  /// Saves the state. RESOURCE_EXHAUSTED: more than 1024 are nested.
+  /// Saves the state. The error is RESOURCE_EXHAUSTED if more than 1024 are nested.
   absl::Status save(const Place& place);
-  /// Restores all of the state that was saved last, or its transformations alone.
+  /// Restores all of the state that was saved last, or its transformations alone. The error is
+  /// INVALID_ARGUMENT if none is saved.
   absl::Status restore(const Place& place);
   absl::Status restore_transforms(const Place& place);
   /// Returns the number of states that are saved.

@@ -1,4 +1,5 @@
-// Lights without a shape.
+// Converts the lights of pbrt that have no shape: distant, point, spot, goniometric, projection and
+// infinite.
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
+/// A LightSource directive.
 struct LightSource {
   const Parameters& parameters;
   const State& state;
@@ -23,7 +25,7 @@ struct LightSource {
 
   const Place& place() const { return parameters.place; }
   const Transform& to_world() const { return state.transforms[0]; }
-  /// Returns the colour times scale and the film's factor.
+  /// Returns the colour `name` times the light's scale, `factor` and the film's factor.
   absl::StatusOr<Rgb3> light(const std::string& name, double factor = 1) const {
     ASSIGN_OR_RETURN(Rgb3 rgb,
                      color(parameters, name, ColorUse::kLight, {1, 1, 1}, state, builder));
@@ -91,6 +93,8 @@ absl::Status distant(const LightSource& from) {
   return absl::OkStatus();
 }
 
+/// Adds a point light. `mean_of_image`: factor of its intensity, for a goniometric light.
+/// `own_power`: the power that it has with luminance 1.
 absl::Status point_light(const LightSource& from, double mean_of_image, double own_power) {
   ASSIGN_OR_RETURN(const Vec3 position, point(from, "from", {0, 0, 0}));
   ASSIGN_OR_RETURN(const double factor, from.factor_for("power", own_power));
@@ -116,6 +120,7 @@ absl::Status spot(const LightSource& from) {
   const double inner = std::clamp(cone - delta, 0.0, cone);
   const double cos_inner = sincos_degrees(inner).cos;
   const double cos_outer = sincos_degrees(cone).cos;
+  // The power for intensity 1, which falls from 1 to 0, on average 1/2, between the two cones.
   const double own = 2 * kPi * ((1 - cos_inner) + (cos_inner - cos_outer) / 2);
   ASSIGN_OR_RETURN(const double factor, from.factor_for("power", own));
   ASSIGN_OR_RETURN(const Rgb3 intensity, from.light("I", factor));
@@ -173,6 +178,7 @@ absl::Status projection(const LightSource& from) {
   const double side = std::min(width, height);
   const double half_height = half * height / side;
   double power = 0;
+  // The area of a pixel at distance 1; times cos^3 it is the pixel's solid angle.
   const double cell = 4 * half * half / (side * side);
   for (std::size_t y = 0; y < image->height; ++y) {
     for (std::size_t x = 0; x < image->width; ++x) {

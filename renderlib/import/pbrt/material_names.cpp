@@ -1,5 +1,5 @@
-// Names of materials: each combination of a surface with the emission and opacity of a shape is
-// stored once.
+// Gives materials their names in our scene. pbrt's shapes have emission and opacity, here they
+// belong to the material; so each combination of a surface with them becomes a material once.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Adds the emission of a shape.
+/// Adds the emission of a shape. A black surface becomes an Emissive material.
 void add_emission(const ShapeLook& look, const Surface& surface, const Place& place,
                   scene::Material& to, Builder& builder) {
   const Rgb3 emission = look.emission.value_or(Rgb3{0, 0, 0});

@@ -1,6 +1,6 @@
 #pragma once
 
-// The parameters that several kinds of material share.
+// Reads the parameters that several kinds of pbrt's materials share (materials.cpp, metals.cpp).
 
 #include <optional>
 #include <string>
@@ -22,7 +22,7 @@ struct MaterialSource {
   }
 };
 
-/// Roughness along u and v.
+/// The roughness along u and v, as alpha of the GGX distribution.
 struct Roughness {
   double alpha[2] = {0, 0};
   std::optional<scene::Texture> texture;  ///< texture of alpha, if alpha varies
@@ -31,14 +31,16 @@ struct Roughness {
   double mean() const { return texture ? 1 : (alpha[0] + alpha[1]) / 2; }
 };
 
-/// Reads PREFIXroughness, uroughness and vroughness; `otherwise` is the roughness if none is given.
+/// Reads the parameters roughness, uroughness and vroughness, whose names begin with `prefix`
+/// ("interface.", or ""). `otherwise` is the roughness if none is given.
 absl::StatusOr<Roughness> read_roughness(const MaterialSource& from, const std::string& prefix,
                                          double otherwise);
 
 /// Sets the microfacets of a surface that is not smooth.
 void set_microfacets(const Roughness& roughness, scene::Microfacets* to);
 
-/// Returns the index of refraction in [1, 5]: a number, or that of a glass at the d line.
+/// Returns the index of refraction in [1, 5]: a number, or that of a spectrum at the d line (588
+/// nm). `otherwise` is returned if there is no parameter `name`.
 absl::StatusOr<double> read_index(const MaterialSource& from, const std::string& name,
                                   double otherwise);
 

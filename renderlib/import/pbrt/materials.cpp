@@ -1,4 +1,5 @@
-// Materials.
+// Converts pbrt's materials: one function for each kind (metals are in metals.cpp), then the normal
+// map and the displacement, which every kind can have.
 
 #include <algorithm>
 
@@ -102,7 +103,7 @@ absl::Status diffuse_transmission(const MaterialSource& from, Surface& to) {
   reflectance = scaled(std::move(reflectance));
   transmittance = scaled(std::move(transmittance));
   if (reflectance.has_color() && transmittance.has_color()) {
-    // pbrt lets the sum exceed 1.
+    // pbrt lets the sum exceed 1. The factor below keeps it from exceeding 1 by rounding.
     bool is_bright = false;
     for (int c = 0; c < 3; ++c) {
       const double sum = reflectance.color().rgb(c) + transmittance.color().rgb(c);
@@ -167,6 +168,7 @@ absl::Status mix(const MaterialSource& from, Surface& to) {
   return absl::OkStatus();
 }
 
+/// Marks all parameters as used, so that none of them causes a further warning.
 void use_all(const MaterialSource& from) {
   for (const Parameter& parameter : from.parameters.list) {
     parameter.is_used = true;

@@ -1,4 +1,5 @@
-// Participating media.
+// Converts pbrt's media: homogeneous ones, and grids (uniformgrid), which become volume files.
+// Other kinds are left out with a warning.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +26,8 @@ Rgb3 times(const Rgb3& rgb, double factor) {
   return {rgb[0] * factor, rgb[1] * factor, rgb[2] * factor};
 }
 
-/// Sets absorption, scattering, phase function and emission, which all media have.
+/// Sets absorption, scattering, phase function and emission, which all media have. The arguments
+/// are pbrt's default coefficients.
 absl::Status read_common(const MediumParts& from, const Rgb3& absorption, const Rgb3& scattering,
                          scene::Medium& to) {
   const Parameters& in = from.parameters();
@@ -74,7 +76,8 @@ std::string volume_file(const std::vector<double>& values, const int size[3], in
   return out;
 }
 
-/// Adds the grid `name` of nx x ny x nz numbers in the box from p0 to p1.
+/// Adds the grid `name` of nx x ny x nz numbers in the box from p0 to p1. `to_shape` as in
+/// medium_name().
 absl::Status read_grid(const MediumParts& from, const std::string& name, const Transform& to_shape,
                        scene::VolumeGrid* to) {
   const Parameters& in = from.parameters();
@@ -102,7 +105,8 @@ absl::Status read_grid(const MediumParts& from, const std::string& name, const T
   return absl::OkStatus();
 }
 
-absl::Status read_uniform_grid(const MediumParts& from, const Transform& to_shape, scene::Medium& to) {
+absl::Status read_uniform_grid(const MediumParts& from, const Transform& to_shape,
+                               scene::Medium& to) {
   RETURN_IF_ERROR(read_common(from, {1, 1, 1}, {1, 1, 1}, to));
   RETURN_IF_ERROR(read_grid(from, "density", to_shape, to.mutable_density_grid()));
   const Parameters& in = from.parameters();

@@ -41,6 +41,8 @@ absl::StatusOr<std::vector<std::array<float, n>>> tuples(const Parameters& in,
   return out;
 }
 
+/// Reads the indices of faces with `group` corners each, below `vertices`. Without indices, a mesh
+/// of `group` vertices is one face.
 absl::StatusOr<std::vector<std::uint32_t>> indices(const Parameters& in, std::size_t group,
                                                    std::size_t vertices) {
   ASSIGN_OR_RETURN(const std::vector<double> numbers, in.numbers("indices", {"integer"}, group));
@@ -134,8 +136,8 @@ absl::StatusOr<PlyMesh> loop_mesh(const Parameters& in) {
                          absl::StrCat(text_of(in.place), ": ", mesh.status().message())));
 }
 
-/// Adds a grid of (columns + 1) x (rows + 1) vertices at `f(u, v)`, which returns position, normal
-/// and uv; normal along dP/du x dP/dv.
+/// Adds a grid of (columns + 1) x (rows + 1) vertices; `f(u, v, mesh)`, u and v in [0, 1], appends
+/// each. The triangles face along dP/du x dP/dv.
 template <class F>
 void add_grid(int columns, int rows, const F& f, PlyMesh& mesh) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());

@@ -1,6 +1,6 @@
 #pragma once
 
-// Shapes of pbrt as triangle meshes, in their own space.
+// Converts shapes of pbrt to triangle meshes, in the shapes' own space.
 
 #include "absl/status/statusor.h"
 #include "renderlib/import/convert/ply_mesh.h"
@@ -9,16 +9,16 @@
 namespace bandsaw::pbrt {
 
 /// Returns the mesh of a shape of kind trianglemesh, loopsubdiv, bilinearmesh, plymesh, or a
-/// quadric (sphere, disk, cylinder). Its triangles are oriented as pbrt's normals are without
-/// ReverseOrientation. INVALID_ARGUMENT: its parameters are wrong; std::nullopt after a warning:
-/// the file is missing, or no triangle is left.
+/// quadric (sphere, disk, cylinder). Its triangles face to the side of pbrt's normals before
+/// ReverseOrientation. Returns std::nullopt, after a warning, if the file is missing or no triangle
+/// is left. The error is INVALID_ARGUMENT if the parameters are wrong.
 absl::StatusOr<std::optional<PlyMesh>> mesh_of(const std::string& type,
                                                const Parameters& parameters, Builder& builder);
 
 /// Returns Loop's subdivision of a closed or open manifold mesh, its vertices at their limits and
 /// with limit normals (Loop 1987; Hoppe et al. 1994, appendix A). `levels` in [0, 8].
-/// INVALID_ARGUMENT: an edge with more than two triangles. RESOURCE_EXHAUSTED: it becomes too
-/// large.
+/// The error is INVALID_ARGUMENT for a mesh that is no manifold, and RESOURCE_EXHAUSTED for one
+/// that becomes too large.
 absl::StatusOr<PlyMesh> subdivided(const std::vector<Vec3>& points,
                                    const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                    int levels);

@@ -1,5 +1,5 @@
-// Converts the spectra of eta and k to RGB so that the reflectance along the normal is that of the
-// spectra.
+// Converts the spectra of eta and k to RGB so that the reflectance at normal incidence is that of
+// the spectra.
 
 #include "renderlib/import/pbrt/metals.h"
 
@@ -11,7 +11,8 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Returns eta and k of a conductor by PREFIXeta and PREFIXk; copper by default.
+/// Returns eta and k of a conductor by the parameters eta and k, whose names begin with `prefix`
+/// ("conductor.", or ""); copper's by default.
 absl::StatusOr<spectrum::Metal> read_metal(const MaterialSource& from, const std::string& prefix) {
   const Parameter* eta = from.parameters.find(prefix + "eta");
   const Parameter* k = from.parameters.find(prefix + "k");
@@ -64,6 +65,7 @@ absl::Status conductor(const MaterialSource& from, Surface& to) {
       }
       return absl::OkStatus();
     }
+    // With eta = 1 the reflectance r at normal incidence is k^2 / (4 + k^2).
     Rgb3 k = {};
     for (int c = 0; c < 3; ++c) {
       const double r = std::min(reflectance.color().rgb(c), 0.9999);
@@ -105,6 +107,7 @@ absl::Status coated_conductor(const MaterialSource& from, Surface& to) {
   scene::Gltf& gltf = *to.material.mutable_gltf();
   set_rgb(color, gltf.mutable_base_color());
   gltf.set_metallic(1);
+  // The square of glTF's roughness is alpha.
   gltf.set_roughness(std::sqrt(metal.mean()));
   gltf.set_clearcoat(1);
   gltf.set_clearcoat_roughness(std::sqrt(coat.mean()));

@@ -85,7 +85,7 @@ Placed& add_to(scene::Group& group, Placed placed) {
 }
 
 /// Adds an object that is sheared and moves without changing the shear: its second transformation
-/// is a pose after the first. Returns false if the second is not such a product.
+/// is the product of a pose and the first. Returns false if it is not such a product.
 template <class Placed>
 bool add_sheared(const Transforms& transforms, Placed& placed, Builder& builder) {
   const auto back = inverse(transforms[0]);

@@ -1,12 +1,13 @@
 #pragma once
 
-// Motion between two transformations.
+// Places models and instances in our scene, with keys if pbrt moves them from one transformation to
+// another.
 
 #include "renderlib/import/pbrt/builder.h"
 
 namespace bandsaw::pbrt {
 
-/// Scale, then rotation, then translation.
+/// A transformation without shear: scale, then rotation, then translation.
 struct Pose {
   Vec3 scale{1, 1, 1};
   Vec3 axis{0, 0, 1};
@@ -17,12 +18,12 @@ struct Pose {
 /// Returns the pose whose transformation is `t`; std::nullopt if `t` shears.
 std::optional<Pose> pose_of(const Transform& t);
 
-/// Adds a group that things are placed in, before the group that ObjectBegin has opened, and sets
-/// its name.
+/// Adds an empty group to our scene and sets `name` to its name. It comes before the group that
+/// ObjectBegin has opened, if there is one, because instances refer only to earlier groups.
 scene::Group& add_helper_group(Builder& builder, std::string& name);
 
-/// Adds a model or an instance to the open group or to the scene, placed by its matrix, or by keys
-/// if it moves. If the motion changes the shear or mirrors the model, the model stays at the
+/// Adds a model or an instance to the open group or to the scene, placed by a matrix, or by keys if
+/// the two transformations differ. If the motion changes the shear or mirrors it, it stays at the
 /// first transformation, with a warning.
 void add_placed(const Place& place, const Transforms& transforms, scene::Model model,
                 Builder& builder);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Images of the sphere of directions as pbrt has them, and as our environment maps.
+// Converts pbrt's images of the light from all directions to our environment maps.
 
 #include "renderlib/image/image.h"
 #include "renderlib/math/transform.h"
@@ -15,14 +15,16 @@ struct Sky {
   bool is_octahedral = true;
 };
 
-/// Returns the image position in [0, 1]^2 of a direction (a unit vector), rows from the top.
+/// Returns the position in the equal-area octahedral image of a direction (a unit vector), in
+/// [0, 1]^2, rows from the top.
 Vec2 octahedral_of(const Vec3& direction);
 
-/// Returns the image as an environment map of ours, resampled with 2 x 2 samples a pixel (4 x 4 of
-/// the old pixels at most); `to_light` maps directions of the world to those of the light.
+/// Returns the image as an environment map of ours, resampled with 2 x 2 bilinear samples a pixel;
+/// `to_light` maps directions of the world to those of the light.
 Image equirectangular(const Sky& sky, const Transform& to_light);
 
-/// Returns the illuminance of a surface that faces +z, for luminances as in the image.
+/// Returns the illuminance of a surface that faces +z in the light's space, if the radiance is that
+/// of the image.
 double illuminance_of(const Sky& sky);
 
 }  // namespace bandsaw::pbrt

@@ -1,6 +1,7 @@
 #pragma once
 
-// Media that do not fill a closed shape, and the order of all media.
+// The last step of a conversion: converts media that do not fill a closed shape, and orders all
+// media.
 
 #include <string>
 

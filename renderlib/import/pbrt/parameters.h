@@ -37,6 +37,8 @@ class Parameters {
   /// Returns a parameter of any type, marked as used; nullptr: there is none.
   const Parameter* find(const std::string& name) const;
 
+  /// These functions return the value of a parameter; `otherwise`, or std::nullopt, if there is no
+  /// such parameter.
   absl::StatusOr<double> number(const std::string& name, double otherwise) const;
   absl::StatusOr<std::optional<double>> number(const std::string& name) const;
   absl::StatusOr<int> integer(const std::string& name, int otherwise) const;
@@ -48,6 +50,7 @@ class Parameters {
   absl::StatusOr<std::vector<double>> numbers(const std::string& name,
                                               std::initializer_list<const char*> types,
                                               std::size_t group = 1) const;
+  /// Returns a list of strings; empty if there is none.
   absl::StatusOr<std::vector<std::string>> texts(const std::string& name) const;
   /// Marks parameters as used that change nothing in our image.
   void ignore(std::initializer_list<const char*> names) const;
@@ -56,7 +59,7 @@ class Parameters {
 /// Reads the parameters that follow a directive at `place`.
 absl::StatusOr<Parameters> read_parameters(Tokens& tokens, const Place& place);
 
-/// Reads a number. INVALID_ARGUMENT: it is none, or not finite.
+/// Returns the token's number. The error is INVALID_ARGUMENT if it is no number, or not finite.
 absl::StatusOr<double> number_of(const Token& token);
 
 }  // namespace bandsaw::pbrt

@@ -1,7 +1,7 @@
 #pragma once
 
-// Arguments of directives that are not parameters: names, numbers and transformations. Errors name
-// `place`, the place of the directive.
+// Reads arguments of directives that are not parameters: names, numbers and transformations. Errors
+// are INVALID_ARGUMENT and name `place`, the place of the directive.
 
 #include <string>
 #include <vector>

@@ -1,4 +1,5 @@
-// Shapes and their placements.
+// Converts pbrt's shapes: whole spheres and disks become shapes of our scene, others become meshes
+// in made files. Each is placed with its material, emission, opacity and the medium inside.
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +37,7 @@ bool has_uv_texture(const Surface& surface) {
          surface.material.has_mix();
 }
 
-/// A shape on its way into the scene.
+/// A Shape directive, and what its emission and alpha add to the material.
 struct Shape {
   const std::string& type;
   const Parameters& parameters;
@@ -46,7 +47,7 @@ struct Shape {
   const Place& place() const { return parameters.place; }
 };
 
-/// The media on both sides.
+/// The names of the media on both sides of a surface; empty: none.
 struct Sides {
   std::string inside;
   std::string outside;
@@ -82,7 +83,9 @@ void add_world(const Shape& shape, scene::Shape world) {
       std::move(world);
 }
 
-/// Returns the shape's material and interior. False: nothing is left of it.
+/// Sets the names of the shape's material and of the medium inside, which is `interior`. An
+/// invisible surface has no material unless it emits. Returns false if nothing is left of the
+/// shape.
 bool finish(const Shape& shape, const std::string& interior, std::string* material,
             std::string* to_interior) {
   const Surface& surface = *shape.state.surface;
@@ -101,6 +104,7 @@ bool finish(const Shape& shape, const std::string& interior, std::string* materi
   return true;
 }
 
+/// Adds the box from `low` to `high` in the shape's space to the extent of the scene.
 void extend(const Shape& shape, const Vec3& low, const Vec3& high) {
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 p{(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
@@ -109,7 +113,8 @@ void extend(const Shape& shape, const Vec3& low, const Vec3& high) {
   }
 }
 
-/// Adds a whole sphere.
+/// Adds a whole sphere: in world space if its transformation keeps angles, otherwise as an instance
+/// of a group.
 absl::Status add_sphere(const Shape& shape, double radius, const Sides& sides) {
   extend(shape, {-radius, -radius, -radius}, {radius, radius, radius});
   const Transform& to_world = shape.state.transforms[0];
@@ -157,6 +162,7 @@ void add_disk(const Shape& shape, double radius, double height) {
   add_world(shape, std::move(out));
 }
 
+/// Remembers the media on both sides of an open surface, for finish_media().
 void note_open_medium(const Shape& shape, const Sides& sides) {
   if (sides.differ() && shape.state.surface->transmits) {
     for (const std::string& medium : {sides.inside, sides.outside}) {
@@ -167,6 +173,7 @@ void note_open_medium(const Shape& shape, const Sides& sides) {
   }
 }
 
+/// Adds the mesh in `file`, which is a made file or a PLY file of the scene.
 absl::Status add_model(const Shape& shape, const std::string& file, bool closed,
                        const Sides& sides) {
   const Transform& to_world = shape.state.transforms[0];

@@ -22,18 +22,18 @@ struct Surface {
   scene::Material material;  ///< without a name
   std::string label;         ///< begins its name in our scene: "Floor"
   bool is_null = false;      ///< "interface": the surface is invisible
-  bool transmits = false;
-  bool is_black = false;  ///< reflects nothing: a lamp
+  bool transmits = false;    ///< light passes it, so media on its sides matter
+  bool is_black = false;     ///< reflects nothing; if it emits, it becomes an Emissive material
 };
 
-/// An AreaLightSource. Shapes that follow emit.
+/// An AreaLightSource directive: the shapes that follow it emit.
 struct AreaLight {
   Parameters parameters;
 };
 
 struct State {
   Transforms transforms;
-  bool is_active[2] = {true, true};
+  bool is_active[2] = {true, true};  ///< the transforms that directives change (ActiveTransform)
   bool reverse_orientation = false;
   std::shared_ptr<const Surface> surface;  ///< never nullptr
   std::shared_ptr<const AreaLight> area_light;

@@ -23,7 +23,7 @@ scene::Texture product(scene::Texture a, scene::Texture b) {
   return out;
 }
 
-/// State that the functions below share.
+/// A Texture directive.
 struct TextureSource {
   const Parameters& parameters;
   const State& state;
@@ -32,6 +32,7 @@ struct TextureSource {
 
   const Place& place() const { return parameters.place; }
 
+  /// Returns the texture or constant of a parameter; the constant `otherwise` if it is absent.
   absl::StatusOr<scene::Texture> part(const std::string& name, double otherwise) const {
     if (is_color) {
       return color_texture(parameters, name, ColorUse::kUnbounded,
@@ -42,6 +43,7 @@ struct TextureSource {
   }
 };
 
+/// The map from the shape's uvs to those of the texture: scale, then offset.
 struct Mapping {
   double scale[2] = {1, 1};
   double offset[2] = {0, 0};

@@ -1,6 +1,6 @@
 #pragma once
 
-// The words of a pbrt scene file and of the files that it includes.
+// Splits a pbrt scene file, and the files that it includes, into words.
 
 #include <optional>
 #include <string>
@@ -18,6 +18,7 @@ inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{2} << 30;
 /// Maximum total size of all files.
 inline constexpr std::uint64_t kMaxSceneBytes = std::uint64_t{4} << 30;
 
+/// A word, a string in quotes, or a bracket, [ or ].
 struct Token {
   enum class Kind { kWord, kString, kOpen, kClose };
   Kind kind = Kind::kWord;
@@ -32,12 +33,13 @@ class Tokens {
   explicit Tokens(const SceneFolder& folder) : folder_(folder) {}
 
   /// Continues with the first word of the file `name`, relative to the scene's folder. `place` is
-  /// the place of the directive that includes it. NOT_FOUND, PERMISSION_DENIED: the file cannot be
-  /// read. INVALID_ARGUMENT: it includes itself. RESOURCE_EXHAUSTED: files include each other too
-  /// deeply, or all files together are too large.
+  /// the place of the directive that includes it. The error is NOT_FOUND or PERMISSION_DENIED if
+  /// the file cannot be read, INVALID_ARGUMENT if it includes itself, and RESOURCE_EXHAUSTED if
+  /// files include each other too deeply or are too large together.
   absl::Status include(const std::string& name, const Place& place);
 
-  /// Returns the next word; std::nullopt after the last. INVALID_ARGUMENT: a string without end.
+  /// Returns the next word; std::nullopt after the last one. The error is INVALID_ARGUMENT for a
+  /// string without end.
   absl::StatusOr<std::optional<Token>> next();
   /// Makes next() return this token again.
   void put_back(Token token) { back_ = std::move(token); }

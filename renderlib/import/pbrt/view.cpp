@@ -22,6 +22,7 @@ struct Film {
   double crop[4] = {0, 1, 0, 1};  ///< x0, x1, y0, y1, shares of the whole, y from the top
 };
 
+/// Reads the film, and sets the factor of all light by the exposure time (seconds) and ISO.
 absl::StatusOr<Film> read_film(const ViewSource& view, double exposure_time, Builder& builder) {
   Film film;
   Parameters none;
@@ -82,7 +83,7 @@ absl::Status read_filter(const ViewSource& view, Builder& builder) {
   } else {
     if (type == "gaussian") {
       ASSIGN_OR_RETURN(const double sigma, in.number("sigma", 0.5));
-      radius = std::clamp(3 * sigma, 0.0, 16.0);
+      radius = std::clamp(3 * sigma, 0.0, 16.0);  // PixelFilter's Gaussian ends at 3 sigma
     } else {
       builder.warn(in.place, absl::StrCat("the filter \"", type,
                                           "\" has no counterpart; a Gaussian stands for it"));
@@ -194,6 +195,8 @@ absl::StatusOr<double> set_place(const ViewSource& view, Builder& builder) {
   return first.unit;
 }
 
+/// Returns x0, x1, y0, y1 of the whole image in pbrt's screen space, in which the shorter side is
+/// [-1, 1] by default.
 absl::StatusOr<std::vector<double>> read_screen(const Parameters& in, double aspect) {
   ASSIGN_OR_RETURN(std::vector<double> screen, in.numbers("screenwindow", {"float"}, 4));
   ASSIGN_OR_RETURN(const double frame, in.number("frameaspectratio", aspect));

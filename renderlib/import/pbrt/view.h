@@ -1,6 +1,6 @@
 #pragma once
 
-// Camera, film, filter and integrator.
+// Converts the directives that describe the image: Camera, Film, PixelFilter and Integrator.
 
 #include "renderlib/import/pbrt/builder.h"
 
