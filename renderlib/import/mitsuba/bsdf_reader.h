@@ -1,6 +1,7 @@
 #pragma once
 
-// Reads one bsdf, with the wrappers around it, as a material.
+// Converts one bsdf of a Mitsuba scene, with the wrappers around it, to a material. Used by
+// Materials (bsdfs.h), which adds emission, blends and a name.
 
 #include <functional>
 #include <string>
@@ -18,7 +19,7 @@ struct Draft {
   scene::Material material;
   bool two_sided = false;
   bool turned = false;     ///< as in SurfaceMaterial
-  bool transmits = false;  ///< has no black side
+  bool transmits = false;  ///< light passes it, so that neither side is black
 };
 
 class BsdfReader {
@@ -42,8 +43,10 @@ class BsdfReader {
   /// Returns the ratio of the indices of refraction, inside over outside. If that is below 1,
   /// returns its inverse and sets Draft::turned.
   absl::StatusOr<double> relative_index(const Parameters& from, const char* inside, Draft& draft);
+  /// `otherwise` is the alpha if none is given.
   absl::StatusOr<scene::Microfacets> microfacets(const Parameters& from, double otherwise);
   absl::Status dielectric(const Parameters& from, Draft& draft);
+  /// Warns of colours of glass, which our glass does not have.
   absl::Status warn_of_tints(const Parameters& from);
   absl::Status thin_dielectric(const Parameters& from, Draft& draft);
   absl::Status set_metal(const Parameters& from, scene::Conductor& to);
@@ -56,6 +59,8 @@ class BsdfReader {
   absl::Status ward(const Parameters& from, Draft& draft);
 
   // Defined in principled_bsdfs.cpp:
+  /// Sets `field` to a number in [0, most], or a texture of numbers. If the parameter is absent,
+  /// the field stays unset.
   absl::Status parameter(const Parameters& from, const std::string& name, double most,
                          const std::function<scene::Parameter*()>& field);
   template <class Message>

@@ -1,4 +1,5 @@
-// Bsdfs around another bsdf.
+// Converts bsdfs that contain another bsdf (twosided, mask, normalmap, bumpmap, coating): reads the
+// inner one, then adds its own property to the draft.
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Materials of Mitsuba scenes.
+// Converts the bsdfs and area emitters of Mitsuba's shapes to materials of our scene file.
 
 #include <map>
 #include <set>
@@ -20,13 +20,15 @@ struct SurfaceMaterial {
   bool turned = false;  ///< the geometry must be turned over: its inside is denser than its outside
 };
 
+/// The materials that have been made so far.
 class Materials {
  public:
   /// Materials are added to `scene`. Both MUST outlive this object.
   Materials(scene::Scene& scene, Conversion& to) : scene_(scene), to_(to) {}
 
-  /// Returns the material of a surface, made if it is new. `bsdf` nullptr: Mitsuba's default, grey.
-  /// `emitter` nullptr: it does not emit; otherwise an emitter of type area.
+  /// Returns the material of a surface, made if it is new. If `bsdf` is nullptr, it is Mitsuba's
+  /// default, a grey diffuse one. `emitter` is of type area, or nullptr if the surface does not
+  /// emit.
   absl::StatusOr<SurfaceMaterial> material_of(const Object* bsdf, const Object* emitter,
                                               const TexturedSurface& surface);
   /// Returns SurfaceMaterial::turned, without adding the material.
@@ -49,7 +51,8 @@ class Materials {
   std::map<std::string, int> counts_;  ///< last number used in names of this form
 };
 
-/// Returns true if the picture depends on the uv coordinates of the surface.
+/// Returns true if the picture depends on the uv coordinates of the surface. The arguments of these
+/// functions may be nullptr, as in Materials::material_of.
 bool needs_uv(const Object* bsdf, const Object* emitter);
 /// Returns true if the sign of the surface's second tangent matters: it has a normal map.
 bool needs_handedness(const Object* bsdf);

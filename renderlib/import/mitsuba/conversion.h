@@ -1,6 +1,7 @@
 #pragma once
 
-// State of one conversion: the files that it may read, the files that it has made, its warnings.
+// Holds the state of one conversion that all its parts share: the files that it may read, the files
+// that it has made, its warnings.
 
 #include <string>
 #include <vector>

@@ -41,6 +41,7 @@ absl::StatusOr<Rgb> light_color(const Parameters& from, const std::string& name,
   return Rgb{std::max(color->r, 0.0f), std::max(color->g, 0.0f), std::max(color->b, 0.0f)};
 }
 
+/// Returns the position and axes of an emitter with the transform `to_world`.
 absl::StatusOr<Frame> placed_frame(const Parameters& from) {
   ASSIGN_OR_RETURN(const Transform to_world, from.transform("to_world"));
   if (!inverse(to_world)) {
@@ -132,6 +133,7 @@ absl::Status projector(const Parameters& from, scene::Scene& scene, Conversion& 
   ASSIGN_OR_RETURN(const double half_height, half_height_of_view(from, aspect));
   light.set_vertical_fov(vertical_fov(half_height));
   light.set_aspect(aspect);
+  // With the factor pi, a white surface perpendicular to the light shows the image.
   set_color(gray(static_cast<float>(kPi * scale)), light.mutable_intensity());
   from.ignore({"near_clip", "far_clip"});
   *scene.add_light()->mutable_projector() = std::move(light);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Emitters of Mitsuba scenes that are not surfaces.
+// Converts emitters of Mitsuba scenes that are not surfaces: lights and environments.
 
 #include "absl/status/status.h"
 #include "proto/scene.pb.h"
@@ -8,7 +8,8 @@
 
 namespace bandsaw::mitsuba {
 
-/// Adds a light or sets the background.
+/// Adds a light to `scene` or sets its background. An emitter of unknown type is left out with a
+/// warning. Returns INVALID_ARGUMENT, with file and line, for a parameter that is wrong.
 absl::Status add_emitter(const Object& emitter, scene::Scene& scene, Conversion& to);
 
 }  // namespace bandsaw::mitsuba

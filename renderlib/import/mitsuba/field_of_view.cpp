@@ -15,7 +15,7 @@
 namespace bandsaw::mitsuba {
 namespace {
 
-/// Returns half the extent along the given axis as half the height.
+/// Returns half the height of an image plane whose half extent along `axis` is `half`.
 absl::StatusOr<double> along_axis(const Parameters& from, double half, const std::string& axis,
                                   double aspect) {
   if (axis == "y" || (axis == "smaller" && aspect > 1) || (axis == "larger" && aspect <= 1)) {

@@ -5,10 +5,11 @@
 
 namespace bandsaw::mitsuba {
 
-/// Returns half the height of the image plane at distance 1, from fov, fov_axis and focal_length.
-/// `aspect` is width / height.
+/// Returns half the height of the image plane at distance 1, from the parameters fov, fov_axis and
+/// focal_length of a sensor or a projector. `aspect` is width / height. Returns INVALID_ARGUMENT,
+/// with file and line, for a value that is not valid.
 absl::StatusOr<double> half_height_of_view(const Parameters& from, double aspect);
-/// Returns the vertical field of view in degrees.
+/// Returns the vertical field of view in degrees, for a half height as above.
 double vertical_fov(double half_height);
 
 }  // namespace bandsaw::mitsuba

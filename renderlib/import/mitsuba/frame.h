@@ -1,6 +1,7 @@
 #pragma once
 
-// The frame of sensors and projectors: they look along z, with y up and x to the left.
+// Position and axes of sensors, spots, projectors and environments, from their transform to the
+// world: they look along z, with y up and x to the left.
 
 #include "renderlib/math/transform.h"
 #include "renderlib/math/vec.h"
@@ -16,7 +17,7 @@ struct Frame {
   bool skewed = false;    ///< the axes are not at right angles
 };
 
-/// Returns the frame of a regular transform.
+/// Returns the frame of a transform, which MUST have an inverse.
 Frame frame_of(const Transform& to_world);
 
 }  // namespace bandsaw::mitsuba

@@ -1,6 +1,6 @@
 #pragma once
 
-// Participating media of Mitsuba scenes.
+// Converts the media of Mitsuba scenes.
 
 #include <array>
 #include <map>
@@ -27,7 +27,7 @@ class Media {
   scene::Scene& scene_;
   Conversion& to_;
   std::map<std::pair<const Object*, std::array<std::array<double, 4>, 3>>, std::string> known_;
-  std::map<std::string, int> names_;
+  std::map<std::string, int> names_;  ///< number of media with each name or "medium"
 };
 
 }  // namespace bandsaw::mitsuba

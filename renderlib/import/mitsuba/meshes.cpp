@@ -16,6 +16,7 @@
 namespace bandsaw::mitsuba {
 namespace {
 
+/// Returns true if every triangle faces the side of its vertices' normals.
 bool is_oriented(const PlyMesh& mesh) {
   PlyMesh other;
   other.positions = mesh.positions;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Mesh files of Mitsuba scenes. A file that our importer reads as Mitsuba does is used as it is;
-// otherwise a new file is made.
+// Converts mesh files of Mitsuba scenes. A file that our importer reads as Mitsuba does is used as
+// it is; otherwise a new file is made.
 
 #include <map>
 #include <memory>
@@ -19,10 +19,10 @@ namespace bandsaw::mitsuba {
 /// A mesh as a shape needs it.
 struct MeshRequest {
   FoundFile file;
-  std::string type;  ///< "obj", "ply" or "serialized"
-  std::int64_t index = 0;
-  bool flip_v = false;
-  bool face_normals = false;
+  std::string type;                       ///< "obj", "ply" or "serialized"
+  std::int64_t index = 0;                 ///< of the mesh in a "serialized" file
+  bool flip_v = false;                    ///< as in read_obj() (source_mesh.h)
+  bool face_normals = false;              ///< without normals of vertices
   bool turned = false;                    ///< its other side is the outside
   bool mirrored = false;                  ///< its placement mirrors it
   bool handed = false;                    ///< u, v and the normal must be right-handed
@@ -39,15 +39,17 @@ class Meshes {
  public:
   explicit Meshes(Conversion& to) : to_(to) {}
 
-  /// Returns a file with the mesh. INVALID_ARGUMENT with the file's name: it is damaged.
+  /// Returns a file with the mesh. Returns INVALID_ARGUMENT with the file's name if it is damaged.
   absl::StatusOr<MeshFile> file_of(const MeshRequest& request);
-  /// Returns a made file with a mesh that a converter computed.
+  /// Returns a made file with `mesh`, changed as `request` says. Of the request only face_normals,
+  /// turned, mirrored and attributes are used.
   absl::StatusOr<MeshFile> made_of(SourceMesh mesh, const MeshRequest& request);
 
  private:
   using Key = std::tuple<std::string, std::int64_t, bool>;
   using MadeKey = std::tuple<std::string, std::int64_t, bool, bool, bool, bool, bool, bool,
                              std::set<std::string>>;
+  /// Reads the file, without applying the other requests.
   absl::StatusOr<std::shared_ptr<const SourceMesh>> read(const MeshRequest& request);
 
   Conversion& to_;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Parameters of one object, by name and type.
+// Reads the parameters of one object of a Mitsuba scene by name and type.
 
 #include <set>
 #include <string>
@@ -36,7 +36,7 @@ class Parameters {
   /// Returns the parameters that are objects of this tag, whatever their names, in their order.
   std::vector<const Property*> objects(const std::string& tag) const;
 
-  /// Marks parameters that do not change the picture here.
+  /// Marks parameters as read that do not change the picture here.
   void ignore(std::initializer_list<const char*> names) const;
   /// Returns the parameters that were not read.
   std::vector<const Property*> unused() const;

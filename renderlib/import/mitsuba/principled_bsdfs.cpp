@@ -1,4 +1,4 @@
-// The principled materials.
+// Converts the principled bsdfs, principled and principledthin (bsdf_reader.h).
 
 #include <algorithm>
 #include <type_traits>

@@ -1,4 +1,5 @@
-// Reads line by line. Each combination of position, uv and normal becomes one vertex.
+// Reads a Wavefront OBJ line by line. Each combination of position, uv and normal becomes one
+// vertex.
 
 #include <array>
 #include <cmath>

@@ -524,7 +524,8 @@ class Reader {
     return check_cycles(*tree_.root, 0);
   }
 
-  /// Checks the objects that `object` contains and refers to: none may contain itself.
+  /// Checks the objects that `object` contains and refers to: none may contain itself, or have more
+  /// than kMaxParts parts. Sets their sizes.
   absl::Status check_cycles(const Object& object, int depth) {
     if (depth > kMaxNesting) {
       return error_at(object.place, absl::StrCat("objects are nested more than ", kMaxNesting,
@@ -567,7 +568,7 @@ class Reader {
   std::map<std::string, Object*> by_id_;
   std::map<std::string, std::string> aliases_;
   std::vector<Reference> references_;
-  std::set<const Object*> visiting_;
+  std::set<const Object*> visiting_;              ///< objects that check_cycles() is in
   std::map<const Object*, std::uint64_t> sizes_;  ///< objects in each, with those that it refers to
 };
 

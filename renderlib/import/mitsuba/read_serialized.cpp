@@ -1,5 +1,5 @@
-// Finds the mesh's offset in the table at the end of the file, inflates from there, and reads
-// vertices and triangles.
+// Reads one mesh of Mitsuba's *.serialized: finds its offset in the table at the end of the file,
+// inflates from there, and reads vertices and triangles.
 
 #include <zlib.h>
 
@@ -21,6 +21,7 @@ static_assert(std::endian::native == std::endian::little, "the format is little-
 constexpr std::uint16_t kMagic = 0x041c;
 constexpr std::uint16_t kVersion3 = 3;
 constexpr std::uint16_t kVersion4 = 4;
+// Flags of a mesh.
 constexpr std::uint32_t kHasNormals = 0x0001;
 constexpr std::uint32_t kHasUvs = 0x0002;
 constexpr std::uint32_t kHasColors = 0x0008;

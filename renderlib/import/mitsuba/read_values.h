@@ -1,6 +1,7 @@
 #pragma once
 
-// Values of Mitsuba's XML elements as text: numbers, vectors, colours, spectra.
+// Reads values of Mitsuba's XML elements from their text: numbers, vectors, colours, spectra.
+// Errors are INVALID_ARGUMENT without file and line.
 
 #include <string>
 #include <vector>

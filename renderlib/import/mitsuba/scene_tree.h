@@ -1,7 +1,7 @@
 #pragma once
 
-// The objects of a Mitsuba scene file: includes are read, parameters replaced, references resolved.
-// The meaning of the objects is not known here.
+// The objects of a Mitsuba scene file, as read_scene_tree() returns them: includes are read,
+// parameters replaced, references resolved. The meaning of the objects is not known here.
 
 #include <cstdint>
 #include <deque>
@@ -27,8 +27,8 @@ struct Place {
 std::string text_of(const Place& place);
 /// Returns INVALID_ARGUMENT: "scene.xml:12: <what>".
 absl::Status error_at(const Place& place, const std::string& what);
-/// Returns the error `why` with the place before its message, unless it begins with one of the
-/// file.
+/// Returns the error `why` with the place before its message, unless the message begins with a
+/// place in this file.
 absl::Status at_place(const Place& place, const absl::Status& why);
 
 struct Object;
@@ -64,7 +64,8 @@ inline const Object* object_in(const Property& property) {
   return object != nullptr ? *object : nullptr;
 }
 
-/// A plugin with its parameters, in the order of the file. It may be part of several others.
+/// A plugin of Mitsuba with its parameters, in the order of the file. Several objects may contain
+/// the same one, by references.
 struct Object {
   std::string tag;   ///< "bsdf", "shape", …
   std::string type;  ///< "diffuse", "obj", …

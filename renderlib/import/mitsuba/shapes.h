@@ -1,6 +1,6 @@
 #pragma once
 
-// Shapes of Mitsuba scenes.
+// Converts the shapes of Mitsuba scenes, with their materials and the media inside.
 
 #include <map>
 #include <set>
@@ -33,9 +33,9 @@ class ShapeReader {
   };
   /// The properties that all kinds of shapes have.
   struct Surface {
-    const Object* bsdf = nullptr;
-    const Object* emitter = nullptr;
-    const Object* interior = nullptr;
+    const Object* bsdf = nullptr;      ///< nullptr: Mitsuba's default
+    const Object* emitter = nullptr;   ///< of type area; nullptr: the shape does not emit
+    const Object* interior = nullptr;  ///< the medium inside; nullptr: none
     Transform to_world;
     bool flip_normals = false;
   };
@@ -51,11 +51,14 @@ class ShapeReader {
   absl::Status add_sphere(const Parameters& from, const Surface& surface, const Target& target);
   absl::Status add_cylinder(const Parameters& from, const Surface& surface, const Target& target);
   absl::Status add_instance(const Parameters& from, const Target& target);
+  /// Adds a sphere or disk as an instance of a group, for a transform that changes its form.
   absl::Status add_placed(const scene::Shape& shape, const Transform& to_world,
                           const Target& target);
   /// Adds a model file, unless no part of it would be visible.
   absl::Status add_model(const Parameters& from, const Surface& surface, const std::string& file,
                          const std::string& material, const Target& target);
+  /// Returns the name of the group that a shapegroup becomes, made when it is first used; empty if
+  /// none of its shapes is known.
   absl::StatusOr<std::string> group_of(const Object& group);
   /// Warns of a medium in a shape that is not closed.
   void warn_of_interior(const Surface& surface, const Parameters& from);

@@ -1,4 +1,4 @@
-// Normals and orientation of meshes as Mitsuba computes them: normals weighted by angles, and
+// Computes normals and orientation of meshes as Mitsuba does: normals weighted by angles, and
 // triangles that face the side of their normals.
 
 #include "renderlib/import/mitsuba/source_mesh.h"

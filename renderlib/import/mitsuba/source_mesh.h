@@ -1,6 +1,6 @@
 #pragma once
 
-// Triangle meshes of Mitsuba's formats, with the normals and uvs that Mitsuba gives them.
+// Reads triangle meshes of Mitsuba's formats, with the normals and uvs that Mitsuba gives them.
 
 #include <cstdint>
 #include <string>
@@ -24,11 +24,13 @@ struct SourceMesh {
 inline constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 
 /// Reads a Wavefront OBJ: vertices, normals, uvs and polygons; materials and groups are ignored.
-/// `flip_v`: v = 0 is the bottom row in the file, as usual. INVALID_ARGUMENT with the line.
+/// `flip_v`: in the file v = 0 is the bottom row, as is usual in OBJ files, so v becomes 1 - v. An
+/// error is INVALID_ARGUMENT and names the line.
 absl::StatusOr<SourceMesh> read_obj(absl::string_view bytes, bool flip_v);
-/// Reads a PLY (convert/read_ply.h). `flip_v` as above. INVALID_ARGUMENT: it is damaged.
+/// Reads a PLY (convert/read_ply.h). `flip_v` as above. Returns INVALID_ARGUMENT if it is damaged.
 absl::StatusOr<SourceMesh> read_ply(absl::string_view bytes, bool flip_v);
-/// Reads one mesh of Mitsuba's *.serialized. INVALID_ARGUMENT: it is damaged or has no such mesh.
+/// Reads the mesh number `index`, from 0, of Mitsuba's *.serialized. Returns INVALID_ARGUMENT if it
+/// is damaged or has no such mesh.
 absl::StatusOr<SourceMesh> read_serialized(absl::string_view bytes, std::int64_t index,
                                            bool flip_v);
 

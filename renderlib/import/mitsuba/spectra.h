@@ -1,6 +1,6 @@
 #pragma once
 
-// Spectra of Mitsuba scenes as linear RGB, as Mitsuba's RGB variants convert them.
+// Converts spectra of Mitsuba scenes to linear RGB, as Mitsuba's RGB variants do.
 
 #include "absl/status/statusor.h"
 #include "renderlib/import/mitsuba/parameters.h"
@@ -16,7 +16,8 @@ Rgb rgb_of(const BlackBody& body);
 /// Reads the parameters of a spectrum of type "regular" or "irregular".
 absl::StatusOr<Spectrum> sampled_spectrum(const Parameters& from);
 
-/// Returns the index of refraction that a parameter gives as a number or by the name of a material.
+/// Returns the index of refraction that a parameter gives as a number or by the name of a material
+/// ("bk7"); `otherwise` is the name if the parameter is absent.
 absl::StatusOr<double> index_of_refraction(const Parameters& from, const std::string& name,
                                            const std::string& otherwise);
 

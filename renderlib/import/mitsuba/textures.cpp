@@ -124,6 +124,7 @@ absl::StatusOr<scene::Texture> bitmap(const Parameters& from, const TexturedSurf
   return out;
 }
 
+/// Returns a parameter as a texture; a grey of `otherwise` if it is absent.
 absl::StatusOr<scene::Texture> part_of(const Parameters& from, const char* name, float otherwise,
                                        ColorOf of, const TexturedSurface& surface, Conversion& to) {
   const Property* property = from.find(name);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Colours and textures of Mitsuba scenes, as those of our scene files.
+// Converts colours and textures of Mitsuba scenes to those of our scene files.
 
 #include <map>
 #include <optional>

@@ -49,6 +49,7 @@ absl::Status read_filter(const Object& filter, scene::Image& image, Conversion& 
       from.ignore({"a", "b", "B", "C", "lobes", "radius"});
     }
     ASSIGN_OR_RETURN(const double deviation, from.number("stddev", 0.5));
+    // PixelFilter's Gaussian ends at three deviations.
     image.mutable_filter()->mutable_gaussian()->set_radius(std::clamp(3 * deviation, 0.0, 16.0));
   }
   to.warn_of_unused(from);
@@ -96,8 +97,8 @@ absl::StatusOr<Film> read_film(const Parameters& sensor, scene::Image& image, Co
   return film;
 }
 
-/// Sets the visible part of the image plane, if it is not the whole film around the axis. `shift`
-/// is in films to the right and down.
+/// Sets the visible part of the image plane, if it is not the whole film around the axis. The
+/// shifts are to the right and down, as shares of the film's width and height.
 void set_window(const Film& film, double shift_x, double shift_y, scene::Camera& camera) {
   const bool whole = film.crop_width == film.width && film.crop_height == film.height;
   if (whole && shift_x == 0 && shift_y == 0) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Sensors, films and integrators of Mitsuba scenes.
+// Converts sensors, films and integrators of Mitsuba scenes.
 
 #include "absl/status/status.h"
 #include "proto/scene.pb.h"
