@@ -1,5 +1,6 @@
-// A scene file is parsed to proto/scene.proto, and a foreign scene is converted to it; read_scene()
-// reads either into a SceneDraft. A single model is read without a scene file (read_model_alone).
+// Imports one file as a scene. A scene file is parsed to proto/scene.proto, and a foreign scene is
+// converted to it; read_scene() reads either into a SceneDraft (draft/scene_draft.h). A single
+// model is read without a scene file (read_model_alone).
 
 #include <algorithm>
 #include <filesystem>

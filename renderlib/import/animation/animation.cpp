@@ -1,5 +1,6 @@
-// The motion of a node is three curves (translation, rotation, scale); a component without a curve
-// keeps its value at rest.
+// Evaluates the animation of a model's node, and chooses an animation by name. The motion of a node
+// is three curves (translation, rotation, scale); a component without a curve keeps its value at
+// rest.
 
 #include "renderlib/import/animation/animation.h"
 

@@ -1,4 +1,5 @@
-// Finds the two keys around a time and interpolates between them by the curve's rule.
+// Evaluates a curve, numbers given by keys over time: finds the two keys around a time and
+// interpolates between them by the curve's rule.
 
 #include "renderlib/import/animation/curve.h"
 

@@ -1,5 +1,5 @@
-// Names the files that a converter makes. Equal contents get one name; a hash finds candidates,
-// which are then compared.
+// Stores and names the files that the converter of a foreign scene makes. Equal contents get one
+// name; a hash finds candidates, which are then compared.
 
 #include "renderlib/import/convert/made_files.h"
 

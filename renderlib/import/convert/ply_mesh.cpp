@@ -1,4 +1,5 @@
-// Writes a mesh as a binary PLY file, in the form that Assimp reads without errors.
+// Writes a mesh as a binary PLY file, in the form that Assimp reads without errors: the converters
+// of foreign scenes pass meshes on as such files.
 
 #include "renderlib/import/convert/ply_mesh.h"
 

@@ -1,5 +1,6 @@
-// Reads the header to a list of elements and their properties; then PlyReader reads the numbers of
-// each row, text or binary, and sorts them into positions, normals, uvs, faces and attributes.
+// Reads PLY files for the converters of foreign scenes. The header becomes a list of elements and
+// their properties; then PlyReader reads the numbers of each row, text or binary, and sorts them
+// into positions, normals, uvs, faces and attributes.
 
 #include "renderlib/import/convert/read_ply.h"
 

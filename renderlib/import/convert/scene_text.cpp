@@ -1,4 +1,5 @@
-// Writes a scene message as text. A message that fits on one line is written on one line.
+// Writes the message of a scene file as text, for `bandsaw import`. A message that fits on one line
+// is written on one line.
 
 #include "renderlib/import/convert/scene_text.h"
 

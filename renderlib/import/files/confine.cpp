@@ -1,5 +1,6 @@
-// Sets resource limits, restricts files to the two folders by Landlock, and forbids system calls by
-// a seccomp filter, which is a list of instructions for the kernel's packet filter.
+// Confines the process that reads foreign files: sets resource limits, restricts files to two
+// folders by Landlock, and forbids system calls by a seccomp filter, which is a list of
+// instructions for the kernel's packet filter.
 
 #include "renderlib/import/files/confine.h"
 

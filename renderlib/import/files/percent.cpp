@@ -1,4 +1,5 @@
-// Replaces each "%" with two hexadecimal digits by the byte that they give.
+// Decodes percent-encoded file names: replaces each "%" with two hexadecimal digits by the byte
+// that they give.
 
 #include "renderlib/import/files/percent.h"
 

@@ -1,5 +1,5 @@
-// Resolves a name to its real path and compares that with the real path of the folder, so that no
-// symbolic link leads outside.
+// Finds the files that a scene names, and none outside of its folder: resolves a name to its real
+// path and compares that with the real path of the folder, so that no symbolic link leads outside.
 
 #include "renderlib/import/files/scene_folder.h"
 

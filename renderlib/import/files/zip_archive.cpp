@@ -1,5 +1,5 @@
-// Finds the directory at the end of the archive, reads its entries with all checks, and inflates an
-// entry on request. The records are those of APPNOTE.TXT, section 4.3.
+// Reads a zip archive: finds the directory at its end, reads the entries with all checks, and
+// inflates an entry on request. The records are those of APPNOTE.TXT, section 4.3.
 
 #include "renderlib/import/files/zip_archive.h"
 

@@ -1,5 +1,5 @@
-// Decodes the stream with libdraco to quantised integers, and converts these to floats here
-// (Dequantizer).
+// Decodes meshes of glTF's extension KHR_draco_mesh_compression: libdraco decodes the stream to
+// quantised integers, and Dequantizer converts these to floats.
 
 #include "renderlib/import/gltf/draco_mesh.h"
 

@@ -1,5 +1,5 @@
-// Checks that the elements lie within their buffer view, reads them one component at a time, and
-// applies sparse replacements.
+// Reads accessors of a glTF file: checks that the elements lie within their buffer view, reads them
+// one component at a time, and applies sparse replacements.
 
 #include "renderlib/import/gltf/gltf_accessor.h"
 

@@ -1,5 +1,5 @@
-// Reads each channel's sampler as a Curve, which moves a node or sets the weights of its morph
-// targets.
+// Reads an animation of a glTF file: each channel's sampler becomes a Curve, which moves a node or
+// sets the weights of its morph targets.
 
 #include "renderlib/import/gltf/gltf_animation.h"
 

@@ -1,5 +1,5 @@
-// A buffer is read when it is first used: the binary chunk, a data URI or a file. A compressed
-// buffer view is decoded when it is first used.
+// Reads the buffers of a glTF file. A buffer is read when it is first used: the binary chunk, a
+// data URI or a file. A compressed buffer view is decoded when it is first used.
 
 #include "renderlib/import/gltf/gltf_buffers.h"
 

@@ -1,5 +1,5 @@
-// Limits the size and nesting of the text before it is parsed, because nlohmann's parser and
-// destructors are recursive.
+// Parses the JSON of a glTF file, and looks up its members. Size and nesting of the text are
+// limited before it is parsed, because nlohmann's parser and destructors are recursive.
 
 #include "renderlib/import/gltf/gltf_json.h"
 

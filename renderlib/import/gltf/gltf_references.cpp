@@ -1,5 +1,6 @@
-// A table lists which member of which list refers to which other list. Accessors of meshes,
-// extensions and the tree of nodes are checked by functions of their own.
+// Checks the indices by which the objects of a glTF file refer to each other. A table lists which
+// member of which list refers to which other list. Accessors of meshes, extensions and the tree of
+// nodes are checked by functions of their own.
 
 #include "renderlib/import/gltf/gltf_references.h"
 

@@ -1,5 +1,5 @@
-// Checks the parameters of the extension, decodes the stream with libmeshoptimizer, and applies the
-// filter (meshopt_filters.h).
+// Decodes a buffer view of glTF's extension EXT_meshopt_compression: checks its parameters, decodes
+// the stream with libmeshoptimizer, and applies the filter (meshopt_filters.h).
 
 #include "renderlib/import/gltf/meshopt_view.h"
 

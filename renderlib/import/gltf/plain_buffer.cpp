@@ -1,5 +1,5 @@
-// Collects the arrays of the rewritten document in one buffer, and their accessors and buffer views
-// in JSON.
+// Collects the arrays of the rewritten glTF document (plain_gltf.h) in one buffer, and their
+// accessors and buffer views in JSON.
 
 #include "renderlib/import/gltf/plain_buffer.h"
 

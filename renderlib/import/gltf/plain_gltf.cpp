@@ -1,5 +1,6 @@
-// Rewriter goes through the lists of the JSON, replaces each accessor and image that is used by a
-// plain copy in one new buffer, and leaves everything else as it is.
+// Rewrites a glTF file as a plain document, which any reader understands. Rewriter goes through the
+// lists of the JSON, replaces each accessor and image that is used by a plain copy in one new
+// buffer, and leaves everything else as it is.
 
 #include "renderlib/import/gltf/plain_gltf.h"
 

@@ -1,5 +1,6 @@
-// Reads each attribute and index of a primitive, from its accessor or from a Draco stream, and adds
-// it to the new buffer as floats or 32-bit indices.
+// Rewrites the meshes of a glTF file (plain_gltf.h): reads each attribute and index of a primitive,
+// from its accessor or from a Draco stream, and adds it to the new buffer as floats or 32-bit
+// indices.
 
 #include "renderlib/import/gltf/plain_meshes.h"
 

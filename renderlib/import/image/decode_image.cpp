@@ -1,5 +1,5 @@
-// Detects the format from the first bytes and calls its decoder: stb_image, libwebp, tinyexr, or
-// the reader of PFM files below.
+// Decodes image files of a scene: detects the format from the first bytes and calls its decoder:
+// stb_image, libwebp, tinyexr, or the reader of PFM files below.
 
 #include "renderlib/import/image/decode_image.h"
 

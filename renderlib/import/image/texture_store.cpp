@@ -1,5 +1,6 @@
-// Decodes an image, converts its texels as the use requires (factor, normals from heights, index of
-// refraction), and keeps the texture under its image and use.
+// Adds images to the imported scene as textures: decodes an image, converts its texels as its use
+// requires (factor, normals from heights, index of refraction), and keeps the texture under its
+// image and use.
 
 #include "renderlib/import/image/texture_store.h"
 

@@ -1,6 +1,6 @@
-// read_kind() calls one function for each type of bsdf, which sets the fields of a material of
-// ours. Wrappers around a bsdf are in bsdf_wrappers.cpp, principled materials in
-// principled_bsdfs.cpp.
+// Converts one bsdf of a Mitsuba scene: read_kind() calls one function for each type, which sets
+// the fields of a material of our scene file. Wrappers around a bsdf are in bsdf_wrappers.cpp,
+// principled materials in principled_bsdfs.cpp.
 
 #include "renderlib/import/mitsuba/bsdf_reader.h"
 

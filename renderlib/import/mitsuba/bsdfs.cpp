@@ -1,6 +1,7 @@
-// Makes a material for each combination of bsdf, emitter and uvs that occurs, and returns the same
-// one when it occurs again. Our glass has the larger index of refraction inside. If that of a bsdf
-// is larger outside, its shapes must exchange their sides: SurfaceMaterial::turned.
+// Converts the materials of a Mitsuba scene. Makes a material for each combination of bsdf, emitter
+// and uvs that occurs, and returns the same one when it occurs again. Our glass has the larger
+// index of refraction inside. If that of a bsdf is larger outside, its shapes must exchange their
+// sides: SurfaceMaterial::turned.
 
 #include "renderlib/import/mitsuba/bsdfs.h"
 

@@ -1,4 +1,5 @@
-// Collects warnings, each once. Parameters that nothing has read are reported.
+// Collects the warnings of the conversion of a Mitsuba scene, each once. Parameters that nothing
+// has read are reported.
 
 #include "renderlib/import/mitsuba/conversion.h"
 

@@ -1,5 +1,5 @@
-// One function for each type of emitter. Environment maps are resampled, because Mitsuba places
-// their first and last row at the poles.
+// Converts the emitters of a Mitsuba scene that are not surfaces: one function for each type.
+// Environment maps are resampled, because Mitsuba places their first and last row at the poles.
 
 #include "renderlib/import/mitsuba/emitters.h"
 

@@ -1,5 +1,5 @@
-// Converts the field of view along the axis that the file names, or a focal length, to half the
-// height of the image plane at distance 1.
+// Converts the field of view of a Mitsuba sensor or projector, given along an axis that the file
+// names or as a focal length, to half the height of the image plane at distance 1.
 
 #include "renderlib/import/mitsuba/field_of_view.h"
 

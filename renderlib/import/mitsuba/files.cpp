@@ -1,5 +1,5 @@
-// Searches files in the scene's folder and in those of its <path> elements, the last one first.
-// Nothing outside the import's folder is found.
+// Searches the files that a Mitsuba scene names, in the folders of its <path> elements, the last
+// one first, and in the scene's folder. Nothing outside the import's folder is found.
 
 #include "renderlib/import/mitsuba/files.h"
 

@@ -1,5 +1,5 @@
-// Splits a matrix into position, axes and scale, and notes what these cannot express: mirroring and
-// skew.
+// Splits the transform of a Mitsuba sensor or emitter into position, axes and scale, and notes what
+// these cannot express: mirroring and skew.
 
 #include "renderlib/import/mitsuba/frame.h"
 

@@ -1,5 +1,6 @@
-// MediumReader reads the coefficients of a medium, each a colour or a grid, and its phase function.
-// Media::medium_of() makes each medium once, or once for each placement if it has a grid.
+// Converts the media of a Mitsuba scene. MediumReader reads the coefficients of a medium, each a
+// colour or a grid, and its phase function. Media::medium_of() makes each medium once, or once for
+// each placement if it has a grid.
 
 #include "renderlib/import/mitsuba/media.h"
 

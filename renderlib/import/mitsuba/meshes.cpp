@@ -1,6 +1,6 @@
-// Reads the mesh as Mitsuba would, and changes what our importer would read differently:
-// orientation, normals, uvs. Attributes of vertices or triangles become an image with four texels
-// for each triangle.
+// Converts the mesh files of a Mitsuba scene: reads the mesh as Mitsuba would, and changes what our
+// importer would read differently: orientation, normals, uvs. Attributes of vertices or triangles
+// become an image with four texels for each triangle.
 
 #include "renderlib/import/mitsuba/meshes.h"
 

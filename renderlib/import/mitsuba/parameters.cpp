@@ -1,4 +1,5 @@
-// Finds a parameter by its name, checks its type, and remembers that it was read.
+// Finds a parameter of an object of a Mitsuba scene by its name, checks its type, and remembers
+// that it was read.
 
 #include "renderlib/import/mitsuba/parameters.h"
 

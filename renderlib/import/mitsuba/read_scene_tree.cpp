@@ -1,6 +1,6 @@
-// Reader parses each file with pugixml, replaces parameters in attributes, makes an Object of each
-// element, and resolves references at the end. Bounds on size, nesting and number of objects are
-// checked on the way.
+// Reads the XML of a Mitsuba scene as a tree of objects. Reader parses each file with pugixml,
+// replaces parameters in attributes, makes an Object of each element, and resolves references at
+// the end. Bounds on size, nesting and number of objects are checked on the way.
 
 #include "renderlib/import/mitsuba/read_scene_tree.h"
 

@@ -1,5 +1,5 @@
-// Splits a text at commas and spaces, and converts the parts to the numbers that the type of the
-// value requires.
+// Reads values of a Mitsuba scene: splits a text at commas and spaces, and converts the parts to
+// the numbers that the type of the value requires.
 
 #include "renderlib/import/mitsuba/read_values.h"
 

@@ -1,5 +1,5 @@
-// Converts spectra to RGB with renderlib/import/spectrum; holds the tables of metals and of indices
-// of refraction.
+// Converts the spectra of Mitsuba scenes to RGB with renderlib/import/spectrum; holds the tables of
+// metals and of indices of refraction.
 
 #include "renderlib/import/mitsuba/spectra.h"
 

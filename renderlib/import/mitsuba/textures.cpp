@@ -1,5 +1,6 @@
-// texture_of() converts an object of type bitmap, checkerboard, mesh attribute or scale to a
-// texture of ours; uv transforms are converted between both conventions (in_our_frame).
+// Converts the textures of Mitsuba scenes. texture_of() converts an object of type bitmap,
+// checkerboard, mesh attribute or scale to a texture of our scene file; uv transforms are converted
+// between both conventions (in_our_frame).
 
 #include "renderlib/import/mitsuba/textures.h"
 

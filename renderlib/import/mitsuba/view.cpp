@@ -1,5 +1,5 @@
-// Reads the film first, because the camera's field of view depends on its aspect ratio; then the
-// camera and the integrator.
+// Converts the sensor and the integrator of a Mitsuba scene. Reads the film first, because the
+// camera's field of view depends on its aspect ratio; then the camera and the integrator.
 
 #include "renderlib/import/mitsuba/view.h"
 

@@ -1,4 +1,4 @@
-// Converts each channel of Assimp's animation to curves in seconds.
+// Reads an animation of a model that Assimp has read: converts each channel to curves in seconds.
 
 #include "renderlib/import/model/assimp_animation.h"
 

@@ -1,5 +1,5 @@
-// Both classes give Assimp files as bytes in memory. AssimpFiles finds them by SceneFolder, so
-// Assimp cannot open any other file.
+// The file systems through which Assimp opens files. Both classes give it the files as bytes in
+// memory. AssimpFiles finds them by SceneFolder, so Assimp cannot open any other file.
 
 #include "renderlib/import/model/assimp_files.h"
 

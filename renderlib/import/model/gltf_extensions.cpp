@@ -1,4 +1,5 @@
-// Reads the extensions of each material that Assimp loads, in Assimp's order (gltf_load_order.h).
+// Reads those parts of a glTF file's JSON that Assimp does not pass on, above all the extensions of
+// each material that Assimp loads, in Assimp's order (gltf_load_order.h).
 
 #include "renderlib/import/model/gltf_extensions.h"
 

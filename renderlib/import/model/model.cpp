@@ -1,5 +1,5 @@
-// Reads a file with Assimp (a glTF file as a plain document, gltf/plain_gltf.h), then its
-// materials, meshes and nodes in this order, and turns it upright.
+// Reads a model file: loads it with Assimp (a glTF file as a plain document, gltf/plain_gltf.h),
+// converts its materials, meshes and nodes in this order, and turns it upright.
 
 #include "renderlib/import/model/model.h"
 

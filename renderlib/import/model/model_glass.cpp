@@ -1,5 +1,5 @@
-// Makes the glass of a material, and replaces closed meshes of that material by glass with a medium
-// inside.
+// Reads solid glass of glTF: makes the glass of a material with KHR_materials_volume, and gives it,
+// with a medium inside, to the closed meshes of that material.
 
 #include "renderlib/import/model/model_glass.h"
 

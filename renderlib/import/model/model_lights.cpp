@@ -1,4 +1,5 @@
-// Converts each kind of Assimp light to a delta light, in the place of its node.
+// Converts each kind of light that Assimp reads to a delta light (from a point or from one
+// direction), in the place of its node.
 
 #include "renderlib/import/model/model_lights.h"
 

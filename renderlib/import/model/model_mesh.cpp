@@ -1,5 +1,5 @@
-// MeshReader converts one mesh of Assimp and repairs it. A mesh with a skin or morph targets is
-// posed at both ends of the shutter interval.
+// Converts the meshes of a model. MeshReader converts one mesh of Assimp and repairs it. A mesh
+// with a skin or morph targets is posed at both ends of the shutter interval.
 
 #include "renderlib/import/model/model_mesh.h"
 

@@ -1,6 +1,7 @@
-// Walk visits the nodes, parents first, multiplies their transforms, and adds the instances,
-// cameras and lights of each. A node that moves during the shutter interval becomes a frame, in
-// which its subtree is placed.
+// Converts the tree of nodes of a model to placements. Walk visits the nodes, parents first,
+// multiplies their transforms, and adds the instances, cameras and lights of each. A node that
+// moves during the shutter interval becomes a frame, a moving coordinate system (geometry/frame.h),
+// in which its subtree is placed.
 
 #include "renderlib/import/model/model_nodes.h"
 

@@ -1,5 +1,5 @@
-// Adds morph targets to the vertices, then transforms them by the weighted mean of their bones'
-// transforms.
+// Computes the vertices of a mesh in a pose: adds morph targets to the vertices, then transforms
+// them by the weighted mean of their bones' transforms.
 
 #include "renderlib/import/model/model_pose.h"
 

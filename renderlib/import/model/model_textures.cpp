@@ -1,4 +1,5 @@
-// Looks for the image among the embedded ones, then for a file by several spellings of its name.
+// Finds the images that a model names: looks among the embedded ones, then for a file by several
+// spellings of its name.
 
 #include "renderlib/import/model/model_textures.h"
 

@@ -1,5 +1,5 @@
-// Finds what is not finite or has no direction, and computes a replacement from the rest of the
-// mesh.
+// Repairs normals and uvs of a model's mesh: finds what is not finite or has no direction, and
+// computes a replacement from the rest of the mesh.
 
 #include "renderlib/import/model/repair_mesh.h"
 #include "renderlib/math/float3.h"

@@ -1,5 +1,5 @@
-// Converts colours and spectra of parameters to linear RGB, stores warnings, and has small helpers
-// for all parts of the conversion.
+// Helps all parts of the conversion of a pbrt scene: converts colours and spectra of parameters to
+// linear RGB, writes values into messages, and stores warnings.
 
 #include "renderlib/import/pbrt/builder.h"
 

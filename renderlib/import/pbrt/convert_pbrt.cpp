@@ -1,5 +1,6 @@
-// Interpreter reads one directive after the other and calls the function of its name. These change
-// the graphics state, or add a material, shape, light or medium to the scene (builder.h).
+// Converts a pbrt scene to a scene file of ours. Interpreter reads one directive after the other
+// and calls the function of its name. These functions change the graphics state, or add a material,
+// shape, light or medium to the scene (builder.h).
 
 #include "renderlib/import/pbrt/convert_pbrt.h"
 

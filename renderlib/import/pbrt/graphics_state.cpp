@@ -1,4 +1,5 @@
-// A stack of states: AttributeBegin and TransformBegin push a copy, their ends restore it.
+// Holds the graphics state of a pbrt scene as a stack of states: AttributeBegin and TransformBegin
+// push a copy, their ends restore it.
 
 #include "renderlib/import/pbrt/graphics_state.h"
 

@@ -1,9 +1,9 @@
-// Loop's subdivision surfaces. Each level splits a triangle into four: old vertices move to
-// weighted means of their neighbours, new vertices are weighted means of an edge and the two
-// vertices opposite to it. After the last level, the vertices move to their limits, at which the
-// normal is the cross product of two tangents. The weights are those of Loop 1987, and on
-// boundaries and for limits those of Hoppe et al. 1994, "Piecewise Smooth Surface Reconstruction",
-// appendix A.
+// Computes Loop's subdivision surfaces, for pbrt's shape loopsubdiv. Each level splits a triangle
+// into four: old vertices move to weighted means of their neighbours, new vertices are weighted
+// means of an edge and the two vertices opposite to it. After the last level, the vertices move to
+// their limits, at which the normal is the cross product of two tangents. The weights are those of
+// Loop 1987, and on boundaries and for limits those of Hoppe et al. 1994, "Piecewise Smooth Surface
+// Reconstruction", appendix A.
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// One function for each kind of shape. Quadrics and curved patches become grids of vertices
-// (add_grid).
+// Converts shapes of pbrt to triangle meshes: one function for each kind. Quadrics and curved
+// patches become grids of vertices (add_grid).
 
 #include "renderlib/import/pbrt/mesh_shapes.h"
 

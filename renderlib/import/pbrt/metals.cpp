@@ -1,5 +1,5 @@
-// Converts the spectra of eta and k to RGB so that the reflectance at normal incidence is that of
-// the spectra.
+// Converts pbrt's metals. The spectra of eta and k become RGB so that the reflectance at normal
+// incidence is that of the spectra.
 
 #include "renderlib/import/pbrt/metals.h"
 

@@ -1,5 +1,5 @@
-// A motion becomes two keys. A motion with shear is a sheared group inside of a group that moves by
-// the keys.
+// Places models and instances of a pbrt scene. A motion becomes two keys. A motion with shear is a
+// sheared group inside of a group that moves by the keys.
 
 #include "renderlib/import/pbrt/motion.h"
 

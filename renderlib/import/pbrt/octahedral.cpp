@@ -1,5 +1,5 @@
-// Looks up a pbrt environment in any direction, in its octahedral or latitude-longitude form, and
-// resamples it.
+// Converts the environment of a pbrt scene: looks it up in any direction, in its octahedral or
+// latitude-longitude form, and resamples it.
 
 #include "renderlib/import/pbrt/octahedral.h"
 

@@ -1,5 +1,5 @@
-// Reads the type, the name and the values of each parameter. The accessors check the type and mark
-// the parameter as used.
+// Reads the parameters of a pbrt directive: the type, the name and the values of each. The
+// accessors check the type and mark the parameter as used.
 
 #include "renderlib/import/pbrt/parameters.h"
 

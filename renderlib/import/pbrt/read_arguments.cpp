@@ -1,4 +1,4 @@
-// Reads the arguments of directives from the tokens: quoted names, lists of numbers, and
+// Reads the arguments of pbrt's directives from the tokens: quoted names, lists of numbers, and
 // transforms.
 
 #include "renderlib/import/pbrt/read_arguments.h"

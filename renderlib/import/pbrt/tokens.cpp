@@ -1,5 +1,5 @@
-// A stack of open files: next() returns the words of the innermost one and goes back to the one
-// around it at its end.
+// Splits the files of a pbrt scene into words. Open files form a stack: next() returns the words of
+// the innermost one and goes back to the one around it at its end.
 
 #include "renderlib/import/pbrt/tokens.h"
 

@@ -1,5 +1,5 @@
-// Reads film, filter, integrator and camera in this order, because the camera's field of view
-// depends on the film's shape.
+// Converts the image settings of a pbrt scene: film, filter, integrator and camera in this order,
+// because the camera's field of view depends on the film's shape.
 
 #include "renderlib/import/pbrt/view.h"
 

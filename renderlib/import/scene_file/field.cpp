@@ -1,5 +1,5 @@
-// A Field is a message with its path and its place in the file. Paths and places are computed only
-// for error messages and for child messages.
+// A Field is a message of a scene file with its path and its place in the file, for errors. Paths
+// and places are computed only for error messages and for child messages.
 
 #include "renderlib/import/scene_file/field.h"
 

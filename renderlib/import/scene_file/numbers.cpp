@@ -1,4 +1,5 @@
-// Reads vectors, colours and numbers with their ranges; errors name the field.
+// Reads vectors, colours and numbers of a scene file and checks their ranges; errors name the
+// field.
 
 #include "renderlib/import/scene_file/numbers.h"
 

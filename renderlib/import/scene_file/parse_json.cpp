@@ -1,4 +1,4 @@
-// Parses JSON by protobuf, and finds line and column of a syntax error.
+// Parses a scene file in JSON by protobuf, and finds line and column of a syntax error.
 
 #include <google/protobuf/util/json_util.h>
 

@@ -1,5 +1,5 @@
-// Parses with protobuf's TextFormat, which also returns the place of each field, and explains its
-// first error.
+// Parses a scene file in protobuf's text format, with TextFormat, which also returns the place of
+// each field, and explains the first error.
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/io/tokenizer.h>

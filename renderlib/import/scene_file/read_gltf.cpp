@@ -1,5 +1,6 @@
-// Each function reads the fields of one part of the material: base colour, metallic and roughness,
-// layers, normals, emission, alpha.
+// Reads the material `gltf` of a scene file, glTF's metallic-roughness material. Each function
+// reads the fields of one part: base colour, metallic and roughness, layers, normals, emission,
+// alpha.
 
 #include "renderlib/import/scene_file/read_gltf.h"
 

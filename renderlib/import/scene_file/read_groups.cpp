@@ -1,5 +1,6 @@
-// A group's shapes and models are read once into a Contents (draft/placements.h); each instance
-// copies its placements, transformed, into the scene or into another group.
+// Reads the groups and instances of a scene file. A group's shapes and models are read once into a
+// Contents (draft/placements.h); each instance copies its placements, transformed, into the scene
+// or into another group.
 
 #include "renderlib/import/scene_file/read_groups.h"
 

@@ -1,4 +1,5 @@
-// One function for each kind of light. Each checks its fields and returns a DeltaLight.
+// Reads the lights of a scene file: one function for each kind checks its fields and returns a
+// DeltaLight.
 
 #include "renderlib/import/scene_file/read_lights.h"
 

@@ -1,5 +1,5 @@
-// read_kind() calls one function for each kind of material; then the properties that every kind can
-// have are read: relief, opacity, emission.
+// Reads the materials of a scene file: read_kind() calls one function for each kind; then the
+// properties that every kind can have are read: relief, opacity, emission.
 
 #include "renderlib/import/scene_file/read_materials.h"
 

@@ -1,4 +1,5 @@
-// Reads the coefficients of each medium, and makes the boundaries that shapes and models ask for.
+// Reads the media of a scene file: the coefficients of each. Also makes the boundaries, the closed
+// shapes that a medium fills, for which shapes and models ask.
 
 #include "renderlib/import/scene_file/read_media.h"
 

@@ -1,4 +1,5 @@
-// Reads conductors, plastic and other materials with microfacets.
+// Reads the materials of a scene file that have microfacets: conductors, plastic, and the surface
+// of rough glass.
 
 #include "renderlib/import/scene_file/read_microfacets.h"
 

@@ -1,5 +1,5 @@
-// Reads each model file once, places its meshes by the entry's matrix or keys, and adds its lights,
-// cameras and the media inside of its meshes.
+// Reads the models that a scene file names: reads each model file once, places its meshes by the
+// entry's matrix or keys, and adds its lights, cameras and the media inside of its meshes.
 
 #include "renderlib/import/scene_file/read_models.h"
 

@@ -1,4 +1,5 @@
-// Reads the parameters of both principled materials; what both have is read by common templates.
+// Reads the parameters of both principled materials of a scene file; what both have is read by
+// common templates.
 
 #include "renderlib/import/scene_file/read_principled.h"
 

@@ -1,4 +1,5 @@
-// Multiplies the rotations of the list, each about its axis by its angle in degrees.
+// Reads rotations of a scene file: multiplies those of the list, each about its axis by its angle
+// in degrees.
 
 #include "renderlib/import/scene_file/read_rotation.h"
 

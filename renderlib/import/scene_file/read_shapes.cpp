@@ -1,7 +1,7 @@
-// Reads each shape as values of geometry/shapes.h. A shape that moves becomes a group in a frame, a
-// moving coordinate system (geometry/frame.h). A shape with a medium inside also becomes a boundary
-// of that medium. Contents::seen holds the placed shapes that have a surface, Contents::filled the
-// boundaries.
+// Reads each shape of a scene file as values of geometry/shapes.h. A shape that moves becomes a
+// group in a frame, a moving coordinate system (geometry/frame.h). A shape with a medium inside
+// also becomes a boundary of that medium. Contents::seen holds the placed shapes that have a
+// surface, Contents::filled the boundaries.
 
 #include "renderlib/import/scene_file/read_shapes.h"
 

@@ -1,5 +1,5 @@
-// read_kind() calls one function for each kind of texture. A texture that is given by name is
-// looked up, others are added to the draft.
+// Reads the textures of a scene file: read_kind() calls one function for each kind. A texture that
+// is given by name is looked up, others are added to the draft, the scene that is being read.
 
 #include "renderlib/import/scene_file/read_textures.h"
 

@@ -1,4 +1,5 @@
-// One function for each setting of the file that is not a shape, a material, a light or a medium.
+// Reads the settings of a scene file that are not shapes, materials, lights or media: one function
+// for each.
 
 #include "renderlib/import/scene_file/read_view.h"
 

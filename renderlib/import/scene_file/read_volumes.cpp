@@ -1,5 +1,5 @@
-// Reads the grid files of a medium, places each in the space of the medium, and adds it to the
-// scene's grids once.
+// Reads the grids of a medium of a scene file from their files, places each in the space of the
+// medium, and adds it to the scene's grids once.
 
 #include "renderlib/import/scene_file/read_volumes.h"
 

@@ -1,5 +1,6 @@
-// Follows a track's path from message to message by protobuf reflection, evaluates its curve at the
-// time, and sets the field.
+// Evaluates the tracks of a scene file, which change its numbers over time: follows a track's path
+// from message to message by protobuf reflection, evaluates its curve at the time, and sets the
+// field.
 
 #include "renderlib/import/scene_file/tracks.h"
 

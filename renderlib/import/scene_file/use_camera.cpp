@@ -1,4 +1,4 @@
-// Collects the cameras of models, and finds one by the forms of its name.
+// Collects the cameras of a scene's models, and finds one by the forms of its name.
 
 #include "renderlib/import/scene_file/use_camera.h"
 

@@ -1,4 +1,5 @@
-// The tables of observer.h, with linear interpolation.
+// The CIE's tables of the standard observer and of daylight (observer.h says which), with linear
+// interpolation.
 
 #include "renderlib/import/spectrum/observer.h"
 

@@ -1,4 +1,5 @@
-// Integrates spectra with the colour matching functions to XYZ, and converts XYZ to linear RGB.
+// Converts spectra to colours: integrates them with the colour matching functions to XYZ, and
+// converts XYZ to linear RGB.
 
 #include "renderlib/import/spectrum/spectrum.h"
 
