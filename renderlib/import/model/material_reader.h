@@ -66,7 +66,8 @@ class MaterialReader {
   /// Adds a warning such as "its specular map is left out".
   void unsupported(const std::string& what) { file_.unsupported.add(what, called_); }
 
-  /// Adds the material to the draft. Returns its id and the uv sets that its textures use.
+  /// Adds the material to the draft, the scene that is being read. Returns its id and the uv sets
+  /// that its textures use.
   ModelMaterial add(const Material& material) const;
 
  private:

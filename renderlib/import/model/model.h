@@ -24,8 +24,8 @@ struct ModelCamera {
   std::optional<Camera> at_close = std::nullopt;  ///< when it closes, if the camera moves
 };
 
-/// A model whose meshes, materials and textures have been added to the draft; its placements have
-/// not.
+/// A model whose meshes, materials and textures have been added to the SceneDraft (the scene while
+/// it is being read); its placements have not.
 struct Model {
   std::vector<Frame> frames = {};         ///< moving coordinate systems: one for each moving node
   std::vector<Instance> instances = {};   ///< placed in the model's space, or in one of `frames`

@@ -23,8 +23,9 @@ enum class ModelKind {
   kOther,
 };
 
-/// A model that is being converted to the draft. The references to the scene, the JSON's values,
-/// the animation and the still meshes are those of a LoadedModel (model/loaded_model.h).
+/// A model that is being converted to the draft, the scene that is being read. The references to
+/// the scene, the JSON's values, the animation and the still meshes are those of a LoadedModel
+/// (model/loaded_model.h).
 struct ModelFile {
   const aiScene& scene;
   const std::string& path;  ///< real path

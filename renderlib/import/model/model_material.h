@@ -15,8 +15,8 @@ class MaterialReader;
 
 inline constexpr unsigned kNoUvSet = ~0u;
 
-/// A material of a model in the draft, and Assimp's numbers of the uv sets that its meshes use as
-/// their first and second set. kNoUvSet: there is no second set.
+/// A material of a model in the draft (the scene while it is being read), and Assimp's numbers of
+/// the uv sets that its meshes use as their first and second set. kNoUvSet: there is no second set.
 struct ModelMaterial {
   MaterialId id{};
   unsigned uv_set = 0;

@@ -11,7 +11,8 @@
 
 namespace bandsaw {
 
-/// A mesh that was added to the draft, with its material.
+/// A mesh that was added to the draft (ModelFile::draft, the scene while it is being read), with
+/// its material.
 struct ModelMesh {
   MeshId mesh{};
   MaterialId material{};

@@ -1,6 +1,7 @@
 #pragma once
 
-// Finds the images of a model, embedded or in files, and adds them to the draft as textures.
+// Finds the images of a model, embedded or in files, and adds them as textures to the draft, the
+// scene that is being read.
 
 #include <string>
 

@@ -12,7 +12,7 @@
 
 namespace bandsaw {
 
-/// Reads all media, and the name of the fog, the one medium without a boundary.
+/// Reads all media, and which of them is the fog, the one without a boundary.
 absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
 /// Returns the medium with this name, which is the value of `in`'s field `field`. Returns
@@ -20,9 +20,10 @@ absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft&
 absl::StatusOr<MediumId> find_medium(const Field& in, const std::string& field,
                                      const std::string& name, const SceneDraft& draft);
 
-/// Return the boundary of the medium `inside` as an instance in Media::boundaries (scene/media.h),
-/// which the caller places: a sphere, a box from `low` to `high`, or an instance of a mesh of the
-/// scene. The latter returns INVALID_ARGUMENT for `in`'s field "interior" if the mesh is open.
+/// These functions return the boundary of the medium `inside` as an instance in Media::boundaries
+/// (scene/media.h), which the caller places: a sphere, a box from `low` to `high`, or an instance
+/// of a mesh of the scene. The latter returns INVALID_ARGUMENT for `in`'s field "interior" if the
+/// mesh is open.
 Instance boundary_of(const Sphere& sphere, MediumId inside, SceneDraft& draft);
 Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft);
 absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& mesh, MediumId inside,

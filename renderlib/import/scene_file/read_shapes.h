@@ -10,8 +10,9 @@ namespace bandsaw {
 using ShapeList = google::protobuf::RepeatedPtrField<scene::Shape>;
 
 /// Reads all shapes of the scene or of a group, which is `parent`, into SceneDraft::shapes. Moving
-/// shapes and shapes that a medium fills become placements in SceneDraft::placed. Materials and
-/// shutter MUST have been read. Returns INVALID_ARGUMENT with the field's name.
+/// shapes become placements in SceneDraft::placed, and so do the boundaries of media inside of
+/// shapes, except for resting spheres of the scene. Materials and shutter MUST have been read.
+/// Returns INVALID_ARGUMENT with the field's name.
 absl::Status read_shapes(const Field& parent, const ShapeList& shapes, SceneDraft& draft);
 
 }  // namespace bandsaw

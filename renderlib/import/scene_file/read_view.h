@@ -22,7 +22,7 @@ absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from
 absl::StatusOr<double> read_fps(const Field& root, const scene::Scene& from);
 /// Reads the pixel filter, or returns the default.
 absl::StatusOr<PixelFilter> read_filter(const Field& root, const scene::Scene& from);
-/// Reads the parameters of the integrators that do not trace paths; defaults where they are absent.
+/// Reads the parameters of the integrators `direct` and `ambient occlusion`; defaults where absent.
 absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::Scene& from);
 /// Reads image and integrator settings that are present.
 absl::Status read_settings(const Field& root, const scene::Scene& from, PackageInfo& info);
