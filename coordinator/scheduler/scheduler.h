@@ -1,8 +1,10 @@
 #pragma once
 
 // The scheduler: decides which worker renders which band, and everything else about jobs and
-// workers. A pure state machine: one input at a time, with the time it came, leads to records for
-// the journal and actions. The same inputs lead to the same outputs. README.md describes its parts.
+// workers. A band is a range of rows and samples of an image; it is leased to a worker. The
+// scheduler is a pure state machine: it takes one input at a time, with the time at which it came,
+// and returns records for the journal and actions for the engine. The same inputs lead to the same
+// outputs. README.md describes its parts.
 
 #include <cstdint>
 #include <optional>
@@ -48,7 +50,7 @@ class Scheduler {
   // on disk and their damage, then `replayed` once, then step for inputs.
   void replay(const Record& record);
   void replay(const input::BandStored& band);
-  /// `bytes` of a job's band log, > 0, belong to no whole band. They are shown to users (why).
+  /// `bytes` of a job's band log, > 0, belong to no whole band. Users see this in `bandsaw why`.
   void replay_damage(JobId job, std::uint64_t bytes);
   /// Ends the replay. The actions of the step continue jobs that were finishing.
   Step replayed(Time now);
@@ -56,12 +58,14 @@ class Scheduler {
   /// Returns the rows of a band that the job still wants; empty: all are stored. std::nullopt: the
   /// job is final or unknown, or the band is not a part of one of its passes.
   std::optional<std::vector<RowRange>> wanted(JobId job, const Band& band) const;
-  /// Returns the samples that the band's half tiles take.
+  /// Returns the samples that each half tile of the band takes (adaptive jobs;
+  /// renderlib/render/tile_samples.h); all samples of the band if the job or its pass is unknown.
   TileSamples tiles(JobId job, const Band& band) const;
 
   /// Returns the smallest list of records that replays to the durable state.
   std::vector<Record> snapshot() const;
 
+  /// Returns how a job or sequence is shown to users; std::nullopt: there is none.
   std::optional<JobView> job(JobId id, Time now) const;
   /// Returns why a job is not done yet, in sentences, the most important first; empty: no such job.
   std::vector<std::string> why(JobId id, Time now) const;

@@ -17,7 +17,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Returns `name` with a suffix, shortened between characters so that a job may have it.
+/// Returns `name` with a suffix. The name is shortened if both would be longer than the name of a
+/// job may be, but never inside a UTF-8 character (its further bytes begin with the bits 10).
 std::string with_suffix(std::string name, const std::string& suffix) {
   if (name.size() + suffix.size() > wire::kJobNameBytes) {
     std::size_t end = wire::kJobNameBytes - suffix.size();
@@ -29,6 +30,8 @@ std::string with_suffix(std::string name, const std::string& suffix) {
   return name + suffix;
 }
 
+/// Returns a job like `of`, but with another integrator and number of samples, and a name with this
+/// suffix.
 JobSpec beside(const JobSpec& of, Integrator integrator, std::uint64_t samples,
                const std::string& suffix) {
   JobSpec spec = of;

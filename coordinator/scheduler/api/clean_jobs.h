@@ -1,8 +1,8 @@
 #pragma once
 
-// The jobs whose images are needed to remove the noise of a job's image (renderlib/denoise): the
-// guides, which are images of the albedo and of the shape of the surfaces, and sometimes one half
-// of the samples.
+// The jobs that the denoiser of a job's image needs (renderlib/denoise): two guides, which are
+// images of the albedo and of the normals and distances of the surfaces, and for an image of few
+// samples one half of its samples. Used by `--denoise` of the commands and by the dashboard.
 
 #include <cstdint>
 #include <optional>
@@ -18,20 +18,22 @@ inline constexpr std::uint64_t kMaxGuideSamples = 32;
 
 /// Returns the number of samples per pixel of the guides of an image with `samples` samples, at
 /// least 1: about a quarter as many, within the bounds, and not more than the image has. More would
-/// cost more time than they improve the clean image (renderlib/denoise/NOTES.md). It is a power of
-/// two unless the image has fewer than 8 samples, so that an image which goes on being rendered
-/// needs new guides seldom.
+/// cost more time than they improve the clean image (renderlib/denoise/NOTES.md). The number is a
+/// power of two unless the image has fewer than 8 samples, so an image that is rendered further
+/// rarely needs new guides.
 std::uint64_t guide_samples(std::uint64_t samples);
 
-/// Checks if an image with this many samples per pixel can be cleaned. FAILED_PRECONDITION: the
+/// Checks if an image with this many samples per pixel can be denoised. FAILED_PRECONDITION: the
 /// integrator computes no radiance, or the pixels have a single sample.
 absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t samples);
 
+/// The specifications of these jobs.
 struct CleanJobs {
   JobSpec albedo;
-  JobSpec shape;
-  /// Renders the first half of the image's samples again. Only needed for an image of at most one
-  /// block of samples, whose sum is not kept in parts.
+  JobSpec shape;  ///< normals and distances
+  /// Renders the first half of the image's samples again, because the denoiser estimates the noise
+  /// from a part of the samples. std::nullopt: not needed, because an image of more than one block
+  /// of samples (8) has kept the sum of its first part.
   std::optional<JobSpec> half;
 };
 

@@ -33,7 +33,8 @@ double between(const ErrorPoint& a, const ErrorPoint& b, double samples) {
          std::pow(b.estimate.at_most() / a.estimate.at_most(), std::log(samples / from) / all);
 }
 
-/// REQUIRES samples between those of begin_of(curve) and of the last point.
+/// Returns the error at this number of samples, interpolated between the points around it. REQUIRES
+/// samples between those of begin_of(curve) and of the last point.
 double measured_at(const ErrorCurve& curve, double samples) {
   const auto next = std::find_if(begin_of(curve), curve.end(), [&](const ErrorPoint& point) {
     return static_cast<double>(point.samples) >= samples;
@@ -42,7 +43,7 @@ double measured_at(const ErrorCurve& curve, double samples) {
                                                        : between(*std::prev(next), *next, samples);
 }
 
-/// Interpolates or extrapolates with this exponent.
+/// Returns the error at any number of samples: interpolated, or extrapolated with this exponent.
 double expected_at(const ErrorCurve& curve, double samples, double fall) {
   const auto last = static_cast<double>(curve.back().samples);
   if (samples > last) {
@@ -101,6 +102,7 @@ std::optional<double> samples_until(const ErrorCurve& curve, double target) {
   if (error <= target) {
     return samples * std::pow(error / target, 1 / fall);
   }
+  // From point to point, and beyond the last one in steps of an eighth of an octave.
   while (samples < static_cast<double>(kMaxSamples)) {
     const bool measured = point != curve.end() && ++point != curve.end();
     const double next =

@@ -1,6 +1,8 @@
 #pragma once
 
-// The error of a job's image over its samples, and its extrapolation. Pure functions.
+// The error of a job's image as a function of its samples per pixel: measured after each pass,
+// interpolated between the passes, and extrapolated to predict when a target is reached. Pure
+// functions. A pass is a range of samples that is rendered for the whole image.
 
 #include <cstdint>
 #include <optional>
@@ -24,20 +26,21 @@ using ErrorCurve = std::vector<ErrorPoint>;
 
 /// Adds a point with at least as many samples as the last one. A point with as many replaces the
 /// last one's estimate and keeps its times, because it is a second measurement of the same image.
-/// If two points are less than an eighth apart, the later one is kept, so a curve has at most about
-/// 160 points.
+/// If the last two points are less than an eighth apart, the new point replaces the last one, so a
+/// curve has at most about 160 points.
 void add_point(ErrorCurve& curve, const ErrorPoint& point);
 
-/// Returns the exponent p of "error falls as samples^-p" over the last octave: the mean of its
-/// points, each compared with half its samples, clamped to [0.5, 0.75]. 0.5, the exponent of random
-/// samples, if the curve does not span an octave.
+/// Returns the exponent p of "error falls as samples^-p" over the last octave (the last doubling of
+/// the samples): the mean over the points of this octave, each compared with half its samples,
+/// clamped to [0.5, 0.75]. 0.5, the exponent of random samples, if the curve does not span an
+/// octave.
 double fall_of(const ErrorCurve& curve);
 
-/// Returns the relative RMSE plus its margin at this many samples per pixel, > 0. Between points it
-/// is interpolated. Beyond the last point it is the error at half the samples, multiplied by
-/// 2^-fall_of(curve). This repeats the steps of the last octave: a complete net of 2^k samples has
-/// a smaller error than a power law through other sample counts predicts. The curve MUST have a
-/// point whose error is not 0.
+/// Returns the relative RMSE plus its margin (ErrorEstimate::at_most) at this many samples per
+/// pixel, > 0. Between points it is interpolated. Beyond the last point it is the error at half the
+/// samples, multiplied by 2^-fall_of(curve). This repeats the steps of the last octave: a complete
+/// net of 2^k samples has a smaller error than a power law through other sample counts predicts.
+/// The curve MUST have a point whose error is not 0.
 double error_at(const ErrorCurve& curve, double samples);
 
 /// Returns the samples per pixel at which error_at is at most `target`, > 0. std::nullopt: the

@@ -1,5 +1,5 @@
-// Parses each item between commas as a number or a range, and joins numbers to ranges in the
-// reverse direction.
+// Parses the frame numbers of a sequence ("1-30,47"): each item between commas is a number or a
+// range. frames_text() does the reverse and joins numbers to ranges.
 
 #include "coordinator/scheduler/api/frame_numbers.h"
 
@@ -31,6 +31,7 @@ std::optional<FrameNumber> take_number(absl::string_view& text) {
   return number;
 }
 
+/// Removes the first character of `text` if it is one of `characters`. Returns false if it is not.
 bool take_one_of(absl::string_view& text, absl::string_view characters) {
   if (text.empty() || characters.find(text.front()) == absl::string_view::npos) {
     return false;
@@ -39,6 +40,7 @@ bool take_one_of(absl::string_view& text, absl::string_view characters) {
   return true;
 }
 
+/// Appends the numbers of one item, at most kMaxFrames.
 absl::Status add_item(absl::string_view item, std::vector<FrameNumber>& out) {
   absl::string_view rest = item;
   const auto wrong = [&](const std::string& what) {
@@ -80,6 +82,7 @@ absl::StatusOr<std::vector<FrameNumber>> parse_frames(absl::string_view text) {
   std::vector<FrameNumber> numbers;
   for (const absl::string_view item : absl::StrSplit(text, ',')) {
     RETURN_IF_ERROR(add_item(absl::StripAsciiWhitespace(item), numbers));
+    // Bounds the memory. Not at kMaxFrames, because items may overlap.
     if (numbers.size() > 2 * kMaxFrames) {
       break;
     }

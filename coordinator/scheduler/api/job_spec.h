@@ -1,6 +1,7 @@
 #pragma once
 
-// The specification of a job by its submitter, and the states of a job.
+// The specification of a job by its submitter, and the states of a job. A job is rendered in
+// passes: ranges of samples, each for the whole image.
 
 #include <cstdint>
 #include <string>
@@ -21,7 +22,8 @@ struct StopAtSamples {
 struct StopAtError {
   double relative_rmse = 0;  ///< > 0; 0.01 is 1 %
   std::uint64_t max_samples = kMaxSamples;
-  bool adaptive = false;  ///< more samples where there is more noise (render/adaptive_plan.h)
+  /// More samples where there is more noise (renderlib/render/adaptive_plan.h).
+  bool adaptive = false;
   friend bool operator==(const StopAtError&, const StopAtError&) = default;
 };
 /// The job ends at the last complete pass before this much time has passed since its first lease.
@@ -37,10 +39,12 @@ inline bool is_adaptive(const StopRule& rule) {
   return until != nullptr && until->adaptive;
 }
 
+/// A job as its submitter described it. Also the spec of a frame job, which renders one frame of a
+/// sequence.
 struct JobSpec {
   std::string request_id;  ///< chosen by the submitter: the same id means the same job
   std::string name;
-  DigestHex manifest;
+  DigestHex manifest;  ///< digest of its scene package
   RenderSettings settings;
   StopRule stop;
   JobId sequence = 0;     ///< the sequence of a frame job (sequence_spec.h); 0: none
@@ -48,9 +52,10 @@ struct JobSpec {
   /// Bytes of the package, the manifest included; it follows from the manifest, so it is not
   /// compared. 0: unknown, as of jobs that an earlier version has journalled.
   std::uint64_t package_bytes = 0;
-  /// Returns true if a band labelled with the hash `work` (render/work_hash.h) can belong to this
-  /// job. The job id alone is not enough, because ids are reused after a reset of the data folder.
-  /// 0: the band is not labelled, and is accepted.
+  /// Returns true if a band (rows and samples that a worker rendered) which is labelled with the
+  /// hash `work` can belong to this job (renderlib/render/work_hash.h). The job id alone is not
+  /// enough, because ids are reused after a reset of the data folder. 0: the band is not labelled,
+  /// and is accepted.
   bool may_be(std::uint64_t work) const {
     return work == 0 || work == work_hash(manifest, settings);
   }

@@ -1,7 +1,11 @@
 #pragma once
 
-// Inputs of the scheduler (requests and observations), and the actions it returns, which MUST be
-// done only after the records of the same step are on disk.
+// Inputs of the scheduler (requests of users and events that the engine reports), and the actions
+// that it returns, which the engine MUST do only after the records of the same step are on disk.
+//
+// A band is a range of rows and samples of an image, the unit of work; a lease gives it to one
+// worker. A pass is a range of samples of the whole image. A session is one stream of a worker. The
+// film holds the sums of all pixels of a job. More terms: proto/README.md, Glossary.
 
 #include <cstdint>
 #include <optional>
@@ -31,28 +35,30 @@ struct WorkerHello {
   std::uint32_t pixel_version = 0;
   std::uint64_t canary = 0;  ///< hash of a small render (renderlib/render/canary.h)
   std::uint32_t threads = 1;
-  std::uint32_t max_bands = 2;
-  bool browser = false;  ///< it renders in a browser; the connection says so, not the worker
-  std::uint64_t memory_bytes = 0;  ///< of its scenes; 0: no limit
+  std::uint32_t max_bands = 2;  ///< number of leases that it is willing to hold
+  bool browser = false;         ///< it renders in a browser; the connection says so, not the worker
+  std::uint64_t memory_bytes = 0;  ///< memory that scenes may take in it; 0: no limit
   /// A lease that the worker held before it reconnected.
   struct Held {
     JobId job = 0;
     Band band;
     LeaseId lease = 0;
-    std::string epoch;
-    bool finished = false;
-    std::uint64_t work = 0;  ///< render/work_hash.h; 0: not reported
+    std::string epoch;      ///< run of the coordinator that granted the lease
+    bool finished = false;  ///< all of the band is rendered
+    /// Hash of what is rendered (renderlib/render/work_hash.h); 0: not reported.
+    std::uint64_t work = 0;
   };
   std::vector<Held> held;
 
-  /// Returns the name under which it is known (context/workers.h).
+  /// Returns the name under which the farm knows it: its own, with a suffix if it is a browser.
   std::string reported_name() const { return browser ? name + kBrowserSuffix : name; }
 };
 
+/// Progress of one lease, as a heartbeat reports it.
 struct LeaseProgress {
   LeaseId lease = 0;
   std::uint32_t rows_done = 0;
-  bool preparing = false;
+  bool preparing = false;      ///< the scene is being fetched or built
   std::uint64_t prepared = 0;  ///< grows while the scene is being fetched or built
 };
 
@@ -68,8 +74,8 @@ struct SubmitSequence {
   SequenceSpec spec;
   std::int32_t priority = 0;  ///< as in Submit
 };
-/// The scenes of frames. A frame whose scene is known already keeps it. REQUIRES: all blobs of the
-/// packages are stored.
+/// The scenes of frames of a sequence have arrived. A frame whose scene is known already keeps it.
+/// REQUIRES: all blobs of the packages are stored.
 struct AddFrames {
   JobId job = 0;
   std::vector<FrameScene> scenes;
@@ -101,9 +107,9 @@ struct Hello {
 struct Heartbeat {
   SessionId session = 0;
   std::vector<LeaseProgress> leases;
-  std::string doing;
+  std::string doing;  ///< what it is doing, for users; empty: rendering
 };
-/// The worker finishes its leases and takes no more.
+/// The worker finishes its leases and takes no more, because it is about to leave.
 struct Draining {
   SessionId session = 0;
   std::string reason;
@@ -118,10 +124,10 @@ struct BandFailed {
   SessionId session = 0;
   LeaseId lease = 0;
   std::string reason;
-  std::vector<std::string> log;
+  std::vector<std::string> log;  ///< the last lines of the worker's log
 };
-/// A band's pixels are on disk. MUST also be sent for a duplicate, which is not written, so that
-/// its digests are compared.
+/// A band's pixels are on disk. MUST also be sent for a band whose rows were all stored before,
+/// which is not written again, so that its digests are compared.
 struct BandStored {
   JobId job = 0;
   Band band;
@@ -161,6 +167,7 @@ struct StorageFailed {
   JobId job = 0;
   std::string reason;
 };
+/// Writing works again; jobs that StorageFailed paused continue.
 struct StorageBack {};
 /// A user quarantines a machine, as if it had returned wrong pixels.
 struct Quarantine {
@@ -188,11 +195,13 @@ using Input =
 
 // ---- actions ----
 namespace action {
+/// Admits the worker of a session, under a displayed name that no other worker has.
 struct Welcome {
   SessionId session = 0;
   std::string name;
   std::uint32_t heartbeat_ms = 1000;
 };
+/// Does not admit the worker; it may try again after `retry_after_ms`.
 struct Refuse {
   SessionId session = 0;
   std::string reason;
@@ -203,6 +212,7 @@ struct Close {
   SessionId session = 0;
   std::string reason;
 };
+/// Gives a band of a job to a worker to render, or confirms a lease that it still holds.
 struct Lease {
   SessionId session = 0;
   LeaseId lease = 0;
@@ -210,10 +220,11 @@ struct Lease {
   DigestHex manifest;
   RenderSettings settings;
   Band band;
-  TileSamples tiles = {};  ///< of the band
-  std::uint32_t attempt = 1;
-  bool audit = false;  ///< the rows are stored already; this result is compared with them
+  TileSamples tiles = {};     ///< samples that each half tile of the band takes (adaptive jobs)
+  std::uint32_t attempt = 1;  ///< 1 + number of times that the band was given back; for logs
+  bool audit = false;         ///< the rows are stored already; this result is compared with them
 };
+/// Tells a worker to stop rendering these leases and to drop their results.
 struct Revoke {
   SessionId session = 0;
   std::vector<LeaseId> leases;
@@ -222,8 +233,8 @@ struct Revoke {
 struct LogReassignment {
   JobId job = 0;
   Band band;
-  std::string from;
-  std::string to;
+  std::string from;    ///< displayed name of the worker that holds the lease
+  std::string to;      ///< displayed name of the idle worker
   bool begun = false;  ///< true: backup task, both render it; false: stolen before it was begun
 };
 /// Log that a worker could not render a band.
@@ -239,7 +250,7 @@ struct AddToFilm {
   Band band;
   std::vector<RowRange> rows;
   std::string worker;      ///< displayed name; empty: the worker is not known any more
-  TileSamples tiles = {};  ///< of the band
+  TileSamples tiles = {};  ///< as in Lease
 };
 /// Discard everything that this worker process rendered of the job: rebuild the film without it,
 /// and send PassMerged again for its passes as they become complete.

@@ -1,5 +1,8 @@
 #pragma once
 
+// Settings of the scheduler: its timeouts, audits and versions. The engine sets them (engine.h,
+// EngineOptions), mostly from the options of `bandsaw serve`.
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -28,16 +31,20 @@ struct SchedulerOptions {
   /// After a restart, or after all workers were lost at once, nothing is leased for this long
   /// unless all former workers have reconnected.
   double reattach_grace_s = 6;
-  /// Time that a worker should need for a band; bands near the end of a job are shorter.
+  /// Seconds that a worker should need for a band (the rows and samples of one lease); bands near
+  /// the end of a job are shorter.
   double band_target_s = 1;
-  /// Minimum number of machines that must be lost at a suspect band before its job fails. More are
-  /// required on farms that lose many workers, or of which little is known (CrashRate).
+  /// Minimum number of machines that must be lost while they render the same suspect band before
+  /// its job fails. More are required on farms that lose many workers, or of which little is known
+  /// (CrashRate in liveness/crash_attribution.h).
   std::size_t min_crashes_per_band = 3;
-  /// share of the bands of native workers that two machines render, [0, 1] (model/audit.h)
+  /// Share of the bands of native workers that a second machine renders, to compare the results
+  /// (model/audit.h); in [0, 1].
   double audit_share = 0;
   double browser_audit_share = 0;  ///< the same for the bands of browsers
   Browsers browsers = Browsers::kAlso;
-  std::string epoch;  ///< names this run of the coordinator; a held lease is named with it
+  /// Name of this run of the coordinator; workers report it with the leases that they hold.
+  std::string epoch;
 };
 
 }  // namespace bandsaw::coordinator

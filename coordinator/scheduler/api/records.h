@@ -1,7 +1,11 @@
 #pragma once
 
-// The durable facts, as the journal holds them. The scheduler's durable state changes only by
-// applying a record, whether the record is new or replayed.
+// Records of the journal, the coordinator's log of decisions on disk. The scheduler's durable state
+// changes only by applying a record, whether the record is new or replayed after a restart.
+//
+// A pass is a range of samples of the whole image; a band is a range of rows and samples, which one
+// worker renders; a frame job renders one frame of a sequence. More terms: proto/README.md,
+// Glossary.
 
 #include <cstdint>
 #include <string>
@@ -19,6 +23,7 @@
 namespace bandsaw::coordinator {
 
 namespace record {
+/// A user submitted a job, or the scheduler made the job of a frame.
 struct JobAdded {
   JobId job = 0;
   JobSpec spec;
@@ -30,7 +35,8 @@ struct PassPlanned {
   JobId job = 0;
   SampleRange samples;
 };
-/// From the next pass on, half tiles take samples as planned.
+/// From the next pass on, the half tiles of an adaptive job (halves of the pixels of 16 x 16 tiles)
+/// take the numbers of samples of this plan.
 struct TilesPlanned {
   JobId job = 0;
   TilePlan plan;
@@ -97,12 +103,15 @@ struct JobForgotten {
 /// because they may hold finished bands.
 struct WorkerJoined {
   std::string instance;
-  bool browser = false;  ///< it renders in a browser: all that it renders is audited as such
+  /// It renders in a browser; its bands are audited at the rate of browsers.
+  bool browser = false;
 };
+/// A worker process disconnected.
 struct WorkerLeft {
   std::string instance;
 };
-/// A second machine returned the same digests for rows that `process` had stored.
+/// A second machine returned the same digests for rows that `process` had stored, so they are taken
+/// to be right.
 struct BandAudited {
   JobId job = 0;
   Band band;
@@ -115,7 +124,7 @@ struct BandLost {
   Band band;
   WorkerProcessId process = 0;
 };
-/// The error measured so far came from pixels that have been retracted.
+/// The error measured so far is void, because some of its pixels have been retracted.
 struct ErrorForgotten {
   JobId job = 0;
 };
@@ -127,16 +136,18 @@ struct WorkerQuarantined {
   std::string reason;
   bool browser = false;
 };
+/// A user lifted the quarantine of all processes with this name.
 struct QuarantineLifted {
   std::string name;
 };
+/// A user submitted a sequence; `job` is its id.
 struct SequenceAdded {
   JobId job = 0;
   SequenceSpec spec;
   std::uint32_t pixel_version = 0;  ///< coordinator's version at that time
 };
-/// The frame waits to be rendered: its scene has arrived, or it is to be tried again. Its earlier
-/// frame job, if any, no longer belongs to it.
+/// A frame of the sequence `job` waits to be rendered: its scene has arrived, or it is to be tried
+/// again. Its earlier frame job, if any, no longer belongs to it.
 struct FrameWaits {
   JobId job = 0;
   FrameNumber frame = 0;

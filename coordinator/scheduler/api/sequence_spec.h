@@ -13,7 +13,8 @@
 
 namespace bandsaw::coordinator {
 
-/// The specification of a sequence by its submitter. The scenes of the frames follow one by one.
+/// The specification of a sequence by its submitter. The scenes of the frames are sent one by one
+/// afterwards (input::AddFrames).
 struct SequenceSpec {
   std::string request_id;  ///< as in JobSpec; sequences and jobs share the ids
   std::string name;

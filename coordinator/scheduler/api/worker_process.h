@@ -1,7 +1,8 @@
 #pragma once
 
-// Ids of worker processes: hashes that are stored on disk and compared after a restart of the
-// coordinator, so their values MUST NOT change.
+// Ids of worker processes: hashes of the instance name that each process chooses for itself when it
+// starts. They are stored on disk and compared after a restart of the coordinator, so their values
+// MUST NOT change.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// apply() changes the durable state for each kind of record; the other functions answer questions
-// about that state.
+// apply() changes the durable state (what the journal rebuilds after a restart) for each kind of
+// record; the other functions answer questions about the state that the scheduler's parts share.
 
 #include "coordinator/scheduler/context/context.h"
 
@@ -7,7 +7,8 @@
 
 namespace bandsaw::coordinator {
 
-// One input advances the timeout clock by at most a third of the heartbeat timeout.
+// One input advances the timeout clock by at most a third of the heartbeat timeout: see
+// SchedulerClock.
 Context::Context(SchedulerOptions scheduler_options)
     : options(std::move(scheduler_options)),
       clock(options.heartbeat_timeout_s / 3),
@@ -37,6 +38,7 @@ Reporter Context::reporter_of(WorkerProcessId process) const {
   return worker == nullptr ? absent(process) : worker->reporter();
 }
 
+/// Returns the origin of a result whose worker is not known any more.
 Reporter Context::absent(WorkerProcessId process) const {
   return {.process = process, .machine = {}, .browser = browsers.contains(process)};
 }
@@ -97,7 +99,7 @@ void Context::apply(const record::SamplesFixed& r) {
 }
 
 void Context::apply(const record::StateChanged& r) {
-  const auto forget_rates = [&] {
+  const auto forget_rates = [&] {  // the statistics of each worker on this job
     for (auto& [id, worker] : workers.all()) {
       worker.on_job.erase(r.job);
     }
@@ -121,9 +123,10 @@ void Context::apply(const record::StateChanged& r) {
   }
   Sequence* sequence = sequences.find(job->spec.sequence);
   if (is_final(r.state)) {
-    if (jobs.active() == std::set<JobId>{r.job}) {
+    if (jobs.active() == std::set<JobId>{r.job}) {  // it is the last active job
       forget_browsers();
     }
+    // The next frames of the sequence start with the costs and the rate of this one.
     if (sequence != nullptr && r.state == JobState::kDone && job->work_rate.measured()) {
       sequence->cost = job->cost;
       sequence->work_rate = job->work_rate;

@@ -1,7 +1,9 @@
 #pragma once
 
 // State that the parts of the scheduler share: jobs, workers, leases, clock, the durable facts
-// about workers, and the step that is being written.
+// about workers, and the step that is being written. A step is what one input leads to: records for
+// the journal and actions for the engine. The durable state is what the journal's records rebuild
+// after a restart.
 
 #include <map>
 #include <set>
@@ -24,7 +26,7 @@ class Context {
  public:
   explicit Context(SchedulerOptions scheduler_options);
 
-  /// Changes the durable state. It changes in no other way.
+  /// Changes the durable state by a record, new or replayed. It changes in no other way.
   void apply(const Record& record);
 
   /// Applies a new record and adds it to the step.
@@ -36,11 +38,14 @@ class Context {
   /// Adds an action to the step. In place, because g++ 12 warns of the other alternatives of a
   /// variant that is moved.
   template <class A>
+  /// Adds an action to the step. The variant is constructed in place, because g++ 12 warns about
+  /// alternatives of a moved variant that it does not hold.
   void act(A action) {
     step_.actions.emplace_back(std::in_place_type<A>, std::move(action));
   }
   /// Sets the answer to the request of this step.
   void answer(absl::Status status) { step_.status = std::move(status); }
+  /// Sets the job that the request of this step is answered with.
   void answer_job(JobId id) { step_.job = id; }
   /// Collects a lease that this step revokes.
   void revoke(SessionId session, LeaseId lease) { revoked_[session].push_back(lease); }
@@ -54,13 +59,14 @@ class Context {
 
   /// Returns true if the worker has sent nothing for two heartbeat intervals.
   bool is_silent(const Worker& worker) const;
-  /// Returns the origin of a result. After a restart only its process may be known.
+  /// Returns the worker process and machine that a result comes from. After a restart only the
+  /// process may be known.
   Reporter reporter_of(const input::BandStored& in) const;
   Reporter reporter_of(WorkerProcessId process) const;
   /// Returns true if this worker process joined as a browser, in any epoch.
   bool is_browser(const std::string& instance) const;
-  /// Notes the time if a native worker is connected. MUST be called at least once per heartbeat
-  /// interval.
+  /// Notes the time if a native worker (one that is no browser) is connected. MUST be called at
+  /// least once per heartbeat interval.
   void note_natives();
   /// Returns true if no native worker has been connected for kNativesAway_s: then, and only then,
   /// browsers compare each other's pixels.
@@ -76,13 +82,15 @@ class Context {
   AvailableWorkers available;
   Leases leases;
   QuarantineList quarantine;
-  std::set<std::string> joined;  ///< journalled: instances that were connected last
+  /// Journalled: worker processes (instances) that joined and have not left.
+  std::set<std::string> joined;
   /// Journalled: the browsers, connected or not, that may have rendered bands of active jobs. If
   /// there are more than kMaxBrowsers, some are forgotten; what these rendered is audited like
   /// bands of native workers if it is read back from disk.
   std::map<WorkerProcessId, std::string> browsers;
 
  private:
+  /// Bounds the memory.
   static constexpr std::size_t kMaxBrowsers = 16'384;
   /// Long enough for the restart of a native worker or of the coordinator.
   static constexpr double kNativesAway_s = 60;
@@ -112,8 +120,9 @@ class Context {
   void apply(const record::SequenceAdded& r);
   void apply(const record::FrameWaits& r);
 
-  Time native_seen_at_ = 0;  ///< timeout clock
+  Time native_seen_at_ = 0;  ///< timeout clock: when a native worker was last connected
   Step step_;
+  /// Leases to revoke, by session of their worker.
   std::map<SessionId, std::vector<LeaseId>> revoked_;
 };
 

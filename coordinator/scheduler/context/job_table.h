@@ -1,6 +1,7 @@
 #pragma once
 
-// All known jobs, and which of them are active and leasable.
+// All known jobs, which of them are active (not final), and which are leasable (may have something
+// to give to workers).
 
 #include <compare>
 #include <cstdint>

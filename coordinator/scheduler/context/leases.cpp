@@ -1,4 +1,4 @@
-// The leases of this epoch by id.
+// The leases by id. An epoch is one run of the coordinator.
 
 #include "coordinator/scheduler/context/leases.h"
 
@@ -13,6 +13,8 @@ Leases::Leases(const std::string& epoch)
     : next_(epoch.empty() ? 1 : ((text_hash(epoch) >> 40) << 39) + 1) {}
 
 LeaseId Leases::new_id() {
+  // kFree and kStored mean rows without a lease (coverage.h). Ids of adopted leases may be in the
+  // range of this epoch.
   while (next_ == kFree || next_ == kStored || all_.contains(next_)) {
     ++next_;
   }

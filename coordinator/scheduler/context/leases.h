@@ -1,6 +1,7 @@
 #pragma once
 
-// The leases that workers hold.
+// The leases that workers hold. A lease assigns a band (a range of rows and samples of a job) to
+// one worker. Leases are not journalled.
 
 #include <cstdint>
 #include <map>
@@ -22,12 +23,15 @@ struct Lease {
   /// Not 0: this is a backup task for a part of that lease's band. The original keeps its lease and
   /// owns the rows in the coverage.
   LeaseId backup_of = 0;
-  bool audit = false;     ///< its rows are stored; it owns none (model/audit.h)
+  /// A second rendering of stored rows, to compare (model/audit.h); it owns no rows.
+  bool audit = false;
+  /// The worker named the lease when it reconnected, so its result may come before the worker has
+  /// read the reply (LeaseLedger::end_rendered).
   bool in_hello = false;  ///< named in a Hello: its result may come before the worker has the reply
-  std::uint32_t rows_done = 0;
-  std::uint64_t prepared = 0;
-  Time progress_at = 0;  ///< wall clock: when rows_done last grew
-  Time begun_at = 0;     ///< wall clock: when it became the first lease of its worker
+  std::uint32_t rows_done = 0;  ///< rows that the worker reported as rendered
+  std::uint64_t prepared = 0;   ///< as in LeaseProgress
+  Time progress_at = 0;         ///< wall clock: when rows_done last grew
+  Time begun_at = 0;            ///< wall clock: when it became the first lease of its worker
   /// Timeout clock (scheduler_clock.h): when this lease, or a lease that its worker renders before
   /// it, last made progress.
   Time advanced_at = 0;
@@ -39,6 +43,7 @@ class Leases {
   /// ranges of two epochs should not overlap.
   explicit Leases(const std::string& epoch);
 
+  /// Returns an id that no lease has.
   LeaseId new_id();
   Lease& add(const Lease& lease) { return all_.emplace(lease.id, lease).first->second; }
   void erase(LeaseId id) { all_.erase(id); }

@@ -74,7 +74,8 @@ std::string QuarantineList::describe(const Entry& entry) {
                       entry.name);
 }
 
-// The lifted entries come first, because lifting a name lifts all entries before it.
+// The lifted entries come first: a QuarantineLifted record lifts all earlier entries with its name,
+// so it must not follow the entries that are not lifted.
 void QuarantineList::add_records(std::vector<Record>& out) const {
   for (const bool lifted : {true, false}) {
     for (const auto& [process, entry] : entries_) {

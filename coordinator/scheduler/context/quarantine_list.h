@@ -1,7 +1,9 @@
 #pragma once
 
-// Worker processes whose results are void, and machines that are not admitted because of them.
-// Journalled.
+// The quarantine list: worker processes whose results are void because they returned wrong pixels
+// (or a user said so), and the machines that are not admitted because of them. All of it is
+// journalled. A native worker is known by the name of its machine; a browser, which may choose any
+// name, only by its process.
 
 #include <cstdint>
 #include <map>
@@ -17,26 +19,28 @@ namespace bandsaw::coordinator {
 class QuarantineList {
  public:
   struct Entry {
-    /// Name that the worker reports, or displayed name of a browser; empty: it has not connected
-    /// since.
+    /// Name that the worker reports, or displayed name of a browser; empty: unknown, because the
+    /// process has not connected since the coordinator started.
     std::string name;
     std::string reason;
     bool browser = false;
     bool lifted = false;  ///< the machine is admitted again; the process's results stay void
   };
-  /// With so many browsers under quarantine, no browser is admitted. So whoever has the link cannot
-  /// make the list long by loading the page again and again, and no entry has to be forgotten.
+  /// While this many browsers are under quarantine, no browser is admitted. Otherwise whoever has
+  /// the link for browsers could make the list longer by each reload of the page, and entries would
+  /// have to be forgotten.
   static constexpr std::size_t kMaxBrowsers = 256;
 
-  /// Adds or replaces an entry. If there are kMaxNatives of native workers, forgets a lifted one of
-  /// them, or else any of them.
+  /// Adds or replaces an entry. If there are kMaxNatives entries of native workers, one of these is
+  /// forgotten first: a lifted one if there is one.
   void add(const record::WorkerQuarantined& r);
   /// Lifts the quarantine of all processes with this name.
   void lift(const std::string& name);
 
-  /// Forgets the lifted entries of browsers, or all entries of browsers if they are so many that no
-  /// other browser is admitted. No active job may have bands that browsers rendered. The entries
-  /// are not needed then: a page that is loaded again is a new process, which they do not exclude.
+  /// Forgets the lifted entries of browsers; if kMaxBrowsers are not lifted, so that no browser is
+  /// admitted, forgets all entries of browsers. No active job may have bands that browsers
+  /// rendered. The entries are not needed then: a page that is loaded again is a new process, which
+  /// they do not exclude.
   void forget_browsers();
 
   /// Returns true if the process was ever quarantined.

@@ -3,8 +3,8 @@
 // Reconnect barrier: after a restart of the coordinator, or after all workers were lost at once,
 // nothing is leased until the former workers have reconnected or a grace time is over.
 //
-// The workers reconnect one by one, and hold rows that are free now. Without the barrier the first
-// would be given rows that another has rendered.
+// The workers reconnect one by one. To the scheduler, the rows that they hold are free until then.
+// Without the barrier, the first worker would be given rows that another one has rendered already.
 
 #include <cstddef>
 #include <set>
@@ -38,9 +38,10 @@ class ReconnectBarrier {
   void begin_grace();
 
   Context& context_;
-  std::set<std::string> awaited_;        ///< instances
-  std::set<std::string> lost_together_;  ///< instances; no worker was left
-  Time until_ = 0;                       ///< time of the timeout clock
+  std::set<std::string> awaited_;  ///< instances (worker processes) that the barrier waits for
+  /// Instances that fell silent together, until the first is back.
+  std::set<std::string> lost_together_;
+  Time until_ = 0;  ///< timeout clock: end of the grace time
 };
 
 }  // namespace bandsaw::coordinator

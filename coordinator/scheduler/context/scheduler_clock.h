@@ -4,7 +4,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Two clocks made from the time that comes with the inputs. Neither ever goes back.
+/// The time of the scheduler: two clocks made from the time that comes with its inputs, one for
+/// display and rates, one for timeouts. Neither ever goes back.
 class SchedulerClock {
  public:
   /// `max_timeout_step`: maximum advance of the timeout clock by one input, in seconds.

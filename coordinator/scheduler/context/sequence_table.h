@@ -1,6 +1,6 @@
 #pragma once
 
-// All known sequences.
+// All known sequences (jobs of many frames), and which of them are active (not final).
 
 #include <map>
 #include <optional>

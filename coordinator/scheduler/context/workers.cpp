@@ -65,7 +65,7 @@ Worker& Workers::add(const std::string& instance, const std::string& name, bool 
   worker.browser = browser;
   by_instance_[instance] = worker.id;
   by_name_[unique] = worker.id;
-  gone_.push_back(worker.id);
+  gone_.push_back(worker.id);  // until connect()
   return worker;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
-// The connected workers, and for a while those that have left; and which of them can take a lease.
+// The connected workers, and for a while those that have left; and which of them can take a lease
+// (the assignment of a band of rows and samples to a worker). Times are of one of the two clocks in
+// scheduler_clock.h.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,10 +20,11 @@
 
 namespace bandsaw::coordinator {
 
+/// A worker process, over all its reconnects.
 struct Worker {
   WorkerId id = 0;
-  std::string instance;
-  WorkerProcessId process = 0;  ///< id of the instance
+  std::string instance;         ///< id that the process chose for itself when it started
+  WorkerProcessId process = 0;  ///< hash of the instance
   std::string name;             ///< displayed; unique among the known workers
   /// The name that it reports: that of its machine. A browser's is chosen freely, and ends with
   /// kBrowserSuffix (api/messages.h).
@@ -31,12 +34,12 @@ struct Worker {
   std::uint32_t threads = 1;
   std::uint32_t credits = 1;         ///< number of leases it may hold
   bool browser = false;              ///< it renders in a browser
-  std::uint64_t memory_bytes = 0;    ///< of its scenes; 0: no limit
+  std::uint64_t memory_bytes = 0;    ///< memory that scenes may take in it; 0: no limit
   std::optional<SessionId> session;  ///< std::nullopt: not connected
   bool draining = false;
-  bool fell_silent = false;  ///< it was silent when it was disconnected last
-  bool quarantined = false;  ///< it gets no more work
-  std::string doing;
+  bool fell_silent = false;     ///< it was silent when it was disconnected last
+  bool quarantined = false;     ///< it gets no more work
+  std::string doing;            ///< what it says it does, for display; may be empty
   std::string reason;           ///< why it is disconnected, draining or quarantined
   Time connected_at = 0;        ///< wall clock
   Time heard_at = 0;            ///< timeout clock: last message
@@ -49,8 +52,8 @@ struct Worker {
   /// which its next frame job begins.
   struct OnJob {
     MeanRate speed;              ///< pixel samples per second, for display
-    MeanRate work_rate;          ///< work per second (CostMap), by which bands are sized
-    std::uint32_t bands = 0;     ///< measured
+    MeanRate work_rate;          ///< work per second (model/row_costs.h), by which bands are sized
+    std::uint32_t bands = 0;     ///< bands of the job that were measured
     std::uint32_t failures = 0;  ///< since it last stored a band of the job
   };
   std::map<JobId, OnJob> on_job;
@@ -92,6 +95,7 @@ class Workers {
   std::size_t connected() const { return by_session_.size(); }
 
  private:
+  /// Bounds the memory. The latest ones are kept, since they may come back or be shown.
   static constexpr std::size_t kMaxGone = 512;
   void forget_gone();
 
@@ -107,7 +111,7 @@ class Workers {
 /// leases first, so that little work is spread over many workers. Also counts the farm's threads.
 class AvailableWorkers {
  public:
-  /// Number of leases held, worker.
+  /// Sort key: the number of leases that the worker holds, then its id.
   using Place = std::pair<std::size_t, WorkerId>;
 
   /// MUST be called after each change of a worker's leases, session or state.
@@ -136,7 +140,7 @@ class AvailableWorkers {
   bool contains(const Place& place) const { return places_.contains(place); }
   std::size_t size() const { return places_.size(); }
   /// eligible() and threads() return the number of eligible workers, with or without spare credits,
-  /// and of their threads.
+  /// and the number of their threads.
   std::size_t eligible() const { return known_.size(); }
   std::uint64_t threads() const { return threads_; }
   /// Returns the number of eligible workers that are not browsers.

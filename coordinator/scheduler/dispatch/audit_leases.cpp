@@ -1,5 +1,5 @@
 // Chooses an open audit for a worker and leases it. A worker whose result is one of those compared
-// renders it again only if the results differ and no other worker can decide.
+// renders it again only if the results differ and no other worker can decide which one is right.
 
 #include "coordinator/scheduler/dispatch/audit_leases.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// Leases of audits: which machine renders a stored band again, so that both results can be
-// compared. An audit is disputed if machines have returned different results and none is known to
-// be right.
+// Leases of audits. An audit compares a stored band (a range of rows and samples) with the result
+// of a second machine (model/audit.h); this part decides which machine renders it again. An audit
+// is disputed if machines have returned different results and none is known to be right.
 
 #include <cstdint>
 #include <string>
@@ -20,22 +20,22 @@ class AuditLeases {
               const ReconnectBarrier& barrier)
       : context_(context), ledger_(ledger), eligibility_(eligibility), barrier_(barrier) {}
 
-  /// Returns true if the worker's machine has returned no result yet. Native workers audit all
-  /// bands; browsers audit those of other browsers, and only if no native worker is there. A
-  /// machine that has returned a result may render the band once more if the audit is disputed and
-  /// no other machine is left.
+  /// Returns true if the worker may render the audit's band: usually, if its machine has returned
+  /// no result yet. Native workers audit all bands; browsers audit those of other browsers, and
+  /// only if no native worker is there. A machine that has returned a result may render the band
+  /// once more if the audit is disputed and no other machine is left.
   bool may_render(const Worker& worker, const Job& job, const Audit& audit) const;
   /// Returns the first waiting audit that the worker may render; nullptr: none.
   Audit* next_for(const Worker& worker, Job& job) const;
-  /// Leases the audit's rows up to `end_row` to the worker. The rows below become an audit of their
-  /// own, unless it is disputed. Invalidates `audit`.
+  /// Leases the audit's rows up to `end_row` to the worker. The rows from there on become an audit
+  /// of their own, unless it is disputed. Invalidates `audit`.
   void grant(Worker& worker, Job& job, Audit& audit, std::uint32_t end_row);
-  /// Ends an audit lease that the worker could not render. That says nothing about the job: another
-  /// machine is chosen, or none.
+  /// Ends an audit lease that the worker could not render. This does not count as a failure of the
+  /// band: another machine is chosen for the audit, if there is one.
   void give_up(const Lease& lease, const Worker& worker, const std::string& reason);
-  /// Returns true if an audit may still find that stored rows are wrong: then the job must not end,
-  /// and it must not be decided by its error whether it goes on. An audit that no machine can
-  /// render does not count, unless it is disputed.
+  /// Returns true if an audit may still find that stored rows are wrong. Then the job must not end,
+  /// and its error must not be compared with its target. An audit that no machine can render does
+  /// not block, unless it is disputed.
   bool block(const Job& job) const;
 
  private:

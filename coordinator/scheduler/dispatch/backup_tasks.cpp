@@ -1,6 +1,6 @@
-// share() goes through the leases of running jobs, the one that is expected to end last first, and
-// tries for each: to steal it if it is not begun, to move it if it is an audit, or to give a part
-// of its rows to idle workers as well.
+// share() goes through the leases of running jobs, the one that is expected to end last first. If a
+// lease is for an audit, it tries to move it; if its worker has not begun it, to steal it;
+// otherwise, to give its rows to idle workers as well.
 
 #include "coordinator/scheduler/dispatch/backup_tasks.h"
 
@@ -13,15 +13,15 @@ namespace {
 
 /// Time that it takes to hand work over, in addition to rendering it.
 constexpr double kTransfer_s = 0.03;
-/// A lease gets backup tasks only if they are expected to take less than kMaxBackupTime of the time
-/// that the original still needs. Idle workers are added until they need at most kTargetBackupTime
-/// of it.
+/// Backup tasks are granted only if they are expected to take less than kMaxBackupTime of the time
+/// that the original still needs. Idle workers are added until the backup tasks need at most
+/// kTargetBackupTime of it.
 constexpr double kMaxBackupTime = 0.75;
 constexpr double kTargetBackupTime = 0.5;
 /// After a scan that found nothing, the next one waits this long per active lease; bounds the CPU
 /// time of scans on large farms.
 constexpr double kScanPause_s = 2e-5;
-/// Minimum remaining time of a lease that takes longer than expected, as a fraction of its whole
+/// The remaining time of a lease is assumed to be at least this fraction of its expected whole
 /// time.
 constexpr double kMinRemaining = 0.25;
 
@@ -62,6 +62,7 @@ bool BackupTasks::share() {
   return any;
 }
 
+/// Returns the available workers without leases.
 std::vector<Worker*> BackupTasks::idle_workers() {
   const AvailableWorkers& available = context_.available;
   std::vector<Worker*> idle;
@@ -240,9 +241,9 @@ bool BackupTasks::back_up(const Straggler& late, std::vector<Worker*>& idle) {
   return true;
 }
 
-/// Returns the first rows of a lease that are wanted and have no backup task. If the lease is a
-/// backup task itself, only backup tasks of the same original that were granted later are
-/// considered.
+/// Returns the first consecutive rows of a lease that are wanted (no result is stored) and have no
+/// backup task; empty: there are none. If the lease is a backup task itself, only backup tasks of
+/// the same original that were granted later are considered.
 RowRange BackupTasks::rows_without_backup(const Job& job, const Lease& lease) const {
   for (RowRange rows : job.pass_of(lease.band)->coverage.wanted(lease.band)) {
     bool again = true;

@@ -1,9 +1,10 @@
 #pragma once
 
-// Shares the end of a job, when nothing is free and workers are idle while others are late
-// (stragglers). A lease that its worker has not begun is stolen. One that is being rendered is also
-// given to idle workers, as backup tasks (speculative execution; Dean & Ghemawat 2004, "MapReduce",
-// section 3.6), in parts if that is sooner. The first result ends the others.
+// Shares the work at the end of a job, when no rows are free and some workers are idle while others
+// are late (stragglers). A lease that its worker has not begun is moved to an idle worker
+// ("stolen"). The rows of a lease that is being rendered are given to idle workers as well, as
+// backup tasks (speculative execution; Dean & Ghemawat 2004, "MapReduce", section 3.6), in several
+// parts if that is sooner. The first result counts, and ends the other leases of its rows.
 
 #include <vector>
 
@@ -25,16 +26,16 @@ class BackupTasks {
         chooser_(chooser),
         audits_(audits) {}
 
-  /// Gives work of late workers to idle ones. Returns true if some idle worker got work; the number
-  /// of idle workers falls with each success, so it can be called in a loop. Returns early once a
-  /// job has free rows again.
+  /// Gives work of late workers to idle ones. Returns true if some idle worker got work. The number
+  /// of idle workers falls with each success, so it can be called until it returns false. Returns
+  /// early once a job has free rows again.
   bool share();
 
  private:
   /// A lease, and when it is expected to be done.
   struct Straggler {
     LeaseId lease = 0;
-    double begins_in_s = 0;
+    double begins_in_s = 0;  ///< after the leases that its worker renders before it
     double done_in_s = 0;
     bool has_no_backup = true;  ///< it has no backup task, and is not one
   };
@@ -54,7 +55,7 @@ class BackupTasks {
   const Eligibility& eligibility_;
   const BandChooser& chooser_;
   AuditLeases& audits_;
-  Time next_scan_at_ = 0;  ///< wall clock
+  Time next_scan_at_ = 0;  ///< wall clock; until then share() does nothing
 };
 
 }  // namespace bandsaw::coordinator

@@ -18,11 +18,12 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Time of a worker's first band, and of the shortest band near the end, as fractions of the target
-/// time.
+/// Fractions of the target time: of the first band of a worker, whose rate is not known yet, and of
+/// the shortest band near the end of a job.
 constexpr double kFirst = 0.2;
 constexpr double kMin = 0.125;
 
+/// Three sums (red, green, blue) of a pixel.
 constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(double);
 
 /// Returns the row after the row of tiles that contains `row`.
@@ -62,9 +63,9 @@ std::optional<Band> without(Band free, const std::vector<Band>& avoid) {
   return free.rows.first < free.rows.last ? std::optional(free) : std::nullopt;
 }
 
-/// Returns the work of the job that is neither leased nor stored. The free rows of this pass are
-/// taken to lie below `free`, and those of other passes all over the image; they are not counted
-/// row by row.
+/// Returns the work of the job that is neither leased nor stored. It is estimated, not added up row
+/// by row: the free rows of this pass are assumed to lie from the first row of `free` on, those of
+/// other passes all over the image.
 double work_left(const Job& job, const Band& free) {
   const std::uint32_t height = job.spec.settings.height;
   const Pass* pass = job.pass_of(free);
@@ -108,7 +109,7 @@ std::uint32_t max_rows(std::uint32_t width) {
 
 Band size_band(const Sizing& sizing) {
   Band band = sizing.free;
-  const double full = sizing.work_rate * sizing.target_s;
+  const double full = sizing.work_rate * sizing.target_s;  // work in the target time
   const RowRange first_tiles{band.rows.first,
                              std::min(end_of_tile_row(band.rows.first), band.rows.last)};
   const double of_first_tiles =
@@ -122,6 +123,7 @@ Band size_band(const Sizing& sizing) {
     band.rows.last = band.rows.first + std::min(first_tiles.count(), max_rows(sizing.width));
     return band;
   }
+  // Half of the worker's share of what is left, as in guided self-scheduling.
   const double guided = sizing.work_left * sizing.farm_share / 2;
   const double want =
       std::min(full * (sizing.measured ? 1 : kFirst), std::max(guided, full * kMin));

@@ -1,11 +1,13 @@
 #pragma once
 
-// Chooses the next band of a job for a worker: which free rows, and how many of them.
+// Chooses the next band of a job for a worker: which free rows, and how many of them. A band is a
+// range of rows and samples, the unit of work that is leased.
 //
 // The size follows guided self-scheduling (Polychronopoulos & Kuck 1987, "Guided Self-Scheduling: A
 // Practical Scheduling Scheme for Parallel Supercomputers") with measured work rates and costs.
 // Bands take about the target time while much work is left, and get shorter toward the end, so that
-// all workers finish together. Work is counted in pixel samples of cost 1 (CostMap).
+// all workers finish together. Work is counted in pixel samples, weighted with the relative costs
+// of their rows (CostMap).
 
 #include <cstdint>
 #include <optional>
@@ -15,6 +17,7 @@
 
 namespace bandsaw::coordinator {
 
+/// What the size of a band depends on.
 struct Sizing {
   Band free;                ///< the free piece; the band is cut from its first row
   std::uint32_t width = 0;  ///< pixels
@@ -22,9 +25,10 @@ struct Sizing {
   absl::Span<const float> tile_row_shares = {};  ///< as in CostMap::of
   double work_rate = 0;                          ///< work per second of the worker on this job, > 0
   bool measured = false;  ///< false: the rate is a guess; the band is small, to measure it
-  double farm_share = 1;  ///< the worker's share of the farm's work rate, (0, 1]; 2: it works alone
-  double work_left = 0;   ///< work of the job that is neither leased nor stored
-  double target_s = 1;    ///< > 0
+  /// The worker's share of the farm's work rate, (0, 1]; 2: it works alone on the job.
+  double farm_share = 1;
+  double work_left = 0;  ///< work of the job that is neither leased nor stored
+  double target_s = 1;   ///< render time of a band, > 0
 };
 
 /// Returns a part of `free`. A band that is long enough ends at the end of a row of tiles
@@ -42,13 +46,13 @@ class BandChooser {
   BandChooser(const Context& context, const Eligibility& eligibility)
       : context_(context), eligibility_(eligibility) {}
 
-  /// Returns the next probe, or else the first free band that is not left to others; std::nullopt:
-  /// there is none for this worker. Counts the probe.
+  /// Returns the next probe (dispatch/probes.h), or else the first free band that is not left to
+  /// other workers (Eligibility); std::nullopt: there is none for this worker. Counts the probe.
   std::optional<Band> choose(Job& job, const Worker& worker) const;
-  /// Returns the first free band that is not left to others, never a probe. std::nullopt: there is
-  /// none for this worker.
+  /// The same, but never returns a probe.
   std::optional<Band> choose_free(const Job& job, const Worker& worker) const;
-  /// Returns the part of a free piece that is a band for this worker now.
+  /// Returns the part of a free piece that is a band for this worker now, beginning at its first
+  /// row.
   Band sized(const Job& job, const Worker& worker, const Band& free) const;
 
  private:

@@ -1,7 +1,8 @@
 #pragma once
 
-// Gives work to the workers: the job of the highest priority, then the oldest, that has free
-// rows, to the worker that holds the fewest leases. When nothing is free: backup tasks.
+// Gives work to the workers. The worker that holds the fewest leases is served first; it gets a
+// band (a range of rows and samples) of the job of the highest priority, then the oldest, that has
+// one for it. When nothing is free, workers get backup tasks (backup_tasks.h).
 
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/dispatch/audit_leases.h"

@@ -1,7 +1,8 @@
 #pragma once
 
-// Decides whether a worker may render a band. Bands that it failed, and bands at which its machine
-// was lost, are left to other workers as long as there are any.
+// Decides whether a worker may render a job, and a band (a range of rows and samples) of it. Bands
+// that it failed, and bands at which its machine was lost, are left to other workers as long as
+// there are any.
 
 #include <cstdint>
 #include <vector>
@@ -34,8 +35,10 @@ class Eligibility {
   bool audits_lag(const Job& job) const;
   /// Returns true if the scene of the job fits into the worker's memory.
   static bool fits(const Worker& worker, const Job& job);
+  /// Returns true if the worker failed kMaxFailuresPerWorker bands of the job in a row.
   static bool failed_too_often(const Worker& worker, const Job& job);
-  /// Returns true if a native worker that is connected failed too often.
+  /// Returns true if some connected native worker (one that is no browser) failed too often at the
+  /// job.
   bool native_gave_up(const Job& job) const;
   /// Returns true if some eligible worker may render the job.
   bool someone_may_render(const Job& job) const;

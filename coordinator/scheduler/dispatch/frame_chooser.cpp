@@ -34,6 +34,7 @@ std::vector<Job*> FrameChooser::order_for(const Worker& worker, const Sequence& 
   }
   const auto free = static_cast<std::size_t>(
       std::count_if(fresh.begin(), fresh.end(), [](const Job* job) { return job->any_free(); }));
+  // There is a frame for each worker.
   const bool many =
       free + sequence.counts().of(FrameState::kWaiting) >= context_.available.eligible();
   for (std::vector<Job*>* jobs : {&fresh, &others}) {
@@ -61,7 +62,8 @@ void FrameChooser::joined(const Worker& worker, const Job& job) {
   forget_final();
 }
 
-/// Forgets workers that have left and frame jobs that are over, once there are many.
+/// Forgets workers that have left and frame jobs that are over. Does so only when the maps have
+/// become about twice as large as needed, which keeps the average cost low.
 void FrameChooser::forget_final() {
   if (frame_of_.size() > 2 * context_.workers.all().size() + 16) {
     std::erase_if(frame_of_,

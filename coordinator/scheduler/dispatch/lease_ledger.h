@@ -1,7 +1,8 @@
 #pragma once
 
-// Grants and ends leases, and keeps the coverage, the job and the worker of a lease consistent with
-// it. All leases begin and end here.
+// Grants and ends leases: all leases begin and end here. A lease is recorded in three places, which
+// this keeps consistent: in the coverage of its pass (who owns each row), in its job, and at its
+// worker.
 
 #include <cstddef>
 #include <vector>
@@ -14,17 +15,21 @@ class LeaseLedger {
  public:
   explicit LeaseLedger(Context& context) : context_(context) {}
 
+  /// Whether the worker is told that a lease has ended (Action Revoke).
   enum class Revoke { kNo, kYes };
 
-  /// Gives the band's rows to the worker. Ends leases that thereby lose all of their rows.
+  /// Makes the lease `id` of this band for the worker, which then owns these rows. Other leases
+  /// that thereby lose all of their rows end.
   void grant(Worker& worker, Job& job, Pass& pass, const Band& band, LeaseId id);
-  /// Adds a lease that owns no rows: of a backup task or an audit.
+  /// Adds a lease that owns no rows: one of a backup task (a second lease of a late band) or of an
+  /// audit.
   void add(Worker& worker, Job& job, const Pass& pass, Lease lease);
   /// Frees the lease's rows, or passes them on to its backup tasks. kYes: also revokes the lease at
   /// its worker.
   void end(LeaseId id, Revoke revoke);
-  /// Ends a lease whose result has arrived. Revokes it if it was named in the worker's Hello: the
-  /// reply to that may reach the worker after it has dropped the band.
+  /// Ends a lease whose result has arrived. The lease is also revoked if the worker named it in its
+  /// Hello. The reply to the Hello names the lease again, and may reach the worker after it has
+  /// dropped the band.
   void end_rendered(LeaseId id);
   /// Calls end_rendered() for the worker's lease of exactly this band, if it has one.
   void end_rendered(const Worker& worker, JobId job, const Band& band);
@@ -34,8 +39,9 @@ class LeaseLedger {
   void end_overtaken(const std::vector<LeaseId>& leases);
   /// Revokes backup tasks whose rows are all stored.
   void end_useless_backups(Job& job);
-  /// Notes progress on the worker's lease number `from`. A worker renders its leases in order, so
-  /// the later ones are waiting for this one; the earlier ones have made no progress.
+  /// Notes that the lease at index `from` of the worker made progress, which extends its timeout. A
+  /// worker renders its leases in order. So the later leases, which wait for this one, are extended
+  /// as well, and the earlier ones are not.
   void note_progress(const Worker& worker, std::size_t from);
 
  private:

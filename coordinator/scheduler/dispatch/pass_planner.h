@@ -1,6 +1,7 @@
 #pragma once
 
-// Plans the passes of jobs (model/pass_plan.h), and decides after how many samples a job ends.
+// Plans the passes of jobs (model/pass_plan.h), and decides after how many samples a job ends. A
+// pass is a range of samples that is rendered for the whole image.
 
 #include <cstdint>
 
@@ -16,12 +17,12 @@ class PassPlanner {
   /// Plans the passes that need no measurements, unless they are planned already: all passes of a
   /// job with a number of samples, the first ones of other jobs.
   void plan_first(Job& job);
-  /// Plans passes up to this sample.
+  /// Plans passes up to this number of samples per pixel.
   void plan_until(Job& job, std::uint64_t samples);
   /// Plans the next pass of a job with a time limit. Returns false if it is no such job, its time
   /// is up, or enough passes are in progress.
   bool plan_timed(Job& job);
-  /// Makes the job end after this many samples: revokes the leases beyond.
+  /// Makes the job end after this many samples per pixel: revokes the leases of later samples.
   void fix_samples(Job& job, std::uint64_t samples);
 
  private:

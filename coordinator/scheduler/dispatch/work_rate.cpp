@@ -13,10 +13,12 @@ namespace {
 /// Work rate per thread before anything is measured. It is rather too low than too high, because a
 /// first band that is too small costs little, and one that is too large delays the first rows.
 constexpr double kGuessedRate = 100'000;
-/// Minimum weight of a new measurement. A worker's rate changes less from band to band than the
-/// cost of the rows.
+/// Minimum weight of a new measurement in the mean of a worker's rate. Low, because the rate
+/// changes less from band to band than the cost of the rows.
 constexpr double kMinWeight = 0.15;
 
+/// Corrects the costs of the band's rows and the rates of the worker and of the job by the time
+/// that the band took.
 void measure_work_rate(Worker& worker, Job& job, const input::BandStored& in) {
   Worker::OnJob& on_job = worker.on_job[job.id];
   const double work = job.cost_of(in.band);  // as predicted

@@ -1,7 +1,7 @@
 #pragma once
 
-// Work rates: how much work (in units of CostMap) a worker does per second on a job. They are
-// learnt together with the costs of the rows.
+// Work rates: how much work a worker does per second on a job. Work is counted in pixel samples,
+// weighted with the relative costs of their rows (CostMap); rates and costs are learnt together.
 
 #include "coordinator/scheduler/context/workers.h"
 #include "coordinator/scheduler/model/job.h"

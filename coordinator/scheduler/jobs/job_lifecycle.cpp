@@ -79,8 +79,8 @@ void JobLifecycle::note_error(const Job& job, std::uint64_t samples, const Error
 }
 
 /// At a checkpoint, decides whether the job ends here, plans its tiles if it is time, and plans the
-/// passes up to the next checkpoint. Passes before a checkpoint are ignored: which of them are
-/// measured depends on the workers' speed.
+/// passes up to the next checkpoint. The error after a pass that is no checkpoint is ignored,
+/// because which passes are measured depends on the workers' speed.
 void JobLifecycle::evaluate_checkpoint(Job& job, const input::PassMerged& merged) {
   const auto* rule = std::get_if<StopAtError>(&job.spec.stop);
   const std::uint64_t samples = merged.samples;
@@ -88,8 +88,8 @@ void JobLifecycle::evaluate_checkpoint(Job& job, const input::PassMerged& merged
       samples != job.complete_samples()) {
     return;
   }
-  // Not a checkpoint: a crash kept only some of the records of a plan. The journal keeps all or
-  // none of them; the scheduler does not rely on that.
+  // The planned passes end at no checkpoint if a crash left only some of the records of a plan. The
+  // journal writes all or none of them, but the scheduler does not rely on that.
   if (const std::uint64_t past = samples % kCheckpointStep;
       past != 0 && samples < rule->max_samples) {
     planner_.plan_until(job, std::min(samples - past + kCheckpointStep, rule->max_samples));

@@ -1,8 +1,8 @@
 #pragma once
 
-// The course of a job from its first pass to its end: error checkpoints, completion, failure, and
-// pauses because of a full disk. An error checkpoint is a number of samples at which the error of
-// the image is compared with the target of the stop rule.
+// The course of a job from its first pass (range of samples of the whole image) to its end: error
+// checkpoints, completion, failure, and pauses because of a full disk. An error checkpoint is a
+// number of samples at which the error of the image is compared with the target of the stop rule.
 
 #include <cstdint>
 #include <string>
@@ -20,16 +20,18 @@ class JobLifecycle {
                const AuditLeases& audits)
       : context_(context), ledger_(ledger), planner_(planner), audits_(audits) {}
 
-  /// Evaluates a pending error checkpoint or the time limit of a running job, and requests its
-  /// image once all passes are complete and no audit blocks. MUST be called after each change of
-  /// the stored rows or of the audits.
+  /// Evaluates a pending error checkpoint or the time limit of a running job. Requests its image
+  /// once all passes are complete and no audit (second rendering of stored rows, to compare)
+  /// blocks. MUST be called after each change of the stored rows or of the audits.
   void advance(Job& job);
-  /// Notes the error of merged passes, and evaluates it if this is a checkpoint.
+  /// Notes the error that the film measured after a pass, and evaluates it if this is a checkpoint.
   void pass_merged(const input::PassMerged& in);
+  /// The image is on disk: the job is done.
   void result_written(const input::ResultWritten& in);
   /// Makes the job final: revokes its leases, journals its summary, drops its bands.
   void end(Job& job, JobState state, const std::string& reason);
 
+  /// Pauses a job because its data cannot be written.
   void storage_failed(const input::StorageFailed& in);
   /// Resumes the jobs that a failed disk has paused.
   void storage_back();

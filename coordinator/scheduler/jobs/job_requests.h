@@ -1,6 +1,7 @@
 #pragma once
 
-// Requests of users about jobs. A request that cannot be granted sets the status of the step.
+// Requests of users about jobs: submit, cancel, pause, resume, priority, forget. A request that
+// cannot be granted sets the status of the step, which is its answer.
 
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/dispatch/lease_ledger.h"
@@ -14,19 +15,19 @@ class JobRequests {
   JobRequests(Context& context, LeaseLedger& ledger, PassPlanner& planner, JobLifecycle& lifecycle)
       : context_(context), ledger_(ledger), planner_(planner), lifecycle_(lifecycle) {}
 
+  /// Adds a job, or answers with the job that has this request id and the same spec.
   /// ALREADY_EXISTS: the request id is of a job with another spec. INVALID_ARGUMENT: the stop rule,
-  /// image size or priority is out of range. RESOURCE_EXHAUSTED: too many jobs. A request id that
-  /// is known with the same spec is answered with its job.
+  /// image size or priority is out of range. RESOURCE_EXHAUSTED: too many jobs.
   void submit(const input::Submit& in);
-  /// The requests below: NOT_FOUND: no such job. FAILED_PRECONDITION: it is final, except Cancel,
-  /// which has no effect then.
+  /// Errors of this and the following requests: NOT_FOUND: no such job. FAILED_PRECONDITION: the
+  /// job is final; cancel() then has no effect and returns no error.
   void cancel(const input::Cancel& in);
-  /// FAILED_PRECONDITION also if the job is finishing.
+  /// Further error: FAILED_PRECONDITION if the job is finishing.
   void pause(const input::Pause& in);
   void resume(const input::Resume& in);
-  /// INVALID_ARGUMENT: out of range.
+  /// Further error: INVALID_ARGUMENT if the priority is out of range.
   void set_priority(const input::SetPriority& in);
-  /// Skips frame jobs of a known sequence, which are forgotten with it.
+  /// Removes final jobs. Skips frame jobs of a known sequence, which are forgotten with it.
   void forget(const input::Forget& in);
 
   // Used for sequences as well (sequences.h).
@@ -35,9 +36,10 @@ class JobRequests {
   /// otherwise the reason. RESOURCE_EXHAUSTED: too many jobs. INVALID_ARGUMENT: out of range.
   absl::Status refusal(const StopRule& stop, const RenderSettings& settings, std::int32_t priority,
                        std::size_t more) const;
-  /// Adds a job and plans its first passes. REQUIRES: it was not refused.
+  /// Adds a job and plans its first passes. REQUIRES: refusal() has returned OK for it.
   JobId add(const JobSpec& spec, std::int32_t priority);
-  /// Pauses a job for a user, and continues it. REQUIRES: the job is running or paused.
+  /// hold() pauses a job for a user, and release() continues it. REQUIRES: the job is running or
+  /// paused.
   void hold(Job& job);
   void release(Job& job);
 

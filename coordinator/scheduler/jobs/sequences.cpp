@@ -17,8 +17,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Number of frame jobs that are made ahead: enough for two bands for each worker, each of another
-/// frame, while others are being written.
+/// Number of frame jobs that are made ahead of need: kAheadInAll and kAheadPerWorker for each
+/// worker. That is enough for two bands for each worker, each of another frame, while the images of
+/// others are being written.
 constexpr std::size_t kAheadPerWorker = 2;
 constexpr std::size_t kAheadInAll = 4;
 /// Maximum number of frame jobs that are not final, of all sequences. The rest of the active jobs
@@ -27,6 +28,7 @@ constexpr std::size_t kMaxOpenFrames = wire::kActiveJobs / 2;
 /// Bytes of the numbers of failed frames in a reason.
 constexpr std::size_t kMaxNumbers = 200;
 
+/// Returns the reason of a sequence with failed frames.
 std::string failed_text(const Sequence& sequence) {
   const std::vector<FrameNumber> failed = sequence.numbers(FrameState::kFailed);
   std::string numbers = frames_text(failed);
@@ -147,6 +149,8 @@ void Sequences::retry(const input::RetryFrames& in) {
   }
 }
 
+/// Makes the frame wait again, and forgets its failed job. `failures`: number of its jobs that
+/// count as failed.
 void Sequences::try_again(Sequence& sequence, FrameNumber number, std::uint32_t failures,
                           const std::string& reason) {
   const Sequence::Frame& frame = *sequence.frame(number);

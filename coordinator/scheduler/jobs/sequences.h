@@ -1,8 +1,8 @@
 #pragma once
 
-// Sequences: makes the jobs of their frames when workers are about to need them, tries failed
-// frames again, ends the sequence; and requests of users about sequences. A request that cannot be
-// granted sets the status of the step.
+// Sequences (jobs of many frames): makes the jobs of their frames when workers are about to need
+// them, tries failed frames again, and ends the sequence; and requests of users about sequences. A
+// request that cannot be granted sets the status of the step, which is its answer.
 
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/jobs/job_lifecycle.h"
@@ -18,20 +18,21 @@ class Sequences {
   /// Returns true if the id is that of a sequence.
   bool owns(JobId id) const { return context_.sequences.find(id) != nullptr; }
 
-  /// Errors as JobRequests::submit.
+  /// Adds a sequence. Errors as of JobRequests::submit.
   void submit(const input::SubmitSequence& in);
-  /// The requests below: NOT_FOUND: no such sequence. INVALID_ARGUMENT: it has no such frame.
-  /// FAILED_PRECONDITION: it was cancelled.
+  /// Notes the scenes of frames. Errors of this and the next request: NOT_FOUND: no such sequence.
+  /// INVALID_ARGUMENT: it has no such frame. FAILED_PRECONDITION: it was cancelled.
   void add_frames(const input::AddFrames& in);
-  /// FAILED_PRECONDITION also if a frame has not failed.
+  /// Renders failed frames again. Further error: FAILED_PRECONDITION if a frame has not failed, or
+  /// the sequence was begun with another pixel version.
   void retry(const input::RetryFrames& in);
 
-  // The requests below are as those in JobRequests, for a sequence. REQUIRE owns(in.job).
+  // The following requests are as those in JobRequests, for a sequence. REQUIRE owns(in.job).
   void cancel(const input::Cancel& in);
   void pause(const input::Pause& in);
   void resume(const input::Resume& in);
   void set_priority(const input::SetPriority& in);
-  /// Forgets the final ones of these sequences with all their frames.
+  /// Forgets those of these jobs that are final sequences, with all their frames. Skips all others.
   void forget(const input::Forget& in);
 
   /// Tries failed frames again, makes the next frame jobs, and ends sequences of which no frame is
@@ -39,8 +40,8 @@ class Sequences {
   void advance();
   /// Journals the elapsed times at intervals, as JobLifecycle::note_time.
   void note_times();
-  /// After a restart: begins the epoch of each sequence; fails those that were begun with another
-  /// pixel version.
+  /// After a restart: lets the elapsed time of each sequence go on from what is journalled; fails
+  /// sequences that were begun with another pixel version.
   void resume_after_restart();
 
  private:
@@ -56,8 +57,9 @@ class Sequences {
   JobLifecycle& lifecycle_;
 };
 
-/// Returns the reason for which a job fails that was begun with another pixel version than `here`;
-/// `begun_with` 0: the journal does not say with which.
+/// Returns the reason for which a job or sequence fails that was begun with another pixel version
+/// (a number that changes whenever rendered pixels change) than `here`; `begun_with` 0: the journal
+/// does not say with which.
 std::string other_pixel_version(std::uint32_t begun_with, std::uint32_t here);
 
 }  // namespace bandsaw::coordinator

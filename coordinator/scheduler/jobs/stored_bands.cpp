@@ -31,6 +31,7 @@ Coverage::Change StoredBands::store(Job& job, Pass& pass, const input::BandStore
   return change;
 }
 
+/// Adds these samples to the share of the job that the process has rendered.
 void StoredBands::add_share(Job& job, const input::BandStored& in, WorkerProcessId process,
                             std::uint64_t samples) {
   if (process == 0 || (job.shares.size() >= Job::kMaxShares && !job.shares.contains(process))) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Bands that are on disk: counts them as stored, and frees those that are found damaged.
+// Bands (ranges of rows and samples) whose pixels are on disk: counts them as stored, and frees
+// those that are found damaged.
 
 #include <cstdint>
 
@@ -13,7 +14,8 @@ class StoredBands {
  public:
   StoredBands(Context& context, LeaseLedger& ledger) : context_(context), ledger_(ledger) {}
 
-  /// Counts the rows of the band that were not stored yet. REQUIRES one digest per row.
+  /// Counts the rows of the band that were not stored yet. Returns these rows, and the leases that
+  /// lost rows by it. REQUIRES one digest per row.
   Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in,
                          const Reporter& reporter);
   /// Frees the damaged bands that are still counted as stored. A job that is finishing runs again,

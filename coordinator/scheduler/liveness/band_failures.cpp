@@ -16,10 +16,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Number of failures of a band, on different workers or with no other worker left, that fail its
-/// job.
+/// A job fails when one of its bands failed this often, on as many different workers or with no
+/// other worker left.
 constexpr std::size_t kMaxFailuresPerBand = 3;
-/// Factor on the progress timeout while a finished band is uploading, maybe over a slow line.
+/// Factor on the progress timeout while a finished band is being uploaded, possibly over a slow
+/// line.
 constexpr double kUploadFactor = 20;
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 
-// Bands that a worker could not render, or on which it makes no progress; and jobs that no
-// connected worker may render any more.
+// Bands (ranges of rows and samples, leased to a worker) that a worker could not render, or on
+// which it makes no progress; and jobs that no connected worker may render any more.
 
 #include <string>
 
@@ -29,10 +29,12 @@ class BandFailures {
   void band_failed(const input::BandFailed& in);
   /// Ends leases without progress for the progress timeout, as failures of their worker.
   void check_progress();
-  /// Fails a job that no connected worker may render, once workers have had time to reconnect.
+  /// Fails a job that no connected worker may render any more, once workers have had time to
+  /// reconnect.
   void check_renderable(Job& job);
 
  private:
+  /// Notes a failure, and fails the job if the band failed too often.
   void add(Job& job, Worker& worker, const Band& band, const std::string& reason);
 
   Context& context_;

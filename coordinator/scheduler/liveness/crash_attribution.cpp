@@ -34,17 +34,19 @@ void CrashRate::add(double& count) {
 std::size_t CrashRate::required(std::size_t min_crashes, std::size_t own) const {
   const double crashes = std::max(0.0, crashes_ - static_cast<double>(own)) + kPriorCrashes;
   const double share = crashes / (crashes + bands_ + kPriorBands);
+  // The least n with share^n <= kMistake.
   const double needed = std::ceil(std::log(kMistake) / std::log(share));
   return std::clamp(static_cast<std::size_t>(needed), min_crashes,
                     std::max(min_crashes, kMaxRequired));
 }
 
 // Returns the bands at which the worker may have been when it was lost: its first lease, and its
-// second, since the first may be finished and not stored yet. Some losses do not count. A worker
-// that said that it leaves did not crash. Browsers are closed at any time, and cannot be told from
-// each other. A backup task has the rows at which another worker is too, and a network failure
-// would take both at once. The rows of an audit have been rendered by another worker already. And
-// leases that were granted when the worker was silent already were never begun.
+// second, since the first may be finished and not stored yet. These do not count:
+// - all leases of a worker that said that it leaves: it did not crash;
+// - all leases of a browser: it may be closed at any time, and its machine is not known;
+// - a backup task: another worker renders the same rows, and a network failure ends both at once;
+// - the lease of an audit: another worker has rendered its rows without a crash;
+// - a lease that was granted when the worker was silent already: it was never begun.
 std::vector<HeldBand> CrashAttribution::held_bands(const Worker& worker) const {
   std::vector<HeldBand> held;
   if (worker.draining || worker.quarantined || worker.browser) {
@@ -66,6 +68,7 @@ void CrashAttribution::worker_lost(const Worker& worker, const std::vector<HeldB
   const auto is_retry = [this](const HeldBand& one) {
     return one.alone && context_.jobs.at(one.job).is_suspect(one.band);
   };
+  // A loss at a suspect band says nothing about how often workers are lost by chance.
   if (!held.empty() && std::none_of(held.begin(), held.end(), is_retry)) {
     rate_.add_crash();
   }

@@ -16,7 +16,7 @@
 
 namespace bandsaw::coordinator {
 
-/// A band that a worker may have been rendering when it was lost.
+/// A band (range of rows and samples) that a worker may have been rendering when it was lost.
 struct HeldBand {
   JobId job = 0;
   Band band;
@@ -32,13 +32,14 @@ class CrashRate {
 
   /// Returns how many workers must be lost at one band, each while it held nothing else, until the
   /// probability that all were lost for other reasons is at most kMistake; at least `min_crashes`
-  /// and at most kMaxRequired. `own`: crashes that were counted and belong to this very band.
+  /// and at most kMaxRequired. `own`: number of counted crashes at this very band, which are left
+  /// out of the rate.
   std::size_t required(std::size_t min_crashes, std::size_t own) const;
 
  private:
   static constexpr double kMistake = 1e-6;
   static constexpr std::size_t kMaxRequired = 30;
-  /// Prior for a farm of which nothing is known: one crash besides twenty bands.
+  /// Prior for a farm of which nothing is known: as if one crash at twenty bands had been seen.
   static constexpr double kPriorBands = 20;
   static constexpr double kPriorCrashes = 1;
   /// Both counts are halved when their sum exceeds this, so that old events lose weight.
@@ -46,8 +47,8 @@ class CrashRate {
 
   void add(double& count);
 
-  double bands_ = 0;  ///< stored
-  double crashes_ = 0;
+  double bands_ = 0;    ///< number of bands that were stored
+  double crashes_ = 0;  ///< number of workers that were lost at a band
 };
 
 class CrashAttribution {

@@ -14,6 +14,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// After this time a refused worker may try again: it is long, because a person has to act first.
+/// On a farm that is full, a place may become free any time.
 constexpr std::uint32_t kRetryRefusedMs = 60'000;
 constexpr double kKeepRefusal_s = 3.0 * kRetryRefusedMs / 1000;
 constexpr std::uint32_t kRetryFullMs = 10'000;
@@ -169,9 +171,9 @@ void Sessions::reconcile_leases(Worker& worker, const std::vector<WorkerHello::H
   }
 }
 
-/// Confirms a lease of this epoch, or adopts one of an earlier epoch, under its id, if its rows are
-/// wanted. A finished band is adopted even if another worker has begun it, an unfinished one only
-/// if nobody has. Returns false if the worker must drop it.
+/// Confirms a lease of this epoch (run of the coordinator). Adopts a lease of an earlier epoch,
+/// with its id, if its rows are wanted: a finished band even if another worker has begun it, an
+/// unfinished one only if nobody has. Returns false if the worker must drop it.
 bool Sessions::keep_lease(Worker& worker, const WorkerHello::Held& held) {
   Job* job = context_.jobs.find(held.job);
   Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(held.band);
@@ -180,6 +182,7 @@ bool Sessions::keep_lease(Worker& worker, const WorkerHello::Held& held) {
     return false;
   }
   if (Lease* lease = context_.leases.find(held.lease)) {
+    // Two epochs can have given the same id to different bands.
     const bool same =
         lease->worker == worker.id && lease->job == held.job && lease->band == held.band;
     if (same) {

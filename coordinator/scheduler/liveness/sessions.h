@@ -1,6 +1,7 @@
 #pragma once
 
-// Sessions of workers: admission, leases held over a reconnect, heartbeats, and loss.
+// Sessions of workers, that is, their streams to the coordinator: admission, the leases that a
+// worker still holds when it reconnects, heartbeats, and loss.
 
 #include <deque>
 #include <string>
@@ -29,16 +30,19 @@ class Sessions {
   /// Admits a worker, or refuses it with a reason. Leases that it still holds are kept or revoked;
   /// those that it does not hold any more are ended.
   void hello(const input::Hello& in);
+  /// Notes that the worker lives, and the progress of its leases.
   void heartbeat(const input::Heartbeat& in);
+  /// The worker is about to leave: it gets no more leases.
   void draining(const input::Draining& in);
+  /// The stream has ended: disconnects the worker.
   void ended(const input::SessionEnded& in);
 
   /// Ends the worker's session and leases.
   void disconnect(Worker& worker, const std::string& reason);
   /// Disconnects workers that have been silent for the heartbeat timeout.
   void check_silence();
-  /// Forgets refusals of workers that have not tried again for three times the waiting time that
-  /// they were given.
+  /// Forgets refusals of workers that have not tried again for three times the time that they were
+  /// told to wait.
   void forget_refusals();
   /// Returns the newest kMaxRefusals refusals, the oldest first.
   const std::deque<Refusal>& refusals() const { return refusals_; }

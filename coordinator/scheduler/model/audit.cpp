@@ -17,6 +17,7 @@ bool is_audited(const JobSpec& spec, const Band& band, double share) {
   hash.add(text_hash(spec.request_id));
   hash.add(band.samples.first);
   hash.add(std::uint64_t{band.rows.first});
+  // The upper 53 bits of the hash as a number in [0, 1).
   return std::ldexp(static_cast<double>(hash.value() >> 11), -53) < share;
 }
 
@@ -75,6 +76,8 @@ std::optional<Audit::Verdict> Audit::verdict(bool only_browsers_left) const {
       return verdict_for(*one);
     }
   }
+  // No two agree. If a single machine is left that can render the band, and it has repeated its
+  // result, that result is right.
   const auto known = [&](const Result& result) {
     return !result.reporter.machine.empty() && (browsers_decide || !result.reporter.browser);
   };

@@ -1,6 +1,7 @@
 #pragma once
 
-// A band that is rendered by two machines whose row digests are compared.
+// An audit: a band (a range of rows and samples) that is rendered by two machines, whose row
+// digests are compared.
 //
 // Rendering is a pure function, so results that differ prove that a machine is wrong. Two machines
 // that agree are taken to be right, because two wrong results would differ from each other. A
@@ -84,11 +85,12 @@ class Audit {
   /// Returns true if the stored rows may be wrong: it is disputed, and not only by browsers against
   /// a native worker.
   bool doubtful() const;
-  /// Returns true if no native worker has returned a result.
+  /// Returns true if all results are of browsers.
   bool only_browsers() const;
 
-  LeaseId lease = 0;             ///< under which it is rendered again now; 0: none
-  std::set<std::string> given;   ///< machines (Worker::machine) that had such a lease
+  LeaseId lease = 0;  ///< lease under which it is being rendered again; 0: none
+  /// Machines (Worker::machine) that have had a lease of this audit.
+  std::set<std::string> given;
   std::set<std::string> unable;  ///< machines in `given` that could not render it
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// Overlap of bands, and their names in messages.
+// Overlap of bands (ranges of rows and samples of one job), and their names in messages.
 
 #include <string>
 
@@ -15,6 +15,7 @@ inline bool overlap(const Band& a, const Band& b) {
          a.rows.first < b.rows.last && b.rows.first < a.rows.last;
 }
 
+/// Returns for example "rows 0–16 of samples 0–32"; the ends are exclusive.
 inline std::string name_of(const Band& band) {
   return absl::StrCat("rows ", band.rows.first, "–", band.rows.last, " of samples ",
                       band.samples.first, "–", band.samples.last);

@@ -23,6 +23,7 @@ bool contains(const SampleRange& outer, const SampleRange& inner) {
   return outer.first <= inner.first && inner.last <= outer.last;
 }
 
+/// Returns true if the nodes are the two halves of one node.
 bool siblings(const SampleRange& left, const SampleRange& right) {
   return left.last == right.first && left.blocks() == right.blocks() &&
          left.first_block() % (2 * left.blocks()) == 0;

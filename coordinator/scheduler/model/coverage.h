@@ -1,11 +1,13 @@
 #pragma once
 
-// The owner of each sample of each row of one pass: stored, leased or free.
+// The owner of each sample of each row of one pass: a lease, or it is free, or stored. A pass is a
+// range of samples of the whole image.
 //
-// The rows are cut into strips of equal content, and the pass's samples in each strip into cells.
-// Each cell is a node of the summation tree and has one owner. Strips and cells partition the pass
-// at all times, so no sample can be forgotten and none can have two owners. Most strips have one
-// cell; a row that is more work than a band should be has several.
+// The rows are cut into strips, and the pass's samples in each strip into cells. Each cell has one
+// owner, and is a node of the summation tree (renderlib/render/band.h): an aligned power-of-two
+// number of blocks of 8 samples, whose sum is added to the film as a whole. Strips and cells
+// partition the pass at all times, so no sample can be forgotten and none can have two owners. Most
+// strips have one cell; a row that is more work than a band should be has several.
 
 #include <cstdint>
 #include <map>
@@ -26,9 +28,10 @@ inline constexpr Owner kStored = ~Owner{0};
 
 class Coverage {
  public:
-  /// `pass` MUST be a node; height > 0.
+  /// All of it is free. `pass` MUST be a node; `height`: rows of the image, > 0.
   Coverage(const SampleRange& pass, std::uint32_t height);
 
+  /// The effect of assign().
   struct Change {
     std::vector<RowRange> rows;      ///< rows that changed owner, ascending
     std::vector<LeaseId> overtaken;  ///< leases that lost cells
@@ -42,21 +45,23 @@ class Coverage {
   /// Frees the part of the band that the lease still owns.
   void give_back(const Band& band, LeaseId lease);
 
-  /// Frees the stored cells of the band's rows that overlap the band's node, as far as they lie in
-  /// it.
+  /// Frees the stored samples of the band. A stored cell with more samples than the band is cut,
+  /// and its other samples stay stored.
   void reopen(const Band& band);
 
   /// Returns the rows of the band in which none of its samples is stored, ascending.
   std::vector<RowRange> wanted(const Band& band) const;
-  /// Returns true if some row is wanted and no wanted row is leased.
+  /// Returns true if some row is wanted, and no other lease owns these samples of a wanted row:
+  /// then a lease of the band can own all rows that are wanted.
   bool adoptable(const Band& band) const;
   /// Returns true if the lease still owns a part of the band.
   bool holds(const Band& band, LeaseId lease) const;
 
-  /// Returns the first free piece at or below `row`: a node, and consecutive rows in which it is
-  /// free. std::nullopt: nothing is free there.
+  /// Returns the first free piece of a strip that begins at `row` or below it in the image. A piece
+  /// is a node and consecutive rows in which it is free. std::nullopt: nothing is free there.
   std::optional<Band> free_from(std::uint32_t row) const;
-  /// Returns the free piece that begins exactly at `row`. std::nullopt: the row has none.
+  /// Returns the free piece that begins at `row`, which need not be the first row of a strip.
+  /// std::nullopt: nothing of the row is free.
   std::optional<Band> free_at(std::uint32_t row) const;
 
   bool complete() const { return stored_ == total_; }

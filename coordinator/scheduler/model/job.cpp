@@ -10,7 +10,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Minimum share of a tile row: rows without samples still have to be sent and stored.
+/// Minimum of Pass::tile_row_shares, which predict the work of a band: rows in which no samples are
+/// taken still have to be sent and stored.
 constexpr float kMinShare = 0.01f;
 
 }  // namespace

@@ -1,6 +1,8 @@
 #pragma once
 
-// One job: its passes, their stored rows, and its failures.
+// One job: its specification, its state, its passes with the rows that are stored, its leases,
+// audits and failures. A pass is a range of samples of the whole image; a band is a range of rows
+// and samples, which one worker renders.
 
 #include <cstdint>
 #include <deque>
@@ -25,7 +27,7 @@ namespace bandsaw::coordinator {
 /// The reason of a job that a user paused.
 inline constexpr char kPausedByUser[] = "paused by a user; continue it with: bandsaw resume";
 
-/// A worker reported that it could not render a band, or made no progress on it.
+/// A band that a worker could not render, or on which it made no progress.
 struct FailedAttempt {
   Band band;
   std::string instance;
@@ -36,10 +38,11 @@ struct FailedAttempt {
 /// ends when the worker reconnects, and for rows that are stored.
 struct Suspicion {
   Band band;                     ///< without the rows that were stored since
-  std::uint32_t piece_rows = 0;  ///< rows of it that are leased at a time when it is retried
+  std::uint32_t piece_rows = 0;  ///< rows of each piece in which it is retried
   std::string instance;
-  std::string machine;  ///< the name that the worker reports
-  /// The band was suspect already and was all that the worker held: this crash counts against it.
+  std::string machine;  ///< identifies its machine (Worker::machine)
+  /// The band was suspect already and was all that the worker held: this crash counts against the
+  /// band.
   bool conclusive = false;
 };
 
@@ -54,7 +57,8 @@ class Job {
 
   /// Appends a pass; it MUST begin where the last one ends.
   void add_pass(const SampleRange& samples);
-  /// Applies to the passes that are added from now on.
+  /// Sets the number of samples of each half tile (half of the pixels of a 16 x 16 tile) in the
+  /// passes that are added from now on.
   void plan_tiles(TilePlan plan);
   /// Makes the job end after this many samples: removes the passes beyond.
   void fix_samples(std::uint64_t samples);
@@ -64,7 +68,8 @@ class Job {
   /// Frees a band that the process stored, and forgets that it was audited. Frees nothing if
   /// Pass::has_stored is false.
   void remove_stored(const Band& band, WorkerProcessId process);
-  /// Advances the count of complete passes; forgets the digests of all but the last few of them.
+  /// Advances the count of complete passes; forgets the row digests of all but the last
+  /// kPassesWithDigests of them.
   void count_complete_passes();
   /// Drops passes, plans, failures and digests of a job that becomes final.
   void drop_details();
@@ -83,8 +88,10 @@ class Job {
   std::uint64_t pixels() const;
   /// Returns the pixel samples of the band.
   std::uint64_t samples_of(const Band& band) const;
-  /// Returns the work of the band in units of CostMap: samples of columns of cost 1.
+  /// Returns the work to render the band: pixel samples, weighted with the relative costs of their
+  /// rows (CostMap).
   double cost_of(const Band& band) const;
+  /// Returns the largest number of samples per pixel that its stop rule allows.
   std::uint64_t max_samples() const;
   /// Returns the time in seconds that it has been worked on, in all epochs.
   double elapsed(Time now) const;
@@ -92,12 +99,12 @@ class Job {
   Audit* audit_under(LeaseId lease);
   bool timed() const { return std::holds_alternative<StopAtTime>(spec.stop); }
 
-  /// Returns true if a worker was lost that held the band.
+  /// Returns true if a part of the band is suspect.
   bool is_suspect(const Band& band) const;
-  /// Returns true if a worker was lost that held the band alone when it was suspect already.
+  /// Returns true if a part of the band has a conclusive crash (Suspicion).
   bool has_conclusive_crash(const Band& band) const;
-  /// Ends the suspicion of stored rows: they did not crash their worker. Rows stored at an end of a
-  /// suspect range shrink it; rows in the middle leave it as it is.
+  /// Ends the suspicion of rows that are now stored, since they did not crash their worker. Rows
+  /// stored at an end of a suspect range shrink it; rows in the middle leave it as it is.
   void clear_suspicion(const Band& stored);
 
   JobId id = 0;
@@ -105,11 +112,11 @@ class Job {
   std::uint32_t pixel_version = 0;  ///< the version with which the job was begun; 0: unknown
   JobState state = JobState::kRunning;
   std::int32_t priority = 0;
-  bool held = false;                           ///< paused by a user
-  Time held_at = 0;                            ///< time of the timeout clock
-  std::string reason;                          ///< why the job is in its state
-  std::string notice;                          ///< shown to users while the job runs
-  std::string damage;                          ///< damage of its bands on disk, in this epoch
+  bool held = false;   ///< paused by a user
+  Time held_at = 0;    ///< time of the timeout clock
+  std::string reason;  ///< why the job is in its state
+  std::string notice;  ///< the last event that users should know of, shown while the job runs
+  std::string damage;  ///< damage of its bands on disk, in this epoch
   std::uint64_t damaged_bands = 0;             ///< found while the coordinator ran, in this epoch
   std::optional<std::uint64_t> fixed_samples;  ///< the job ends after this many samples per pixel
   std::vector<Pass> passes;                    ///< from sample 0 on, without gaps
@@ -125,7 +132,8 @@ class Job {
   std::optional<input::PassMerged> pending_checkpoint;
 
   std::set<LeaseId> leases;
-  std::set<LeaseId> backups;           ///< backup tasks among `leases`
+  /// Those of `leases` that are backup tasks (second leases of late bands).
+  std::set<LeaseId> backups;
   std::uint64_t backups_granted = 0;   ///< in this epoch
   std::deque<FailedAttempt> failures;  ///< the newest kMaxFailures
   std::deque<Suspicion> suspicions;    ///< the newest kMaxFailures
@@ -148,9 +156,11 @@ class Job {
   CostMap cost;
   RowTimes row_times;
   bool alone = false;  ///< a frame job that one worker is to render (dispatch/frame_chooser.h)
-  std::uint32_t probes = 0;  ///< granted or skipped (dispatch/probes.h)
-  MeanRate work_rate;        ///< mean over its workers, per thread (dispatch/work_rate.h)
+  /// Number of probe bands that were granted or skipped (dispatch/probes.h).
+  std::uint32_t probes = 0;
+  MeanRate work_rate;  ///< mean over its workers, per thread (dispatch/work_rate.h)
 
+  /// These limits bound the memory of a job.
   static constexpr std::size_t kMaxFailures = 1'000;
   static constexpr std::size_t kMaxAudits = 4'096;
   static constexpr std::size_t kMaxShares = 65'536;
@@ -158,7 +168,7 @@ class Job {
 
  private:
   static constexpr std::size_t kPassesWithDigests = 8;
-  std::optional<TileSchedule> schedule_;
+  std::optional<TileSchedule> schedule_;  ///< number of samples of half tiles in the next pass
   std::size_t complete_passes_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// One pass of a job: its stored rows, and the worker processes that rendered them.
+// One pass of a job (a range of samples of the whole image): its stored rows, and the worker
+// processes that rendered them.
 
 #include <cstdint>
 #include <map>
@@ -37,12 +38,12 @@ class RowDigests {
   void keep(const Band& band, const std::vector<RowRange>& rows,
             const std::vector<std::uint64_t>& digests);
 
-  /// Returns the first row of the band that is known with another digest for exactly these samples;
-  /// std::nullopt: there is none.
+  /// Returns the first row of the band whose known digest, of exactly these samples, differs from
+  /// that in `digests` (one per row); std::nullopt: there is none.
   std::optional<std::uint32_t> first_difference(const Band& band,
                                                 const std::vector<std::uint64_t>& digests) const;
 
-  /// Returns the digest of a row of a node; std::nullopt: unknown.
+  /// Returns the digest of a row over these samples; std::nullopt: unknown.
   std::optional<std::uint64_t> of(const SampleRange& samples, std::uint32_t row) const;
   void forget(const Band& band);
   void clear() { known_.clear(); }
@@ -53,7 +54,7 @@ class RowDigests {
 
 struct Pass {
   SampleRange samples;
-  Coverage coverage;
+  Coverage coverage;  ///< who owns each sample of each row
   TileSamples tiles;  ///< samples of all half tiles of the image
   /// For each tile row, the number of samples that its pixels take, divided by that of uniform
   /// sampling; empty: 1.
@@ -63,7 +64,7 @@ struct Pass {
   /// Consecutive rows that were stored with one result.
   struct StoredBand {
     Band band;
-    Totals totals;  ///< totals of the whole result at its first row; 0 at its other rows
+    Totals totals;  ///< of the whole result, in the first of its StoredBands; 0 in the others
   };
   /// All bands of the pass that one worker process stored.
   struct Part {
@@ -71,22 +72,23 @@ struct Pass {
     Totals totals;  ///< sums over all bands
   };
   std::map<WorkerProcessId, Part> parts;
-  /// Number of times that a band which begins at this sample and row was returned unfinished; for
-  /// logs.
+  /// For logs: how many leases were given back unfinished, by the first sample and the first row of
+  /// their band.
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> returned;
 
   double mean_share() const;  ///< mean of tile_row_shares
+  /// Returns the samples that the half tiles of the band take.
   TileSamples tiles_of(const Band& band) const { return tiles.of(samples, band); }
-  /// Counts rows of a band as stored by a worker process.
+  /// Counts these rows of a band as stored by a worker process. `totals`: of all of them.
   void add_stored(WorkerProcessId process, const Band& band, const std::vector<RowRange>& rows,
                   const Totals& totals);
   /// Frees everything that the process stored. Returns false if it had stored nothing.
   bool retract(WorkerProcessId process);
   /// Returns true if the process stored exactly this band and it was not freed since.
   bool has_stored(const Band& band, WorkerProcessId process) const;
-  /// Frees such a band and returns its totals; std::nullopt: there is no such band.
+  /// Frees such a band and returns its totals; std::nullopt: the process has stored no such band.
   std::optional<Totals> remove_stored(const Band& band, WorkerProcessId process);
-  /// Returns the process that stored a row of a node; 0: unknown.
+  /// Returns the process that stored a row with exactly these samples; 0: unknown.
   WorkerProcessId process_of_row(const SampleRange& samples, std::uint32_t row) const;
 
  private:

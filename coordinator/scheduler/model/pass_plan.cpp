@@ -17,6 +17,7 @@ std::uint64_t blocks_of(std::uint64_t samples) {
   return (samples + kBlockSamples - 1) / kBlockSamples;
 }
 
+/// Returns the number of checkpoint steps that contain these samples.
 std::uint64_t steps_of(std::uint64_t samples) {
   return (samples + kCheckpointStep - 1) / kCheckpointStep;
 }
@@ -24,6 +25,7 @@ std::uint64_t steps_of(std::uint64_t samples) {
 /// Returns the length in blocks of the longest pass that may begin at a block; 1 at block 0.
 std::uint64_t alignment(std::uint64_t block) { return block == 0 ? 1 : longest_at(block); }
 
+/// Returns the pass of `blocks` blocks that begins at a block, cut off at sample `end`.
 SampleRange pass_at(std::uint64_t block, std::uint64_t blocks, std::uint64_t end) {
   return {block * kBlockSamples, std::min((block + blocks) * kBlockSamples, end)};
 }

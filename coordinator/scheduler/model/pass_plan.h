@@ -1,7 +1,8 @@
 #pragma once
 
 // Division of a job into passes: pure functions of the stop rule and of measured errors, so that
-// the same job has the same passes on every farm.
+// the same job has the same passes on every farm. A pass is a range of samples that is rendered for
+// the whole image.
 
 #include <cstdint>
 #include <optional>
@@ -12,9 +13,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns consecutive passes that cover samples [from, to). Each is a node. The first passes are
-/// small, so that a first image appears soon; then their sizes double, up to about a quarter of
-/// `to`. `from`: 0 or a multiple of 8; to > from.
+/// Returns consecutive passes that cover samples [from, to). Each is a node of the summation tree
+/// (renderlib/render/band.h): an aligned power-of-two number of blocks of 8 samples. The first
+/// passes are small, so that a first image appears soon; then their sizes double, up to about a
+/// quarter of `to`. `from`: 0 or a multiple of 8; to > from.
 std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to);
 
 /// Error checkpoints before the last sample are multiples of this number of samples.
@@ -42,17 +44,20 @@ std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target
 std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
                                           std::uint64_t planned, std::uint64_t max_samples);
 
-/// Returns true if the tiles of an adaptive job are to be planned at a checkpoint with this error,
-/// because it is at most four times the target. Then the pilot has at least about a sixteenth of
-/// the samples that random sampling would need to reach the target.
+/// Returns true if the samples of each half tile of an adaptive job are to be planned at a
+/// checkpoint with this error, because it is at most four times the target. The samples until then
+/// are the pilot, from which they are planned: at least about a sixteenth of the samples that
+/// random sampling would need to reach the target.
 bool time_to_plan_tiles(double error, double target);
 
 /// Returns the error that the next checkpoint waits for: the target, or the error at which tiles
 /// are planned if `tiles_to_plan`.
 double next_target(double target, bool tiles_to_plan);
 
-/// Returns the next pass of a job with a time limit, after samples [0, from): at most a quarter of
-/// `from`, and at most `fits` samples unless that is less than a block. from < max_samples.
+/// Returns the next pass of a job with a time limit, after samples [0, from). `fits`: the number of
+/// samples per pixel that are expected to fit into the remaining time. The pass has at most a
+/// quarter of `from` samples, and at most `fits` unless that is less than a block (8). from <
+/// max_samples.
 SampleRange next_timed_pass(std::uint64_t from, double fits, std::uint64_t max_samples);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// Estimates of rates from results that arrive in lumps.
+// Estimates of rates (amount per second) from results that arrive at irregular times.
 
 #include <algorithm>
 #include <array>
@@ -14,6 +14,7 @@ namespace bandsaw::coordinator {
 /// Exponentially weighted mean of measured rates. 0: nothing has been measured.
 class MeanRate {
  public:
+  /// So the last four measurements have 87 % of the weight.
   static constexpr double kDefaultWeight = 0.4;
   /// `weight`: the weight of this measurement, (0, 1].
   void measure(double per_second, double weight = kDefaultWeight) {
@@ -71,6 +72,7 @@ class RecentRate {
     newest_ = std::max(newest_, second);
   }
 
+  /// Amounts of the last seconds, at index second modulo kSeconds.
   std::array<double, kSeconds> buckets_{};
   bool started_ = false;
   Time since_ = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Render costs of the rows of one image: relative costs, by which bands are sized, and times, by
-// which the end of the job is predicted.
+// Render costs of the rows of one image: relative costs, by which bands (the parts of an image that
+// workers render) are sized, and times, by which the end of the job is predicted.
 
 #include <cstdint>
 #include <vector>
@@ -20,12 +20,13 @@ class CostMap {
   /// height > 0
   explicit CostMap(std::uint32_t height);
 
-  /// Returns the cost of one sample of one pixel column, summed over the rows. `tile_row_shares`:
-  /// for each tile row of the image, the number of samples that its pixels take, divided by that of
-  /// uniform sampling; empty: 1.
+  /// Returns the cost of one sample of one pixel column, summed over the rows. `tile_row_shares`,
+  /// for adaptive jobs: for each row of tiles (16 rows of pixels), the number of samples that its
+  /// pixels take, divided by that of uniform sampling; empty: 1.
   double of(const RowRange& rows, absl::Span<const float> tile_row_shares = {}) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
-  /// Returns how many rows, counted from the first of `rows`, cost at most `max_cost`; at least 1.
+  /// Returns how many of the rows, from the first on, cost at most `max_cost` together (in units of
+  /// `of`); at least 1.
   std::uint32_t fitting(const RowRange& rows, double max_cost,
                         absl::Span<const float> tile_row_shares = {}) const;
 
@@ -34,6 +35,7 @@ class CostMap {
   void learn(const RowRange& rows, double ratio);
 
  private:
+  /// Sums of costs are kept for groups of so many rows, so that `of` is fast.
   static constexpr std::uint32_t kGroup = 64;
   float of_row(std::uint32_t row, absl::Span<const float> tile_row_shares) const;
   double add(std::uint32_t first, std::uint32_t last,

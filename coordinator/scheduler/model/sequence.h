@@ -1,6 +1,7 @@
 #pragma once
 
-// One sequence: its frames and their states.
+// One sequence (a job of many frames): its frames and their states. Each frame is rendered by a job
+// of its own, its frame job.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +20,7 @@ namespace bandsaw::coordinator {
 
 class Sequence {
  public:
-  /// A frame has failed when this many of its jobs have failed.
+  /// A frame has failed for good when this many of its jobs have failed.
   static constexpr std::uint32_t kTries = 2;
 
   struct Frame {
@@ -28,7 +29,7 @@ class Sequence {
     FrameState state = FrameState::kExpected;
     JobId job = 0;                    ///< its frame job; 0: none
     std::uint32_t failures = 0;       ///< number of its earlier jobs that failed
-    std::string reason;               ///< reason of the last failure
+    std::string reason;               ///< reason of the last failure; empty: none
     std::uint64_t changed = 0;        ///< as in FrameView
     std::uint64_t package_bytes = 0;  ///< as in JobSpec
   };
@@ -47,6 +48,7 @@ class Sequence {
   const std::set<JobId>& open_jobs() const { return open_jobs_; }
   /// Returns a frame whose job has failed and that is to be tried again; nullptr: none.
   const Frame* next_to_retry() const;
+  /// Returns the largest Frame::changed.
   std::uint64_t changes() const { return changes_; }
   /// Returns the specification of the job of a frame that has a manifest.
   JobSpec job_spec(const Frame& frame) const;
@@ -57,6 +59,7 @@ class Sequence {
   /// The scene of the frame is known, or the frame is tried again: it waits to be rendered.
   /// `failures`: number of its jobs that failed; `reason`: of the last failure.
   void wait(const FrameScene& scene, std::uint32_t failures, const std::string& reason);
+  /// The frame job of the frame was made.
   void start(FrameNumber number, JobId job);
   /// Ends the frame whose job this is. REQUIRES: is_final(job.state).
   void end(const Job& job);
@@ -72,10 +75,10 @@ class Sequence {
   double elapsed_before = 0;           ///< seconds, in earlier epochs
   std::optional<Time> first_lease_at;  ///< in this epoch
   std::size_t done_before = 0;         ///< frames that were done when this epoch began
-  Totals done;                         ///< totals of the frames that are done
-  double worst_error = -1;             ///< largest error of those frames; negative: unknown
-  std::uint32_t workers_used = 0;      ///< largest number of workers of one of those frames
-  /// Costs and rate of the frame that was done last; the next frames start with them.
+  Totals done;                     ///< samples, counters and CPU time of the frames that are done
+  double worst_error = -1;         ///< largest error of those frames; negative: unknown
+  std::uint32_t workers_used = 0;  ///< largest number of workers of one of those frames
+  /// Row costs and work rate of the frame that was done last; the next frame jobs start with them.
   CostMap cost;
   MeanRate work_rate;
 

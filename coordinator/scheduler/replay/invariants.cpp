@@ -1,4 +1,5 @@
-// Each broken_X() checks one part of the state and returns the first rule that it breaks.
+// Each broken_X() checks one part of the state, and returns a sentence about the first invariant
+// that does not hold; std::nullopt: all hold.
 
 #include "coordinator/scheduler/replay/invariants.h"
 
@@ -76,6 +77,7 @@ std::optional<std::string> broken_workers(const Context& context) {
   return std::nullopt;
 }
 
+/// Strips and cells are the parts of a coverage (model/coverage.h); each cell has one owner.
 std::optional<std::string> broken_pass(const Context& context, const Job& job, const Pass& pass) {
   std::optional<std::string> broken;
   auto partition = pass.coverage.check([&](LeaseId id, const Band& cell) {

@@ -1,5 +1,8 @@
 #pragma once
 
+// The invariants of the scheduler's state, which the tests check after every step; README.md lists
+// them.
+
 #include <optional>
 #include <string>
 

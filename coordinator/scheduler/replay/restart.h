@@ -33,8 +33,9 @@ class Restart {
   void add_band(const input::BandStored& band);
   /// Notes for users that this many bytes of the job's band log are damaged.
   void note_damage(JobId id, std::uint64_t bytes);
-  /// Ends the replay: begins the reconnect barrier, compares duplicate bands, and continues each
-  /// job. A job that was begun with another pixel version fails.
+  /// Ends the replay: begins the reconnect barrier (nothing is leased until former workers are
+  /// back), compares duplicate bands, and continues each job. A job that was begun with another
+  /// pixel version fails.
   void finish();
 
  private:
@@ -48,8 +49,9 @@ class Restart {
   StoredBands& bands_;
   ResultComparison& comparison_;
   Sequences& sequences_;
-  /// Bands with rows that were stored already. They are compared once all bands are replayed,
-  /// because the film adds all bands first and processes retractions afterwards.
+  /// Bands with rows that an earlier band of the replay stored already. They are compared once all
+  /// bands are replayed, because a comparison can retract rows, and the film must have all bands by
+  /// then.
   std::vector<input::BandStored> duplicates_;
 };
 

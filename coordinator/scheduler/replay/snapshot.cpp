@@ -57,7 +57,7 @@ void add_job(const Job& job, std::vector<Record>& out) {
   }
 }
 
-/// Appends what MUST precede the sequence's frame jobs.
+/// Appends the records of a sequence that MUST precede those of its frame jobs.
 void add_sequence(const Sequence& sequence, std::vector<Record>& out) {
   out.push_back(record::SequenceAdded{sequence.id, sequence.spec, sequence.pixel_version});
   if (sequence.priority != 0) {
@@ -91,7 +91,7 @@ std::vector<Record> snapshot(const Context& context) {
   for (const auto& [id, job] : context.jobs.all()) {
     add_job(job, records);
   }
-  // The last id stays used though its job was forgotten.
+  // If the last job was forgotten, this keeps its id from being used again.
   if (const JobId next = context.jobs.next_id(); next > 1 &&
                                                  !context.jobs.all().contains(next - 1) &&
                                                  context.sequences.find(next - 1) == nullptr) {

@@ -46,6 +46,7 @@ void Quarantine::impose(const Reporter& reporter, const std::string& cause) {
   }
 }
 
+/// Disconnects the worker; it gets no more work.
 void Quarantine::expel(Worker& worker) {
   worker.quarantined = true;
   worker.reason = context_.quarantine
@@ -57,6 +58,7 @@ void Quarantine::expel(Worker& worker) {
   }
 }
 
+/// Frees the rows that the process stored in the job. `why`: for the notice that users see.
 void Quarantine::retract(Job& job, WorkerProcessId process, const std::string& why) {
   if (job.image_requested) {
     return;

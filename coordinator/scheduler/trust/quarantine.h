@@ -16,12 +16,13 @@ class Quarantine {
   Quarantine(Context& context, LeaseLedger& ledger, Sessions& sessions)
       : context_(context), ledger_(ledger), sessions_(sessions) {}
 
-  /// Quarantines the reporter's machine, that is, all worker processes that report its name. Jobs
-  /// whose image was requested keep their rows, since the image may be written already.
+  /// Quarantines the machine of the reporter (the origin of a result), that is, all worker
+  /// processes that report its name. Jobs whose image was requested keep their rows, since the
+  /// image may be written already.
   void impose(const Reporter& reporter, const std::string& reason);
-  /// A user quarantines a worker or machine. NOT_FOUND: no known worker has the name.
+  /// A user quarantines a worker or machine by its name. NOT_FOUND: no known worker has the name.
   void request(const input::Quarantine& in);
-  /// NOT_FOUND: no worker of this name is under quarantine.
+  /// A user lifts a quarantine. NOT_FOUND: no worker of this name is under quarantine.
   void lift(const input::LiftQuarantine& in);
 
  private:

@@ -25,7 +25,7 @@ std::optional<std::vector<std::uint64_t>> digests_for(const Band& audited,
   return std::vector(first, first + audited.rows.count());
 }
 
-/// Returns the rows of the band that no second machine has confirmed.
+/// Returns the rows of the band, stored by this process, that no second machine has confirmed.
 std::vector<RowRange> not_audited(const Job& job, const Band& band, WorkerProcessId process) {
   std::vector<RowRange> rows;
   std::uint32_t next = band.rows.first;
@@ -63,8 +63,8 @@ void ResultComparison::open_audits(Job& job, const input::BandStored& in, const 
   }
 }
 
-/// Opens an audit of the first row that differs from the stored one, unless one is open. Needed for
-/// results that nobody requested for comparison.
+/// Opens an audit of the first row that differs from the stored one, unless one is open. This is
+/// needed for results that were not requested by an audit, such as those of backup tasks.
 void ResultComparison::open_dispute(Job& job, const Pass& pass, const input::BandStored& in) {
   const auto row = pass.digests.first_difference(in.band, in.row_digests);
   if (!row) {

@@ -1,6 +1,8 @@
 #pragma once
 
-// Opens audits of stored bands, and compares results with the rows that are stored (model/audit.h).
+// Opens audits of stored bands, and compares results with the rows that are stored. An audit is the
+// comparison of the results of two machines for the same band, a range of rows and samples
+// (model/audit.h).
 
 #include <vector>
 
@@ -15,7 +17,8 @@ class ResultComparison {
   ResultComparison(Context& context, LeaseLedger& ledger, Quarantine& quarantine)
       : context_(context), ledger_(ledger), quarantine_(quarantine) {}
 
-  /// Opens audits of rows that were just stored, if the band is selected for one.
+  /// Opens audits of these rows of the band, which were just stored, if the band is selected for
+  /// audits.
   void open_audits(Job& job, const input::BandStored& in, const Reporter& reporter,
                    const std::vector<RowRange>& rows);
   /// Compares a result with the stored digests of its rows. Adds it to the audits of these rows,

@@ -26,8 +26,9 @@ double expected_samples(const Job& job) {
   return end ? static_cast<double>(*end) : max;
 }
 
-/// Returns the pixel samples of the whole job. Passes that are not planned yet are taken to have
-/// the share of samples of the last one.
+/// Returns the pixel samples of the whole job, done and to come. In an adaptive job a pass takes a
+/// share of the samples of uniform sampling; passes that are not planned yet are taken to have the
+/// share of the last one.
 double expected_work(const Job& job) {
   const double beyond = expected_samples(job) - static_cast<double>(job.planned_samples());
   double columns = beyond * (job.passes.empty() ? 1 : job.passes.back().mean_share());

@@ -8,15 +8,15 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the part of the job's work that is done, [0, 1]; for a job with a time limit, of its
-/// time.
+/// Returns the part of the job's work that is done, [0, 1]. For a job with a time limit, it is the
+/// part of its time that has passed.
 double fraction_done(const Job& job, Time now);
 
 /// Returns the remaining time in seconds; negative: unknown. It is computed from render times, not
 /// from costs: the thread time of all samples to come, over the threads that work on the job.
 double remaining_s(const Context& context, const Job& job, Time now);
 
-/// Returns the workers that have leases of the job, by name.
+/// Returns the workers that have leases of the job, sorted by name.
 std::vector<JobWorkerView> workers_on(const Context& context, const Job& job);
 
 }  // namespace bandsaw::coordinator

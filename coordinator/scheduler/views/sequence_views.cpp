@@ -35,6 +35,7 @@ double remaining_of(const Sequence& sequence, double parts, Time now) {
     return 0;
   }
   const double passed = sequence.first_lease_at ? now - *sequence.first_lease_at : 0;
+  // With less than half a frame, the pace is not known well enough.
   return finished > 0.5 && passed > 0 ? left * passed / finished : -1;
 }
 

@@ -26,6 +26,7 @@ std::string priority_text(std::int32_t priority) {
   return priority == 0 ? "" : absl::StrCat(" (priority ", priority, ")");
 }
 
+/// Returns the reason, and then the log of the worker that failed last.
 std::vector<std::string> failed_because(const Job& job, std::string reason) {
   std::vector<std::string> lines = {std::move(reason)};
   for (const std::string& line : job.log) {

@@ -50,6 +50,8 @@ class Views {
   std::vector<std::string> why_of_state(const Job& job, Time now) const;
   std::string audit_reason(const Job& job) const;
   std::string busy_with_others(const Job& job) const;
+  /// Returns a sentence for each worker that renders the job; not_working_on(): for each that does
+  /// not.
   std::vector<std::string> working_on(const Job& job) const;
   std::vector<std::string> not_working_on(const Job& job) const;
 
