@@ -1,7 +1,7 @@
 #pragma once
 
-// A callback that is called exactly once. One that is dropped is called with UNAVAILABLE, so that
-// no caller waits for a coordinator that has stopped.
+// Answer: a callback that is called exactly once. If it was not called before it is destroyed, it
+// is called with UNAVAILABLE then, so that no caller waits for a coordinator that has stopped.
 
 #include <functional>
 #include <utility>

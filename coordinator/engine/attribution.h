@@ -13,7 +13,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Attribution of the jobs that are not over. Used by one thread.
+/// Attribution of the jobs that are not over. Not thread-safe.
 class Attribution {
  public:
   /// Adds rows of a job. `process` identifies the worker process in all epochs (runs of the
@@ -25,6 +25,7 @@ class Attribution {
   void forget(JobId job) { jobs_.erase(job); }
 
  private:
+  /// Bounds the memory; names of further workers are empty.
   static constexpr std::size_t kMaxNames = 65'536;
 
   struct Piece {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Finds and removes old jobs and blobs that no job needs. Everything that belongs to a job that is
-// not final is kept.
+// Finds and removes old jobs, and blobs (the data of scenes) that no job needs. Everything that
+// belongs to a job that is not final is kept.
 
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +28,7 @@ struct Keep {
   double unused_seconds = 24.0 * 60 * 60;
 };
 
-/// Used by the store's thread.
+/// Not thread-safe; only the store's thread uses it.
 class Collector {
  public:
   Collector(const DataFolder& folder, BlobStore& blobs, const Keep& keep)
@@ -43,8 +43,8 @@ class Collector {
  private:
   struct Final {
     JobId id = 0;
-    double at = 0;  ///< seconds since 1970; 0: none of its files is left
-    std::uint64_t bytes = 0;
+    double at = 0;            ///< seconds since 1970; 0: none of its files is left
+    std::uint64_t bytes = 0;  ///< size of its result files
   };
   /// The blobs of the packages of one job, each once.
   struct Needs {
@@ -53,18 +53,19 @@ class Collector {
   };
   Final final_job(const KeptJob& job) const;
   void add_files_of(JobId id, Final& job) const;
-  /// Adds the blobs of a package including its manifest; nothing if the manifest is missing. False:
-  /// it exists and cannot be read.
+  /// Adds the blobs of a package including its manifest; nothing if the manifest is missing or
+  /// damaged. Returns false if it exists and cannot be read.
   bool add_blobs_of(const DigestHex& manifest, Needs& needs);
   /// Returns the blobs of a job's packages; std::nullopt: one of them exists and cannot be read.
   std::optional<std::set<wire::Digest>> blobs_of(const KeptJob& job);
+  /// As blobs_of, but empty instead of std::nullopt.
   std::set<wire::Digest> known_blobs_of(const KeptJob& job);
   void remove_unneeded(const std::set<wire::Digest>& needed, double now);
 
   const DataFolder& folder_;
   BlobStore& blobs_;
   const Keep keep_;
-  /// Needs that are known already. A package never changes, but a sequence may get more packages.
+  /// Cache of blobs_of. A package never changes, but a sequence may get more packages.
   std::map<JobId, Needs> known_;
 };
 

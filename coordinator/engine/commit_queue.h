@@ -1,7 +1,7 @@
 #pragma once
 
-// Write-ahead ordering: records wait here for the journal, and their effects are run only when the
-// records are on disk.
+// Write-ahead ordering: the records of decisions wait here for the journal, and their effects are
+// run only when the records are on disk.
 
 #include <deque>
 #include <vector>
@@ -13,7 +13,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Used by one thread.
+/// Not thread-safe.
 class CommitQueue {
  public:
   /// Run once all records added before it are on disk.

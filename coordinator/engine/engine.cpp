@@ -22,10 +22,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
+/// Bounds of the memory for bands on their way to disk and film, and for images that are made or
+/// downloaded (README.md, "Why").
 constexpr std::uint64_t kMaxBandBytes = 2ull << 30;
 constexpr std::uint64_t kMaxImageBytes = 1ull << 30;
 static_assert(kMaxImageBytes > kMaxPixels * sizeof(Rgb), "the largest image can be downloaded");
 
+/// Returns a random name for this run of the coordinator, 32 hexadecimal digits.
 std::string new_epoch() {
   std::random_device random;
   std::string epoch;
@@ -98,6 +101,8 @@ Engine::Engine(const EngineOptions& options, EngineDependencies dependencies, Da
                  to_store_, to_film_),
       store_(folder_, *blobs_, options.keep, *clock_, to_scheduler_),
       film_(folder_, to_scheduler_, to_store_),
+      // Without messages, settle() is called at these intervals: for the scheduler's ticks and the
+      // store's disk tests. The film needs none.
       scheduler_mailbox_([this] { scheduler_.settle(); }, milliseconds(100)),
       store_mailbox_([this] { store_.settle(); }, milliseconds(100)),
       film_mailbox_([] {}, milliseconds(1000)) {}

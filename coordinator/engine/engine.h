@@ -1,6 +1,7 @@
 #pragma once
 
 // The coordinator without network and user interface: three threads that hand work to each other.
+// This is the path of a band (a range of rows and samples of a job, rendered by a worker):
 //
 //   any thread -> scheduler (decides, writes the journal) -> store (files) -> scheduler -> film
 //   (pixels) -> store (result)
@@ -67,9 +68,9 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  // Users.
-  /// Returns the job id once the job is in the journal. FAILED_PRECONDITION: a blob is missing; the
-  /// message names it. INVALID_ARGUMENT: the priority is beyond kMaxPriority.
+  /// Adds a job. Returns its id once it is in the journal. FAILED_PRECONDITION: a blob is missing;
+  /// the message names it. INVALID_ARGUMENT: the priority is beyond kMaxPriority.
+  /// RESOURCE_EXHAUSTED: too many jobs, or the disk is full.
   void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
               std::int32_t priority = 0);
   /// Submits a sequence; its scenes follow by add_frames. Errors as submit.
@@ -80,18 +81,19 @@ class Engine {
   /// blob is missing, or the sequence was cancelled.
   void add_frames(JobId sequence, std::vector<FrameScene> scenes,
                   std::function<void(absl::StatusOr<JobView>)> done);
-  /// Renders failed frames again; none: all that failed. Returns the sequence after that.
+  /// Renders these failed frames again; if `frames` is empty, all that failed. Returns the sequence
+  /// after that.
   void retry_frames(JobId sequence, std::vector<FrameNumber> frames,
                     std::function<void(absl::StatusOr<JobView>)> done);
   /// Returns the frames that changed after `after` (FrameView::changed); 0: all.
   void frames(JobId sequence, std::uint64_t after,
               std::function<void(absl::StatusOr<std::vector<FrameView>>)> done);
-  /// These four return the job after the change, once that is in the journal. NOT_FOUND: no such
-  /// job. FAILED_PRECONDITION, except from cancel: the job is over.
+  /// cancel, pause, resume and set_priority return the job after the change, once that is in the
+  /// journal. NOT_FOUND: no such job. FAILED_PRECONDITION, except from cancel: the job is over.
   void cancel(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void pause(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void resume(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
-  /// INVALID_ARGUMENT: the priority is beyond kMaxPriority.
+  /// Further error: INVALID_ARGUMENT if the priority is beyond kMaxPriority.
   void set_priority(JobId job, std::int32_t priority,
                     std::function<void(absl::StatusOr<JobView>)> done);
   /// Puts a machine into quarantine as if it had returned wrong pixels, or lifts its quarantine.
@@ -101,7 +103,7 @@ class Engine {
   void why(JobId job, std::function<void(std::vector<std::string>)> done);
   /// Calls `changed` with the present state and after each change, at most ten times and at least
   /// once a second, until it returns false or the job is final. The final state is always
-  /// delivered. NOT_FOUND is delivered to `changed` too.
+  /// delivered. If there is no such job, `changed` is called with NOT_FOUND.
   void watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> changed);
   void jobs(std::function<void(std::vector<JobView>)> done);
   void workers(std::function<void(std::vector<WorkerView>)> done);
@@ -113,12 +115,13 @@ class Engine {
   /// Returns the workers of the rows that are rendered, in the order of rows. After a restart, a
   /// worker's name is empty in a job that is not over until the worker sends another band.
   void rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done);
-  /// Returns the result of a job. NOT_FOUND: no such job, kSamples of one that was not adaptive, or
-  /// kFirst of one that has none (store/finished.h).
-  /// FAILED_PRECONDITION: the job is not done. DATA_LOSS: the file is missing or damaged.
+  /// Returns a part of the result of a job: its image, the number of samples of each pixel
+  /// (kSamples, of adaptive jobs), or the mean of the first samples (kFirst; store/finished.h).
+  /// NOT_FOUND: no such job, or its result has no such part. FAILED_PRECONDITION: the job is not
+  /// done. DATA_LOSS: the file is missing or damaged.
   void result(JobId job, FinishedPart part, std::function<void(absl::StatusOr<StoredResult>)> done);
 
-  /// Returns the budget of the memory for images that are made or downloaded, 1 GiB. A caller of
+  /// Returns the budget of the memory for images that are made or downloaded (1 GiB). A caller of
   /// result or preview takes the image's bytes from it first, and returns them when it frees the
   /// image.
   MemoryBudget& images();
@@ -132,32 +135,40 @@ class Engine {
     /// the blob contains bytes of an earlier upload.
     virtual absl::Status commit() = 0;
   };
+  /// Returns true if the whole blob is stored.
   bool has_blob(const wire::Digest& digest) const;
   /// Returns the number of bytes that an interrupted upload has left of a blob, from its beginning.
   std::uint64_t partial_blob(const wire::Digest& digest) const;
-  /// `offset`: continues an interrupted upload after this many bytes. FAILED_PRECONDITION: fewer
-  /// are there. RESOURCE_EXHAUSTED: the disk is full.
+  /// Begins the upload of a blob of `size` bytes. `offset`: continues an interrupted upload after
+  /// this many bytes. FAILED_PRECONDITION: fewer are there. RESOURCE_EXHAUSTED: the disk is full.
   absl::StatusOr<std::unique_ptr<BlobWriter>> write_blob(const wire::Digest& digest,
                                                          std::uint64_t size,
                                                          std::uint64_t offset = 0);
+  /// Returns the blobs, to read them.
   BlobSource& blobs();
 
-  // Workers.
+  // Workers. Messages to a worker go to its link.
+  /// A worker has connected. Returns the id of its session; the link receives `welcome` or
+  /// `refuse`.
   SessionId hello(std::shared_ptr<WorkerLink> link, WorkerHello hello);
   void heartbeat(SessionId session, std::vector<LeaseProgress> leases, std::string doing);
   void draining(SessionId session, std::string reason);
   void band_failed(SessionId session, LeaseId lease, std::string reason,
                    std::vector<std::string> log);
+  /// The worker's connection has ended.
   void lost(SessionId session, std::string reason);
   /// Adds lines to the worker's log. They MUST have been checked.
   void worker_log(SessionId session, std::vector<std::string> lines);
-  /// Takes a band from a worker. OK once its pixels are on disk and the step about it is in the
-  /// journal, or the band is not wanted. RESOURCE_EXHAUSTED: disk full; keep the band and send it
-  /// again. INVALID_ARGUMENT: not a band of that job. `work`: hash of the scene and settings that
-  /// it was rendered for (renderlib/render/work_hash.h), 0 if unknown; a band of an earlier job
-  /// with the same id is not wanted. `browser`: a browser sent it. FAILED_PRECONDITION: a browser
-  /// sent it, and `instance` is not a browser that has sent Hello; so a browser cannot pass for a
-  /// native worker.
+  /// Takes a band from a worker. OK once its pixels are on disk and the scheduler's decision about
+  /// it is in the journal, or the band is not wanted (BandOutcome). RESOURCE_EXHAUSTED: disk or
+  /// memory is full; keep the band and send it again. INVALID_ARGUMENT: not a band of that job.
+  /// FAILED_PRECONDITION: a browser sent it, and `instance` is not a browser that has sent Hello;
+  /// so a browser cannot pass for a native worker.
+  ///
+  /// `work`: hash of the scene and settings that the band was rendered for
+  /// (renderlib/render/work_hash.h), 0 if unknown; a band of an earlier job with the same id is not
+  /// wanted. `render_s`, `cpu_s`: seconds that the worker rendered it, and CPU seconds of its
+  /// threads. `browser`: a browser sent it.
   void put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                 double render_s, double cpu_s,
                 std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser = false);

@@ -24,6 +24,7 @@ bool is_damage(const absl::Status& status) {
          absl::IsUnknown(status);
 }
 
+/// Returns a digest of the sums of these rows of a band.
 std::uint64_t digest_of(const BandPixels& pixels, const RowRange& rows) {
   const std::vector<std::uint64_t> digests = row_digests(pixels);
   const std::span<const std::uint64_t> all = digests;
@@ -257,6 +258,8 @@ absl::StatusOr<BandPixels> FilmThread::read_again(JobId id, const Added& added) 
   return slice(record.pixels, rows);
 }
 
+/// Forgets rows that the log no longer holds, and reports them to the store and the scheduler.
+/// `damaged`: ascending indices in job.added.
 void FilmThread::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>& damaged) {
   std::vector<input::BandsDamaged::DamagedBand> lost;
   for (auto index = damaged.rbegin(); index != damaged.rend(); ++index) {

@@ -1,7 +1,9 @@
 #pragma once
 
-// The film's thread: it holds one film per job, merges passes as they become complete, and writes
-// the image at the end.
+// The film's thread. A film holds the sums of all pixels of a job's image. There is one for each
+// job that is not final: the thread adds bands (ranges of rows and samples, rendered by workers) to
+// it, reports passes as they become complete, and makes the image at the end. A pass is a range of
+// samples of the whole image.
 
 #include <cstdint>
 #include <deque>
@@ -29,6 +31,7 @@ class FilmThread {
   FilmThread(const DataFolder& folder, SchedulerInbox& scheduler, StoreInbox& store)
       : folder_(folder), scheduler_(scheduler), store_(store) {}
 
+  /// Announces a job. `adaptive`: the film also measures the error of each half tile.
   void add_job(JobId job, const RenderSettings& settings, bool adaptive = false);
   /// Announces a pass that ends at `samples`. The pass is reported when the film contains all of
   /// it.
@@ -36,8 +39,8 @@ class FilmThread {
   /// Adds these rows of a band. OK: they are in the film. Otherwise they wait in memory for retry,
   /// and SchedulerInbox::storage_failed is called.
   absl::Status add(JobId job, IncomingBand incoming, std::vector<RowRange> rows);
-  /// Adds these rows of a band at the next retry, when the band is read from the job's log: for a
-  /// band that is in the log while the film cannot take any.
+  /// Adds these rows of a band at the next retry, when the band is read from the job's log. It is
+  /// for bands that are in the log while the film cannot take any.
   void add_later(JobId job, const IncomingBand& incoming, const std::vector<RowRange>& rows);
   /// Sends the image of samples [0, samples) to the store as soon as the film has them.
   void request_image(JobId job, std::uint64_t samples);
@@ -46,6 +49,7 @@ class FilmThread {
   /// Removes the bands of this worker process: builds the film again from the log of the others,
   /// and reports its passes again as they become complete.
   void retract(JobId job, std::uint64_t process);
+  /// Forgets the film of a job.
   void drop(JobId job);
 
   /// Returns the present image of a job, every row_step-th row. NOT_FOUND: no band is there, or the
@@ -71,13 +75,13 @@ class FilmThread {
   struct OneJob {
     RenderSettings settings;
     bool adaptive = false;
-    std::optional<Film> film;  ///< from the first band on
-    std::deque<Waiting> waiting;
-    std::vector<Added> added;
-    std::set<std::uint64_t> pass_ends;
-    std::uint64_t reported = 0;  ///< end of the last pass that was reported
-    bool rebuild = false;        ///< the film must be built again, from `added`
-    std::optional<std::uint64_t> image_of;
+    std::optional<Film> film;               ///< from the first band on
+    std::deque<Waiting> waiting;            ///< bands that are not in the film yet
+    std::vector<Added> added;               ///< all rows in the film
+    std::set<std::uint64_t> pass_ends;      ///< numbers of samples at which planned passes end
+    std::uint64_t reported = 0;             ///< end of the last pass that was reported
+    bool rebuild = false;                   ///< the film must be built again, from `added`
+    std::optional<std::uint64_t> image_of;  ///< the image of this many samples is requested
   };
   static Added added(const IncomingBand& incoming, const RowRange& rows);
   absl::Status work(JobId id, OneJob& job);

@@ -20,7 +20,7 @@ namespace bandsaw::coordinator {
 class SchedulerInbox {
  public:
   virtual ~SchedulerInbox() = default;
-  // From the store. For each band that it received, the store calls band_stored or band_failed.
+  // Messages from the store. It calls band_stored or band_failed once for each band that it got.
   virtual void band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests) = 0;
   virtual void band_failed(IncomingBand incoming, const absl::Status& status) = 0;
   virtual void result_written(JobId job, const absl::Status& status) = 0;
@@ -56,6 +56,7 @@ class StoreInbox {
   virtual void drop_job(JobId job) = 0;
   /// Removes blobs and folders that none of these jobs, which are all known ones, needs.
   virtual void collect(std::vector<KeptJob> jobs) = 0;
+  /// A write has failed: the store sends disk_is_back once the disk takes data again.
   virtual void test_disk_until_writable() = 0;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// A band on its way from a worker to the disk and the film.
+// A band on its way from a worker to the disk and the film. A band is a range of rows and samples
+// of a job; the film holds the sums of all pixels of the job.
 
 #include <cstdint>
 #include <string>
@@ -29,14 +30,14 @@ struct IncomingBand {
   bool browser = false;       ///< a browser sent it
   std::uint64_t process = 0;  ///< id of the worker process (scheduler/api/worker_process.h)
   BandPixels pixels;
-  std::string worker;      ///< name of the worker, from action::AddToFilm
-  TileSamples tiles = {};  ///< samples of the band's half tiles, from action::AddToFilm
-  double render_s = 0;
-  double cpu_s = 0;
-  bool written = false;
+  std::string worker;        ///< name of the worker, from action::AddToFilm
+  TileSamples tiles = {};    ///< samples of the band's half tiles, from action::AddToFilm
+  double render_s = 0;       ///< time that the worker rendered it
+  double cpu_s = 0;          ///< CPU time of its threads
+  bool written = false;      ///< it is in the job's log; false: all of its rows were stored already
   std::uint64_t offset = 0;  ///< offset of its record in the job's log, once it is written
-  Answer<BandOutcome> answer;
-  MemoryBudget::Share share;
+  Answer<BandOutcome> answer;  ///< to the worker
+  MemoryBudget::Share share;   ///< of the budget for bands in memory
 };
 
 }  // namespace bandsaw::coordinator

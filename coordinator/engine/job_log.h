@@ -1,5 +1,7 @@
 #pragma once
 
+// Lines of the coordinator's own log about jobs and workers, as key=value pairs.
+
 #include "coordinator/scheduler/api/messages.h"
 
 namespace bandsaw::coordinator {

@@ -1,7 +1,7 @@
 #pragma once
 
-// The connected workers, by session. perform() carries out an action of the scheduler: it sends the
-// message to the worker of that session.
+// The connections to workers, by session. perform() carries out an action of the scheduler: it
+// sends the message to the worker of that session.
 
 #include <map>
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Used by one thread. Messages to a session that has ended are dropped.
+/// Not thread-safe. Messages to a session that has ended are dropped.
 class Links {
  public:
   explicit Links(std::string epoch) : epoch_(std::move(epoch)) {}

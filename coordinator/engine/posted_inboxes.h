@@ -1,6 +1,7 @@
 #pragma once
 
-// The inboxes of the engine's threads: each message is posted to the mailbox of its thread.
+// Implements the inboxes of the engine's threads (inboxes.h): each message is posted to the mailbox
+// of its thread, which calls the method of the same name.
 
 #include <utility>
 #include <vector>

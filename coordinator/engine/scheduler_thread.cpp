@@ -16,7 +16,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Interval of the scheduler's Tick, by which it measures timeouts of seconds.
 constexpr double kTick_s = 0.1;
+/// Old jobs and blobs are looked for after this time, or after this many new jobs.
 constexpr double kCollectEvery_s = 600;
 constexpr std::size_t kCollectEveryJobs = 1'000;
 
@@ -186,6 +188,7 @@ bool SchedulerThread::flush() {
   return false;
 }
 
+/// The journal cannot be written, for any reason: pauses all jobs until the disk takes data again.
 void SchedulerThread::journal_failed(const absl::Status& status) {
   store_.test_disk_until_writable();
   if (!journal_status_.ok()) {

@@ -1,7 +1,8 @@
 #pragma once
 
-// The scheduler's thread: it owns the scheduler and the journal, writes the records of
-// each step, and turns the step's actions into messages to the other threads and to workers.
+// The scheduler's thread: it owns the scheduler and the journal (the log of decisions on disk),
+// writes the records of each step, and then turns the step's actions into messages to the other
+// threads and to workers.
 
 #include <atomic>
 #include <cstdint>
@@ -36,8 +37,9 @@ class SchedulerThread {
   SchedulerThread(SchedulerOptions options, Journal& journal, Reserve reserve, const Clock& clock,
                   StoreInbox& store, FilmInbox& film);
 
-  /// Restores the state from the journal and the band logs. Call before any other method, while the
-  /// other threads do not run yet. `disk`: OK, or the reason why the disk is full (disk_is_full).
+  /// Restores the state from the journal and the band logs; returns the error if one of them cannot
+  /// be read. Call before any other method, while the other threads do not run yet. `disk`: OK, or
+  /// the reason why the disk is full (disk_is_full).
   absl::Status restore(StoreThread& store, FilmThread& film, const absl::Status& disk);
 
   // Users.
@@ -50,6 +52,7 @@ class SchedulerThread {
   void command_worker(const Input& input, Answer<bool> answer);
   void watch(JobId job, Watchers::Changed changed);
   std::optional<JobView> job(JobId id) const { return scheduler_.job(id, clock_.now()); }
+  /// NOT_FOUND: no such job. FAILED_PRECONDITION: it is no sequence.
   absl::StatusOr<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
   std::vector<std::string> why(JobId id) const { return scheduler_.why(id, clock_.now()); }
   std::vector<JobView> jobs() const { return scheduler_.jobs(clock_.now()); }
@@ -58,7 +61,7 @@ class SchedulerThread {
   // Workers.
   void hello(SessionId session, std::shared_ptr<WorkerLink> link, WorkerHello hello);
   void lost(SessionId session, std::string reason);
-  /// Heartbeats and other inputs that concern only the scheduler.
+  /// Takes heartbeats and other inputs that concern only the scheduler.
   void observe(const Input& input) { run(input); }
   void put_band(IncomingBand incoming);
   void add_worker_log(SessionId session, std::vector<std::string> lines);
@@ -66,7 +69,7 @@ class SchedulerThread {
     return logs_.of(worker);
   }
 
-  // The other threads; see SchedulerInbox.
+  // Messages of the other threads; see SchedulerInbox.
   void band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests);
   void band_failed(IncomingBand incoming, const absl::Status& status);
   void bands_damaged(input::BandsDamaged damaged);
@@ -83,28 +86,35 @@ class SchedulerThread {
   bool has_disk_space() const { return has_disk_space_; }
 
  private:
-  /// Facts about a job that are needed without the scheduler.
+  /// Facts about a job that this thread needs without asking the scheduler.
   struct Known {
     JobSpec spec;
     JobState state = JobState::kRunning;
-    std::vector<std::uint64_t> pass_ends;
+    std::vector<std::uint64_t> pass_ends;  ///< samples at which its planned passes end
   };
   /// Runs one step of the scheduler and puts its records and effects into the commit queue.
   /// `incoming`: the band that the input is about, if any.
   Step run(const Input& input, IncomingBand* incoming = nullptr);
+  /// Puts the records of a step and its actions, as effects, into the commit queue.
   void absorb(const Step& step, IncomingBand* incoming);
   void perform(const Action& action);
+  /// Updates known_.
   void note(const Record& record);
   /// Informs the store and the film of a new job or pass.
   void announce(const Record& record);
+  /// Writes the journal and runs the effects that waited for it. Returns false if the journal
+  /// cannot be written.
   bool flush();
   /// The disk is full: pauses all jobs and refuses submits and bands until disk_is_back.
   void disk_is_full(const absl::Status& status);
   void pause_all(const absl::Status& status);
   void journal_failed(const absl::Status& status);
   absl::Status restore_job(JobId id, const Known& known, StoreThread& store, FilmThread& film);
+  /// Returns true if the job is final or unknown.
   bool over(JobId id) const;
+  /// Lets the store look for old jobs and blobs, at intervals.
   void collect();
+  /// Rewrites the journal if it has become long.
   void compact();
 
   Scheduler scheduler_;

@@ -1,5 +1,6 @@
-// restore() replays the journal, then the band log of each job that is not final. A band that is
-// still wanted goes to the scheduler and to the film of its job.
+// restore() replays the journal, then the band log of each job that is not final (the file with the
+// bands that workers have rendered). A band that is still wanted goes to the scheduler and to the
+// film of its job.
 
 #include <spdlog/spdlog.h>
 
@@ -65,7 +66,8 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
                                         .process = record.process,
                                         .counters = pixels.counters,
                                         .cpu_s = record.cpu_s});
-    // Bands of a machine in quarantine are refused.
+    // The rows are still wanted if the scheduler did not count the band, because its machine is
+    // quarantined. Then the film does not get it either.
     if (const auto left = scheduler_.wanted(id, band); left && left->empty()) {
       IncomingBand incoming;
       incoming.process = record.process;

@@ -15,12 +15,15 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Interval of the tests of a disk that has failed.
 constexpr double kTestEvery_s = 2;
 
 double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+/// Returns true if the record is of a job with this scene and these settings: ids of jobs are used
+/// again after a reset of the journal.
 bool belongs(const BandRecord& record, const JobSpec& spec) {
   return record.package_digest == spec.manifest && record.settings == spec.settings;
 }
@@ -115,7 +118,7 @@ void StoreThread::settle(OpenJob& job) {
   const absl::Status synced = job.log->sync();
   for (IncomingBand& incoming : std::exchange(job.written, {})) {
     if (synced.ok()) {
-      compare(std::move(incoming));
+      compare(std::move(incoming));  // reports it as stored, with its digests
     } else {
       test_disk_until_writable();
       scheduler_.band_failed(std::move(incoming), synced);

@@ -1,7 +1,8 @@
 #pragma once
 
-// The store's thread: it writes band logs with group commit and results, removes old jobs, and
-// tests a full disk at intervals.
+// The store's thread: it writes the logs of bands (one sync to disk for all that have arrived:
+// group commit) and the results, removes old jobs, and tests a disk that has failed until it takes
+// data again.
 
 #include <map>
 #include <string>
@@ -43,9 +44,11 @@ class StoreThread {
   /// disk that has failed.
   void settle();
 
+  /// Writes the files of a finished job and sends the scheduler result_written, with the error if
+  /// there was one.
   void write_result(JobId job, const Finished& finished);
-  /// Reads a result. DATA_LOSS: missing or damaged. NOT_FOUND: kSamples of a job that was not
-  /// adaptive, or kFirst of one that has none.
+  /// Reads a part of a result (store/finished.h). DATA_LOSS: missing or damaged. NOT_FOUND: the
+  /// result has no such part.
   absl::StatusOr<StoredResult> read_result(JobId job, FinishedPart part) const;
   /// The log was found damaged: later bands are appended after its last sound record, or to a new
   /// log if it is missing.
@@ -64,7 +67,7 @@ class StoreThread {
   struct OpenJob {
     JobSpec spec;
     std::optional<BandLog> log;         ///< opened at the first band
-    std::vector<IncomingBand> written;  ///< not synced
+    std::vector<IncomingBand> written;  ///< bands that are in the log, but not synced to disk
   };
   absl::Status write(OpenJob& job, IncomingBand& incoming);
   absl::Status open_log(JobId id, OpenJob& job);
@@ -75,8 +78,8 @@ class StoreThread {
   SchedulerInbox& scheduler_;
   Collector collector_;
   std::map<JobId, OpenJob> jobs_;
-  bool trouble_ = false;
-  Time tested_at_ = 0;  ///< when the disk was last tested
+  bool trouble_ = false;  ///< a write has failed, and the disk was not found writable since
+  Time tested_at_ = 0;    ///< when the disk was last tested
 };
 
 }  // namespace bandsaw::coordinator

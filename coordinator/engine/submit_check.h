@@ -1,6 +1,6 @@
 #pragma once
 
-// Checks of a job before the scheduler receives it.
+// Checks of a job or a sequence before the scheduler receives it.
 
 #include <cstdint>
 
@@ -13,18 +13,20 @@
 
 namespace bandsaw::coordinator {
 
-/// Sets spec.package_bytes. INVALID_ARGUMENT: a field is out of range, or the manifest is not a
-/// package. FAILED_PRECONDITION: a blob of the package is missing; names the first. DATA_LOSS: the
-/// manifest's file is damaged. Reads the disk, and marks the package's blobs as used.
+/// Checks the fields of a job and its scene package, and sets spec.package_bytes. INVALID_ARGUMENT:
+/// a field is out of range, or the manifest is not a package. FAILED_PRECONDITION: a blob of the
+/// package is missing; names the first. DATA_LOSS: the manifest's file is damaged. Reads the disk,
+/// and marks the package's blobs as used.
 absl::Status check_submit(JobSpec& spec, BlobStore& blobs);
 
-/// INVALID_ARGUMENT: a field is out of range.
+/// Checks the fields of a sequence. INVALID_ARGUMENT: one is out of range.
 absl::Status check_sequence(const SequenceSpec& spec);
 
-/// Checks a package, as check_submit. Returns its bytes, the manifest included.
+/// Checks a scene package as check_submit does. Returns its size in bytes, the manifest included.
 absl::StatusOr<std::uint64_t> check_package(const DigestHex& manifest, BlobStore& blobs);
 
-/// Returns how the package wants its image displayed; the default if its manifest cannot be read.
+/// Returns the exposure and tone with which the scene wants its image displayed; the default if its
+/// manifest cannot be read.
 Display display_of(const DigestHex& manifest, BlobSource& blobs);
 
 }  // namespace bandsaw::coordinator

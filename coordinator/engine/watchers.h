@@ -1,6 +1,7 @@
 #pragma once
 
-// The watchers of jobs: callbacks that are called when a job changes.
+// The watchers of jobs: callbacks that are called when a job changes, for `watch` and the
+// dashboard.
 
 #include <functional>
 #include <map>
@@ -13,7 +14,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Used by one thread.
+/// Not thread-safe; the scheduler's thread uses it.
 class Watchers {
  public:
   /// Takes the new state of the job. Returns false if it wants no further calls.

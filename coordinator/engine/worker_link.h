@@ -1,7 +1,8 @@
 #pragma once
 
-// The connection to one worker: the gRPC stream, or a fake in tests. Calls never block and never
-// fail; a broken link drops its messages.
+// The connection to one worker, on which the scheduler's actions for it are sent
+// (scheduler/api/messages.h): the gRPC stream, the WebSocket of a browser, or a fake in tests.
+// Calls never block and never fail; a broken link drops its messages.
 
 #include "coordinator/scheduler/api/messages.h"
 
@@ -10,6 +11,7 @@ namespace bandsaw::coordinator {
 class WorkerLink {
  public:
   virtual ~WorkerLink() = default;
+  /// `epoch`: name of this run of the coordinator.
   virtual void welcome(const action::Welcome& welcome, const std::string& epoch) = 0;
   virtual void refuse(const action::Refuse& refuse) = 0;
   virtual void lease(const action::Lease& lease) = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The last lines that each worker has sent of its log; bounded per worker and in total.
+// The last lines that each worker has sent of its log; limited per worker and in total.
 
 #include <cstddef>
 #include <deque>
@@ -12,7 +12,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Used by one thread.
+/// Not thread-safe.
 class WorkerLogs {
  public:
   /// Limits: lines per worker, and bytes in total.
@@ -38,7 +38,7 @@ class WorkerLogs {
   std::size_t max_bytes_;
   std::map<std::string, Log> logs_;
   std::size_t bytes_ = 0;
-  std::uint64_t calls_ = 0;
+  std::uint64_t calls_ = 0;  ///< number of calls of add
 };
 
 }  // namespace bandsaw::coordinator
