@@ -18,8 +18,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Three sums of a pixel: red, green, blue.
 constexpr std::uint64_t kPixelBytes = 3 * sizeof(double);
 
+/// Returns true for a value that a sum, or a time, can have.
 bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
 
 }  // namespace

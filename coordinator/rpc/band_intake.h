@@ -1,7 +1,8 @@
 #pragma once
 
-// Assembles one band from its chunks, checks each chunk against the previous ones, and hands the
-// band to the engine.
+// Assembles one band (a range of rows and samples that a worker rendered) from the chunks in which
+// it arrives, checks each chunk against the previous ones, and hands the band to the engine. Used
+// for gRPC (put_bands_call.h) and for browsers' WebSockets.
 
 #include <functional>
 
@@ -18,14 +19,15 @@ class BandIntake {
  public:
   /// Adds a chunk. INVALID_ARGUMENT names the field, the allowed range and the value.
   absl::Status add(const farm::BandChunk& chunk);
-  /// The two parts of add(): begin() takes the header, append() the next bytes.
+  /// The two parts of add(): begin() takes the header, append() the next bytes of the pixels' sums.
   absl::Status begin(const farm::BandHeader& header);
   absl::Status append(absl::string_view data);
   bool begun() const { return begun_; }
   /// Returns true if some chunks have arrived, but not all.
   bool cut() const { return begun_ && !whole(); }
+  /// Returns true if all bytes that the header announces have arrived.
   bool whole() const { return begun_ && received_ == header_.size(); }
-  std::uint64_t received() const { return received_; }
+  std::uint64_t received() const { return received_; }  ///< bytes
 
   const farm::BandHeader& header() const { return header_; }  ///< valid after the first chunk
   /// Returns the pixels of a complete band; callable once. INVALID_ARGUMENT: the bytes do not match

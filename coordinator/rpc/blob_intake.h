@@ -1,6 +1,7 @@
 #pragma once
 
-// Checks the chunks of one blob, each against the previous ones.
+// Checks the chunks in which a blob (a piece of scene data) is uploaded, each against the previous
+// ones. Does not keep the bytes.
 
 #include <cstdint>
 #include <optional>
@@ -14,8 +15,8 @@ namespace bandsaw::coordinator {
 
 class BlobIntake {
  public:
-  /// Checks a chunk. INVALID_ARGUMENT, RESOURCE_EXHAUSTED: names the field, the allowed range and
-  /// the value; the chunk is then ignored.
+  /// Checks a chunk. INVALID_ARGUMENT, or RESOURCE_EXHAUSTED if the blob is too large: names the
+  /// field, the allowed range and the value; the chunk is then ignored.
   absl::Status add(const farm::BlobChunk& chunk);
   /// Checks that the blob is complete. INVALID_ARGUMENT: bytes are missing.
   absl::Status end() const;
@@ -24,7 +25,7 @@ class BlobIntake {
   const wire::Digest& digest() const { return *digest_; }  ///< valid once begun
   std::uint64_t size() const { return size_; }             ///< size of the whole blob
   std::uint64_t first_offset() const { return first_; }    ///< offset of the first chunk
-  /// Including the bytes before the first chunk.
+  /// Returns the number of bytes that are there, including those before the first chunk.
   std::uint64_t received() const { return received_; }
 
  private:
@@ -36,8 +37,10 @@ class BlobIntake {
   std::uint64_t received_ = 0;
 };
 
-/// INVALID_ARGUMENT: the chunk is too long, or longer than the rest of the announced size.
+/// Checks the bytes of a chunk of a blob or band, of which `received` of `size` bytes have arrived
+/// before. INVALID_ARGUMENT: the chunk is too long, or longer than the rest of `size`.
 absl::Status check_chunk(absl::string_view data, std::uint64_t received, std::uint64_t size);
+/// Returns the error of a stream that ended after `received` of `size` bytes.
 absl::Status cut_short(std::uint64_t received, std::uint64_t size);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,7 @@
 #pragma once
 
-// The link by which browsers join as workers: at most one at a time, with a time when it ends.
+// The link by which browsers join as workers: the address of a page of the dashboard, with a
+// secret. There is at most one link at a time, and it ends at a given time.
 
 #include <functional>
 #include <memory>
@@ -14,7 +15,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Thread-safe. A change is on disk before it has an effect.
+/// Thread-safe. A change of the link is on disk before it has an effect.
 class BrowserAccess {
  public:
   /// Returns seconds since 1970, UTC. The link's end is a time of day, because it holds over

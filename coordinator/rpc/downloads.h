@@ -1,6 +1,6 @@
 #pragma once
 
-// Streams from the server in chunks: blobs to workers, images to users.
+// Streams from the server in chunks: blobs (scene data) to workers, images to users.
 
 #include <functional>
 #include <optional>
@@ -12,9 +12,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Work.GetBlob. Each chunk is copied out of the mapped file on the file executor, because touching
-/// a mapped page may wait for the disk. From begin() to Finish, either a task or a write is always
-/// in progress; when it ends, it checks whether stop() was called.
+/// Serves Work.GetBlob. Each chunk is copied out of the mapped file on the file executor, because
+/// touching a mapped page may wait for the disk. From begin() to Finish, either a task or a write
+/// is always in progress; when it ends, it checks whether stop() was called.
 class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobChunk>, GetBlobCall>,
                           public LongStream {
  public:
@@ -40,12 +40,12 @@ class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobCh
   absl::Status stopped_ GUARDED_BY(mutex_);
 };
 
-/// Farm.GetResult and Farm.Preview: an image that is made on the executor for images. As with
-/// GetBlobCall, a task or a write is always in progress.
+/// Serves Farm.GetResult and Farm.Preview: sends an image that is made on the executor for images.
+/// As with GetBlobCall, a task or a write is always in progress.
 class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultChunk>, ImageCall>,
                         public LongStream {
  public:
-  /// May block: it may wait for the engine.
+  /// Makes the image. May block, because it may wait for the engine.
   using Make = std::function<absl::StatusOr<HeldImage>()>;
   ImageCall(const ServiceDependencies& deps, Make make) : deps_(deps), make_(std::move(make)) {}
   void begin();

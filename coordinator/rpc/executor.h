@@ -14,6 +14,7 @@ namespace bandsaw::coordinator {
 
 class FileExecutor {
  public:
+  /// Starts this number of threads.
   explicit FileExecutor(int threads);
   /// Runs the tasks that are still queued, then ends. No task may be posted any more.
   ~FileExecutor();

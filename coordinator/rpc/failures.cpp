@@ -6,6 +6,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr double kMinute_s = 60;
+/// Bounds the memory.
 constexpr std::size_t kMaxAddresses = 10'000;
 
 }  // namespace

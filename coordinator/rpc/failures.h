@@ -1,6 +1,6 @@
 #pragma once
 
-// Counts wrong secrets per address, to limit the rate of attempts.
+// Counts wrong secrets per address, to limit the rate of attempts (Gate, BrowserAccess).
 
 #include <cstddef>
 #include <map>
@@ -8,15 +8,16 @@
 
 namespace bandsaw::coordinator {
 
-/// Has no clock: the time is passed with each call, in seconds since an arbitrary start. Used by
-/// one thread at a time.
+/// Not thread-safe. Has no clock: the time is passed with each call, in seconds since an arbitrary
+/// start.
 class Failures {
  public:
   /// More than `most` failures within a minute are too many.
   explicit Failures(std::size_t most) : most_(most) {}
 
   enum class Verdict { kFirst, kMore, kTooMany };
-  /// Counts one more failure of the address. kFirst: the first one in its minute.
+  /// Counts one more failure of the address. Returns kFirst for the first one in its minute,
+  /// kTooMany if there were more than `most` in this minute, otherwise kMore.
   Verdict add(const std::string& address, double now);
 
  private:

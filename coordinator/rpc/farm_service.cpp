@@ -1,5 +1,6 @@
-// The calls that move scenes and images, and the lists. Other calls of the service are in
-// farm_service_admin.cpp, farm_service_frames.cpp and farm_service_jobs.cpp.
+// Implements calls of the service Farm (proto/farm.proto): those that move scenes and images, and
+// the lists. Its other calls are in farm_service_admin.cpp, farm_service_frames.cpp and
+// farm_service_jobs.cpp.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/convert/farm_messages.h"

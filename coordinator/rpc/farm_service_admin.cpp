@@ -1,4 +1,5 @@
-// RPCs for administration: logs, quarantine, description of the coordinator, new secrets.
+// Implements the calls of the service Farm for administration: logs, quarantine, description of the
+// coordinator, new secrets, the link for browsers.
 
 #include <algorithm>
 #include <chrono>
@@ -19,7 +20,8 @@ double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Does what the request says. Waits for the disk.
+/// Returns the link for browsers, makes one, changes its end or revokes it, as the request says.
+/// Waits for the disk.
 absl::StatusOr<farm::BrowserLinkReply> browser_link(BrowserAccess& browsers,
                                                     const farm::BrowserLinkRequest& request) {
   farm::BrowserLinkReply reply;

@@ -1,4 +1,4 @@
-// RPCs about sequences and their frames.
+// Implements the calls of the service Farm about sequences (jobs of many frames) and their frames.
 
 #include "coordinator/convert/farm_messages.h"
 #include "coordinator/rpc/checked_messages.h"
@@ -22,8 +22,7 @@ Unary* FarmService::SubmitSequence(grpc::CallbackServerContext* context,
                                    farm::SubmitReply* reply) {
   return unary(deps_, *context, link::Role::kFarm, [&](Unary* reactor) -> absl::Status {
     ASSIGN_OR_RETURN(SequenceSpec spec, sequence_spec(*request));
-    deps_.engine.submit_sequence(std::move(spec), reply_with(reactor, reply),
-                                 request->priority());
+    deps_.engine.submit_sequence(std::move(spec), reply_with(reactor, reply), request->priority());
     return absl::OkStatus();
   });
 }

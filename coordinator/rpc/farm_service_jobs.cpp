@@ -1,4 +1,4 @@
-// RPCs that control or explain one job.
+// Implements the calls of the service Farm that control or explain one job.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/convert/farm_messages.h"

@@ -1,6 +1,7 @@
 #pragma once
 
-// Authentication: checks the secret of each call before anything else in the call is read.
+// Authentication: checks the secret of each call before anything else in the call is read. Each
+// secret gives a role: worker, or farm (a user).
 
 #include <grpcpp/grpcpp.h>
 
@@ -15,14 +16,14 @@
 
 namespace bandsaw::coordinator {
 
-/// A renewed secret, already written to disk.
+/// The result of a renewal of a secret, already written to disk.
 struct RenewedSecret {
   link::Identity identity;
-  std::string join_file;
+  std::string join_file;  ///< path of the file with the new join string
   /// Status of writing the files beside the identity; the secret is renewed even if this failed.
   absl::Status written = {};
 };
-/// nullptr: secrets cannot be renewed. May block on the disk.
+/// Renews the secret of a role. nullptr: secrets cannot be renewed. May block on the disk.
 using RenewSecret = std::function<absl::StatusOr<RenewedSecret>(link::Role)>;
 
 /// Thread-safe.
@@ -40,9 +41,10 @@ class Gate {
   /// Like check(), for calls that both roles may make.
   absl::Status check_any(const grpc::CallbackServerContext& context) EXCLUDES(mutex_);
 
-  /// Renews a role's secret and returns the file with the new join string. The old secret is
-  /// refused from the moment this returns. FAILED_PRECONDITION: this server cannot renew secrets.
-  /// MUST NOT be called on gRPC's threads, because it waits for the disk.
+  /// Renews a role's secret and returns the path of the file with the new join string. The old
+  /// secret is refused from the moment this returns. FAILED_PRECONDITION: this server cannot renew
+  /// secrets. If the secret is new, but not in all files, the error says so. MUST NOT be called on
+  /// gRPC's threads, because it waits for the disk.
   absl::StatusOr<std::string> rotate(link::Role role) EXCLUDES(rotating_);
 
  private:

@@ -17,6 +17,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Takes the memory of an image of this size from the budget.
 absl::StatusOr<MemoryBudget::Share> share_for(Engine& engine, std::uint32_t width,
                                               std::uint32_t height) {
   const std::uint64_t bytes = std::uint64_t{width} * height * sizeof(Rgb);
@@ -38,6 +39,7 @@ absl::StatusOr<HeldImage> finished_image(Engine& engine, const JobView& job, Fin
   return HeldImage{std::move(result), std::move(share)};
 }
 
+/// Reduces the image by these factors, and its share of the memory accordingly.
 void shrink(HeldImage& held, std::uint32_t across, std::uint32_t down) {
   if (across > 1 || down > 1) {
     held.result.image = shrunk(held.result.image, across, down);
@@ -94,6 +96,7 @@ absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::ui
     shrink(held, step, step);
     return held;
   }
+  // The preview has every step-th row already; only its columns are reduced below.
   const std::uint32_t rows = (settings.height - 1) / step + 1;
   ASSIGN_OR_RETURN(MemoryBudget::Share share, share_for(engine, settings.width, rows));
   using Part = absl::StatusOr<Image>;

@@ -1,6 +1,7 @@
 #pragma once
 
-// The present picture of a job, for display.
+// The present picture of a job, for display: of Farm.Preview and Farm.GetResult, and of the
+// dashboard.
 
 #include <cstdint>
 
@@ -19,16 +20,16 @@ struct HeldImage {
   MemoryBudget::Share share;
 };
 
-/// Returns the finished image, or the number of samples of each pixel. Errors: those of
+/// Returns the finished image, or another part of the result (FinishedPart). Errors: those of
 /// Engine::result. This function and those below also return RESOURCE_EXHAUSTED if images that are
 /// viewed or downloaded at the same time leave too little memory.
 absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job,
                                     FinishedPart part = FinishedPart::kImage);
 
-/// Returns the finished image of the job, or the present image of a job that is not done, with at
-/// most about `most_side` (>= 1) pixels per side. `digest` of the result is not set. For a
-/// sequence, this is the image of the last frame that was done; if none is done, of the first frame
-/// that is being rendered. NOT_FOUND: no band of the job is stored.
+/// Returns the finished image of the job, or the present image of a job that is not done, reduced
+/// by a whole factor to at most about `most_side` (>= 1) pixels per side. `digest` of the result is
+/// not set. For a sequence, this is the image of the last frame that was done; if none is done, of
+/// the first frame that is being rendered. NOT_FOUND: no band of the job is stored.
 absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side);
 /// The same for the job with this id; sets `digest`.
 absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side);

@@ -7,10 +7,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Work.PutBands. Flow control: the next band is read only after the previous one is answered, so a
-/// worker's stream needs the memory of one band. Chunks are copied and hashed on gRPC's thread,
-/// which for small bands costs less than handing them to another thread; the engine writes them to
-/// disk.
+/// Serves Work.PutBands, the stream on which a worker sends its finished bands. Flow control: the
+/// next band is read only after the previous one is answered, so a worker's stream needs the memory
+/// of one band. Chunks are copied and hashed on gRPC's thread, which for small bands costs less
+/// than handing them to another thread; the engine writes them to disk.
 class PutBandsCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>, PutBandsCall>,
       public LongStream {
@@ -28,9 +28,10 @@ class PutBandsCall final
  private:
   absl::Status take(const farm::BandChunk& chunk) EXCLUDES(mutex_);
   void read_next() EXCLUDES(mutex_);
-  /// Returns false if the call is over.
+  /// Marks the band as given to the engine. Returns false if the call is over.
   bool hand_over() EXCLUDES(mutex_);
   void answer(const absl::StatusOr<BandOutcome>& outcome) EXCLUDES(mutex_);
+  /// Finishes the call if it is to end and no band is with the engine.
   void advance() REQUIRES(mutex_);
 
   const ServiceDependencies deps_;
@@ -38,7 +39,7 @@ class PutBandsCall final
   BandIntake intake_;
   farm::PutBandReply reply_;  ///< accessed by the thread that answers
   Mutex mutex_;
-  /// Returns true while a band is with the engine or its answer is being written.
+  /// True while a band is with the engine or its answer is being written.
   bool handed_over_ GUARDED_BY(mutex_) = false;
   bool finished_ GUARDED_BY(mutex_) = false;
   std::optional<absl::Status> end_ GUARDED_BY(mutex_);

@@ -23,6 +23,7 @@ namespace {
 using Plugin = grpc::reflection::ProtoServerReflectionPlugin;
 using Plugins = std::vector<std::unique_ptr<grpc::ServerBuilderPlugin>>;
 
+/// Adds the reflection plugin to a server if it is wanted, otherwise removes it.
 class ReflectionOption final : public grpc::ServerBuilderOption {
  public:
   explicit ReflectionOption(bool wanted) : wanted_(wanted) {}
@@ -41,7 +42,8 @@ class ReflectionOption final : public grpc::ServerBuilderOption {
 };
 
 /// Enables or disables gRPC server reflection, which lists services, calls and messages to any
-/// client. libgrpc++_reflection enables it by being linked; this function removes that plugin.
+/// client. The library libgrpc++_reflection enables it by being linked, so its plugin is removed
+/// unless it is wanted.
 void set_reflection(grpc::ServerBuilder& builder, bool wanted) {
   builder.SetOption(std::make_unique<ReflectionOption>(wanted));
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// The two services of proto/farm.proto: each method authenticates the caller and creates the call
-// object.
+// The two services of proto/farm.proto, Farm for users and Work for workers: each method
+// authenticates the caller and creates the object that serves the call.
 
 #include "coordinator/rpc/streams.h"
 #include "proto/farm.grpc.pb.h"

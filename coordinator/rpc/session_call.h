@@ -5,8 +5,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Work.Session. The engine receives `lost` exactly once, in OnDone, after which no message of the
-/// stream can arrive.
+/// Serves Work.Session, the stream of messages between a worker and the coordinator, by gRPC. The
+/// engine receives `lost` exactly once, in OnDone, after which no message of the stream can arrive.
 class SessionCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::FromWorker, farm::ToWorker>, SessionCall>,
       public WorkerSession,

@@ -31,10 +31,12 @@ class LongStream {
   virtual link::Role role() const = 0;
 };
 
+/// Thread-safe. The register does not keep the streams alive.
 class LongStreams {
  public:
-  /// UNAVAILABLE after stop_all(); RESOURCE_EXHAUSTED: too many streams.
+  /// Registers a stream. UNAVAILABLE after stop_all(); RESOURCE_EXHAUSTED: too many streams.
   absl::Status add(std::weak_ptr<LongStream> stream) EXCLUDES(mutex_);
+  /// Stops all streams; later ones are refused.
   void stop_all(const absl::Status& why) EXCLUDES(mutex_);
   /// Stops the open streams of one role.
   void stop_those_of(link::Role role, const absl::Status& why) EXCLUDES(mutex_);
@@ -61,8 +63,9 @@ inline absl::Status void_secret() {
       "this secret is void: a new join string is on the coordinator's machine");
 }
 
-/// A reactor that owns itself until OnDone, gRPC's last call to it. Callbacks that may come later
-/// (an answer of the engine, a task of the file executor) hold it by shared_from_this().
+/// A reactor (gRPC's object for one call) that owns itself until OnDone, gRPC's last call to it.
+/// Callbacks that may come later (an answer of the engine, a task of the file executor) hold it by
+/// shared_from_this().
 template <class Base, class Derived>
 class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
  public:

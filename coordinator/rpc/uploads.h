@@ -9,8 +9,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Farm.PutBlob: receives a blob in chunks. The next chunk is read only when the previous one has
-/// been written to the file, on the file executor.
+/// Serves Farm.PutBlob: receives a blob (scene data) in chunks. The next chunk is read only when
+/// the previous one has been written to the file, on the file executor.
 class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChunk>, PutBlobCall>,
                           public LongStream {
  public:
@@ -23,11 +23,13 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
   link::Role role() const override { return link::Role::kFarm; }
 
  private:
-  /// Returns std::nullopt if the next chunk is to be read.
+  /// Processes a chunk, or the end of the stream if `ok` is false. Returns the status with which
+  /// the call ends; std::nullopt: the next chunk is to be read.
   std::optional<absl::Status> take(bool ok);
   void after_task(std::optional<absl::Status> ended) EXCLUDES(mutex_);
   absl::Status add(const farm::BlobChunk& chunk);
   absl::Status end();
+  /// Finishes the call if it is to end and no task is in progress.
   void advance() REQUIRES(mutex_);
 
   const ServiceDependencies deps_;

@@ -7,8 +7,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Farm.Watch. Keeps at most one unsent status (a conflating queue): a slow reader receives fewer
-/// statuses, never stale ones.
+/// Serves Farm.Watch: sends the state of a job after each change. Keeps at most one unsent status
+/// (a conflating queue): a slow reader receives fewer statuses, never stale ones.
 class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatus>, WatchCall>,
                         public LongStream {
  public:

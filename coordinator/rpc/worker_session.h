@@ -41,7 +41,8 @@ class WorkerSession : public WorkerLink {
       EXCLUDES(mutex_);
   /// Called by the transport when write() has ended. `ok`: the message was sent.
   void sent(bool ok) EXCLUDES(mutex_);
-  /// Ends the session after all messages that wait. The first status of these two counts.
+  /// Ends the session after all messages that wait. If the session is ended more than once, the
+  /// first status counts.
   void end_after_queue(const absl::Status& status) EXCLUDES(mutex_);
   /// Ends the session after the message in progress; the others are dropped.
   void end_now(const absl::Status& status) EXCLUDES(mutex_);
@@ -55,8 +56,8 @@ class WorkerSession : public WorkerLink {
   virtual void read_next() = 0;
   /// Sends a message, which exists until sent() is called.
   virtual void write(const farm::ToWorker& message) = 0;
-  /// Ends the connection. Called once; no write() follows. OK: at the worker's or the engine's
-  /// wish.
+  /// Ends the connection. Called once; no write() follows. OK: the worker or the engine wanted the
+  /// end.
   virtual void finish(const absl::Status& status) = 0;
 
   absl::Status forward(const farm::FromWorker& message, const std::shared_ptr<WorkerLink>& self);
