@@ -23,7 +23,7 @@ struct RowsBy {
 absl::Status write_attribution(const std::vector<RowsBy>& attribution, const std::string& path);
 
 /// Reads the file. NOT_FOUND: no such file. DATA_LOSS: damaged, with the reason.
-/// RESOURCE_EXHAUSTED: far too long.
+/// RESOURCE_EXHAUSTED: far longer than any attribution.
 absl::StatusOr<std::vector<RowsBy>> read_attribution(const std::string& path);
 
 }  // namespace bandsaw::coordinator

@@ -1,4 +1,5 @@
-// Appends records and syncs them. Reading finds the next record after a damaged one by its magic.
+// Appends records and syncs them. The reader finds the next record after a damaged one by the magic
+// bytes with which each record begins.
 
 #include "coordinator/store/band_log.h"
 
@@ -18,13 +19,13 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is little-endian");
 
-/// Magic and size (renderlib/render/band_file.h).
+/// Bytes of the magic and the size, with which a record begins (renderlib/render/band_file.h).
 constexpr std::size_t kSizeEnd = kBandRecordMagic.size() + sizeof(std::uint64_t);
 /// The largest band that a worker may send, plus the other fields of a record.
 constexpr std::uint64_t kMaxRecordBytes = wire::kBandBytes + 4096;
 
-/// Returns the offset of the next possible record at or after `offset`; the end of the file if
-/// there is none.
+/// Returns the offset of the next magic at or after `offset`, where a record may begin; the end of
+/// the file if there is none.
 std::uint64_t next_magic(absl::Span<const std::byte> bytes, std::uint64_t offset) {
   const auto* magic = reinterpret_cast<const std::byte*>(kBandRecordMagic.data());
   const auto found = std::search(bytes.begin() + static_cast<std::ptrdiff_t>(offset), bytes.end(),

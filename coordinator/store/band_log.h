@@ -1,6 +1,7 @@
 #pragma once
 
-// The bands of one job on disk: an append-only file of band records (renderlib/render/band_file.h).
+// The band log of one job: an append-only file of band records, which hold the sums of the pixels
+// of a range of rows and samples as a worker rendered them (renderlib/render/band_file.h).
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,7 @@
 #pragma once
 
-// Stores blobs as files named by digest. Thread-safe; calls may block on the disk.
+// Stores blobs (pieces of scene data, named by their SHA-256) as files. Thread-safe; calls may
+// block on the disk.
 
 #include <cstdint>
 #include <memory>
@@ -24,6 +25,7 @@ class BlobStore : public BlobSource {
   /// `folder` MUST exist and be used by this store only.
   static absl::StatusOr<std::unique_ptr<BlobStore>> open(const std::string& folder);
 
+  /// Returns true if the whole blob is stored.
   bool has(const wire::Digest& digest) const;
   /// Returns the number of bytes that are kept of an interrupted upload of a blob that is not
   /// stored.
@@ -76,8 +78,8 @@ class BlobStore : public BlobSource {
     wire::Digest digest_;
     std::uint64_t size_ = 0;
     std::uint64_t earlier_ = 0;  ///< bytes from an earlier upload
-    std::uint64_t written_ = 0;  ///< including those
-    bool intact_ = true;
+    std::uint64_t written_ = 0;  ///< bytes in the file, those of the earlier upload included
+    bool intact_ = true;         ///< the bytes are worth keeping as a partial blob
     wire::Hasher hasher_;
     /// Released after the file is closed; nullptr after a move.
     std::unique_ptr<PartialBlobs::Claim> claim_;
@@ -98,6 +100,7 @@ class BlobStore : public BlobSource {
   std::string folder_;
   std::unique_ptr<PartialBlobs> partials_;
   Mutex mutex_;
+  /// Blobs whose digest was checked by get().
   std::set<wire::Digest> checked_ GUARDED_BY(mutex_);
 };
 

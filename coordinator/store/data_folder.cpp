@@ -1,5 +1,5 @@
-// The lock is an flock on a file that also holds the process id, for the message to a second
-// coordinator.
+// Opens the data folder: takes its lock, and checks its format. The lock is an flock on a file that
+// also holds the process id, for the message to a second coordinator.
 
 #include "coordinator/store/data_folder.h"
 
@@ -23,6 +23,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr absl::string_view kFormat = "bandsaw data 1\n";
+/// Bytes that are really written to test the disk; the rest of the space is only reserved.
 constexpr std::size_t kProbeBytes = 1 << 16;
 
 /// Reads at most `limit` bytes of a small file.

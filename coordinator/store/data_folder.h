@@ -15,8 +15,9 @@ namespace bandsaw::coordinator {
 class DataFolder {
  public:
   /// Creates the folder (mode 0700) if it does not exist; its parent MUST exist.
-  /// FAILED_PRECONDITION: another coordinator uses it (the message names its process id), it was
-  /// written by another version of the format, or it is not a data folder.
+  /// FAILED_PRECONDITION: another coordinator uses it (the message names its process id), or it was
+  /// written by another version of the format. DATA_LOSS: it has a journal, but the file with its
+  /// format is missing.
   static absl::StatusOr<DataFolder> open(const std::string& path);
 
   const std::string& path() const { return path_; }
@@ -40,7 +41,7 @@ class DataFolder {
 };
 
 /// Returns OK if the disk has space for `bytes`, by default those of the largest band, and accepts
-/// data. Tests this with a file: reserves space, writes, syncs, removes.
+/// data. Tests this with a file: reserves the space, writes a little, syncs, and removes the file.
 absl::Status probe_disk(const std::string& folder, std::uint64_t bytes = wire::kBandBytes);
 
 /// Returns the bytes that this user may still write on the disk of a folder, or the system's error.

@@ -1,6 +1,7 @@
 #pragma once
 
-// Named values as text: a line "name value" for each, in a fixed order. Values are escaped as in C.
+// Named values as text, for journal records and small files: a line "name value" for each, in a
+// fixed order. Text values are escaped as in C.
 
 #include <charconv>
 #include <cstdint>
@@ -29,9 +30,11 @@ class FieldReader {
  public:
   explicit FieldReader(absl::string_view fields) : rest_(fields) {}
   std::string text(absl::string_view name);
+  /// A number above `most` is an error.
   std::uint64_t number(absl::string_view name, std::uint64_t most = UINT64_MAX);
   double real(absl::string_view name);
-  /// Returns true if the next field has this name. For fields that older versions did not write.
+  /// Returns true if the next field has this name. Needed for fields that older versions did not
+  /// write.
   bool next_is(absl::string_view name) const;
   /// Returns the status. DATA_LOSS: a field is missing, malformed, out of range, or left over at
   /// the end.

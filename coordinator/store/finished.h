@@ -1,6 +1,6 @@
 #pragma once
 
-// The results of a finished job.
+// The results of a finished job, which the film's thread hands to the store.
 
 #include <optional>
 #include <vector>
@@ -12,9 +12,9 @@ namespace bandsaw::coordinator {
 
 struct Finished {
   Image image;
-  /// Mean of the first part of each pixel's samples (Film::first_part), from which the noise of the
-  /// image is known. Absent if a pixel has a single block of samples, or the integrator computes no
-  /// radiance.
+  /// Mean of the first part of each pixel's samples (Film::first_part), from which the denoiser
+  /// estimates the noise of the image. Absent if a pixel has a single block of samples (8), or the
+  /// integrator computes no radiance.
   std::optional<Image> first;
   /// Number of samples of each pixel, the same in all channels. Only for an adaptive job; in other
   /// jobs all pixels have the same number.

@@ -1,6 +1,7 @@
 #pragma once
 
-// Interface of the journal: the scheduler's durable records, in order.
+// Interface of the journal: the scheduler's records (scheduler/api/records.h) on disk, in order.
+// After a restart they rebuild its state.
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"

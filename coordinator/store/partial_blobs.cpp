@@ -43,7 +43,7 @@ std::vector<std::filesystem::path> paths_in(const std::string& folder) {
   return paths;
 }
 
-/// Newest first.
+/// Returns the partial blobs in the folder, the newest first.
 std::vector<Partial> partials_in(const std::string& folder) {
   std::vector<Partial> all;
   for (const std::filesystem::path& path : paths_in(folder)) {

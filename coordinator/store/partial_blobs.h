@@ -26,7 +26,8 @@ class PartialBlobs {
   /// Returns the number of bytes from which an upload can resume; 0 while an upload is in progress.
   std::uint64_t size(const wire::Digest& digest) const EXCLUDES(mutex_);
 
-  /// A file for an incoming blob. No other claim gets the same file while it is held.
+  /// The right to write an incoming blob to a file. No other claim gets the same file while it is
+  /// held.
   class Claim {
    public:
     Claim(PartialBlobs& all, std::string path, bool resumable)
@@ -45,6 +46,7 @@ class PartialBlobs {
     const std::string path_;
     const bool resumable_;
   };
+  /// Claims the file of this blob; if it is claimed already, another file, which is not resumable.
   std::unique_ptr<Claim> claim(const wire::Digest& digest) EXCLUDES(mutex_);
 
   /// Removes files that were not written to for `seconds`. `now`: seconds since 1970.
@@ -59,7 +61,8 @@ class PartialBlobs {
 
   const std::string folder_;
   mutable Mutex mutex_;
-  std::set<std::string> claimed_ GUARDED_BY(mutex_);  ///< paths
+  std::set<std::string> claimed_ GUARDED_BY(mutex_);  ///< paths of the files that are held
+  /// Number of files that were not resumable, for their names.
   std::uint64_t others_ GUARDED_BY(mutex_) = 0;
 };
 

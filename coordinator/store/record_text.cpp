@@ -1,5 +1,5 @@
-// write and read functions for each kind of record; their order of fields is the format. Longer
-// groups of fields are in the files of record_text_parts.h.
+// to_text() writes the fields of each kind of record, and from_text() reads them in the same order,
+// which is the format. Longer groups of fields are in the files of record_text_parts.h.
 
 #include "coordinator/store/record_text.h"
 
@@ -68,7 +68,7 @@ void write_summary(FieldWriter& out, const record::JobSummary& r) {
   out.number("bad_sample", r.counters.bad_sample);
 }
 
-/// Records of older versions lack these counters.
+/// Reads the counters of a summary. Records of older versions lack the first five.
 Counters read_counters(FieldReader& in) {
   Counters counters;
   if (in.next_is("negative_samples")) {
@@ -131,7 +131,7 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "time_spent") {
     return record::TimeSpent{.job = in.number("job"), .elapsed_s = in.real("elapsed_s")};
   }
-  if (kind == "job_summary" || kind == "figures") {  // before version 8
+  if (kind == "job_summary" || kind == "figures") {  // "figures": before version 8
     return read_summary(in);
   }
   if (kind == "error_measured") {
@@ -140,7 +140,7 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "share_counted") {
     return read_share(in);
   }
-  if (kind == "failure_log" || kind == "last_words") {  // before version 8
+  if (kind == "failure_log" || kind == "last_words") {  // "last_words": before version 8
     return record::FailureLog{.job = in.number("job"),
                               .worker = in.text("worker"),
                               .log = absl::StrSplit(in.text("log"), '\n', absl::SkipEmpty())};

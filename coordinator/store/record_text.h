@@ -1,7 +1,7 @@
 #pragma once
 
-// A journal record as text: a kind and named fields. The format is specified in this folder's
-// README.
+// A journal record as text: a kind and named fields, as they are stored in the journal's table. The
+// format is specified in this folder's README.
 
 #include <string>
 
@@ -17,6 +17,7 @@ struct RecordText {
   friend bool operator==(const RecordText&, const RecordText&) = default;
 };
 
+/// The reverse of from_text.
 RecordText to_text(const Record& record);
 
 /// Parses a record. DATA_LOSS names the field: unknown kind or field, missing field, value out of

@@ -1,5 +1,5 @@
-// The fields of job and sequence specifications, tile plans and frame scenes, in the order in which
-// they are written.
+// Text of records about jobs and sequences: their specifications, the plans of adaptive jobs, and
+// the scenes of frames. The functions write and read the fields in the same order.
 
 #include "coordinator/store/record_text_parts.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// Parts of record_text.cpp: groups of records as fields. Each read function reads the output of the
-// write function of the same name; FieldReader keeps its first error.
+// Parts of record_text.cpp, which stores journal records as text: groups of records as fields. Each
+// read function reads the output of the write function of the same name; FieldReader keeps its
+// first error.
 
 #include <optional>
 

@@ -11,7 +11,7 @@
 
 namespace bandsaw::coordinator {
 
-/// A file that only occupies disk space. Used by one thread at a time.
+/// Not thread-safe.
 class Reserve {
  public:
   static constexpr std::uint64_t kBytes = 16ull << 20;

@@ -14,11 +14,11 @@
 
 namespace bandsaw::coordinator {
 
-/// Selects a job's image, the mean of the first part of each pixel's samples (Film::first_part), or
-/// the number of samples of each pixel.
+/// Selects a part of a job's result: its image, the mean of the first part of each pixel's samples
+/// (Film::first_part), or the number of samples of each pixel.
 enum class FinishedPart { kImage, kFirst, kSamples };
 
-/// A finished image as it is kept: linear RGB float.
+/// A part of a result as it is kept: linear RGB float.
 struct StoredResult {
   Image image;
   wire::Digest digest;   ///< digest of the pixels' bytes

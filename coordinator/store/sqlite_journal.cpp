@@ -21,7 +21,8 @@ constexpr char kTables[] =
 
 std::string raise_version() { return absl::StrCat("PRAGMA user_version = ", kSchema, ";"); }
 
-/// Detects a changed byte in a value, which SQLite itself does not.
+/// Returns a checksum of a record. It detects a changed byte in a value, which SQLite itself does
+/// not.
 std::string seal(std::uint64_t sequence, const RecordText& text) {
   return wire::sha256(absl::StrCat(sequence, "\n", text.kind, "\n", text.fields))
       .hex()

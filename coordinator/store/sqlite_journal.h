@@ -17,8 +17,8 @@ namespace bandsaw::coordinator {
 
 class SqliteJournal : public Journal {
  public:
-  /// Makes the file if it does not exist. DATA_LOSS: it is damaged. FAILED_PRECONDITION: another
-  /// version of the schema, or the file system cannot hold a write-ahead log.
+  /// Makes the file if it does not exist. DATA_LOSS: it is damaged. FAILED_PRECONDITION: the schema
+  /// is of a later version, or the file system cannot hold a write-ahead log.
   static absl::StatusOr<std::unique_ptr<SqliteJournal>> open(const std::string& path);
   ~SqliteJournal() override = default;
 
@@ -45,7 +45,10 @@ class SqliteJournal : public Journal {
   /// Returns the first column of the first row, as text.
   absl::StatusOr<std::string> query(const char* sql);
   absl::Status insert(const Record& record, std::uint64_t sequence);
+  /// Runs the statement `first` and then inserts the records with the sequence numbers that follow
+  /// `after`, all in one transaction.
   absl::Status transact(const char* first, absl::Span<const Record> records, std::uint64_t after);
+  /// Returns SQLite's present error as a status; `what` failed.
   absl::Status error(const std::string& what) const;
 
   std::unique_ptr<sqlite3, CloseDatabase> database_;

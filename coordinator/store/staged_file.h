@@ -26,6 +26,7 @@ class StagedFile {
   /// Removes the file unless commit() or leave() was called.
   ~StagedFile();
 
+  /// RESOURCE_EXHAUSTED: the disk is full.
   absl::Status append(absl::Span<const std::byte> bytes) { return file_.write(bytes); }
   absl::Status read(std::uint64_t offset, absl::Span<std::byte> bytes) const {
     return file_.read(offset, bytes);
