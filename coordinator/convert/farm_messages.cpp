@@ -1,5 +1,5 @@
 // to_message() makes a message of a value; the functions that end in _of make a value of a message.
-// The enums of both are declared in the same order.
+// FrameState has the same numbers in both, so it is cast.
 
 #include "coordinator/convert/farm_messages.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // Converts between the messages of farm.proto that describe jobs and workers, and the scheduler's
-// values, both ways, for the server and for the commands.
+// values, both ways. The server and the dashboard send these messages, the commands receive them.
 
 #include <string>
 
