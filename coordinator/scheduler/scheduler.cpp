@@ -1,5 +1,6 @@
 // step() passes the input to the part that handles it, then lets the other parts react in a fixed
-// order (finish_step), and returns the records and actions that they have collected in the context.
+// order (finish_step). It returns the records for the journal and the actions for the engine that
+// the parts have collected in the context.
 
 #include "coordinator/scheduler/scheduler.h"
 

@@ -132,14 +132,17 @@ struct BandStored {
   JobId job = 0;
   Band band;
   std::vector<std::uint64_t> row_digests;  ///< one per row, of the row's sums
-  std::string instance;         ///< worker that rendered it; empty if read back from disk
+  std::string instance;         ///< of the worker that rendered it; empty if read back from disk
   WorkerProcessId process = 0;  ///< process that rendered it, if read back from disk
   Counters counters;
+  /// Time that the worker rendered it; 0: unknown, as if read back from disk.
   double render_s = 0;
-  double cpu_s = 0;
+  double cpu_s = 0;     ///< CPU time of its threads
   bool written = true;  ///< false: all rows were stored already and it was only compared
 };
-/// The film has merged every row of samples [0, samples). Sent once more for the finished image.
+/// The film has merged every row of samples [0, samples). It is also sent just before the finished
+/// image is written, because earlier messages may have the error of more samples than the image
+/// has.
 struct PassMerged {
   JobId job = 0;
   std::uint64_t samples = 0;

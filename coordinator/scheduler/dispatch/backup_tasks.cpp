@@ -1,6 +1,7 @@
-// share() goes through the leases of running jobs, the one that is expected to end last first. If a
-// lease is for an audit, it tries to move it; if its worker has not begun it, to steal it;
-// otherwise, to give its rows to idle workers as well.
+// A backup task is a second lease of the rows of a late lease. share() goes through the leases of
+// running jobs, the one that is expected to end last first. If a lease is for an audit, share()
+// tries to move it; if its worker has not begun it, to steal it; otherwise, to grant backup tasks
+// for its rows to idle workers.
 
 #include "coordinator/scheduler/dispatch/backup_tasks.h"
 
@@ -258,6 +259,7 @@ RowRange BackupTasks::rows_without_backup(const Job& job, const Lease& lease) co
         if (!later || both.first >= both.last) {
           continue;
         }
+        // Cuts off the rows of this backup task, at the front (then starts again) or at the end.
         again = both.first == rows.first;
         (again ? rows.first : rows.last) = again ? both.last : both.first;
         break;

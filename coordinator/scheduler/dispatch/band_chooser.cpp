@@ -1,8 +1,9 @@
-// choose() finds a free piece of the job (rows and samples that are neither leased nor stored) that
-// this worker may have, and cuts a band from its first rows, of the size that size_band() computes.
-// Two kinds of rows are treated differently. Probes are a few rows spread over the image that are
-// rendered first. Suspect rows are those that a worker held when it was lost, so that they may have
-// crashed it: they are never in a band with other rows.
+// A band is a range of rows and samples that is leased to a worker. choose() finds a free piece of
+// the job (rows and samples that are neither leased nor stored) that this worker may have, and cuts
+// a band from its first rows, of the size that size_band() computes. Two kinds of rows are treated
+// differently. Probes are a few rows spread over the image that are rendered first. Suspect rows
+// are those that a worker held when it was lost, so that they may have crashed it: they are never
+// in a band with other rows.
 
 #include "coordinator/scheduler/dispatch/band_chooser.h"
 

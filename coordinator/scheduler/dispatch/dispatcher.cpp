@@ -1,5 +1,6 @@
-// assign() gives free rows to workers, one lease for each worker in turn, and then backup tasks,
-// until no worker can take more.
+// assign() gives free rows to workers, one lease for each worker in turn, and then backup tasks
+// (second leases of late bands), until no worker can take more. A worker can take as many leases as
+// it has credits.
 
 #include "coordinator/scheduler/dispatch/dispatcher.h"
 

@@ -1,5 +1,6 @@
-// order_for() lists the frame jobs of a sequence in the order in which a worker should take them:
-// the frame that it renders now, then those that nobody renders, then those of others.
+// Each frame of a sequence is rendered by a job of its own, its frame job. order_for() lists the
+// frame jobs of a sequence in the order in which a worker should take them: the frame that it
+// renders now, then those that nobody renders, then those of others.
 
 #include "coordinator/scheduler/dispatch/frame_chooser.h"
 

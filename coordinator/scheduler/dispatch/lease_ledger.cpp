@@ -1,5 +1,6 @@
-// Every change of a lease is made in three places here: in the coverage of its pass, which says who
-// owns each row, in its job, and at its worker.
+// A lease assigns a band (a range of rows and samples) to a worker. Every change of a lease is made
+// in three places here: in the coverage of its pass, which says who owns each row, in its job, and
+// at its worker.
 
 #include "coordinator/scheduler/dispatch/lease_ledger.h"
 

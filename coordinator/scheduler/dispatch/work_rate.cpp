@@ -1,5 +1,6 @@
-// A stored band tells how fast its worker is and how costly its rows are. measure() corrects the
-// costs of the rows and the rates of the worker and of the job.
+// The render time of a stored band (a range of rows and samples) tells how fast its worker is and
+// how costly its rows are. measure() corrects the costs of the rows and the rates of the worker and
+// of the job.
 
 #include "coordinator/scheduler/dispatch/work_rate.h"
 

@@ -1,6 +1,6 @@
-// advance() is called after each change of a job's rows: it evaluates a checkpoint that waits,
-// plans passes of a timed job, and requests the image when all passes are complete. end() is the
-// only way to a final state.
+// advance() is called after each change of a job's rows. It evaluates a checkpoint that waits (a
+// number of samples at which the error is compared with its target), ends a job whose time is up,
+// and requests the image when all passes are complete. end() is the only way to a final state.
 
 #include "coordinator/scheduler/jobs/job_lifecycle.h"
 

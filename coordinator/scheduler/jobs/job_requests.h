@@ -19,8 +19,8 @@ class JobRequests {
   /// ALREADY_EXISTS: the request id is of a job with another spec. INVALID_ARGUMENT: the stop rule,
   /// image size or priority is out of range. RESOURCE_EXHAUSTED: too many jobs.
   void submit(const input::Submit& in);
-  /// Errors of this and the following requests: NOT_FOUND: no such job. FAILED_PRECONDITION: the
-  /// job is final; cancel() then has no effect and returns no error.
+  /// Errors of cancel, pause, resume and set_priority: NOT_FOUND: no such job. FAILED_PRECONDITION:
+  /// the job is final; cancel() then has no effect and returns no error.
   void cancel(const input::Cancel& in);
   /// Further error: FAILED_PRECONDITION if the job is finishing.
   void pause(const input::Pause& in);

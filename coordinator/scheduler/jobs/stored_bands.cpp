@@ -1,5 +1,5 @@
-// store() counts the rows of a band that are new as stored; free_damaged() makes the rows of a
-// damaged band free again.
+// A band is a range of rows and samples. store() counts those of its rows that are new as stored;
+// free_damaged() makes the rows of a band that is damaged on disk free again.
 
 #include "coordinator/scheduler/jobs/stored_bands.h"
 

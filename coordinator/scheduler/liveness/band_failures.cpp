@@ -1,5 +1,6 @@
-// A failure is noted at the job and its lease is ended, so that another worker gets the band. A
-// band that fails too often, or that no worker may render any more, fails its job.
+// A failure is noted at the job and its lease is ended, so that another worker gets the band (a
+// range of rows and samples). A band that fails too often, or that no worker may render any more,
+// fails its job.
 
 #include "coordinator/scheduler/liveness/band_failures.h"
 

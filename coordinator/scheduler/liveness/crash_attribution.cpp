@@ -1,6 +1,6 @@
-// When a worker is lost, the bands that it may have been rendering become suspicions of their jobs.
-// A suspect band is retried in pieces; a further loss at a piece is conclusive, and enough
-// conclusive losses fail the job.
+// When a worker is lost, the bands (ranges of rows and samples) that it may have been rendering
+// become suspicions of their jobs. A suspect band is retried in pieces; a further loss at a piece
+// is conclusive, and enough conclusive losses fail the job.
 
 #include "coordinator/scheduler/liveness/crash_attribution.h"
 

@@ -3,9 +3,9 @@
 // Crash attribution: distinguishes a band that crashes its workers from workers lost by chance.
 //
 // A lost worker proves nothing about its band: nobody sees whether its process, its machine or its
-// cable ended. So the bands that it held become suspect and are retried in pieces, each by a worker
-// that holds nothing else. If that worker is lost as well, its crash counts against the piece. A
-// job fails when more machines were lost at a piece than chance explains (CrashRate).
+// network failed. So the bands that it held become suspect and are retried in pieces, each by a
+// worker that holds nothing else. If that worker is lost as well, its crash counts against the
+// piece. A job fails when more machines were lost at a piece than chance explains (CrashRate).
 
 #include <cstddef>
 #include <vector>
@@ -38,6 +38,7 @@ class CrashRate {
 
  private:
   static constexpr double kMistake = 1e-6;
+  /// Without this bound, a farm that loses very many workers would never blame a band.
   static constexpr std::size_t kMaxRequired = 30;
   /// Prior for a farm of which nothing is known: as if one crash at twenty bands had been seen.
   static constexpr double kPriorBands = 20;

@@ -1,4 +1,5 @@
-// Holds one result for each machine, the stored one first. A verdict needs two machines that agree,
+// An audit compares the results of several machines for one band (a range of rows and samples). It
+// holds one result for each machine, the stored one first. A verdict needs two machines that agree,
 // or a machine that repeated its result.
 
 #include "coordinator/scheduler/model/audit.h"

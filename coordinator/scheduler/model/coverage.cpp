@@ -1,7 +1,8 @@
-// The rows of a pass are cut into strips, and the samples of each strip into cells. Each cell has
-// one owner: a lease, or it is free, or stored. A change cuts strips at the first and the last row
-// of a band, changes the cells of the strips in between, merges cells and strips that have become
-// equal, and keeps the counts of samples.
+// The rows of a pass (a range of samples of the whole image) are cut into strips, and the samples
+// of each strip into cells. Each cell has one owner: a lease, or it is free, or stored. A change
+// cuts strips at the first and the last row of a band (a range of rows and samples), changes the
+// cells of the strips in between, merges cells and strips that have become equal, and keeps the
+// counts of samples.
 
 #include "coordinator/scheduler/model/coverage.h"
 

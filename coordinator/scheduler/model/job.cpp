@@ -1,4 +1,5 @@
-// Operations that concern several passes of a job, or its failures.
+// Operations that concern several passes of a job (ranges of samples of the whole image), or its
+// failures.
 
 #include "coordinator/scheduler/model/job.h"
 

@@ -1,5 +1,6 @@
-// Keeps, for each worker process, the bands that it stored, so that all of them can be taken back
-// if the process was wrong.
+// A pass is a range of samples of the whole image. It keeps, for each worker process, the bands
+// (ranges of rows and samples of the pass) that this process stored, so that all of them can be
+// taken back if the process was wrong.
 
 #include "coordinator/scheduler/model/pass.h"
 

@@ -1,5 +1,5 @@
-// change() is the only place that changes the state of a frame; it keeps the counts and sets of
-// frames consistent.
+// A sequence is a job of many frames. change() is the only place that changes the state of a frame;
+// it keeps the counts and sets of frames consistent.
 
 #include "coordinator/scheduler/model/sequence.h"
 

@@ -1,5 +1,6 @@
-// The bands on disk are added one by one. finish() compares those that were rendered twice, and
-// continues each job that is not final.
+// After a restart, the bands on disk (ranges of rows and samples that workers have rendered) are
+// added one by one. finish() compares those that were rendered twice, and continues each job that
+// is not final.
 
 #include "coordinator/scheduler/replay/restart.h"
 

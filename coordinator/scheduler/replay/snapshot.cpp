@@ -1,4 +1,5 @@
-// Writes the records of each job and sequence in an order in which they can be replayed.
+// Lists the records that rebuild the present state. The records of each job and sequence come in an
+// order in which they can be replayed.
 
 #include "coordinator/scheduler/replay/snapshot.h"
 

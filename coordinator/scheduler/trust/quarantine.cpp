@@ -1,5 +1,6 @@
-// Quarantining a machine journals a record for each of its worker processes, expels the connected
-// ones, and retracts the rows that they stored in active jobs.
+// Quarantining a machine journals a record for each of its worker processes, disconnects those that
+// are connected, and frees the rows that they stored in active jobs, so that these are rendered
+// again.
 
 #include "coordinator/scheduler/trust/quarantine.h"
 

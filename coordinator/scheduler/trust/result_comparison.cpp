@@ -1,3 +1,4 @@
+// An audit compares the results of several machines for the same band, a range of rows and samples.
 // A result is added to each open audit of its rows. If there is none and a row differs from the
 // stored one, an audit is opened for that row. Each audit that has a verdict is closed, and
 // machines that were wrong are quarantined.

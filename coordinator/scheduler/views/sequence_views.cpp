@@ -125,7 +125,7 @@ std::vector<std::string> frame_sentences(const Sequence& sequence) {
       "with --continue");
   for (const FrameNumber number : sequence.numbers(FrameState::kFailed)) {
     lines.push_back(absl::StrCat("frame ", number, " failed: ", sequence.frame(number)->reason));
-    if (lines.size() == 13) {
+    if (lines.size() == 13) {  // 3 other states, and 10 failed frames
       lines.emplace_back("and more frames failed");
       break;
     }
