@@ -1,5 +1,5 @@
-// Sums the sizes of all final jobs and names those that exceed a limit, the oldest first. Then
-// removes the blobs that none of the remaining jobs needs.
+// to_forget() sums the sizes of all final jobs and names those that exceed a limit, the oldest
+// first. sweep() removes the blobs that no job needs, and folders of unknown jobs.
 
 #include "coordinator/engine/collector.h"
 
@@ -58,6 +58,7 @@ std::set<wire::Digest> Collector::known_blobs_of(const KeptJob& job) {
   return blobs_of(job).value_or(std::set<wire::Digest>());
 }
 
+/// Returns the age and size of a final job, those of its frames included.
 Collector::Final Collector::final_job(const KeptJob& kept) const {
   Final job{.id = kept.id};
   add_files_of(kept.id, job);

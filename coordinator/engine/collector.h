@@ -19,8 +19,8 @@ namespace bandsaw::coordinator {
 /// Limits on the age, size and number of the jobs that are over. Jobs beyond a limit are removed.
 struct Keep {
   double seconds = 30.0 * 24 * 60 * 60;  ///< maximum age of a final job
-  std::uint64_t bytes =
-      100'000'000'000;             ///< results and blobs in total; oldest jobs are removed first
+  /// Maximum size of results and blobs in total; the oldest jobs are removed first.
+  std::uint64_t bytes = 100'000'000'000;
   double min_seconds = 60.0 * 60;  ///< minimum age at which `bytes` removes a final job
   std::size_t jobs = 10'000;       ///< number of final jobs; each takes about 4 kB of memory
   /// Maximum age of a blob, or of a part of a blob, that no job needs; counted from the time at

@@ -44,7 +44,8 @@ struct EngineOptions {
   double audit_share = 0.01;
   double browser_audit_share = 0.1;  ///< the same of the bands of browsers
   Browsers browsers = Browsers::kAlso;
-  Keep keep = {};  ///< retention of jobs that are over; applied every ten minutes and 1,000 jobs
+  /// Retention of jobs that are over; applied every ten minutes, and every 1,000 jobs.
+  Keep keep = {};
 };
 
 /// Parts that tests replace. nullptr selects the real one: SQLite in the data folder, and the
@@ -68,8 +69,10 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
+  // Requests of users.
+
   /// Adds a job. Returns its id once it is in the journal. FAILED_PRECONDITION: a blob is missing;
-  /// the message names it. INVALID_ARGUMENT: the priority is beyond kMaxPriority.
+  /// the message names it. INVALID_ARGUMENT: a field or the priority is out of range.
   /// RESOURCE_EXHAUSTED: too many jobs, or the disk is full.
   void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
               std::int32_t priority = 0);
@@ -147,7 +150,8 @@ class Engine {
   /// Returns the blobs, to read them.
   BlobSource& blobs();
 
-  // Workers. Messages to a worker go to its link.
+  // Messages of workers. Replies go to the worker's link.
+
   /// A worker has connected. Returns the id of its session; the link receives `welcome` or
   /// `refuse`.
   SessionId hello(std::shared_ptr<WorkerLink> link, WorkerHello hello);

@@ -1,6 +1,6 @@
-// For each job, work() brings the film up to date: it builds the film again if that is needed,
-// merges the bands that wait, reports complete passes, and sends the image if it was requested. If
-// that fails, the rest waits for retry().
+// A film holds the sums of all pixels of a job's image. For each job, work() brings the film up to
+// date: it builds the film again if that is needed, adds the bands that wait, reports complete
+// passes, and sends the image if it was requested. If that fails, the rest waits for retry().
 
 #include "coordinator/engine/film_thread.h"
 

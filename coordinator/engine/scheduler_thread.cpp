@@ -1,6 +1,6 @@
 // Each input makes one step of the scheduler. absorb() puts the step's records into the commit
-// queue, and its actions behind them, as effects: perform() runs these once the records are on
-// disk.
+// queue, and its actions behind them, as effects. perform() carries an action out, once the records
+// before it are on disk.
 
 #include "coordinator/engine/scheduler_thread.h"
 

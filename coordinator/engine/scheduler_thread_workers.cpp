@@ -1,4 +1,5 @@
-// The messages of workers to the scheduler's thread, and the store's answers about their bands.
+// The messages of workers to the scheduler's thread, and the store's answers about their bands (the
+// pixels of some rows and samples).
 
 #include <spdlog/spdlog.h>
 
@@ -12,7 +13,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// Checks a band that a worker sent. INVALID_ARGUMENT: it is not a band of an image with these
-/// settings, or some of its pixels are missing.
+/// settings, some of its pixels are missing, or its pixels or counters contradict the samples that
+/// it takes (`tiles`).
 absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings,
                         const TileSamples& tiles) {
   if (absl::Status valid = validate(pixels.band, settings); !valid.ok()) {

@@ -1,5 +1,6 @@
-// Bands that arrive in one batch are written to the logs of their jobs at once, and are
-// acknowledged in settle(), after one fdatasync per log.
+// Bands (the pixels of some rows and samples, rendered by a worker) that arrive in one batch are
+// written to the logs of their jobs at once, and are acknowledged in settle(), after one fdatasync
+// per log.
 
 #include "coordinator/engine/store_thread.h"
 

@@ -15,6 +15,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Length of a request id (proto/farm.proto).
 constexpr std::size_t kMinRequestId = 16;
 constexpr std::size_t kMaxRequestId = 64;
 

@@ -1,4 +1,4 @@
-// Sends each watched job's state to its watchers: at most ten times a second if something has
+// Sends the state of each watched job to its watchers: at most ten times a second if something has
 // changed, otherwise about once a second.
 
 #include "coordinator/engine/watchers.h"
