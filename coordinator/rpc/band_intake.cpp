@@ -1,5 +1,6 @@
-// Assembles a band from the chunks in which it arrives. The first chunk has the header, whose
-// fields are checked before memory is taken; take() checks the digest and the values.
+// Assembles a band (the pixels of some rows and samples) from the chunks in which it arrives. The
+// first chunk has the header, whose fields are checked before memory is taken; take() checks the
+// digest and the values.
 
 #include "coordinator/rpc/band_intake.h"
 

@@ -1,6 +1,6 @@
-// The chunks of one band after the other are read from the stream. A complete band is handed over
-// to the engine; while it is there, nothing is read, and the call cannot end. The next band is read
-// when the answer has been written.
+// A worker's bands (the pixels of some rows and samples) arrive one after the other, each in
+// chunks. A complete band is handed over to the engine; while it is there, nothing is read, and the
+// call cannot end. The next band is read when the answer has been written.
 
 #include "coordinator/rpc/put_bands_call.h"
 
