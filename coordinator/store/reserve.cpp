@@ -1,4 +1,4 @@
-// The reserve is a file of kBytes bytes that is removed when the disk is full, so that the journal
+// The reserve is a file of kBytes bytes. It is removed when the disk is full, so that the journal
 // has space.
 
 #include "coordinator/store/reserve.h"
