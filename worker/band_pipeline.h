@@ -1,7 +1,8 @@
 #pragma once
 
-// The rendering half of a worker: cache, thread pool, executor and uploader, which report to the
-// session.
+// The part of a worker that renders: it loads the scenes of leased bands (a band is a range of rows
+// and samples), renders the bands, sends their pixels to the coordinator, and reports each event to
+// the session. The Daemon has one.
 
 #include <functional>
 #include <memory>
@@ -23,12 +24,15 @@ using LogTail = std::function<std::vector<std::string>()>;
 
 class BandPipeline {
  public:
-  /// `kernel`: the code that renders the scenes, as in Scene::build. `calls` and `session` MUST
-  /// outlive the pipeline.
+  /// `kernel`: the code that renders the scenes, as in Scene::build. `log_tail` may be nullptr.
+  /// `seed`: of the random waits before a band is sent again. `calls` and `session` MUST outlive
+  /// the pipeline.
   BandPipeline(SharedSession& session, std::unique_ptr<BlobCache> cache, int threads,
                const Kernel* kernel, CoordinatorApi& calls, LogTail log_tail, std::uint64_t seed);
 
+  /// Renders the band when the earlier ones are rendered, and sends its pixels.
   void start(const Task& task) { executor_.add(task); }
+  /// Cancels the rendering of a band, or drops its pixels: its lease was revoked.
   void stop(TaskId task);
   /// Called when the coordinator is reachable again.
   void connected() { uploader_.retry_now(); }
@@ -39,7 +43,9 @@ class BandPipeline {
                                                     const Prepared& prepared);
   ExecutorEvents executor_events();
   void failed(TaskId task, const absl::Status& status);
+  /// Sends a band once; see Uploader for the errors.
   absl::StatusOr<farm::PutBandReply::Outcome> put(const FinishedBand& band);
+  /// Removes a band from the session: the coordinator has acknowledged or refused it.
   void settled(TaskId task, const absl::StatusOr<farm::PutBandReply::Outcome>& outcome);
 
   SharedSession& session_;

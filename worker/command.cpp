@@ -32,7 +32,7 @@ namespace bandsaw::worker {
 namespace {
 
 std::string host_name() {
-  char name[65] = {};
+  char name[65] = {};  // Linux allows 64 bytes
   return gethostname(name, sizeof(name) - 1) == 0 && name[0] != '\0' ? name : "worker";
 }
 
@@ -69,10 +69,12 @@ absl::Status check_machine() {
   return absl::OkStatus();
 }
 
-/// Coordinators read this from the program's file; the program itself does not use it.
+/// A coordinator that offers this program for download reads its versions from this mark in the
+/// file; the program itself does not use it.
 [[gnu::used]] constexpr wire::WorkerMark kMark{.pixel_version = kPixelVersion,
                                                .version = BANDSAW_VERSION};
 
+// Exit codes; see command.h.
 constexpr int kUnfit = 1;
 constexpr int kWrongUsage = 2;
 constexpr int kInterrupted = 130;

@@ -17,7 +17,7 @@
 namespace bandsaw::worker {
 namespace {
 
-constexpr std::chrono::milliseconds kConnectTime{5'000};
+constexpr std::chrono::milliseconds kConnectTime{5'000};  // for one try to connect
 
 using SessionStream = grpc::ClientReaderWriter<farm::FromWorker, farm::ToWorker>;
 
@@ -54,8 +54,11 @@ class Daemon::Impl {
   }
 
  private:
+  /// Keeps one stream until it ends. Returns why it ended.
   absl::Status talk(const link::Connected& connected);
+  /// Writes messages, heartbeats and log lines until the queue is closed or the stream is broken.
   void write_all(SessionStream& stream, SendQueue& queue);
+  /// Sends new lines of the log. Returns false if the stream is broken.
   bool write_log(SessionStream& stream);
   void handle(const farm::ToWorker& message, const std::string& address);
   void log_loss(const absl::Status& status);
@@ -94,7 +97,7 @@ absl::Status Daemon::Impl::run() {
 }
 
 absl::Status Daemon::Impl::talk(const link::Connected& connected) {
-  FarmCalls::Context context(calls_, std::chrono::milliseconds(0));
+  FarmCalls::Context context(calls_, std::chrono::milliseconds(0));  // without a deadline
   calls_.set_channel(connected.bulk);
   const std::shared_ptr<SendQueue> queue = session_.open_stream();
   const std::unique_ptr<farm::Work::Stub> stub = farm::Work::NewStub(connected.control);

@@ -19,15 +19,16 @@ struct Kernel;  // renderlib/render/kernel.h
 
 namespace bandsaw::worker {
 
-/// Returns an implementation that is used instead of `calls`, which outlives it.
+/// Returns an implementation that is used instead of `calls`, which outlives it. A test makes
+/// a worker with it that returns wrong pixels.
 using WrapCalls = std::function<std::unique_ptr<CoordinatorApi>(CoordinatorApi& calls)>;
 
 struct DaemonOptions {
   link::JoinString join;
-  WorkerInfo info;                 ///< its number of threads is also the size of the pool
-  const Kernel* kernel = nullptr;  ///< the code that renders, as in Scene::build
-  std::string cache_folder;
-  std::uint64_t cache_bytes = 16ull << 30;
+  WorkerInfo info;                          ///< its number of threads is also the size of the pool
+  const Kernel* kernel = nullptr;           ///< the code that renders, as in Scene::build
+  std::string cache_folder;                 ///< of the blobs of scenes
+  std::uint64_t cache_bytes = 16ull << 30;  ///< maximum size of that folder
   /// Returns the last lines of the log, to be sent with a failed band; may be nullptr.
   std::function<std::vector<std::string>()> log_tail;
   /// Called once, when the coordinator first admits this worker, with the coordinator's address and
@@ -43,13 +44,14 @@ struct DaemonOptions {
 
 class Daemon {
  public:
-  /// Opens the cache; does not connect. Any error names the folder.
+  /// Opens the cache; does not connect. Fails if the cache's folder cannot be made or used; the
+  /// error names it.
   static absl::StatusOr<std::unique_ptr<Daemon>> create(DaemonOptions options);
   ~Daemon();
 
-  /// Runs until the worker has drained or left, or the coordinator has dismissed it permanently:
-  /// OK. UNAUTHENTICATED, PERMISSION_DENIED: the join string was never valid for this farm. After
-  /// any other error it reconnects.
+  /// Runs until the worker has drained or left, or the coordinator has dismissed it permanently;
+  /// then returns OK. Returns UNAUTHENTICATED or PERMISSION_DENIED if the coordinator refuses the
+  /// join string and never admitted this worker before. After any other error it reconnects.
   absl::Status run();
 
   /// Finishes the held bands, then ends run(). Any thread.

@@ -27,11 +27,11 @@ class LogQueue final : public spdlog::sinks::base_sink<std::mutex> {
   void flush_() override {}
 
  private:
-  static constexpr std::size_t kKept = 500;
-  static constexpr std::size_t kTakenKept = 50;
+  static constexpr std::size_t kKept = 500;      ///< lines
+  static constexpr std::size_t kTakenKept = 50;  ///< lines; as many as one message has
   std::deque<std::string> lines_;  ///< protected by the base class's mutex, as are all members
   std::deque<std::string> taken_;  ///< the newest taken lines
-  std::uint64_t lost_ = 0;
+  std::uint64_t lost_ = 0;         ///< lines dropped since the last take()
 };
 
 }  // namespace bandsaw::worker

@@ -10,15 +10,18 @@
 
 namespace bandsaw::worker {
 
-/// Keeps the bytes of the last answer of an object of exports.h until its next call.
+/// Holds what the last function of exports.h that was called for an object answered, because the
+/// page's JavaScript reads it from the memory of the WebAssembly module after the call. Every
+/// function returns a pointer to the one answer, which the next call overwrites.
 class Answerer {
  public:
+  /// Keeps a copy of the bytes.
   const BandsawAnswer* bytes(std::string bytes) {
     bytes_ = std::move(bytes);
     return refer(bytes_.data(), bytes_.size(), 0);
   }
   const BandsawAnswer* none() { return bytes(""); }
-  /// `data` MUST live until the next answer.
+  /// Answers with bytes of the caller. `data` MUST live until the next answer; `failed`: 0 or 1.
   const BandsawAnswer* refer(const void* data, std::size_t size, std::uint32_t failed) {
     answer_ = {data, size, failed};
     return &answer_;

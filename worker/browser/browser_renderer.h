@@ -1,7 +1,8 @@
 #pragma once
 
-// One core of a browser's tab: loads scenes from blobs that it is given, and renders rows of bands.
-// The page's JavaScript fetches the blobs and checks their digests.
+// The renderer of one core of a browser's tab, compiled to WebAssembly: loads scenes from blobs
+// that it is given, and renders rows of bands (a band is a range of rows and samples). The page's
+// JavaScript calls it through exports.h; it fetches the blobs and checks their digests.
 
 #include <atomic>
 #include <functional>
@@ -55,6 +56,7 @@ class BrowserRenderer {
   std::vector<std::uint8_t> picture(const Task& task, const BandPixels& pixels) const;
 
  private:
+  /// `display`: how the scene's radiance is shown as 8-bit colours.
   struct Loaded {
     std::shared_ptr<const Scene> scene;
     Display display;

@@ -17,7 +17,7 @@ namespace bandsaw::worker {
 namespace {
 
 constexpr std::size_t kInstanceDigits = 32;
-constexpr std::size_t kBuildBytes = 200;
+constexpr std::size_t kBuildBytes = 200;  // for display only
 
 std::string bytes_of(const std::optional<farm::FromWorker>& message) {
   return message ? message->SerializeAsString() : "";

@@ -1,7 +1,8 @@
 #pragma once
 
-// The session of a browser's tab: worker::Session, whose messages are bytes, and the bands that the
-// tab holds. Without clock, thread or socket: the page's JavaScript has those.
+// The session of a browser's tab with the coordinator, compiled to WebAssembly: worker::Session
+// with messages as bytes, and the bands that the tab holds. It has no clock, thread or socket: the
+// page's JavaScript has those, and calls this through exports.h.
 
 #include <map>
 #include <optional>
@@ -29,13 +30,15 @@ struct BrowserOrders {
 
 class BrowserSession {
  public:
-  /// INVALID_ARGUMENT: a text of `info` is empty or out of bounds, or its number of threads is.
+  /// INVALID_ARGUMENT: a text of `info` is empty, too long or not plain, its instance does not have
+  /// 32 hexadecimal digits, or its number of threads is out of range.
   static absl::StatusOr<BrowserSession> create(WorkerInfo info);
 
   const Session& session() const { return session_; }
 
   // The stream. The messages that are returned are bytes to send.
   std::string hello() const;
+  /// Changes what the next Hello offers. `memory_bytes`: for a scene; 0: no limit.
   void offer(std::uint32_t threads, std::uint64_t memory_bytes);
   /// INVALID_ARGUMENT: the bytes are no message.
   absl::StatusOr<BrowserOrders> receive(const std::string& message);
@@ -44,8 +47,8 @@ class BrowserSession {
 
   // Rendering; see Session. Calls for a band that is not held have no effect.
   void preparing(TaskId task, std::uint64_t prepared) { session_.preparing(task, prepared); }
-  /// Notes that `rows_done` rows of the band are rendered; `counters`: the bytes of the
-  /// farm.Counters of the rows that were added. INVALID_ARGUMENT: they are no such message.
+  /// Notes that `rows_done` rows of the band are rendered, in all. `counters`: the bytes of the
+  /// farm.Counters of the newly rendered rows. INVALID_ARGUMENT: they are no such message.
   absl::Status rendering(TaskId task, std::uint32_t rows_done, const std::string& counters);
   /// Returns false if the band is not wanted any more.
   bool finished(TaskId task) { return session_.finished(task); }
@@ -54,16 +57,17 @@ class BrowserSession {
 
   // Sending pixels.
   /// Returns the first bytes of the body of POST /join/band: the length of the header as 4 bytes,
-  /// little-endian, and the header; the sums follow. UNAVAILABLE: not connected. NOT_FOUND: the
-  /// band is not held.
+  /// little-endian, and the header. The caller appends the pixel sums, whose size in bytes and
+  /// digest are given. UNAVAILABLE: not connected. NOT_FOUND: the band is not held.
   absl::StatusOr<std::string> band_header(TaskId task, std::uint64_t size,
                                           const wire::Digest& digest, const RenderCost& cost) const;
   /// Takes the bytes of the coordinator's farm.PutBandReply, and drops the band. Returns "stored",
   /// "duplicate" or "unwanted". INVALID_ARGUMENT: they are no such message.
   absl::StatusOr<std::string> band_reply(TaskId task, const std::string& reply);
 
-  /// Returns the message to send, or an empty text; see Session.
+  /// Requests no more leases. Returns the message to send, or an empty text.
   std::string drain(const std::string& reason);
+  /// Requests leases again, on the next stream.
   void resume() { session_.resume(); }
 
  private:

@@ -28,7 +28,8 @@
 #include "worker/session/lease_task.h"
 
 #ifdef __wasm__
-/// Defined by the page: tells that a step of what the renderer prepares is done.
+/// Defined by the page's JavaScript. Called after each step that the renderer makes before the
+/// first row; it counts as progress of the band.
 extern "C" __attribute__((import_module("page"), import_name("step"))) void page_step();
 #else
 static void page_step() {}
@@ -49,8 +50,8 @@ std::string text_of(const void* data, std::size_t size) {
 
 const char* boolean(bool value) { return value ? "true" : "false"; }
 
-/// Returns the number as an integer; a negative one and NaN as 0, one that is too large as the
-/// largest.
+/// Converts a number of JavaScript: negative numbers and NaN become 0, numbers above 2^63 become
+/// 2^63.
 std::uint64_t whole(double number) {
   if (!(number > 0)) {
     return 0;

@@ -1,18 +1,19 @@
 #pragma once
 
-// The functions of bandsaw.wasm, in C, for the page's JavaScript
-// (coordinator/web/page/join_wasm.js). Texts and bytes are passed as an address and a length. A tab
-// has one module: one instance of it holds a session, each of the others a renderer. Nothing is
-// thrown; a call that fails says why in its answer. If memory cannot be allocated, the instance
-// ends.
+// The functions of bandsaw.wasm, in C: with them the JavaScript of a tab that renders
+// (coordinator/web/page/join_wasm.js) calls the classes BrowserSession and BrowserRenderer. Texts
+// and bytes are passed as an address and a length. A tab has one module: one instance of it holds a
+// session, each of the others a renderer. Nothing is thrown; a call that fails says why in its
+// answer. If memory cannot be allocated, the instance ends.
 
 #include <stddef.h>
 #include <stdint.h>
 
 extern "C" {
 
-/// Result of a call: the text of an error if `failed` is 1; otherwise bytes, as the function says,
-/// or none. Belongs to the object that was called, and is valid until its next call.
+/// Result of a call: the text of an error if `failed` is 1; otherwise the bytes that the comment of
+/// the function names after "Answers", or none. Belongs to the object that was called, and is valid
+/// until its next call.
 struct BandsawAnswer {
   const void* data;
   size_t size;
@@ -26,7 +27,8 @@ struct BandsawRenderer;
 void* bandsaw_allocate(size_t size);
 void bandsaw_free(void* memory);
 
-// ---- BrowserSession. Numbers of tasks are at most 2^32. ----
+// ---- BrowserSession; its header says more. A task is a band that the tab holds; numbers of tasks
+// are below 2^32. Bytes of memory are doubles because JavaScript's numbers are. ----
 
 /// A session that is not connected. `instance`: 32 hexadecimal digits, new for each tab.
 /// bandsaw_session_answer tells whether the arguments were right.
@@ -36,14 +38,16 @@ BandsawSession* bandsaw_session_new(const char* instance, size_t instance_size, 
 void bandsaw_session_delete(BandsawSession* session);
 /// Returns the answer of the last call.
 const BandsawAnswer* bandsaw_session_answer(BandsawSession* session);
-/// Answers a message to send, as do heartbeat, failed, drain and log; empty: none.
+/// Answers a message for the coordinator, as do heartbeat, failed, drain and log. Empty: there is
+/// nothing to send.
 const BandsawAnswer* bandsaw_session_hello(BandsawSession* session);
 const BandsawAnswer* bandsaw_session_heartbeat(BandsawSession* session);
 const BandsawAnswer* bandsaw_session_offer(BandsawSession* session, uint32_t threads,
                                            double memory_bytes);
-/// Takes a message. Answers JSON: {"stop": [task…], "start": {"task", "job", "manifest", "width",
-/// "height", "first", "last", "lease"} or null, "send": [message…], "dismissal": {"reason",
-/// "wait_ms", "for_ever"} or null}. Rows are [first, last); "lease" and messages are base64.
+/// Takes a message of the coordinator. Answers JSON: {"stop": [task…], "start": {"task", "job",
+/// "manifest", "width", "height", "first", "last", "samples", "lease"} or null, "send": [message…],
+/// "dismissal": {"reason", "wait_ms", "for_ever"} or null}. The band has the rows [first, last) and
+/// "samples" samples, of all its pixels together; "lease" and messages are base64.
 const BandsawAnswer* bandsaw_session_receive(BandsawSession* session, const void* message,
                                              size_t size);
 const BandsawAnswer* bandsaw_session_disconnected(BandsawSession* session);
@@ -55,7 +59,7 @@ const BandsawAnswer* bandsaw_session_preparing(BandsawSession* session, uint32_t
 const BandsawAnswer* bandsaw_session_rendering(BandsawSession* session, uint32_t task,
                                                uint32_t rows_done, const void* counters,
                                                size_t counters_size);
-/// Answers "true" or "false": the band is not wanted any more.
+/// Answers "true", or "false" if the band is not wanted any more.
 const BandsawAnswer* bandsaw_session_finished(BandsawSession* session, uint32_t task);
 /// `log`: lines that end with line breaks.
 const BandsawAnswer* bandsaw_session_failed(BandsawSession* session, uint32_t task,
@@ -85,20 +89,23 @@ void bandsaw_renderer_delete(BandsawRenderer* renderer);
 const BandsawAnswer* bandsaw_renderer_begin_scene(BandsawRenderer* renderer, const char* digest,
                                                   size_t digest_size, const void* manifest,
                                                   size_t size);
-/// Takes `memory` of bandsaw_allocate over, also if it fails.
+/// `memory`: the blob, in memory of bandsaw_allocate. The renderer frees it, also if the call
+/// fails.
 const BandsawAnswer* bandsaw_renderer_add_blob(BandsawRenderer* renderer, const char* digest,
                                                size_t digest_size, void* memory, size_t size);
-/// Answers JSON: {"row_step"}.
+/// Builds the scene that was begun. Answers JSON: {"row_step"}, the number of rows at whose
+/// multiples a band should be divided (BrowserRenderer::row_step).
 const BandsawAnswer* bandsaw_renderer_build_scene(BandsawRenderer* renderer, const char* digest,
                                                   size_t digest_size);
 const BandsawAnswer* bandsaw_renderer_drop_scene(BandsawRenderer* renderer, const char* digest,
                                                  size_t digest_size);
-/// Renders the rows [first, last) of a lease. Answers rows x width x 3 doubles.
+/// Renders the rows [first, last) of a lease, which is given as the bytes of a farm.Lease. Answers
+/// the sums of the pixels' samples: rows x width x 3 doubles.
 const BandsawAnswer* bandsaw_renderer_render(BandsawRenderer* renderer, const void* lease,
                                              size_t size, uint32_t first, uint32_t last);
 /// Answers a farm.Counters of the rows that were rendered last.
 const BandsawAnswer* bandsaw_renderer_counters(BandsawRenderer* renderer);
-/// Answers these rows as 8-bit RGBA.
+/// Answers the rows that were rendered last as 8-bit RGBA.
 const BandsawAnswer* bandsaw_renderer_picture(BandsawRenderer* renderer);
 
 }  // extern "C"

@@ -31,8 +31,8 @@ struct Entry {
   }
 };
 
-/// Returns true if the cache created the file. A folder that was given by mistake loses nothing
-/// else.
+/// Returns true if the name is one that the cache gives. Only such files are removed, so a folder
+/// that was given by mistake loses nothing else.
 bool is_ours(const std::filesystem::path& path) {
   const bool whole_or_part = path.extension().empty() || path.extension() == ".part";
   return whole_or_part && wire::digest_from_hex(path.stem().string()).ok();
@@ -169,7 +169,7 @@ void BlobCache::make_room(std::uint64_t added, const std::string& newest) {
 }
 
 bool BlobCache::give_up_some(std::uint64_t wanted) {
-  constexpr std::uint64_t kAtOnce = 64 << 20;
+  constexpr std::uint64_t kAtOnce = 64 << 20;  // so that the folder is not scanned for each chunk
   MutexLock lock(mutex_);
   const std::uint64_t freed = remove_oldest(entries(folder_), std::max(wanted, kAtOnce), "");
   bytes_ -= std::min(bytes_, freed);

@@ -1,9 +1,10 @@
 #pragma once
 
-// The worker's cache of blobs on disk: `<folder>/<digest in hexadecimal>`, files written
-// atomically, least recently used removed when the size limit is exceeded. Several workers of one
-// machine may share a folder: names are digests, files appear by rename, a download holds a lock on
-// its partial file, and a file that is removed during a read only has to be fetched again.
+// The worker's cache of blobs (arrays and manifests of scenes, named by their SHA-256) on disk:
+// `<folder>/<digest in hexadecimal>`. Files are written atomically; the least recently used are
+// removed when the size limit is exceeded. Several workers of one machine may share a folder: files
+// appear by rename, a download holds a lock on its partial file, and a file that is removed during
+// a read only has to be fetched again.
 
 #include <cstdint>
 #include <memory>
@@ -18,13 +19,13 @@ namespace bandsaw::worker {
 
 class BlobCache : public BlobSource {
  public:
-  /// Creates the folder if necessary. Every error names it.
+  /// Creates the folder if necessary. Fails if it cannot be created or used; the error names it.
   static absl::StatusOr<std::unique_ptr<BlobCache>> open(std::string folder,
                                                          std::uint64_t max_bytes);
 
   bool has(const wire::Digest& digest) const;
-  /// Returns the blob and marks it as used. Checks the digest at each call; a damaged file is
-  /// removed before DATA_LOSS is returned.
+  /// Returns the blob and marks it as used. NOT_FOUND: the cache does not have it. DATA_LOSS: the
+  /// file was damaged (the digest is checked at each call), and is now removed.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
 
   /// A download in progress. The bytes written so far are kept when it is destroyed, and the next

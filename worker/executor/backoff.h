@@ -6,9 +6,9 @@
 
 namespace bandsaw::worker {
 
-/// Exponential backoff from 200 ms to 5 s with jitter: each wait is shortened by a random amount of
-/// up to one half, so that the workers do not all reconnect at the same moment after a restart of
-/// the coordinator.
+/// Waiting times between attempts to reach the coordinator: exponential backoff from 200 ms to 5 s
+/// with jitter. Each wait is shortened by a random amount of up to one half, so that the workers do
+/// not all reconnect at the same moment after a restart of the coordinator.
 class Backoff {
  public:
   explicit Backoff(std::uint64_t seed) : random_(seed) {}

@@ -1,6 +1,7 @@
 #pragma once
 
-// Renders tasks in their order of arrival, each on all cores. Two tasks run at the same time, so
+// Renders tasks (leased bands) in their order of arrival, each on all cores. Two tasks run at the
+// same time, so
 // that the first tiles of the later one fill the cores that the last tiles of the earlier one leave
 // idle. The later task begins only when rows of the earlier one are being finished.
 
@@ -17,10 +18,11 @@
 
 namespace bandsaw::worker {
 
-/// Callbacks, called from the executor's and the pool's threads; MUST be quick. For each task:
-/// preparing and rendering any number of times, then finished or failed once. `rows_done` is 0 when
-/// rendering begins and after each step of what the renderer prepares (RowsDone). A task that is
-/// stopped gets no further callbacks.
+/// Callbacks, called from the executor's and the pool's threads; MUST be quick. For each task,
+/// `preparing` and `rendering` are called any number of times, then `finished` or `failed` once.
+/// `prepared` only increases while the scene is loaded. `rows_done` is the number of finished rows;
+/// it is 0 when rendering begins and after each step that the renderer makes before the first row.
+/// A task that is stopped gets no further callbacks.
 struct ExecutorEvents {
   std::function<void(TaskId, std::uint64_t prepared)> preparing;
   std::function<void(TaskId, std::uint32_t rows_done)> rendering;
@@ -30,7 +32,7 @@ struct ExecutorEvents {
 
 class Executor {
  public:
-  /// `pool` MUST outlive the executor.
+  /// `load`: loads a scene that is not among the last two. `pool` MUST outlive the executor.
   Executor(Pool& pool, LoadScene load, ExecutorEvents events);
   /// Stops the running tasks and waits for them, without further callbacks.
   ~Executor();
@@ -43,6 +45,7 @@ class Executor {
   void stop(TaskId task) EXCLUDES(mutex_);
 
  private:
+  /// What a task has reached: a thread took it, its scene is loaded, its first row is finished.
   enum class Reached { kTaken, kScene, kRows };
   struct Running {
     explicit Running(const Task& t) : task(t) {}
@@ -58,6 +61,7 @@ class Executor {
   void reach(Running& running, Reached reached) EXCLUDES(mutex_);
   /// Waits until every earlier task has reached `reached`. CANCELLED: this task was stopped.
   absl::Status wait_for_earlier(const Running& running, Reached reached) EXCLUDES(mutex_);
+  /// Returns the time since `began_s` (CLOCK_MONOTONIC) or since the last band ended, if later.
   RenderCost cost_since(double began_s) EXCLUDES(mutex_);
 
   Pool& pool_;

@@ -16,6 +16,7 @@
 namespace bandsaw::worker {
 namespace {
 
+// How often a wait looks at `stop`, and at the download of another worker.
 constexpr auto kLook = std::chrono::milliseconds(50);
 constexpr int kWrongBytesTimes =
     3;  // after so many downloads with a wrong digest, the source itself is wrong
@@ -30,6 +31,7 @@ void pause(std::chrono::milliseconds time, const std::atomic<bool>& stop) {
   }
 }
 
+/// Returns true if the transfer may succeed when it is repeated.
 bool is_passing(const absl::Status& status) {
   return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status) ||
          absl::IsCancelled(status) || absl::IsAborted(status);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Loads the scene of a package: fetches each missing blob once into the cache, decodes the package,
-// builds the scene.
+// Loads the scene of a package (a manifest and the blobs that it names by their digests): fetches
+// each missing blob into the cache, decodes the package, builds the scene.
 
 #include <atomic>
 #include <functional>
@@ -27,7 +27,8 @@ using TransferBlob = std::function<absl::Status(const wire::Digest& digest, std:
 /// Reads blobs from the cache, fetching those that are missing.
 class FetchingSource : public BlobSource {
  public:
-  /// All references MUST outlive it.
+  /// `stop`: set by another thread to cancel. `prepared`: gets the bytes fetched plus the blobs
+  /// read. All references MUST outlive it.
   FetchingSource(BlobCache& cache, const TransferBlob& transfer, const std::atomic<bool>& stop,
                  const Prepared& prepared)
       : cache_(cache), transfer_(transfer), stop_(stop), prepared_(prepared) {}
@@ -56,12 +57,13 @@ class PackageLoader {
   /// `kernel`: as in Scene::build. `pool` MUST outlive the loader.
   explicit PackageLoader(Pool& pool, const Kernel* kernel = nullptr)
       : pool_(pool), kernel_(kernel) {}
-  /// Builds the scene. Errors as above, and INVALID_ARGUMENT: this worker cannot render the
-  /// package. MUST NOT be called by two threads at a time.
+  /// Builds the scene. Errors as FetchingSource::get, and INVALID_ARGUMENT: this worker cannot
+  /// render the package. MUST NOT be called by two threads at a time.
   absl::StatusOr<std::shared_ptr<const Scene>> load(const wire::Digest& manifest,
                                                     FetchingSource& blobs);
 
  private:
+  /// Returns the earlier scenes that still exist, and forgets the others.
   std::vector<std::shared_ptr<const Scene>> scenes_in_use();
 
   Pool& pool_;

@@ -19,7 +19,8 @@ namespace bandsaw::worker {
 /// done).
 using Prepared = std::function<void(std::uint64_t)>;
 
-/// Builds the scene of the package with this manifest. CANCELLED soon after `stop` is set.
+/// Builds the scene of the package with this manifest (PackageLoader). Returns CANCELLED soon after
+/// `stop` is set.
 using LoadScene = std::function<absl::StatusOr<std::shared_ptr<const Scene>>(
     const wire::Digest& manifest, const std::atomic<bool>& stop, const Prepared& prepared)>;
 
@@ -27,7 +28,7 @@ class SceneCache {
  public:
   explicit SceneCache(LoadScene load) : load_(std::move(load)) {}
   /// Returns the scene, loading it if necessary. One scene is loaded at a time, because loading
-  /// uses all cores; other callers wait. A failure is not cached.
+  /// uses all cores; other callers wait. Returns the error of LoadScene, which is not cached.
   absl::StatusOr<std::shared_ptr<const Scene>> get(const wire::Digest& manifest,
                                                    const std::atomic<bool>& stop,
                                                    const Prepared& prepared) EXCLUDES(mutex_);

@@ -1,7 +1,8 @@
 #pragma once
 
-// A band that this worker holds, under an id of its own: lease ids change when the coordinator is
-// restarted, task ids do not.
+// A task is a leased band (a range of rows and samples of a job's image) with all that is needed to
+// render it. Its id is the worker's own, because lease ids change when the coordinator is
+// restarted.
 
 #include <cstdint>
 
@@ -17,10 +18,10 @@ using TaskId = std::uint64_t;  ///< counts from 1 in this process
 struct Task {
   TaskId id = 0;
   std::uint64_t job = 0;
-  wire::Digest manifest;
+  wire::Digest manifest;  ///< of the scene package
   RenderSettings settings;
   Band band;
-  TileSamples tiles = {};  ///< samples of the band's half tiles
+  TileSamples tiles = {};  ///< adaptive samples of the band's half tiles; empty: all samples
 };
 
 /// Cost of rendering a band. While two bands overlap, the time is counted once, for the one that
@@ -30,7 +31,7 @@ struct RenderCost {
   double cpu_s = 0;     ///< summed over threads
 };
 
-/// A band whose pixels are not acknowledged by the coordinator.
+/// A rendered band whose pixels are not yet acknowledged by the coordinator.
 struct FinishedBand {
   Task task;
   BandPixels pixels;

@@ -6,8 +6,9 @@
 namespace bandsaw::worker {
 namespace {
 
-constexpr std::chrono::milliseconds kFullDiskWait{5000};
+constexpr std::chrono::milliseconds kFullDiskWait{5000};  // no short waits: a user must free space
 
+/// Returns true if the band need not be sent again: it is acknowledged, or will never be accepted.
 bool is_final(const absl::Status& status) {
   return status.ok() || absl::IsInvalidArgument(status) || absl::IsNotFound(status) ||
          absl::IsFailedPrecondition(status);

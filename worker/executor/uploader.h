@@ -27,6 +27,7 @@ using Settled =
 
 class Uploader {
  public:
+  /// `seed`: of the random part of the waits between attempts.
   Uploader(SendBand send, Settled settled, std::uint64_t seed);
   /// Waits for the attempt in progress. Bands that are not acknowledged by then are lost.
   ~Uploader();

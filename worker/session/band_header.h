@@ -8,14 +8,15 @@
 
 namespace bandsaw::worker {
 
-/// Payload of a finished band: its sums as bytes.
+/// Size and digest of a finished band's pixels: the sums of their samples, as bytes.
 struct BandPayload {
   std::uint64_t size = 0;  ///< bytes
   wire::Digest digest;
 };
 
-/// Returns the header under which the pixels of a task are sent. `instance`: of the worker, as in
-/// its Hello.
+/// Returns the message that precedes a band's pixels when they are sent to the coordinator: by gRPC
+/// (FarmCalls) or, from a browser, by HTTP (BrowserSession). `instance`: the id of the worker's
+/// process, as in its Hello. `lease`: the band's present lease.
 farm::BandHeader band_header(const Task& task, const BandPayload& payload, const Counters& counters,
                              const RenderCost& cost, const std::string& instance,
                              const LeaseName& lease);

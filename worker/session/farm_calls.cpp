@@ -14,8 +14,8 @@
 namespace bandsaw::worker {
 namespace {
 
-// Deadline of a stream of bands, and the age up to which it takes a further band: so each band has
-// at least a minute. A band whose transfer is interrupted is sent again.
+// kDeadline: of a stream of bands. kServes: the age up to which a stream takes a further band. So
+// each band has at least a minute. A band whose transfer is interrupted is sent again.
 constexpr std::chrono::milliseconds kDeadline{120'000};
 constexpr std::chrono::milliseconds kServes{60'000};
 
@@ -53,6 +53,7 @@ class FarmCalls::BandStream {
                                                   const LeaseName& lease);
 
  private:
+  /// Returns false if the stream is broken.
   bool send(const FinishedBand& band, const std::string& instance, const LeaseName& lease);
 
   const std::shared_ptr<grpc::Channel> channel_;

@@ -1,6 +1,7 @@
 #pragma once
 
-// The worker's calls on the bulk channel. Calls in progress are registered, so that shutdown can
+// The worker's calls by gRPC on its bulk channel: the connection for blobs and pixels, which is
+// separate from that of the heartbeats. Calls in progress are registered, so that shutdown can
 // cancel them.
 
 #include <memory>
@@ -60,7 +61,7 @@ class FarmCalls final : public CoordinatorApi {
   std::shared_ptr<grpc::Channel> bulk_ GUARDED_BY(mutex_);
   std::set<grpc::ClientContext*> open_ GUARDED_BY(mutex_);
   class BandStream;
-  std::unique_ptr<BandStream> bands_;  ///< used by put_band only
+  std::unique_ptr<BandStream> bands_;  ///< the open stream, used by put_band only; nullptr: none
 };
 
 }  // namespace bandsaw::worker

@@ -6,8 +6,9 @@
 
 namespace bandsaw::worker {
 
-/// Returns the task of a lease, with id 0. INVALID_ARGUMENT: the digest, the settings, the band or
-/// the samples of its half tiles are out of range.
+/// Converts the coordinator's message of a lease to the task that the worker renders: a band of a
+/// scene, with settings. Its id is 0; the caller numbers it. INVALID_ARGUMENT: the digest, the
+/// settings, the band or the adaptive samples of its half tiles are out of range.
 absl::StatusOr<Task> task_of(const farm::Lease& lease);
 
 }  // namespace bandsaw::worker

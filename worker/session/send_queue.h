@@ -1,6 +1,7 @@
 #pragma once
 
-// Send queue of one stream: messages in order, and a heartbeat whenever one is due.
+// The messages that wait to be written to one session stream: any thread adds messages, and the
+// stream's writing thread takes them, or learns that a heartbeat is due.
 
 #include <chrono>
 #include <deque>
@@ -20,8 +21,8 @@ class SendQueue {
   void close() EXCLUDES(mutex_);
 
   enum class Next { kMessage, kHeartbeat, kClosed };
-  /// Waits for the first of: a message (moved to `message`), the time of a heartbeat, the end of
-  /// the queue.
+  /// Waits until there is a message (moved to `message`), a heartbeat is due (`heartbeat_interval`
+  /// after the last one, or beat_now), or the queue is closed and empty.
   Next next(std::chrono::milliseconds heartbeat_interval, farm::FromWorker& message)
       EXCLUDES(mutex_);
 

@@ -110,6 +110,7 @@ void Session::take_welcome(const farm::Welcome& welcome, SessionEffects& effects
   connected_ = true;
   name_ = welcome.name().empty() ? info_.name : welcome.name();
   epoch_ = welcome.epoch();
+  // Bounded, because an interval of 0 would make the worker send heartbeats without a pause.
   heartbeat_ =
       std::chrono::milliseconds(std::clamp<std::uint32_t>(welcome.heartbeat_ms(), 50, 60'000));
   if (drain_reason_) {

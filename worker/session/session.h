@@ -2,7 +2,8 @@
 
 // State machine of a worker's session: the leases it holds and the messages it sends, without
 // clock, thread or socket. Inputs are the coordinator's messages and events of rendering; outputs
-// are messages to send and orders for the executor.
+// are messages to send and bands to render or to stop. A task is a leased band, under an id of this
+// process. Terms: proto/README.md, "Glossary".
 
 #include <chrono>
 #include <optional>
@@ -19,12 +20,12 @@ namespace bandsaw::worker {
 struct WorkerInfo {
   std::string instance;  ///< 32 hexadecimal digits, constant for the life of the process
   std::string name;
-  std::string build;
+  std::string build;  ///< version, compiler and CPU, for display
   std::uint32_t threads = 1;
-  std::uint32_t max_bands = 3;
+  std::uint32_t max_bands = 3;  ///< leases that it accepts at the same time (its credit)
   std::uint32_t pixel_version = 0;
-  std::uint64_t canary = 0;
-  std::uint64_t memory_bytes = 0;  ///< that scenes may take here; 0: no limit
+  std::uint64_t canary = 0;        ///< hash of a small image, which shows that pixels are equal
+  std::uint64_t memory_bytes = 0;  ///< the memory that scenes may take here; 0: no limit
 };
 
 /// The coordinator dismissed this worker.
@@ -42,7 +43,7 @@ struct SessionEffects {
   std::optional<Dismissal> dismissal;
 };
 
-/// A lease as identified by the coordinator that assigned it.
+/// Identifies a lease: its number, and the run of the coordinator (epoch) that assigned the number.
 struct LeaseName {
   std::uint64_t lease = 0;
   std::string epoch;
@@ -58,7 +59,7 @@ class Session {
   // The stream.
   /// Returns the first message of a stream, which lists all leases held.
   farm::FromWorker hello() const;
-  /// Changes what the next Hello offers.
+  /// Changes what the next Hello offers; `memory_bytes` as in WorkerInfo.
   void offer(std::uint32_t threads, std::uint64_t memory_bytes);
   SessionEffects receive(const farm::ToWorker& message);
   void disconnected() { connected_ = false; }
@@ -69,13 +70,14 @@ class Session {
   const std::string& name() const { return name_; }     ///< name assigned by the coordinator
 
   // Rendering. Calls for a band that is not held have no effect.
-  /// Notes progress of the preparation; `prepared` only increases (Heartbeat in farm.proto).
+  /// Notes progress of the preparation. `prepared`: bytes fetched and steps done, a number that
+  /// only increases (LeaseProgress in farm.proto).
   void preparing(TaskId task, std::uint64_t prepared);
   /// Notes that `rows_done` rows of the band are rendered. With 0 rendering has begun, or the
   /// renderer has done another step of what it prepares; that counts as progress of the
   /// preparation. Returns true if it is the first call for this band.
   bool rendering(TaskId task, std::uint32_t rows_done);
-  /// Marks a band as finished. False: its lease was revoked, discard the pixels.
+  /// Marks a band as finished. Returns false if its lease was revoked: discard the pixels.
   bool finished(TaskId task);
   /// Removes a failed band. Returns the message to send, or std::nullopt if not connected. Then the
   /// next Hello does not list the band, and the coordinator leases it again.
@@ -83,6 +85,7 @@ class Session {
                                          const std::vector<std::string>& log);
   /// Removes a band whose pixels are acknowledged.
   void settled(TaskId task);
+  /// Returns the present lease of a band; std::nullopt if the band is not held.
   std::optional<LeaseName> lease_of(TaskId task) const;
 
   // Shutdown, and pauses.
@@ -108,16 +111,16 @@ class Session {
   void take_revoke(const farm::Revoke& revoke, SessionEffects& effects);
   Held* find(TaskId task);
   farm::FromWorker draining_message() const;
-  std::string doing() const;
+  std::string doing() const;  ///< what the worker does, in words for display
 
   WorkerInfo info_;
   std::vector<Held> held_;  ///< in the order of their leases
   TaskId last_task_ = 0;
   bool connected_ = false;
-  std::string name_;
-  std::string epoch_;
+  std::string name_;   ///< empty before the first Welcome
+  std::string epoch_;  ///< of the last coordinator that sent Welcome
   std::chrono::milliseconds heartbeat_{1000};
-  std::optional<std::string> drain_reason_;
+  std::optional<std::string> drain_reason_;  ///< std::nullopt: not draining
 };
 
 }  // namespace bandsaw::worker

@@ -1,7 +1,7 @@
 #pragma once
 
-// The session as shared by the worker's threads: one lock, and the send queue of the current
-// stream.
+// The worker's session (session.h), shared by its threads: it adds one lock and the send queue of
+// the current stream, which gets every message that Session returns.
 
 #include <memory>
 
@@ -36,7 +36,7 @@ class SharedSession {
   void failed(TaskId task, const std::string& reason, const std::vector<std::string>& log)
       EXCLUDES(mutex_);
   void settled(TaskId task) EXCLUDES(mutex_);
-  /// UNAVAILABLE: not connected to a coordinator.
+  /// Returns lease 0 if the band is no longer held. UNAVAILABLE: not connected to a coordinator.
   absl::StatusOr<LeaseName> lease_of(TaskId task) EXCLUDES(mutex_);
 
   // For shutdown. leave() ends without finishing bands; drain() as Session::drain.
