@@ -5,6 +5,8 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 reference() {
+  # kind[d] and open[d]: the message, enum or oneof that is open at depth d. pending: the comment above the next field or message.
+  # about[name], rows[name, k], row_words[name, k]: what the reference says on a message and on its field k.
   awk '
     function escaped(text) { gsub(/\|/, "\\|", text); return text }
     function joined(a, b) { return a == "" ? b : b == "" ? a : a " " b }

@@ -64,6 +64,7 @@ bool add_extension(X509* certificate, int nid, const std::string& value) {
   return extension != nullptr && X509_add_ext(certificate, extension.get(), -1) == 1;
 }
 
+/// Sets a random serial number of 63 bits: X.509 requires a positive one.
 bool set_serial(X509* certificate) {
   unsigned char bytes[8];
   if (RAND_bytes(bytes, sizeof(bytes)) != 1) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Keys and self-signed certificates, by OpenSSL.
+// Keys and self-signed certificates, by OpenSSL: the coordinator makes its own (identity.h), and
+// whoever connects to it compares the certificate's digest with that in the join string.
 
 #include <string>
 
@@ -15,7 +16,7 @@ struct KeyAndCertificate {
 };
 
 /// Creates an EC P-256 key and its self-signed certificate for `name`. It is valid for 20 years,
-/// from a day before now on because clocks differ.
+/// from a day before now on because clocks differ. INTERNAL: OpenSSL failed.
 absl::StatusOr<KeyAndCertificate> make_certificate(const std::string& name);
 
 /// Returns the SHA-256 of the DER form. INVALID_ARGUMENT: not a certificate.

@@ -14,10 +14,10 @@
 namespace bandsaw::link {
 namespace {
 
-// A frozen machine or a pulled cable is detected after kKeepaliveMs + kKeepaliveTimeoutMs.
+/// A frozen machine or a pulled cable is detected after kKeepaliveMs + kKeepaliveTimeoutMs.
 constexpr int kKeepaliveMs = 2000;
-/// Server side: a connection that does not complete its handshake in this time is closed, which
-/// frees its file descriptor.
+/// The server closes a connection that does not complete its handshake in this time, which frees
+/// its file descriptor.
 constexpr int kHandshakeMs = 10'000;
 constexpr int kKeepaliveTimeoutMs = 4000;
 
@@ -93,7 +93,8 @@ absl::StatusOr<Connected> connect_plain(const std::string& address,
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout) {
   std::vector<std::string> reasons;
   std::size_t wrong = 0;  // number of addresses that presented another certificate
-  // One of these is not on loopback (this machine may run another farm).
+  // One of these addresses is not on loopback. A wrong certificate on loopback is no proof that the
+  // farm is another one: the join string names loopback too, and this machine may run another farm.
   bool wrong_elsewhere = false;
   for (const std::string& address : join.addresses) {
     absl::StatusOr<Connected> connected = join.certificate
@@ -137,6 +138,7 @@ void configure_server(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMs);
+  // Accepts the pings of clients, which come every kKeepaliveMs.
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 1000);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 0);
   builder.SetMaxReceiveMessageSize(static_cast<int>(wire::kMessageBytes));

@@ -31,8 +31,8 @@ struct Connected {
 /// server answered with another certificate.
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout);
 
-/// Fetches the certificate that a server presents, as PEM, without trusting it. UNAVAILABLE with
-/// the reason.
+/// Fetches the certificate that a server presents, as PEM, without trusting it. UNAVAILABLE: no
+/// answer in time, or no TLS there; the message says which.
 absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
                                                   std::chrono::milliseconds timeout);
 

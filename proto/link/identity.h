@@ -1,7 +1,7 @@
 #pragma once
 
-// The coordinator's key, certificate and secrets. They are created at the first start in the data
-// folder (file mode 0600).
+// The farm's identity: the coordinator's TLS key and certificate, and the secrets of workers and of
+// users. It is created in the coordinator's data folder at the first start (file mode 0600).
 
 #include <string>
 
@@ -15,12 +15,12 @@ struct Identity {
   std::string key_pem;
   std::string certificate_pem;
   wire::Digest certificate_digest;  ///< SHA-256 of the DER form
-  std::string worker_secret;
-  std::string farm_secret;
+  std::string worker_secret;        ///< base64url, 22 characters, as the next
+  std::string farm_secret;          ///< of users
 };
 
 /// Loads `folder`/identity, or creates a new one (EC P-256, self-signed, for the name kServerName).
-/// DATA_LOSS: the file exists but cannot be parsed.
+/// DATA_LOSS: the file exists but cannot be parsed. PERMISSION_DENIED: others may read it.
 absl::StatusOr<Identity> load_or_make_identity(const std::string& folder);
 
 /// Creates a new secret for one role and writes it to the file before returning. The other role's

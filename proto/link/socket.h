@@ -15,13 +15,14 @@ using Deadline = std::chrono::steady_clock::time_point;
 /// Owns a connected, non-blocking socket. Every wait ends at the deadline with UNAVAILABLE.
 class Socket {
  public:
-  /// Connects to `address`, HOST:PORT or [IPv6]:PORT. UNAVAILABLE: "connection refused", "no such
-  /// host", "no answer", ….
+  /// Connects to `address`, HOST:PORT or [IPv6]:PORT. UNAVAILABLE: nobody accepts the connection,
+  /// or there is no such host. INVALID_ARGUMENT: the address has no port.
   static absl::StatusOr<Socket> connect(const std::string& address, Deadline deadline);
   Socket(Socket&& other) noexcept;
   Socket& operator=(Socket&&) = delete;
   ~Socket();
 
+  /// Sends all bytes. UNAVAILABLE: the connection is broken, or not all were sent in time.
   absl::Status send(const std::string& bytes, Deadline deadline);
   /// Returns at least one byte. UNAVAILABLE: closed by the other side, or no answer in time.
   absl::StatusOr<std::string> receive(Deadline deadline);

@@ -36,6 +36,7 @@ class Hasher {
   Hasher(Hasher&&) noexcept;
   Hasher& operator=(Hasher&&) noexcept;
   void update(absl::Span<const std::byte> bytes);
+  /// Returns the digest of all bytes. MUST be called once, at the end.
   Digest finish();
 
  private:

@@ -22,17 +22,17 @@ inline constexpr std::size_t kDigestsPerMessage = 10'000;
 inline constexpr std::size_t kFramesPerMessage = 1'000;  ///< frames whose scenes are sent together
 inline constexpr std::size_t kActiveJobs = 1'000;        ///< jobs that are not final
 inline constexpr std::size_t kWorkers = 4'096;
-inline constexpr std::size_t kBandsPerWorker = 16;
+inline constexpr std::size_t kBandsPerWorker = 16;  ///< leased to it at the same time
 inline constexpr std::size_t kThreadsPerWorker = 4'096;
 inline constexpr std::size_t kJobNameBytes = 200;
 inline constexpr std::size_t kWorkerNameBytes = 64;
 inline constexpr std::size_t kWrongSecretsPerMinute =
     120;  ///< per address; beyond, calls with a wrong secret get RESOURCE_EXHAUSTED
-inline constexpr std::size_t kLogLines = 50;
+inline constexpr std::size_t kLogLines = 50;  ///< of a worker's log, in one message
 inline constexpr std::size_t kLogLineBytes = 500;
 /// Lines of one worker's log kept by the coordinator.
 inline constexpr std::size_t kLogLinesKept = 200;
 inline constexpr std::size_t kLogBytesKept = 64 << 20;  ///< total size of all workers' logs there
-inline constexpr std::size_t kReasonBytes = 2'000;
+inline constexpr std::size_t kReasonBytes = 2'000;      ///< an error's or a dismissal's text
 
 }  // namespace bandsaw::wire

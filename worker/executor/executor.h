@@ -1,9 +1,8 @@
 #pragma once
 
 // Renders tasks (leased bands) in their order of arrival, each on all cores. Two tasks run at the
-// same time, so
-// that the first tiles of the later one fill the cores that the last tiles of the earlier one leave
-// idle. The later task begins only when rows of the earlier one are being finished.
+// same time, so that the first tiles of the later one fill the cores that the last tiles of the
+// earlier one leave idle. The later task begins when the first row of the earlier one is finished.
 
 #include <atomic>
 #include <deque>
