@@ -27,7 +27,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr long kLoginSeconds = 30L * 24 * 60 * 60;
+constexpr long kLoginSeconds = 30L * 24 * 60 * 60;  // 30 days
 
 std::string machine_name() {
   std::array<char, 256> name{};
@@ -40,6 +40,7 @@ std::string cookie_name(const HttpRequest& request) {
   return absl::StrCat("bandsaw-", request.local_port);
 }
 
+/// Returns the value of the dashboard's cookie; empty: the request has none.
 std::string cookie_of(const HttpRequest& request) {
   const std::string name = cookie_name(request) + "=";
   for (absl::string_view one : absl::StrSplit(request.header("Cookie"), ';')) {
@@ -73,7 +74,8 @@ absl::Status check_post(const HttpRequest& request) {
   return absl::OkStatus();
 }
 
-/// Returns true for the page, its files and the login, which need no login.
+/// Returns true for requests that need no login: the page, its files and the login itself. Requests
+/// below /join, which are among them, are checked by their handlers.
 bool is_open(const HttpRequest& request) {
   return request.path == "/api/login" ||
          (request.path != "/metrics" && !absl::StartsWith(request.path, "/api/"));

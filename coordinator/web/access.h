@@ -1,7 +1,7 @@
 #pragma once
 
-// Access control. Everybody who can reach the port may read the page itself; all other requests
-// need a login, and requests that change anything must come from the page.
+// Access control of the dashboard. Everybody who can reach the port may read the page itself; all
+// other requests need a login, and requests that change anything must come from the page.
 
 #include <string>
 
@@ -44,6 +44,7 @@ class Access {
 
  private:
   absl::Status check_login(const HttpRequest& request) EXCLUDES(mutex_);
+  /// Checks that this is the users' secret; `address`: who sent it. Errors as log_in().
   absl::Status check_secret(const std::string& secret, const std::string& address) REQUIRES(mutex_);
   std::string cookie(const HttpRequest& request, const std::string& value, long seconds) const;
 
@@ -61,8 +62,9 @@ bool is_of_this_site(const HttpRequest& request);
 /// Returns the secret of the header "Authorization: Bearer SECRET"; empty: there is none.
 std::string bearer_secret(const HttpRequest& request);
 
-/// Returns true if a Host header has an IP address, localhost or this machine's own name. Requests
-/// of a foreign page whose name resolves to this machine (DNS rebinding) have that foreign name.
+/// Returns true if `host`, the header Host of a request, has an IP address, localhost or this
+/// machine's own name `machine`. Requests of a foreign page whose name resolves to this machine
+/// (DNS rebinding) have that foreign name.
 bool is_own_host(const std::string& host, const std::string& machine);
 
 }  // namespace bandsaw::coordinator

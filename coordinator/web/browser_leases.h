@@ -1,7 +1,8 @@
 #pragma once
 
-// The leases that browsers were given. They decide what a holder of the link may read and send: the
-// scenes of these leases while their jobs run, and the bands of these leases.
+// The leases that were given to browsers which render (a lease: a range of rows and samples, to be
+// rendered by one worker). They decide what a holder of the link for browsers may do: read the
+// scenes of these leases while their jobs run, and send the bands of these leases.
 
 #include <cstdint>
 #include <deque>
@@ -25,16 +26,19 @@ namespace bandsaw::coordinator {
 /// session has ended, because its bands may still arrive, until many others have come.
 class BrowserLeases {
  public:
-  /// Number of browsers that are remembered, and of leases of each: more than can be in use.
+  /// Number of browsers that are remembered, and of leases of each; more than can be in use at a
+  /// time.
   static constexpr std::size_t kBrowsers = 1024;
   static constexpr std::size_t kLeasesOfOne = 2 * wire::kBandsPerWorker;
 
   /// `engine` outlives the object.
   explicit BrowserLeases(Engine& engine) : engine_(engine) {}
 
+  /// Notes a lease that is given to a browser.
   void add(const std::string& instance, const action::Lease& lease) EXCLUDES(mutex_);
 
-  /// PERMISSION_DENIED: this browser was given no lease with these samples and rows.
+  /// Checks a band that a browser sends. PERMISSION_DENIED: it was given no lease with these
+  /// samples and rows.
   absl::Status check(const farm::BandHeader& header) EXCLUDES(mutex_);
 
   /// Returns a blob of a scene that was leased to a browser and whose job is not over. NOT_FOUND:
@@ -51,8 +55,9 @@ class BrowserLeases {
   using Leases = std::deque<Lease>;     ///< of one browser, at least one, the newest last
   using Blobs = std::set<std::string>;  ///< digests in hexadecimal
 
-  /// Returns the leases of all browsers, the newest first, one of each job.
+  /// Returns the newest lease of each job, sorted from new to old.
   std::vector<Lease> newest() EXCLUDES(mutex_);
+  /// Returns true if the job exists and is not over. Waits for the engine.
   bool runs(JobId job);
   /// Returns the blobs of a manifest and the manifest itself; nullptr: it is not there.
   std::shared_ptr<const Blobs> blobs_of(const std::string& manifest) EXCLUDES(mutex_);

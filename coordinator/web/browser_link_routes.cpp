@@ -1,4 +1,4 @@
-// The link by which browsers join, for users of the dashboard.
+// The handlers of /api/link: show, make and revoke the link by which browsers join as workers.
 
 #include "coordinator/web/qr_code.h"
 #include "coordinator/web/reply.h"

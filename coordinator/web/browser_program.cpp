@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kMaxProgramBytes = 256 << 20;
+constexpr std::size_t kMaxProgramBytes = 256 << 20;  // far more than it has
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The renderer for browsers: WebAssembly that the page /join loads.
+// The renderer for browsers: WebAssembly that the page /join loads. `serve` reads it at its start.
 
 #include <string>
 

@@ -1,5 +1,5 @@
-// All sockets are served by one thread. A tab's messages go to the engine, and the engine's
-// messages to a queue for each tab.
+// One thread serves all sockets. Messages of a tab are forwarded to the engine; messages of the
+// engine are put into a queue for each tab (WorkerSession).
 
 #include "coordinator/web/browser_sockets.h"
 
@@ -84,8 +84,9 @@ std::string offered_secret(const HttpRequest& request) {
 
 }  // namespace
 
-/// One session. Its members are used by the thread of `io` only, except where the base class says
-/// otherwise. The engine may keep it a while longer than the server.
+/// One session. The base class has the protocol and the queue of messages; this class has the
+/// WebSocket. Its members are used by the thread of `io` only, except where the base class says
+/// otherwise. The engine may keep the object a while longer than the server exists.
 class BrowserSocket final : public WorkerSession,
                             public std::enable_shared_from_this<BrowserSocket> {
  public:
@@ -96,8 +97,9 @@ class BrowserSocket final : public WorkerSession,
     BrowserSocketLimits limits;
     std::unique_ptr<Connection> connection;
     std::string secret;
-    std::shared_ptr<const void> place;  ///< one of the sockets that are allowed
+    std::shared_ptr<const void> place;  ///< counts as one of the allowed sockets while it exists
   };
+  /// Called once, when the session has ended.
   using Gone = std::function<void(const std::shared_ptr<BrowserSocket>&)>;
 
   BrowserSocket(Parts parts, Gone gone)
@@ -113,6 +115,7 @@ class BrowserSocket final : public WorkerSession,
     stream_.next_layer().set_send_buffer(limits_.send_buffer);
   }
 
+  /// Answers the WebSocket handshake of `request`, and begins to read messages.
   void begin(const HttpRequest& request) {
     stream_.set_option(websocket::stream_base::timeout{limits_.handshake, limits_.idle, true});
     stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
@@ -135,7 +138,9 @@ class BrowserSocket final : public WorkerSession,
   }
 
   const std::string& secret() const { return secret_; }
+  /// Closes the session with the code of `why`.
   void stop(const absl::Status& why) { end_now(why); }
+  /// Closes the connection without a message.
   void cut() { stream_.next_layer().close(); }
 
   void lease(const action::Lease& lease) override {
@@ -209,6 +214,7 @@ class BrowserSocket final : public WorkerSession,
     stream_.async_close(reason, [self = shared_from_this()](ErrorCode) { self->end(); });
   }
 
+  /// Cuts the connection after this time, unless timer_ is set anew before.
   void cut_after(std::chrono::milliseconds time) {
     timer_.expires_after(time);
     timer_.async_wait([self = shared_from_this()](ErrorCode) {
@@ -342,6 +348,7 @@ class BrowserSockets::Impl {
     });
   }
 
+  /// Cancels the last timer when the server stops and no session is left: then the thread ends.
   void end_if_empty() {
     if (is_stopping_ && sockets_.empty()) {
       timer_.cancel();

@@ -1,6 +1,7 @@
 #pragma once
 
-// The sessions of browsers that render: one WebSocket each (RFC 6455), on one thread for all.
+// The sessions of browsers that render: each has one WebSocket (RFC 6455), and one thread serves
+// all of them. A session carries the same messages as that of a native worker (Work.Session).
 
 #include <chrono>
 #include <cstddef>
@@ -29,8 +30,8 @@ struct BrowserSocketLimits {
   std::chrono::milliseconds stop{1'000};
 };
 
-/// Name of the protocol in Sec-WebSocket-Protocol, and the beginning of the word that carries the
-/// secret, because browsers cannot set headers.
+/// Name of the protocol in the header Sec-WebSocket-Protocol. A second word of this header begins
+/// with kJoinSecretPrefix and has the link's secret, because pages cannot set other headers here.
 inline constexpr char kJoinProtocol[] = "bandsaw.1";
 inline constexpr char kJoinSecretPrefix[] = "bandsaw.secret.";
 

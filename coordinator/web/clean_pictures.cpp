@@ -22,9 +22,10 @@ namespace {
 
 /// Number of pictures that are kept. Others are filtered again when they are requested.
 constexpr std::size_t kMaxKept = 4;
-/// Memory of the filter, for each pixel (renderlib/denoise/README.md).
+/// Bytes that the filter needs for each pixel (renderlib/denoise/README.md).
 constexpr std::uint64_t kFilterBytes = 400;
 
+/// FAILED_PRECONDITION: the image of this job cannot be cleaned here, or not yet.
 absl::Status check(const JobView& job) {
   if (job.state != JobState::kDone) {
     return absl::FailedPreconditionError(
@@ -40,6 +41,9 @@ absl::Status check(const JobView& job) {
                    job.id, " --denoise -o FILE"));
 }
 
+/// Returns for each pixel the share of its samples that is in the first part, with which the
+/// denoiser estimates errors. `counts`: the numbers of samples of an adaptive job's pixels. An
+/// image of at most 8 samples has no parts: then a job of its own renders half of them.
 std::vector<float> shares_of(const JobView& job, const std::optional<HeldImage>& counts,
                              std::size_t pixels) {
   if (counts) {

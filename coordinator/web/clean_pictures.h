@@ -72,11 +72,15 @@ class CleanPictures {
     std::shared_ptr<const Kept> kept = nullptr;
     std::uint64_t used = 0;  ///< number of the last call that used it
   };
+  /// Submits the jobs that the picture of a job needs. Returns their ids in the order of
+  /// Entry::jobs.
   absl::StatusOr<std::vector<JobId>> submit_jobs(const JobView& of);
+  /// Returns the job with the spec's request id, or a new one if that job failed or was cancelled.
   absl::StatusOr<JobId> submit_job(JobSpec spec, std::int32_t priority);
-  /// Runs on the executor.
+  /// Makes the picture and stores it in its entry. Runs on the executor. `jobs`: as in Entry.
   void filter(const JobView& job, const std::vector<JobId>& jobs) EXCLUDES(mutex_);
   absl::StatusOr<Kept> filtered(const JobView& job, const std::vector<JobId>& jobs);
+  /// Drops the pictures that were used least recently until few enough are kept.
   void forget_oldest() REQUIRES(mutex_);
 
   Engine& engine_;

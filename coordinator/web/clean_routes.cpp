@@ -1,4 +1,4 @@
-// Clean pictures.
+// The handlers of clean (denoised) pictures: /api/jobs/ID/clean and its files (proto/web.proto).
 
 #include <tuple>
 

@@ -17,7 +17,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kMaxAtOnce = 1 << 20;
+constexpr std::size_t kMaxAtOnce = 1 << 20;  // bytes of one read or write; OpenSSL takes an int
 
 struct Endpoint {
   std::string address;  ///< numeric

@@ -1,8 +1,8 @@
 #pragma once
 
-// One connection of a client, for one request. The deadline applies to the connection as a whole,
-// not to each read, so that a peer that transfers a byte now and then occupies a thread no longer
-// than a silent one.
+// One connection of a client to the dashboard, for one request, with TLS or without. The deadline
+// applies to the connection as a whole, not to each read. So a peer that transfers a byte now and
+// then occupies a thread no longer than a silent one.
 
 #include <openssl/ssl.h>
 
@@ -80,7 +80,7 @@ class Connection {
   /// Returns the events after which an unfinished operation with this result can continue; 0: it
   /// has failed.
   short events_after(int tls_result, short plain_events) const;
-  /// Returns the time that this many bytes of a body add to the deadline.
+  /// Moves the deadline by the time that this many transferred bytes of a body allow.
   void extend(std::size_t bytes);
 
   const int socket_;

@@ -30,6 +30,7 @@ bool is_loopback(const std::string& host) {
   return host == "localhost" || host == "::1" || absl::StartsWith(host, "127.");
 }
 
+/// The parts of the dashboard, in the order in which they use each other.
 class Dashboard::Impl {
  public:
   Impl(Engine& engine, const link::Identity& identity, TlsContext tls,

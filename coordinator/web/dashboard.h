@@ -1,7 +1,8 @@
 #pragma once
 
-// The dashboard: a web page and the requests that it makes. On loopback by plain HTTP, elsewhere
-// with TLS; always with a login by the users' secret.
+// The dashboard of `bandsaw serve`: a web page and the requests that it makes to the engine (the
+// scheduler and the store). It uses plain HTTP on loopback and TLS elsewhere, and always needs a
+// login by the users' secret.
 
 #include <memory>
 #include <string>
@@ -24,8 +25,8 @@ struct DashboardOptions {
   bool insecure = false;           ///< plain HTTP also beyond loopback
   std::string gallery;             ///< folder of scene files; may be missing
   ImportScene import_scene;
-  WorkerPrograms workers;  ///< programs for machines that are to join
-  MakeReport report;
+  WorkerPrograms workers;             ///< programs for machines that are to join
+  MakeReport report;                  ///< formats the report of a finished job
   BrowserAccess* browsers = nullptr;  ///< outlives the dashboard; nullptr: no browser can join
   BrowserProgram browser_program = {};
   BrowserSocketLimits browser_limits = {};

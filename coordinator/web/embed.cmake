@@ -1,5 +1,5 @@
-# cmake -DOUT=page_files.cpp -DFOLDER=page -DMADE=FOLDER -P embed.cmake: writes the table of coordinator/web/page_files.h, of the files
-# in both folders.
+# cmake -DOUT=page_files.cpp -DFOLDER=page -DMADE=FOLDER -P embed.cmake: writes the C++ file OUT, which has the bytes of all files in both folders
+# and defines page_files() of coordinator/web/page_files.h. MADE: the folder of files that the build makes.
 set(types_html "text/html; charset=utf-8")
 set(types_css "text/css; charset=utf-8")
 set(types_js "text/javascript; charset=utf-8")

@@ -81,6 +81,7 @@ class Stream {
   Connection& connection_;
 };
 
+/// Serves one request of a connection.
 class Exchange {
  public:
   Exchange(Connection& connection, const std::vector<HttpField>& headers)
@@ -91,6 +92,7 @@ class Exchange {
     parser_.body_limit(std::numeric_limits<std::uint64_t>::max());
   }
 
+  /// Returns HttpReply::take_over of the handler's reply; if that is set, nothing was written.
   TakeOver run(const HttpHandler& handler) {
     beast::error_code error;
     http::read_header(stream_, buffer_, parser_, error);
@@ -139,6 +141,7 @@ class Exchange {
     }
   }
 
+  /// Returns the next bytes of the body, as HttpBody.
   absl::StatusOr<absl::string_view> read_body() {
     beast::error_code error;
     if (std::exchange(awaits_continue_, false)) {

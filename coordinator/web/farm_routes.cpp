@@ -1,4 +1,4 @@
-// The farm as a whole: jobs, workers, logs, metrics.
+// The handlers for the farm as a whole: jobs, workers, logs, metrics.
 
 #include <algorithm>
 

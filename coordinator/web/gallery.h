@@ -1,6 +1,7 @@
 #pragma once
 
-// The installed scenes, as files below one folder.
+// The gallery: scene files that are installed with Bandsaw below one folder, which the dashboard
+// shows and renders.
 
 #include <optional>
 #include <string>
@@ -30,8 +31,8 @@ class Gallery {
   std::vector<GalleryScene> scenes_;
 };
 
-/// Returns the beginning of the request ids of a scene's jobs, 24 characters. It identifies the
-/// jobs after restarts too.
+/// Returns the beginning of the request ids of a scene's jobs, 24 characters. By it the scene's
+/// jobs are found again, also after a restart of the coordinator.
 std::string request_prefix(const GalleryScene& scene);
 
 /// Returns the newest job that rendered the scene from the gallery; nullptr: none.

@@ -1,4 +1,4 @@
-// Decodes targets, and cuts a range of bytes out of a response.
+// Decodes the targets of requests, and cuts a range of bytes out of a response.
 
 #include "coordinator/web/http.h"
 
@@ -44,7 +44,8 @@ struct ByteRange {
   std::uint64_t last = 0;  ///< inclusive; less than `first` where there are no such bytes
 };
 
-/// Parses the header; std::nullopt if it is not one valid range of bytes.
+/// Parses the header Range for a body of `size` bytes; std::nullopt if it is not one valid range of
+/// bytes.
 std::optional<ByteRange> range_of(absl::string_view header, std::uint64_t size) {
   if (!absl::StartsWithIgnoreCase(header, "bytes=") || !absl::StrContains(header, '-')) {
     return std::nullopt;

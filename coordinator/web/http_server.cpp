@@ -1,4 +1,4 @@
-// One thread accepts connections; a limited number of threads serves one connection each.
+// A fixed number of threads: each accepts a connection, serves it, and accepts the next one.
 
 #include "coordinator/web/http_server.h"
 
@@ -22,7 +22,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::chrono::milliseconds kWaitForDescriptors{100};
+constexpr std::chrono::milliseconds kWaitForDescriptors{100};  // when all of them are in use
 
 struct FreeAddresses {
   void operator()(addrinfo* addresses) const { freeaddrinfo(addresses); }

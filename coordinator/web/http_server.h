@@ -41,10 +41,11 @@ class HttpServer {
   void run() EXCLUDES(mutex_);
   /// Returns false if the connection was taken over, and so is not to be closed.
   bool serve(int socket) EXCLUDES(mutex_);
-  /// Returns false if the server is being stopped, or the address has too many connections.
+  /// Notes an open connection. Returns false if the server is being stopped, or the address has too
+  /// many connections; then it is to be closed.
   bool enter(int socket, const std::string& address) EXCLUDES(mutex_);
   void leave(int socket) EXCLUDES(mutex_);
-  /// Waits after a failed accept. False: the server is being stopped.
+  /// Waits after a failed accept; `error`: its errno. Returns false if the server is being stopped.
   bool may_accept_again(int error) EXCLUDES(mutex_);
 
   const TlsContext tls_;

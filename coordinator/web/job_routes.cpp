@@ -1,4 +1,4 @@
-// One job: its state, and commands on it.
+// The handlers for one job: its state, its frames, and commands (cancel, pause, …).
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -88,8 +88,8 @@ absl::StatusOr<farm::JobStatus> retry(Engine& engine, const HttpRequest& request
   return to_message(view);
 }
 
-/// Submits a job for another picture of a job's scene, with the same settings: by an integrator
-/// without light transport.
+/// Submits a job that renders albedo, normals or depth of another job's scene, with the same
+/// settings.
 absl::StatusOr<web::Submitted> submit_layer(Engine& engine, const HttpRequest& request) {
   constexpr std::uint64_t kMaxLayerSamples = 64;  // more do not visibly improve a layer
   ASSIGN_OR_RETURN(const JobId id, job_of(request));
@@ -105,7 +105,7 @@ absl::StatusOr<web::Submitted> submit_layer(Engine& engine, const HttpRequest& r
   } else {
     return absl::InvalidArgumentError("kind: must be albedo, normals or depth");
   }
-  StopAtSamples stop{16};
+  StopAtSamples stop{16};  // the default
   const std::string samples = request.parameter("samples");
   if (!samples.empty() && (!absl::SimpleAtoi(samples, &stop.samples) || stop.samples < 1 ||
                            stop.samples > kMaxLayerSamples)) {

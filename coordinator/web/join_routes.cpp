@@ -1,4 +1,5 @@
-// The requests of browsers that render: the renderer, the scenes, the bands.
+// The handlers of browsers that render (/join/…): they send the renderer and blobs of scenes, and
+// take bands. All but the renderer need the secret of the link for browsers.
 
 #include <algorithm>
 #include <atomic>
@@ -46,7 +47,8 @@ HttpReply too_many_transfers() {
   return reply;
 }
 
-/// Reads the length, the header and the pixels of a band.
+/// Reads a band from the body: the length of its header, the header, the pixels. PERMISSION_DENIED:
+/// it was not leased to this browser. INVALID_ARGUMENT: it is malformed or cut off.
 absl::StatusOr<BandIntake> read_band(const HttpBody& body, BrowserLeases& leases) {
   BandIntake intake;
   std::string head;

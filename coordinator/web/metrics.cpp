@@ -24,6 +24,7 @@ std::string labels_of(const WorkerView& worker) {
   return absl::StrCat(label("worker", worker.name), ",", kind_label(worker.browser));
 }
 
+/// Builds the text: each metric with its help, and the lines of its values.
 class Text {
  public:
   /// Begins a metric; the following lines are its values.

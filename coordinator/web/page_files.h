@@ -1,6 +1,7 @@
 #pragma once
 
-// The files of coordinator/web/page, which the build embeds into the program (embed.cmake).
+// The files of the dashboard's page, which the build embeds into the program (embed.cmake): those
+// of coordinator/web/page, and those that the build makes.
 
 #include "absl/strings/string_view.h"
 #include "absl/types/span.h"

@@ -1,4 +1,4 @@
-// The page and the login.
+// The handlers of the page's files and of the login.
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"

@@ -1,4 +1,4 @@
-// Previews, images and reports.
+// The handlers of a job's pictures: previews, finished images, and reports.
 
 #include <functional>
 #include <tuple>
@@ -37,7 +37,7 @@ HttpReply send(const absl::StatusOr<Pictures::Bytes>& bytes, const char* type) {
 
 using Make = std::function<absl::StatusOr<Pictures::Bytes>(JobId)>;
 
-/// Returns the name of a finished job's file: `what`.`suffix`.
+/// Adds the handler of a finished job's file, /api/jobs/ID/`what`.`suffix`, which `make` makes.
 void add_file(Router& router, const std::string& what, const std::string& suffix, const char* type,
               Make make) {
   router.get(absl::StrCat("/api/jobs/*/", what, ".", suffix),

@@ -14,10 +14,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kFresh_s = 0.9;
-constexpr std::size_t kMaxBytes = 64 << 20;
+constexpr double kFresh_s = 0.9;  // less than 1 s, so that a client that asks each second gets news
+constexpr std::size_t kMaxBytes = 64 << 20;  // of all pictures that are kept
 
-/// A file and its share of Engine::images.
+/// A file, and the memory that it takes from the budget Engine::images.
 struct HeldFile {
   std::string bytes;
   MemoryBudget::Share share;

@@ -46,6 +46,7 @@ class Pictures {
     double at = 0;              ///< time when it was made, in seconds of a steady clock
     std::uint64_t used = 0;     ///< number of the last call that used it
   };
+  /// Keeps a picture, and drops the least recently used ones beyond a limit of bytes.
   void keep(const Key& key, Made made) REQUIRES(making_);
 
   Engine& engine_;

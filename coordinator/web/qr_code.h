@@ -1,6 +1,7 @@
 #pragma once
 
-// QR codes (ISO/IEC 18004), made by libqrencode.
+// QR codes (ISO/IEC 18004), made by libqrencode: `bandsaw link` and the dashboard show the link for
+// browsers as one.
 
 #include <string>
 #include <vector>
@@ -10,11 +11,12 @@
 
 namespace bandsaw::coordinator {
 
-/// A square of modules, without the light margin of four modules that a reader needs around it.
+/// A square of modules (dark or light cells), without the light margin of four modules that a
+/// reader needs around it.
 struct QrCode {
-  static constexpr int kMargin = 4;
-  int side = 0;
-  std::vector<bool> dark;  ///< side x side, rows from the top
+  static constexpr int kMargin = 4;  ///< modules
+  int side = 0;                      ///< modules
+  std::vector<bool> dark;            ///< side x side, rows from the top
 
   /// Returns false beyond the code, so that a drawing may begin at -kMargin.
   bool is_dark(int x, int y) const {

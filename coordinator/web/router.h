@@ -1,6 +1,6 @@
 #pragma once
 
-// The handlers of paths.
+// Finds the handler of a request by its path.
 
 #include <functional>
 #include <string>

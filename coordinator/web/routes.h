@@ -1,6 +1,7 @@
 #pragma once
 
-// The handlers of all paths. Access is checked before any of them runs.
+// Each function adds the handlers of one part of the dashboard to the router; Dashboard calls all
+// of them. Access is checked before a handler runs. The messages of each path: proto/web.proto.
 
 #include "coordinator/engine/engine.h"
 #include "coordinator/rpc/browser_access.h"
@@ -31,9 +32,9 @@ void add_clean_pictures(Router& router, CleanPictures& pictures);
 void add_scenes(Router& router, Scenes& scenes);
 /// Adds the requests that submit a scene whose files are sent separately, each file once.
 void add_scene_files(Router& router, Engine& engine, Scenes& scenes);
-/// The link by which browsers join.
+/// Adds the requests that show, make and revoke the link by which browsers join.
 void add_browser_link(Router& router, BrowserAccess& access);
-/// Handles the requests of browsers that render.
+/// Adds the requests of browsers that render.
 void add_join(Router& router, Engine& engine, BrowserAccess& access, BrowserLeases& leases,
               BrowserSockets& sockets, const BrowserProgram& program);
 void add_gallery(Router& router, Engine& engine, Scenes& scenes, const Gallery& gallery);

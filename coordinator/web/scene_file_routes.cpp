@@ -1,5 +1,5 @@
-// Scenes of many files, from programs (deploy/python/bandsaw.py): each file is sent once, as a blob
-// that stays in the store, and a scene names its files by their digests.
+// The handlers for scenes of many files, which programs send (deploy/python/bandsaw.py): each file
+// is sent once, as a blob that stays in the store, and a scene names its files by their digests.
 
 #include <algorithm>
 #include <cerrno>
@@ -26,11 +26,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxListBytes = 16 << 20;
+constexpr std::size_t kMaxListBytes = 16 << 20;  // JSON with the names and digests of the files
 constexpr int kMaxFiles = 100'000;
 constexpr std::uint64_t kMaxFileBytes = 2ull << 30;
-constexpr std::uint64_t kMaxSceneBytes = 4ull << 30;
+constexpr std::uint64_t kMaxSceneBytes = 4ull << 30;  // all files together
 
+/// INVALID_ARGUMENT: `what` has more than `most` bytes.
 absl::Status too_large(const std::string& what, std::uint64_t most) {
   return absl::InvalidArgumentError(absl::StrCat(what, " has at most ", most >> 20,
                                                  " MiB here; bandsaw submit takes larger scenes"));
@@ -102,6 +103,8 @@ class BodyReader {
   bool ended_ = false;
 };
 
+/// Stores one file of the body. `head`: its line "SHA256 SIZE". The bytes of a file that is there
+/// already are read and dropped.
 absl::Status take_file(Engine& engine, const std::string& head, BodyReader& reader) {
   const std::vector<std::string> words = absl::StrSplit(head, ' ');
   std::uint64_t size = 0;
@@ -128,7 +131,7 @@ absl::Status take_file(Engine& engine, const std::string& head, BodyReader& read
 }
 
 absl::StatusOr<web::FileDigests> take_files(Engine& engine, const HttpBody& body) {
-  constexpr std::size_t kMaxHead = 64 + 1 + 20;
+  constexpr std::size_t kMaxHead = 64 + 1 + 20;  // a digest, a space, a number of 64 bits
   web::FileDigests taken;
   BodyReader reader(body);
   while (true) {
@@ -172,7 +175,8 @@ absl::Status write_copy(const fs::path& path, absl::Span<const std::byte> bytes)
   return absl::OkStatus();
 }
 
-/// Lays the files of a scene into a folder, which the importer can read.
+/// Writes the files of a scene into a folder, from which the importer reads them.
+/// FAILED_PRECONDITION: a file has to be sent again.
 absl::Status lay_out(Engine& engine, const web::SceneFiles& files, const fs::path& folder) {
   std::uint64_t left = kMaxSceneBytes;
   for (const web::SceneFiles::File& file : files.file()) {

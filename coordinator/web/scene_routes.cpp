@@ -1,4 +1,4 @@
-// Scene files that users drop on the page.
+// The handler for a scene file that a user drops on the page.
 
 #include <cerrno>
 #include <cstdio>
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMaxPackageBytes = 2048ull << 20;
+constexpr std::uint64_t kMaxPackageBytes = 2048ull << 20;  // of the file that is dropped
 
 /// A temporary folder for one file: the importer can read below this folder only.
 class Upload {
@@ -85,8 +85,8 @@ class Upload {
   std::FILE* file_ = nullptr;
 };
 
-/// Returns the safe characters of the file's name. INVALID_ARGUMENT: a format that needs other
-/// files.
+/// Returns the file's name without folders, with unsafe characters replaced. INVALID_ARGUMENT: it
+/// has not the suffix of a format that can be read from one file.
 absl::StatusOr<std::string> file_name(const std::string& given) {
   constexpr std::size_t kMaxStem = 80;
   std::string name = given.substr(given.find_last_of("/\\") + 1);

@@ -1,7 +1,8 @@
 #pragma once
 
-// Makes a job of a scene file. The confined importer reads the file, as everywhere; the function
-// that runs it is passed in (ImportScene), because only the command knows where the importer is.
+// Makes a job of a scene file that the dashboard has received, or of one of the gallery. A confined
+// process, the importer, reads the file. The function that runs it is passed in (ImportScene),
+// because only the command `serve` knows where the importer is.
 
 #include <atomic>
 #include <cstdint>
@@ -16,9 +17,9 @@
 
 namespace bandsaw::coordinator {
 
-/// A package whose blobs are in the engine's store.
+/// A scene package (proto/package.proto) whose blobs are in the engine's store.
 struct SceneOnFarm {
-  DigestHex manifest;
+  DigestHex manifest;  ///< identifies the package
   PackageInfo info;
 };
 
@@ -46,8 +47,8 @@ class Scenes {
   Scenes(Engine& engine, ImportScene import_scene)
       : engine_(engine), import_scene_(std::move(import_scene)) {}
 
-  /// Errors of ImportScene and Engine::submit; RESOURCE_EXHAUSTED: kAtOnce others are being
-  /// imported.
+  /// Imports the scene and submits its job; returns the job and the importer's warnings. Errors of
+  /// ImportScene and Engine::submit; RESOURCE_EXHAUSTED: kAtOnce others are being imported.
   absl::StatusOr<web::Submitted> submit(const std::string& path, const SceneRequest& wanted);
   /// Stops current imports and refuses later ones.
   void stop() { stop_ = true; }

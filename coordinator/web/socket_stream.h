@@ -26,8 +26,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Beast's concepts AsyncReadStream and AsyncWriteStream. Used by one thread. Closes the socket in
-/// the end.
+/// Implements Beast's concepts AsyncReadStream and AsyncWriteStream. Used by one thread. Its
+/// destructor closes the socket.
 class SocketStream {
  public:
   using executor_type = boost::asio::io_context::executor_type;
@@ -146,7 +146,8 @@ class SocketStream {
   Socket socket_;
 };
 
-// Found by Beast when it closes a WebSocket.
+// Beast calls the following functions when it closes a WebSocket; it finds them by the type of
+// their argument.
 
 inline void beast_close_socket(SocketStream& stream) { stream.close(); }
 

@@ -1,5 +1,5 @@
-// Calls to the coordinator. A failure is thrown as an Error whose message is a sentence; if a login is
-// needed, its property `login` is true.
+// The dashboard's HTTP requests to the coordinator. A failure is thrown as an Error whose message is a
+// sentence; if a login is needed, its property `login` is true.
 
 async function answer(response) {
   if (response.ok) return response;
@@ -21,7 +21,7 @@ async function call(path, options) {
 
 export const get = async (path) => (await call(path)).json();
 
-/// `body`: a File, or an object that is sent as JSON.
+/// Returns the JSON of the answer. `body`: a File, or an object that is sent as JSON.
 export async function post(path, body = {}) {
   const isFile = body instanceof Blob;
   const options = {method: "POST", headers: {"X-Bandsaw": "1"}, body: isFile ? body : JSON.stringify(body)};

@@ -1,4 +1,5 @@
-// The switch of a finished job's picture: as rendered, clean, or both side by side.
+// A finished job's picture: the switch between as rendered, clean (denoised by the coordinator), and both
+// side by side.
 
 import {get, post} from "./api.js";
 import {el, percent, stateOf, text} from "./dom.js";
@@ -11,6 +12,7 @@ const hasLight = (status) =>
   [undefined, "INTEGRATOR_PATH", "INTEGRATOR_DIRECT", "INTEGRATOR_PATH_LIGHTS", "INTEGRATOR_PATH_SCATTERING", "INTEGRATOR_PATH_GUIDED",
     "INTEGRATOR_PATH_PLAIN"].includes(status.settings.integrator);
 
+/// Returns a sentence for the user. `state`: a CleanPicture of proto/web.proto.
 function words(state) {
   switch (state.state) {
     case "guides": return `The farm renders the guides of the clean picture: ${percent(state.fraction)}`;

@@ -1,6 +1,6 @@
-// Functions that create elements and format values.
+// Functions of the dashboard's page that create elements and format values.
 
-/// el("p.soft", {title: "x", onclick: f}, "text", child, …)
+/// Returns a new element: el("p.soft", {title: "x", onclick: f}, "text", child, …) is a <p> of class "soft".
 export function el(what, attributes = {}, ...children) {
   const [tag, ...classes] = what.split(".");
   const element = document.createElement(tag);
@@ -19,7 +19,9 @@ export function text(element, value) {
   if (element.textContent !== value) element.textContent = value;
 }
 
-/// A list of parts, one for each key of the items: part = make(item), part.update(item).
+/// Shows a list: `parent` has one part for each item, in the same order. `parts`: a Map from the keys of the
+/// items to the parts of the last call. A new item's part is make(item) = {element, update(item), leave?()};
+/// every part is updated; parts without an item are removed.
 export function keyed(parent, parts, items, keyOf, make) {
   const seen = new Set();
   items.forEach((item, i) => {
@@ -43,6 +45,7 @@ const digits = (value, n) => value.toLocaleString("en", {maximumSignificantDigit
 
 export const percent = (fraction) => `${digits(100 * fraction, 2)} %`;
 
+/// Returns a number with a prefix of its unit, which the caller appends: "1.23 M".
 export function count(value) {
   const units = [[1e12, " T"], [1e9, " G"], [1e6, " M"], [1e3, " k"]];
   const [by, unit] = units.find(([least]) => value >= least) ?? [1, " "];

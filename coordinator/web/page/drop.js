@@ -14,7 +14,7 @@ async function render(file) {
   location.hash = `#/jobs/${submitted.job}`;
 }
 
-/// A button that opens a file, and the choice of the quality of its image.
+/// Returns an element with a button that opens a file, and the choice of the quality of its image.
 export function chooser() {
   const input = el("input", {type: "file", accept: ".zip,.glb,.textproto,.pbrt,.xml", hidden: true, "aria-label": "Scene file"});
   input.addEventListener("change", () => { if (input.files.length > 0) render(input.files[0]); });
@@ -35,7 +35,7 @@ export function takeDrops() {
   const veil = el("div", {id: "drop", hidden: true}, el("p", {}, "Drop a scene to render it: a .zip with its files, .glb, .textproto, .pbrt or .xml"));
   document.body.append(veil);
   const hasFiles = (event) => event.dataTransfer?.types.includes("Files") && !document.querySelector("nav").hidden;
-  let depth = 0;
+  let depth = 0;  // elements under the pointer: each is entered before the last one is left
   const on = (name, action) => window.addEventListener(name, (event) => {
     if (!hasFiles(event)) return;
     event.preventDefault();

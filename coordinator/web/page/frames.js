@@ -7,12 +7,13 @@ import {attempt} from "./notice.js";
 
 /// Maximum number of frames in the strip; of more, every second, third and so on is shown.
 const most = 600;
-const stripSide = 128;
-const stageSide = 1024;
+const stripSide = 128;   // pixels of a picture in the strip
+const stageSide = 1024;  // pixels of the large picture
 
 const stateOf = (frame) => frame.state.replace("FRAME_STATE_", "").toLowerCase();
 const source = (frame, side) => `/api/jobs/${frame.job}/preview.png?side=${side}&at=end`;
 
+/// Returns the part of the strip for one frame; `choose` is called with the frame's number.
 function cell(frame, choose) {
   const img = el("img", {alt: "", loading: "lazy", hidden: true});
   const element = el("button.frame", {onclick: () => choose(frame.frame), "aria-label": `Frame ${frame.frame}`},
@@ -31,9 +32,10 @@ function cell(frame, choose) {
   };
 }
 
+/// Returns {element, update(status), leave()} for the job `id`, which has frames.
 export function frames(id) {
-  let epoch = "";
-  let after = "0";
+  let epoch = "";        // the run of the coordinator that answered last
+  let after = "0";       // the largest `changed` of its frames, as a text because it has 64 bits
   let all = [];          // numbers, ascending
   const known = new Map();  // number -> frame
   const cells = new Map();

@@ -1,4 +1,4 @@
-// The installed scenes: a click renders one, and its card shows the render time.
+// The view of the gallery, the installed scenes: a click renders one, and its card shows the render time.
 
 import {get, post} from "./api.js";
 import {el, isOver, keyed, percent, stateOf, text} from "./dom.js";
@@ -21,6 +21,7 @@ function titleOf(name) {
   return words[0].toUpperCase() + words.slice(1);
 }
 
+/// Returns the card of a scene, {element, update(scene)}. `first`: the scene when the card is made.
 function sceneCard(first) {
   const img = el("img", {alt: "", loading: "lazy"});
   const call = el("span.call", {}, "Render");

@@ -7,8 +7,10 @@ import {attempt} from "./notice.js";
 import {picture} from "./picture.js";
 import {plot} from "./plot.js";
 
+/// Returns the number of frames in all states.
 const allFrames = (of) => of.expected + of.waiting + of.rendering + of.done + of.failed;
 
+/// Returns the figures that are shown, as texts by their names; empty: not shown.
 function figuresOf(status) {
   const known = (value, words) => (value >= 0 ? words(value) : isOver(status) ? "not known" : "not known yet");
   const {frames: count_of} = status;
@@ -52,6 +54,7 @@ function actions(id) {
   };
 }
 
+/// Returns the view of the job `id`: {element, update(), leave()}, as main.js uses it.
 export function jobView(id) {
   const title = el("h1");
   const state = el("span.state");

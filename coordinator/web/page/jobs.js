@@ -1,4 +1,4 @@
-// The list of jobs.
+// The view of all jobs, as a list.
 
 import {chooser} from "./drop.js";
 import {preview} from "./picture.js";

@@ -1,4 +1,4 @@
-// The page for browsers that render: asks to start, then shows what this device gives.
+// The page /join, for browsers that render: asks the user to start, then shows what this device renders.
 
 import {count, duration, text} from "./dom.js";
 import {Picture} from "./join_picture.js";
@@ -20,7 +20,7 @@ function problem(heading, sentence) {
   show("problem");
 }
 
-/// Returns the answer to /join/about. Throws an Error with a sentence.
+/// Returns the answer to /join/about, a JoinAbout of proto/web.proto. Throws an Error with a sentence.
 async function about() {
   let response;
   try {
@@ -42,7 +42,7 @@ class Awake {
     if (now === this.#wanted) return;
     this.#wanted = now;
     if (now) this.#lock = await navigator.wakeLock.request("screen").catch(() => null);
-    if (!this.#wanted) {  // perhaps since the request
+    if (!this.#wanted) {  // it may have changed while the lock was requested
       await this.#lock?.release().catch(() => {});
       this.#lock = null;
     }

@@ -1,18 +1,18 @@
-// Fetches the blobs of scenes and checks their digests.
+// Fetches the blobs of scenes (byte arrays, named by their SHA-256) for a tab that renders, and checks their digests.
 
 import {Backoff, pause} from "/join_wait.js";
 
-const KEPT_BYTES = 64 * 2 ** 20;  // several renderers load the same scene at about the same time
+const KEPT_BYTES = 64 * 2 ** 20;  // are kept, because several renderers load the same scene at about the same time
 const WRONG_TIMES = 3;            // after so many answers with wrong bytes the source itself is wrong
 
 /// The link has ended or was revoked.
 export class LinkEnded extends Error {}
-/// The answer will not be another one later.
+/// The request has failed, and would fail again.
 export class Final extends Error {}
 
 const hex = (bytes) => Array.from(bytes, (one) => one.toString(16).padStart(2, "0")).join("");
 
-/// Returns the sentence of an answer with an error.
+/// Returns the error of an answer's body, which is {"error": sentence} or another text.
 export function sentence(text) {
   try {
     return JSON.parse(text).error;
@@ -54,6 +54,7 @@ export class Blobs {
     return entry.promise;
   }
 
+  /// Forgets the blobs that were used least recently, until KEPT_BYTES or less are kept.
   makeRoom() {
     for (const [digest, {size}] of this.kept) {
       if (this.bytes <= KEPT_BYTES) return;
@@ -80,6 +81,8 @@ export class Blobs {
     }
   }
 
+  /// Makes one request. `again`: the browser's cache is not used, because it has wrong bytes. Throws Final, LinkEnded, or another
+  /// Error if the request can be repeated.
   async once(digest, again, took) {
     const response = await fetch(`${this.base}/join/blob/${digest}`, {headers: this.headers(), cache: again ? "reload" : "default"});
     if (response.status === 401) throw new LinkEnded(sentence(await response.text()));

@@ -1,9 +1,9 @@
-// Renders for a farm in this tab: what the page /join calls.
+// Renders for a farm in this tab: the functions that the page /join calls. The work is done by the web worker join_session.js.
 
 const GIGABYTE = 2 ** 30;
 const MOST_OF_AN_INSTANCE = 3.5 * GIGABYTE;  // a 32-bit program has at most 4
 
-/// Returns the bytes that all scenes may take: half of the memory, as far as the browser tells it; otherwise as if it had 4 GB.
+/// Returns the bytes that all scenes may take: half of the device's memory. If the browser does not tell it, 4 GB are assumed.
 const memory = () => (navigator.deviceMemory ?? 4) * GIGABYTE / 2;
 
 /// Returns a few words on the browser, as in "Firefox 140 on Linux".

@@ -1,6 +1,6 @@
-// The reasons why this device does not render: the user, a hidden page, a low battery.
+// The reasons why this device pauses: the user, a hidden page, a low battery.
 
-const lowBattery = 0.2;
+const lowBattery = 0.2;  // of a full one
 
 export class Pauses {
   byUser = false;
@@ -29,6 +29,7 @@ export class Pauses {
     this.byUser = paused;
     this.#update();
   }
+  /// `may`: rendering goes on while the page is hidden.
   setMayHide(may) {
     this.#mayHide = may;
     this.#update();

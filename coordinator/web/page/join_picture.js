@@ -1,4 +1,4 @@
-// The picture of the rows that this device has rendered.
+// The picture on the page /join: the rows that this device has rendered.
 
 const maxSide = 2048;  // of the canvas; larger pictures are shown with every n-th pixel
 

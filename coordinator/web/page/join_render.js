@@ -1,6 +1,7 @@
-// A worker that renders rows of bands, one core. It answers each message {id, call, …} with {id, value} or {id, error};
-// `fatal`: the instance cannot be used any more, because it had no memory left or is wrong. While it prepares what it needs
-// before the first row, it sends {step: true} now and then.
+// A web worker that renders rows of bands on one core, with one instance of bandsaw.wasm; join_renderer.js starts it. It
+// answers each message {id, call, …} with {id, value}, {id, error} or {id, error, fatal: true}. After `fatal` the instance
+// cannot be used any more: it had no memory left, or it has crashed. While it prepares what it needs before the first row, it
+// sends {step: true} after each step.
 
 import {Program} from "/join_wasm.js";
 
@@ -16,7 +17,7 @@ const calls = {
   begin: ({scene, manifest}) => program.json("renderer_begin_scene", renderer, scene, new Uint8Array(manifest)),
   blob({digest, bytes}) {
     const data = new Uint8Array(bytes);
-    // The program takes the memory over.
+    // The renderer owns the memory from now on, so place() is called here, and not by run(), which would free it.
     const answer = program.run("renderer_add_blob", renderer, digest, program.place(data), data.length);
     program.read(answer);
   },
@@ -44,7 +45,7 @@ function problem(error) {
   return {fatal: true, error: `the renderer ended with ${used} MB in use, perhaps all that the browser gives: ${error.message}`};
 }
 
-// One at a time, in the order of the messages.
+// The messages are processed one at a time, in their order.
 let last = Promise.resolve();
 onmessage = ({data}) => {
   last = last.then(async () => {

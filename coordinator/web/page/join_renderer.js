@@ -1,11 +1,12 @@
-// One core of the tab, as the session sees it: a worker with join_render.js, and the scenes that it has loaded.
+// One core of the tab, for join_session.js: starts a web worker with join_render.js, and keeps account of the scenes that it
+// has loaded. A scene is identified by the digest of its manifest; its data come as blobs.
 
-const SCENES = 2;  // of a sequence, the next frame's besides the present one's
+const SCENES = 2;  // at most; in a sequence they are those of the present frame and of the next one
 const AHEAD = 4;   // blobs that are fetched while earlier ones are copied
-export const SCENE_PER_BYTE = 4;  // memory of a scene over the bytes of its blobs (coordinator/scheduler/README.md)
+export const SCENE_PER_BYTE = 4;  // a scene takes this many times the bytes of its blobs (coordinator/scheduler/README.md)
 
-/// The renderer has ended; another one can be started in its place. `sceneBytes`: of the blobs of the only scene that it had or
-/// was loading; 0: it had none, or several.
+/// The renderer has ended; another one can be started in its place. `sceneBytes`: the bytes of the blobs of the only scene that
+/// it had or was loading; 0: it had no scene, or several.
 export class RendererEnded extends Error {
   constructor(why, sceneBytes) {
     super(why);
@@ -16,15 +17,15 @@ export class RendererEnded extends Error {
 const isOutOfMemory = (error) => error instanceof RangeError || error instanceof WebAssembly.RuntimeError;
 
 export class Renderer {
-  /// `memoryBytes`: what its scenes may take.
+  /// `module`: the compiled bandsaw.wasm. `memoryBytes`: what its scenes may take.
   constructor(module, memoryBytes) {
     this.memoryBytes = memoryBytes;
     this.scenes = new Map();  // digest of the manifest: {rowStep, size}, the most recently used last
     this.loading = 0;         // bytes of the blobs of a scene that is being loaded, as far as they are known
-    this.asked = new Map();   // id: {done, failed}
+    this.asked = new Map();   // requests without an answer, id: {done, failed}
     this.lastId = 0;
-    this.busy = false;
-    this.leaving = false;
+    this.busy = false;        // set by join_session.js while it has given work
+    this.leaving = false;     // set by join_session.js: to be ended when it is not busy
     this.step = () => {};     // called after each step of what is prepared before the first row
     this.worker = new Worker("/join_render.js", {type: "module"});
     this.worker.onmessage = ({data}) => this.answer(data);
@@ -70,6 +71,7 @@ export class Renderer {
     return new RendererEnded(this.ended, sizes.length === 1 ? sizes[0] : 0);
   }
 
+  /// Calls a function of join_render.js. Returns a promise of its value; it fails with RendererEnded, or the call's error.
   ask(call, values = {}, moved = []) {
     if (this.ended) return Promise.reject(this.error());
     const id = ++this.lastId;
@@ -90,7 +92,8 @@ export class Renderer {
     return known.rowStep;
   }
 
-  /// Loads a scene. `get`: a function from a digest to a promise of its blob; `step`: called with each step of progress.
+  /// Loads a scene. `get`: a function from a digest to a promise of its blob; `step`: called with each step of progress. Fails
+  /// with RendererEnded if there is too little memory, with the errors of `get`, or with the error of a wrong scene.
   async load(scene, get, step) {
     await this.ready;
     try {
@@ -137,6 +140,7 @@ export class Renderer {
     step();
   }
 
+  /// Drops the scene that was used least recently.
   async drop() {
     const [scene] = this.scenes.keys();
     this.scenes.delete(scene);

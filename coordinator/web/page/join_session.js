@@ -1,6 +1,7 @@
-// The worker that holds the tab's session with the coordinator. It passes rows of the leased bands to renderers, one for each
-// core, and sends the finished bands. Its timers are not slowed when the tab is hidden, and it never computes for long, so that
-// heartbeats go on.
+// The web worker that has the tab's session with the coordinator; join_engine.js starts it. A band is a range of rows and
+// samples of a job's image, which the coordinator has leased to this tab. This worker passes the rows of bands to renderers
+// (join_renderer.js), one for each core, and sends the finished bands. Its timers are not slowed when the tab is hidden, and it
+// never computes for long, so that heartbeats go on.
 
 import {Blobs, Final, LinkEnded, sentence} from "/join_blobs.js";
 import {Renderer, RendererEnded, SCENE_PER_BYTE} from "/join_renderer.js";
@@ -8,13 +9,13 @@ import {Alarm, Backoff} from "/join_wait.js";
 import {Program, fromBase64} from "/join_wasm.js";
 
 const PIECE_S = 0.1;            // rendering time of the rows that a renderer is given at once
-const RATE_OVER_S = 8;
-const STATE_EVERY_MS = 200;
+const RATE_OVER_S = 8;          // samplesPerSecond is the mean over this time
+const STATE_EVERY_MS = 200;     // the page is told at most so often
 const OTHER_CORES_MS = 1000;    // after the last change of their number, the coordinator is told
-const SILENCE_MS = 15000;       // without a message from the coordinator: is it there?
-const ANSWER_MS = 10000;
-const FULL_DISK_MS = 5000;
-const NOT_ADMITTED_TIMES = 20;  // a restarted coordinator may not have leased the band to this tab yet
+const SILENCE_MS = 15000;       // after this time without a message, an HTTP request asks if the coordinator is there
+const ANSWER_MS = 10000;        // in which that request is answered
+const FULL_DISK_MS = 5000;      // wait if the coordinator's disk is full
+const NOT_ADMITTED_TIMES = 20;  // tries that may be refused: a restarted coordinator has to lease the band to this tab again
 const LOG_LINES = 50;
 
 const alarm = new Alarm();      // rings when the connection is there
@@ -23,16 +24,16 @@ const sendBackoff = new Backoff();
 
 let options;
 let program;
-let session;                    // address of the BandsawSession
-let module;
+let session;                    // address of the BandsawSession (worker/browser/exports.h)
+let module;                     // compiled bandsaw.wasm
 let blobs;
 let socket = null;
 let reconnecting = null;        // timer
 let beating = null;             // timer
-let connected = false;
-let heardAt = 0;
-let pausedWhy = null;
-let dismissed = null;           // {reason, until}: when the coordinator takes the tab again
+let connected = false;          // the coordinator has admitted this tab on the present stream
+let heardAt = 0;                // performance.now() of the last message
+let pausedWhy = null;           // a sentence; null: not paused
+let dismissed = null;           // {reason, until}: the coordinator takes the tab again after this time
 let mostSceneMemory = Infinity; // a larger scene has ended a renderer
 let tooLarge = null;            // what the page says of the last such scene
 let over = false;
@@ -41,12 +42,13 @@ const tasks = new Map();        // the bands that are held, in the order of thei
 const secondsPerRow = new Map();  // by job
 let outgoing = [];              // finished bands
 let sending = false;
-let lastEnd = 0;
-const pieces = [];              // {at, samples} of the last seconds
-const newLines = [];
-const lastLines = [];
+let lastEnd = 0;                // seconds, when the last band was finished
+const pieces = [];              // {began, at, samples} of the rows rendered in the last seconds; at: when they were finished
+const newLines = [];            // of the log, to be sent after the next heartbeat
+const lastLines = [];           // of the log, to be sent with a failed band
 
-/// The state that the page shows; the meaning of the phases is in README.md of coordinator/web.
+/// The state that the page shows. Phases: "starting"; "connecting"; "waiting" (no band is held), "loading" (a scene),
+/// "rendering"; "pausing" (held bands are finished), "paused"; at the end "stopped" or "failed". `text`: a sentence about it.
 const state = {phase: "starting", text: "Loading the renderer …", rowsDone: 0, bandsDone: 0, samplesPerSecond: 0, job: 0, width: 0,
   height: 0, name: "", cores: 0, memoryBytes: 0};
 
@@ -55,6 +57,7 @@ const state = {phase: "starting", text: "Loading the renderer …", rowsDone: 0,
 let shownAt = 0;
 let showing = null;
 
+/// Sends the state to the page: now, or when STATE_EVERY_MS have passed since the last time.
 function show(now = false) {
   if (over) return;
   const due = shownAt + STATE_EVERY_MS - performance.now();
@@ -78,6 +81,7 @@ function setPhase(phase, text) {
   show(true);
 }
 
+/// Sets the phase by what the session does.
 function look() {
   if (over) return;
   const held = tasks.size;
@@ -151,6 +155,7 @@ function reconnect() {
   connect();
 }
 
+/// Notes that the stream has ended; bands are kept.
 function lost() {
   connected = false;
   clearInterval(beating);
@@ -177,8 +182,8 @@ async function disconnected(code, reason, opened) {
   reconnecting = setTimeout(connect, Math.max(connectBackoff.next(), wait));
 }
 
-/// Returns true, and ends the engine, if the coordinator answers that the link has ended. Otherwise `reached` is called if it
-/// answers at all.
+/// Asks the coordinator if the link still holds. If it has ended, ends the engine and returns true. If there is another answer,
+/// calls `reached` and returns false; without an answer returns false.
 async function linkEnded(reached = () => {}) {
   try {
     const answer = await fetch(`${options.base}/join/about`,
@@ -241,7 +246,7 @@ function beat() {
   send(program.bytes("session_heartbeat", session));
   if (newLines.length > 0) send(program.bytes("session_log", session, newLines.splice(0).join("\n")));
   if (performance.now() - heardAt > SILENCE_MS) {
-    heardAt = performance.now() + ANSWER_MS;  // one question at a time
+    heardAt = performance.now() + ANSWER_MS;  // so that no second request is made meanwhile
     let there = false;
     linkEnded(() => { there = true; }).then((ended) => there || ended || over || reconnect());
   }
@@ -249,6 +254,7 @@ function beat() {
 
 // ---- Rendering. ----
 
+/// Begins a band. `start`: as bandsaw_session_receive answers it (worker/browser/exports.h).
 function take(start) {
   log(`leased job=${start.job} rows=${start.first}:${start.last}`);
   tooLarge = null;
@@ -264,6 +270,7 @@ function drop(id) {
   outgoing = outgoing.filter((band) => band.task.id !== id);
 }
 
+/// Reports to the coordinator that this tab cannot render a band, and forgets it.
 function fail(task, reason) {
   if (tasks.get(task.id) !== task) return;
   drop(task.id);
@@ -291,21 +298,22 @@ function pump() {
   }
 }
 
+/// Handles an error of a renderer that was loading the scene of a band, or rendering rows of it.
 function failed(renderer, task, error) {
   if (error instanceof LinkEnded) {
     end("stopped", error.message);
     return;
   }
   const isTooLarge = error instanceof RendererEnded && error.sceneBytes > 0;
-  // Wrong blobs, and a scene that is too large, serve for none of the bands of the scene.
+  // If blobs are wrong or the scene is too large, no band of the scene can be rendered here.
   for (const one of [...tasks.values()]) {
     if (one === task || (one.scene === task.scene && (error instanceof Final || isTooLarge))) fail(one, error.message);
   }
   if (isTooLarge) takeOnlySmaller(task.job, error.sceneBytes);
 }
 
-/// A scene with blobs of so many bytes has ended a renderer, most likely for want of memory: offers the coordinator, from now
-/// on, memory for scenes of at most three quarters of it.
+/// A scene with blobs of so many bytes has ended a renderer, probably because there was too little memory. From now on, offers
+/// the coordinator memory for scenes of at most three quarters of this size.
 function takeOnlySmaller(job, sceneBytes) {
   tooLarge = `The scene of job ${job} needs more memory than this browser gives; other machines render it.`;
   mostSceneMemory = Math.min(mostSceneMemory, 0.75 * SCENE_PER_BYTE * sceneBytes);
@@ -342,7 +350,7 @@ async function loadScene(renderer, task) {
   log(`scene ${task.scene.slice(0, 12)}: ready in ${((performance.now() - began) / 1000).toFixed(2)} s`);
 }
 
-/// Returns the end of the rows that a renderer is given next. They begin at multiples of `step`, if the band does.
+/// Returns the end of the rows that a renderer is given next, a multiple of `step` or the band's end.
 function endOfPiece(task, step) {
   const known = secondsPerRow.get(task.job);
   const share = (task.last - task.rowsGiven) / (2 * renderers.length);  // so that all renderers end together
@@ -350,6 +358,7 @@ function endOfPiece(task, step) {
   return Math.min(task.last, Math.ceil((task.rowsGiven + Math.floor(rows)) / step) * step);
 }
 
+/// Lets a renderer render the next rows of a band, and finishes the band if they were the last ones.
 async function renderRows(renderer, task) {
   const first = task.rowsGiven;
   const last = endOfPiece(task, renderer.rowStep(task.scene));
@@ -379,6 +388,7 @@ async function renderRows(renderer, task) {
   if (task.rowsDone === task.last - task.first) finish(task);
 }
 
+/// Joins the rows of a band, and puts it among those that are sent.
 function finish(task) {
   if (program.text("session_finished", session, task.id) !== "true") {
     drop(task.id);
@@ -471,7 +481,7 @@ function sent({task}, outcome) {
 
 // ---- What the page asks for. ----
 
-/// A pause has finished the held bands.
+/// Returns true if a pause has begun and all held bands are finished and sent.
 const isDrained = () => pausedWhy !== null && program.json("session_state", session).drained;
 
 /// After a pause has finished the held bands: closes the stream.
@@ -496,8 +506,9 @@ function setCores(count) {
   show();
 }
 
-let offering = null;
+let offering = null;  // timer
 
+/// The calls of join_engine.js, by their names.
 const calls = {
   async start(given) {
     options = given;
@@ -541,7 +552,7 @@ async function compile() {
   return WebAssembly.compileStreaming(response);
 }
 
-// One call after the other: the start takes a moment.
+// Each call begins when the one before it has ended, because the start takes a moment.
 let lastCall = Promise.resolve();
 onmessage = ({data}) => {
   lastCall = lastCall.then(() => over || calls[data.call](data)).catch((error) => end("failed", `The renderer cannot run here: ${error.message}`));

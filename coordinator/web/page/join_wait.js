@@ -1,7 +1,7 @@
-// Waiting, for the session.
+// Ways to wait, for the session of a tab that renders (join_session.js, join_blobs.js).
 
-/// Waits that double from 200 ms to 5 s, each shortened by a random part of up to one half, so that the tabs do not all come
-/// back at the same moment.
+/// Waiting times in milliseconds that double from 200 ms to 5 s. Each is shortened by a random part of up to one half, so that the
+/// tabs do not all connect again at the same moment.
 export class Backoff {
   constructor() {
     this.reset();

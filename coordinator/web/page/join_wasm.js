@@ -1,9 +1,10 @@
-// The functions of bandsaw.wasm (worker/browser/exports.h) for JavaScript.
+// Runs bandsaw.wasm, the renderer compiled to WebAssembly, and calls its functions (worker/browser/exports.h).
 
-const BAD_FILE = 8;  // errno values of WASI
+const BAD_FILE = 8;  // errno values of WASI, the system interface of WebAssembly
 const NOT_SUPPORTED = 58;
 
-/// The functions of the system that a program for WASI may call. It has a console, clocks and random numbers, no files.
+/// Returns the functions of WASI that the program may call. It gets a console, clocks and random numbers, but no files. `memory`: a
+/// function that returns the instance's memory.
 function system(memory) {
   const view = () => new DataView(memory().buffer);
   const empty = (count, size) => {
@@ -45,7 +46,7 @@ function system(memory) {
   };
 }
 
-/// Returns what the module imports. A function that is not known fails when it is called.
+/// Returns the functions that the module imports. One that is not known here returns NOT_SUPPORTED when it is called.
 function imports(module, memory, step) {
   const known = {...system(memory), step};
   const out = {};
@@ -98,6 +99,7 @@ export class Program {
     return bytes;
   }
 
+  // Call `bandsaw_NAME` as run() does, and return its answer as bytes, text or parsed JSON, or throw its error.
   bytes(name, ...args) {
     return this.read(this.run(name, ...args));
   }

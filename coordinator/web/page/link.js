@@ -1,10 +1,11 @@
-// The link by which browsers join as workers, with its QR code.
+// The part of the view of workers that shows, makes and revokes the link by which browsers join as workers, with its QR code.
 
 import {get, post} from "./api.js";
 import {duration, el, text} from "./dom.js";
 import {attempt} from "./notice.js";
 
-/// Returns an element with a button that shows the link, and the link once it is shown.
+/// Returns {element, refresh()}: an element with a button, which is replaced by the link when it is clicked, and a function that
+/// updates the link if it is shown.
 export function browserLink() {
   const code = el("img.code", {alt: "QR code of the link", width: 200, height: 200});
   const address = el("input", {readonly: "", "aria-label": "Link for browsers"});

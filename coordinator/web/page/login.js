@@ -1,7 +1,7 @@
 import {post} from "./api.js";
 import {el, text} from "./dom.js";
 
-/// The form; calls `done` after a login.
+/// Returns the form by which a user logs in to the dashboard; calls `done` after a login.
 export function login(done) {
   const input = el("input", {type: "password", autocomplete: "current-password", required: "", "aria-label": "Join string"});
   const wrong = el("p.bad-text", {role: "alert"});

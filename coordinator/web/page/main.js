@@ -1,4 +1,4 @@
-// Selects the view that is shown, and polls the coordinator for its data.
+// Starts the dashboard's page: selects the view by the address after the #, and polls the coordinator for its data.
 
 import {get, post} from "./api.js";
 import {count, text} from "./dom.js";
@@ -19,7 +19,7 @@ const routes = [
 const root = document.getElementById("view");
 let view = null;  // {element, update(overview), leave?()}
 let timer = 0;
-let isLost = false;
+let isLost = false;  // the last request failed
 
 function show(next) {
   view?.leave?.();
@@ -50,6 +50,7 @@ function route() {
   }
 }
 
+/// Shows in the header how many workers there are, and their speed.
 function pulse(overview) {
   const there = overview.worker.filter((worker) => ["idle", "rendering", "draining"].includes(worker.state));
   const speed = overview.job.reduce((sum, job) => sum + job.status.samples_per_s, 0);
@@ -90,7 +91,8 @@ function start() {
   refresh();
 }
 
-/// The link that `bandsaw serve` writes contains the secret after the #, which browsers do not send.
+/// Logs in if the address has the secret, and shows the page or the form for a login. The link that `bandsaw serve` writes has the
+/// secret after the #, which browsers do not send.
 async function enter() {
   const key = location.hash.match(/^#key=(.+)$/);
   if (key) {

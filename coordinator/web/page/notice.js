@@ -12,8 +12,8 @@ export function say(words, {bad = false, stays = false} = {}) {
   if (!stays && words !== "") timer = setTimeout(() => say(""), 8000);
 }
 
-/// Runs an action of the user and shows its error, if any. The window receives the event `action-done`,
-/// or `login-needed`.
+/// Runs an action of the user and returns its result, or shows its error and returns null. The window receives the event
+/// `action-done`, or `login-needed` if the user has to log in.
 export async function attempt(action) {
   try {
     const result = await action();

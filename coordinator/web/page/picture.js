@@ -1,4 +1,4 @@
-// A job's picture, updated as passes arrive; optionally with the worker of each row.
+// A job's picture, updated as samples arrive; optionally with colours that show which worker rendered which rows.
 
 import {cleaning} from "./clean.js";
 import {el, isOver, stateOf, text} from "./dom.js";
@@ -16,6 +16,7 @@ export function preview(img, status, side) {
   if (img.getAttribute("src") !== source) img.src = source;
 }
 
+/// Returns an element that marks the rows [first, last). `now`: they are being rendered.
 function band(first, last, height, colour, now) {
   const part = el(now ? "i.now" : "i");
   part.style.top = `${(100 * first) / height}%`;
@@ -24,6 +25,7 @@ function band(first, last, height, colour, now) {
   return part;
 }
 
+/// Returns {element, update(page)}; `page`: a JobPage of proto/web.proto.
 export function picture() {
   const img = el("img", {alt: "", hidden: true});
   img.addEventListener("load", () => { img.hidden = false; });

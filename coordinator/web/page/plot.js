@@ -1,4 +1,5 @@
-// Error over time, both logarithmic: random samples fall along a straight line of slope -1/2.
+// A plot of a job's error over time. Both axes are logarithmic, so that the error of random samples falls along a straight line
+// of slope -1/2.
 
 import {duration, el, percent} from "./dom.js";
 
@@ -12,7 +13,7 @@ function draw(tag, attributes, words = "") {
   return element;
 }
 
-/// 1, 2 and 5 times powers of ten within [low, high]; fewer if there would be too many.
+/// Returns the marks of an axis: 1, 2 and 5 times powers of ten within [low, high], or the powers alone if these are too many.
 function ticks(low, high) {
   const out = [];
   for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); ++power) {
@@ -22,7 +23,8 @@ function ticks(low, high) {
   return inside.length <= 6 ? inside : inside.filter((value) => Math.log10(value) % 1 === 0);
 }
 
-/// `points`: {t in seconds, error}; `goal`: an error, or 0; `over`: there will be no more.
+/// Returns {element, update(points, goal, over)}. `points`: {t in seconds, error}, an error being a fraction; `goal`: the error at
+/// which the job stops, or 0; `over`: there will be no more points.
 export function plot() {
   const svg = draw("svg", {class: "plot", viewBox: `0 0 ${box.width} ${box.height}`, role: "img"});
   const none = el("p.soft.small", {}, "The error is known after the second pass.");

@@ -1,9 +1,10 @@
-// The machines that render.
+// The view of the workers, the machines that render.
 
 import {get} from "./api.js";
 import {duration, el, keyed, percent, rate, text} from "./dom.js";
 import {browserLink} from "./link.js";
 
+/// Returns the card of a worker, {element, update({worker, share})}. `share`: its part of the farm's speed, [0, 1].
 function workerCard(first) {
   const state = el("span.state");
   const speed = el("span.soft.small");
