@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The programs for ARM64, built on this machine: installs what that needs (deploy/install.sh arm64), builds the programs of both
+# Makes the programs for ARM64 on this machine: installs what that needs (deploy/install.sh arm64), builds the programs of both
 # architectures, and runs the tests of the label arm64. The programs are in build/arm64/bin.
 # Usage: deploy/arm64.sh
 set -euo pipefail

@@ -1,8 +1,8 @@
-# To be sourced: functions for a bare Debian system in a folder, for scripts that test installations on a new machine. Need root and
-# debootstrap.
+# To be sourced: functions for a bare (minimal) Debian system in a folder, for scripts that test installations on a new machine. They
+# need root and debootstrap.
 # BANDSAW_MIRROR: address of the package mirror (default: http://deb.debian.org/debian).
 
-# bare_possible: succeeds if this machine can make one; otherwise prints the reason.
+# bare_possible: succeeds if this machine can make such a system; otherwise prints the reason.
 bare_possible() {
   if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
     echo "a bare Debian needs root and debootstrap" >&2
@@ -31,13 +31,13 @@ bare_close() {
   ! mountpoint -q "$1/proc" || umount "$1/proc"
 }
 
-# bare_run ROOT COMMAND: runs a shell command in it, in root's home folder, with the environment of a new login.
+# bare_run ROOT COMMAND: runs a shell command in the system, in root's home folder, with the environment of a new login.
 bare_run() {
   chroot "$1" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb LANG=C.UTF-8 bash -euo pipefail -c "cd; $2"
 }
 
-# bare_clone ROOT: makes a fresh clone of this checkout's last commit in its /root/bandsaw and replaces an older one, whose build
-# folder is kept.
+# bare_clone ROOT: makes a fresh clone of this checkout's last commit in the system's /root/bandsaw. It replaces an older clone, whose
+# build folder is kept.
 bare_clone() {
   local clone=$1/root/bandsaw kept=$1/root/build
   [ ! -e "$clone/build" ] || { rm -rf "$kept"; mv "$clone/build" "$kept"; }

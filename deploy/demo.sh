@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A farm on this machine: installs what is needed, builds, starts a coordinator and three workers on loopback, renders a scene
-# with a real model and writes the picture.
+# Runs a farm on this machine: installs what is needed, builds, starts a coordinator and three workers on loopback, renders a
+# scene with a real model and writes the picture.
 # Usage: deploy/demo.sh [FOLDER]   (default: out/demo; gets the picture, the scene and the logs)
 # BANDSAW_BUILD=DIR: use that build; nothing is installed or built.
 set -euo pipefail

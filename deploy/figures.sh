@@ -43,7 +43,7 @@ SCENE
   echo "$folder/$1.png"
 }
 
-# A scene of its own shows the pictures side by side, pixel for pixel. A picture is FILE, or FILE:FROM:TO for a part of its width.
+# Renders OUT, a scene that shows the pictures side by side, pixel for pixel. A PICTURE is FILE, or FILE:FROM:TO for a part of its width.
 side_by_side() { # OUT GAP PICTURE...
   local out=$1 gap=$2 x=0 number=0 height file from to wide
   height=$(height_of "$work/${3%%:*}.png")

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tests that are too long for CI: every label, sanitizers, the other compiler, the other Debian, ARM64, fuzzing. It continues
+# Runs the tests that are too long for CI: every label, sanitizers, the other compiler, the other Debian, ARM64, fuzzing. It continues
 # after a part that fails, and writes one table of the parts that passed, failed or were skipped. Exit 1: a part in the table failed.
 # Usage: deploy/nightly.sh [--continue] [--fuzz-minutes N] [--calibration-minutes N] [--out FOLDER] [PART...]
 #   --continue: keeps the rows that the table in FOLDER has; each states its commit. Parts that are named run again; without PART
@@ -56,7 +56,7 @@ part_labels() {
   preset release hard_cases unit_scheduler farm && tests build/release --label-regex '^(hard_cases_full|simulation_full|schedules_full)$'
 }
 
-# Before the browsers, which load what it builds.
+# Runs before part_browser, whose browsers load the module that this part builds.
 part_wasm() {
   deploy/wasm.sh && preset release bandsaw bandsaw-import wasm_native gallery && tests build/release --label-regex '^wasm$'
 }

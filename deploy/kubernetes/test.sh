@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Checks these files without a cluster: kustomize builds them, values that must agree are equal, and the programs accept the options.
+# Checks the files of this folder without a cluster: kustomize builds them, values that must agree are equal, and the programs accept
+# the options.
 # Exit status 77: kubectl is not installed.
 # Usage: deploy/kubernetes/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail

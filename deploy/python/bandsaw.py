@@ -38,7 +38,7 @@ except ImportError:
 
 __all__ = ["BandsawError", "Farm", "Image", "Job", "NoFarm", "Progress", "WrongString", "compare", "image_from_pfm"]
 
-DEFAULT_WEB_PORT = 8787
+DEFAULT_WEB_PORT = 8787  # of the coordinator's dashboard, as in `bandsaw serve`
 OVER = ("done", "failed", "cancelled")
 
 
@@ -47,11 +47,11 @@ class BandsawError(Exception):
 
 
 class WrongString(BandsawError):
-    """The farm's string is not one, or the farm refuses it."""
+    """The text is no join string, or the farm refuses it."""
 
 
 class NoFarm(BandsawError):
-    """No coordinator answers, or another program does."""
+    """No coordinator answers at the farm's addresses, or another program answers there."""
 
 
 class Refused(BandsawError):
@@ -122,8 +122,8 @@ class _PinnedConnection(http.client.HTTPSConnection):
 
 class Farm:
     """A farm of Bandsaw. `join`: the users' join string, or the name of a file that contains it.
-    `web`: "HOST:PORT" of the dashboard where the string does not name it. No connection is made
-    before the first request."""
+    `web`: "HOST:PORT" of the dashboard; None: as the string says. `timeout`: seconds, of one wait for the
+    coordinator. No connection is made before the first request."""
 
     def __init__(self, join, web=None, timeout=20.0):
         if not join.lstrip().startswith("bsw1-") and os.path.isfile(join):
@@ -185,7 +185,7 @@ class Farm:
             f"--web 0.0.0.0:{self._addresses[0][1]} if it is another machine?")
 
     def request_json(self, method, path, message=None):
-        """The same for JSON: returns the answer as a dictionary."""
+        """Sends `message`, a dictionary or None, as JSON; returns the answer as a dictionary. Errors as request."""
         body = None if message is None else json.dumps(message).encode()
         if body is None and method == "POST":
             body = b"{}"
@@ -194,26 +194,27 @@ class Farm:
     # ---- the farm ----
 
     def check(self):
-        """Raises what is wrong with the string or the farm; returns its version."""
+        """Returns the farm's version. Raises WrongString, NoFarm or Refused if its string or the farm is wrong."""
         return self.request_json("GET", "/api/farm").get("version", "")
 
     def workers(self):
-        """A dictionary for each worker: name, state, threads, …"""
+        """Returns a dictionary for each worker: name, state, threads, …"""
         return self.request_json("GET", "/api/farm").get("worker", [])
 
     def jobs(self):
-        """The farm's jobs, newest first."""
+        """Returns the farm's jobs, newest first."""
         return [Job(self, int(job["status"]["job"])) for job in self.request_json("GET", "/api/farm").get("job", [])]
 
     def job(self, number):
         return Job(self, int(number))
 
     def submit(self, scene, samples=None, error=None, seconds=None, width=None, name=None, files=None, title=None, on_progress=None):
-        """Submits a scene and returns its Job. `scene`: the name of a scene or model file; files that it
-        refers to are sent too. Or its text, with `name`: the name of its file (default scene.textproto), and `files`: a
-        dictionary from the names that the text uses to bytes or paths. `title`: the job's name. One of `samples` (a pixel), `error` (0.02: two percent), `seconds`; default 64
-        samples. `width`: pixels, default the scene's own. `on_progress`: a function of (bytes sent, bytes in all).
-        Files that the farm has are not sent again."""
+        """Submits a scene and returns its Job. `scene`: the name of a scene or model file; files that it refers to are
+        sent too. If `files` is given, `scene` is the text of a scene file, `name` is that file's name (default
+        scene.textproto), and `files` is a dictionary from the names that the text uses to bytes or paths. `title`: the
+        job's name. One of `samples` (a pixel), `error` (0.02: two percent) or `seconds` ends the job; default 64 samples.
+        `width`: pixels, default the scene's own. `on_progress`: a function of (bytes sent, bytes in all). Files that the
+        farm has are not sent again."""
         if files is None:
             main, files = _files_of(scene)
         else:
@@ -267,6 +268,7 @@ class Farm:
                     if on_progress is not None:
                         on_progress(sent, total)
 
+        # The coordinator gives a body one second for each 32 KiB.
         self.request("POST", "/api/files", parts, total, timeout=max(60.0, total / 32768))
 
 
@@ -293,18 +295,18 @@ def _refusal(status, answer):
 # ---- files of a scene ----
 
 _REFERENCES = {
-    # Tokens that may name a file, by the suffix of the file that contains them.
+    # Patterns of texts that may name a file, by the suffix of the file that contains them.
     ".obj": rb"^\s*mtllib\s+(.+?)\s*$",
     ".mtl": rb"^\s*(?:map_\w+|bump|norm|disp|refl|decal)\s+(.+?)\s*$",  # options, then the name
     ".dae": rb"<init_from>\s*([^<]+?)\s*</init_from>",
     ".textproto": rb'"([^"\n]+)"', ".json": rb'"([^"\n]+)"', ".gltf": rb'"uri"\s*:\s*"([^"\n]+)"',
     ".pbrt": rb'"([^"\n]+)"', ".xml": rb'"([^"\n]+)"',
 }
-_ALSO_QUOTED = {".textproto": rb"'([^'\n]+)'"}
+_ALSO_QUOTED = {".textproto": rb"'([^'\n]+)'"}  # a second pattern
 
 
 def _files_of(scene):
-    """The name of the scene file, and a dictionary from the names of it and of the files that it
+    """Returns the name of the scene file, and a dictionary from the names of it and of the files that it
     refers to, directly or not, to their paths. Names are relative to the scene's folder."""
     if not os.path.isfile(scene):
         raise BandsawError(f"there is no scene {scene}")
@@ -326,7 +328,7 @@ def _files_of(scene):
 
 
 def _below(folder, beside, found):
-    """The name, relative to `folder`, of the file that `found` names in a file in the folder `beside`, in a list;
+    """Returns the name, relative to `folder`, of the file that `found` names in a file in the folder `beside`, in a list;
     nothing if there is no such file below the folder."""
     try:
         text = found.decode("utf-8")
@@ -403,6 +405,7 @@ class Progress:
         return " · ".join(parts) + (f" ({self.reason})" if self.reason else "")
 
 
+# None stands for the coordinator's "unknown", a negative number.
 def _known(number):
     number = float(number)
     return None if number < 0 or not math.isfinite(number) else number
@@ -430,17 +433,18 @@ class Job:
         return f"/api/jobs/{self.number}{rest}"
 
     def status(self):
-        """The job's Progress now."""
+        """Returns the job's Progress now."""
         return Progress(self.farm.request_json("GET", self._path())["job"]["status"], self.warnings)
 
     def why(self):
-        """The reasons why the job is not done, in sentences."""
+        """Returns the reasons why the job is not done, in sentences."""
         return self.farm.request_json("GET", self._path()).get("why", [])
 
     def progress(self, interval=0.5, patience=60.0, stop=None):
         """Yields a Progress about every `interval` seconds until the job is over. While the coordinator cannot be
         reached, it yields Progress with state "lost" and tries again for `patience` seconds, then raises NoFarm. Raises
-        BandsawError if the job failed or was cancelled. `stop`: a function; True ends the iteration."""
+        BandsawError if the job failed or was cancelled. `stop`: a function that is called often; the iteration ends when
+        it returns True."""
         lost_since, last = None, None
         while stop is None or not stop():
             try:
@@ -460,14 +464,14 @@ class Job:
             _wait(interval, stop)
 
     def frames(self):
-        """The frames of a job that was submitted with --frames: a list of (number, state, Job or None, reason); state is expected,
+        """Returns the frames of a job that was submitted with --frames: a list of (number, state, Job or None, reason); state is expected,
         waiting, rendering, done or failed. The Job of a frame has its image."""
         return [(int(frame["frame"]), frame["state"].replace("FRAME_STATE_", "").lower(),
                  Job(self.farm, int(frame["job"])) if int(frame["job"]) else None, frame["reason"])
                 for frame in self.farm.request_json("GET", self._path("/frames")).get("frame", [])]
 
     def preview(self, side=2048):
-        """The present state as an Image of at most about `side` pixels a side; None: no pixels yet."""
+        """Returns the present state as an Image of at most about `side` pixels a side; None: no pixels yet."""
         try:
             return image_from_pfm(self.farm.request("GET", self._path(f"/preview.pfm?side={side}")))
         except Refused as error:
@@ -476,11 +480,11 @@ class Job:
             raise
 
     def image(self):
-        """The finished image, exactly: linear light, 32-bit floats."""
+        """Returns the finished image, exactly: linear light, 32-bit floats."""
         return image_from_pfm(self.farm.request("GET", self._path("/image.pfm"), timeout=120))
 
     def report(self):
-        """The report that `bandsaw submit` writes, as a dictionary."""
+        """Returns the report that `bandsaw submit` writes, as a dictionary."""
         return json.loads(self.farm.request("GET", self._path("/report.json")))
 
     def layer(self, kind, samples=16):
@@ -526,20 +530,20 @@ class Image:
         return f"<bandsaw.Image {self.width} x {self.height}>"
 
     def array(self):
-        """A numpy array of shape (height, width, 3)."""
+        """Returns a numpy array of shape (height, width, 3)."""
         if numpy is None:
             raise BandsawError("numpy is not installed here")
         return numpy.asarray(self.pixels, dtype=numpy.float32).reshape(self.height, self.width, 3)
 
     def mean(self):
-        """The mean of each channel."""
+        """Returns the mean of each channel."""
         count = self.width * self.height
         if numpy is not None:
             return tuple(float(x) for x in self.array().reshape(-1, 3).mean(axis=0, dtype=numpy.float64))
         return tuple(math.fsum(self.pixels[channel::3]) / count for channel in range(3))
 
     def bytes8(self):
-        """8-bit sRGB, rows from the top."""
+        """Returns 8-bit sRGB, rows from the top."""
         if numpy is not None:
             x = numpy.clip(numpy.nan_to_num(self.array()), 0, 1)
             y = numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * numpy.power(x, 1 / 2.4) - 0.055)
@@ -547,7 +551,7 @@ class Image:
         return bytes(_srgb8(x) for x in self.pixels)
 
     def png(self):
-        """The bytes of a PNG file."""
+        """Returns the bytes of a PNG file."""
         def chunk(kind, data):
             return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", binascii.crc32(kind + data))
         rows, line = self.bytes8(), 3 * self.width
@@ -558,7 +562,7 @@ class Image:
     _repr_png_ = png
 
     def pfm(self):
-        """The bytes of a PFM file: exact."""
+        """Returns the bytes of a PFM file: exact."""
         head = f"PF\n{self.width} {self.height}\n-1.0\n".encode()
         if numpy is not None:
             return head + self.array()[::-1].astype("<f4").tobytes()
@@ -587,7 +591,7 @@ def _srgb8(x):
 
 
 def image_from_pfm(data):
-    """The Image in the bytes of a PFM file with three channels."""
+    """Returns the Image in the bytes of a PFM file with three channels."""
     match = re.match(rb"PF\s(\d+)\s(\d+)\s(\S+)\s", data)
     if match is None:
         raise BandsawError("not a PFM file with three channels")
@@ -607,7 +611,7 @@ def image_from_pfm(data):
 
 
 def compare(a, b):
-    """How two images of one size differ: a dictionary of `mean_a`, `mean_b` (of all channels), `rmse`, `relative_rmse` (over the
+    """Returns how two images of one size differ: a dictionary of `mean_a`, `mean_b` (of all channels), `rmse`, `relative_rmse` (over the
     mean of b), `largest` difference and `equal` (the same bits)."""
     if (a.width, a.height) != (b.width, b.height):
         raise BandsawError(f"the images have different sizes: {a.width} x {a.height} and {b.width} x {b.height}")

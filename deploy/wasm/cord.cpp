@@ -1,4 +1,6 @@
-// Abseil records samples of its cords only if a program asks for it. Without threads there is no such record to remove.
+// Defines a function that Abseil's cords call. The build for WebAssembly leaves out Abseil's file
+// with it, which needs threads. It does nothing here: it would remove the record of a sampled cord,
+// and without sampling there are no such records.
 
 #include "absl/strings/internal/cordz_info.h"
 

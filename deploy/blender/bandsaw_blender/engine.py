@@ -8,29 +8,29 @@ import numpy as np
 
 from . import bandsaw, scene as scenes
 
-# Blender's pass, its type for Blender, and the farm's kind of layer.
+# For each pass: Blender's setting, its name, its channels and their letters, its type, and the farm's kind of layer (bandsaw.Job.layer).
 PASSES = (("use_pass_z", "Depth", 1, "Z", "VALUE", "depth"), ("use_pass_normal", "Normal", 3, "XYZ", "VECTOR", "normals"),
           ("use_pass_diffuse_color", "DiffCol", 3, "RGB", "COLOR", "albedo"))
-PATIENCE = 60.0  # seconds for which a lost coordinator is waited for
+PATIENCE = 60.0  # seconds for which the engine tries to reach a lost coordinator
 
 last_warnings = []  # of the last render, for the panel
 
 
 def preferences():
-    """The add-on's preferences; None: it runs without being installed (headless)."""
+    """Returns the add-on's preferences; None: it runs without being installed (headless)."""
     addon = bpy.context.preferences.addons.get(__package__)
     return addon.preferences if addon is not None else None
 
 
 def farm_string():
-    """The farm's string: of the preferences, else of the environment's BANDSAW_FARM, as the program `bandsaw` does."""
+    """Returns the farm's join string from the preferences, or else from the environment's BANDSAW_FARM; empty: there is none."""
     kept = preferences()
     text = kept.farm.strip() if kept is not None else ""
     return text or os.environ.get("BANDSAW_FARM", "").strip()
 
 
 def region_of(render, size):
-    """The region to render in pixels from the lower left, or None."""
+    """Returns the region to render, (x0, y0, x1, y1) in pixels from the lower left; None: the whole image. `size`: (width, height)."""
     if not render.use_border:
         return None
     width, height = size
@@ -43,6 +43,7 @@ class Stopped(Exception):
     """The user pressed Esc."""
 
 
+# Blender calls update_render_passes() and render(). In a render, `made` is the scene.Scene that is sent.
 class BandsawEngine(bpy.types.RenderEngine):
     bl_idname = "BANDSAW"
     bl_label = "Bandsaw"
@@ -118,6 +119,8 @@ class BandsawEngine(bpy.types.RenderEngine):
         self.tell_warnings(job.warnings)
         return job
 
+    # Shows previews until the job is done, then the finished image and the passes. The time between previews grows with the time
+    # that one takes, so that they do not slow the render.
     def follow(self, depsgraph, job, made):
         width, height = made.scene["image"]["width"], made.scene["image"]["height"]
         result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
@@ -161,7 +164,7 @@ class BandsawEngine(bpy.types.RenderEngine):
         return True
 
     def set_pixels(self, result, name, pixels):
-        """`pixels`: (height, width, channels), rows from the top."""
+        """Gives Blender the pixels of the pass `name`: (height, width, channels), rows from the top."""
         found = result.layers[0].passes.get(name)
         if found is None:
             return
@@ -188,7 +191,7 @@ def with_alpha(pixels):
 
 
 def pass_pixels(kind, pixels, depsgraph, camera):
-    """A layer of the farm as Blender's pass."""
+    """Returns the pixels of a layer of the farm (`kind`: as in PASSES) in the form of Blender's pass."""
     if kind == "normals":
         hit = pixels.any(axis=2, keepdims=True)
         n = np.where(hit, 2 * pixels - 1, 0)

@@ -9,16 +9,16 @@ from . import files, noise
 
 
 class Unsupported(Exception):
-    """A node that cannot be evaluated; the text names it."""
+    """Something, most often a node, cannot be evaluated; the text names it."""
 
 
 class NeedsCoordinates(Unsupported):
-    """A value that depends on coordinates which the points do not have."""
+    """A value depends on coordinates which the points do not have."""
 
 
 class Points:
-    """Where nodes are evaluated. Arrays of n rows, or None where the points have no such coordinate: `uv` (a dictionary of (n, 2) by the
-    name of the uv map, "" the active one), `generated`, `object`, `normal`, `position`, `reflection` (n, 3)."""
+    """The points at which nodes are evaluated, n = `count`. Each coordinate is an array of n rows, or None if the points do not have it: `uv` (a
+    dictionary of arrays (n, 2) by the name of the uv map, "" the active one), `generated`, `object`, `normal`, `position` (n, 3)."""
 
     def __init__(self, count, uv=None, generated=None, local=None, normal=None, position=None):
         self.count, self.uv, self.generated = count, uv or {}, generated
@@ -26,7 +26,7 @@ class Points:
 
 
 def from_node(socket):
-    """The node and output socket that feed an input, through reroutes; None: it is not linked."""
+    """Returns the node and output socket that feed an input, through reroutes; None: it is not linked."""
     while socket.is_linked and socket.links and socket.links[0].is_valid:
         output = socket.links[0].from_socket
         if output.node.mute:
@@ -38,7 +38,7 @@ def from_node(socket):
 
 
 def input_of(node, *names):
-    """The first of these inputs, by identifier or name, that the node has; None: it has none."""
+    """Returns the first of these inputs, by identifier or name, that the node has; None: it has none."""
     for name in names:
         for socket in node.inputs:
             if socket.identifier == name or socket.name == name:
@@ -47,22 +47,25 @@ def input_of(node, *names):
 
 
 def number(value):
-    """A colour's luminance, a vector's mean, or the number itself."""
+    """Returns a value as a number: the luminance of a colour or vector, or the number itself."""
     return value if value.ndim == 1 else value @ np.array([0.2126, 0.7152, 0.0722])
 
 
+# Returns a value as a colour or vector (n, 3): a number becomes grey.
 def color(value):
     return value if value.ndim == 2 else np.repeat(value[:, None], 3, axis=1)
 
 
 class Evaluator:
-    """`images`: a function from a Blender image to its pixels (height, width, 4) as floats, linear, rows from the bottom."""
+    """Evaluates nodes at `points` (a Points). `images`: a function from a Blender image to its pixels (height, width, 4) as linear floats,
+    rows from the bottom. A node of type T is evaluated by the method node_T(node, output), which returns the value of that output. `groups`:
+    the group nodes around the node that is evaluated, the innermost last; `memory`: values that were computed before."""
 
     def __init__(self, points, images):
         self.points, self.images, self.groups, self.memory = points, images, [], {}
 
     def socket(self, socket):
-        """The value of an input socket: what is linked to it, or its own."""
+        """Returns the value of an input socket: what is linked to it, or its own."""
         output = from_node(socket)
         if output is not None:
             return self.output(output)
@@ -71,12 +74,13 @@ class Evaluator:
         value = np.atleast_1d(np.array(socket.default_value, dtype=float))
         return value if value.size == 1 else value[None, :3]
 
+    # Returns the value of the first of these inputs that the node has; `default` if it has none.
     def of(self, node, *names, default=0.0):
         socket = input_of(node, *names)
         return self.socket(socket) if socket is not None else np.array([default])
 
     def one(self, node, *names, default=0.0):
-        """A number that must be the same at all points."""
+        """Returns an input as a number that is the same at all points. Raises Unsupported if it is not."""
         value = number(self.of(node, *names, default=default))
         if value.size > 1 and np.ptp(value) > 1e-6:
             raise Unsupported(f'a texture at "{names[0]}" of the node "{node.name}"')
@@ -93,7 +97,7 @@ class Evaluator:
         return self.memory[key]
 
     def coordinates(self, node):
-        """The Vector input of a texture node: the linked one, or the texture's default coordinate."""
+        """Returns the Vector input of a texture node: the linked one, or the texture's default coordinate."""
         socket = input_of(node, "Vector")
         if from_node(socket) is not None:
             return color(self.socket(socket))
@@ -101,6 +105,7 @@ class Evaluator:
             return self.uv("")
         return self.need(self.points.generated, "generated coordinates")
 
+    # Returns the array, a coordinate of the points. Raises NeedsCoordinates if they do not have it.
     def need(self, array, what):
         if array is None:
             raise NeedsCoordinates(what)
@@ -426,7 +431,7 @@ VECTOR_MATH = {
 
 
 def blended(node, kind, factor, a, b, clamp):
-    """Blender's blend modes of two colours."""
+    """Returns two colours blended by Blender's blend mode `kind`. `factor`: (n) or (n, 3); `clamp`: the result is limited to [0, 1]."""
     t = np.clip(factor, 0, 1)
     t = t[:, None] if t.ndim == 1 else t
     a, b = np.broadcast_arrays(a, b)
@@ -461,7 +466,8 @@ def from_hsv(hsv):
 
 
 def blackbody(temperature):
-    """The colour of a black body of luminance 1, by Planck's law and the CIE's observer (fit of Wyman et al. 2013)."""
+    """Returns the colour (n, 3) of black bodies of these temperatures (kelvin), of luminance 1, by Planck's law and the CIE's observer (fit of
+    Wyman et al. 2013). The matrix converts from XYZ to linear sRGB."""
     wave = np.arange(380.0, 781.0, 5.0)
 
     def bell(mean, left, right):
@@ -479,7 +485,8 @@ def blackbody(temperature):
 
 
 def look_up(pixels, uv, extension, nearest):
-    """Pixels (height, width, 4), rows from the bottom, at uv (n, 2)."""
+    """Returns the values (n, 4) of an image at uv (n, 2). `pixels`: (height, width, 4), rows from the bottom; `extension`: Blender's word for what
+    lies beyond its edges; `nearest`: without interpolation."""
     height, width = pixels.shape[:2]
     size = np.array([width, height])
 
@@ -511,7 +518,7 @@ def look_up(pixels, uv, extension, nearest):
 
 
 def linear_pixels(image):
-    """The pixels of a Blender image as linear floats (height, width, 4), rows from the bottom. Raises Unsupported."""
+    """Returns the pixels of a Blender image as linear floats (height, width, 4), rows from the bottom. Raises Unsupported."""
     width, height = image.size
     if width == 0 or height == 0:
         raise Unsupported(f'the image "{image.name}", whose file is missing or cannot be read')

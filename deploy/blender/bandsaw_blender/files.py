@@ -7,7 +7,7 @@ import numpy as np
 
 
 def exr(pixels):
-    """The bytes of an uncompressed OpenEXR file of 32-bit floats. `pixels`: (height, width, 3), rows from the top."""
+    """Returns the bytes of an uncompressed OpenEXR file of 32-bit floats. `pixels`: (height, width, 3), rows from the top."""
     height, width = pixels.shape[:2]
     rows = np.ascontiguousarray(pixels[:, :, ::-1].transpose(0, 2, 1), dtype="<f4")  # channels B, G, R, each a line
 
@@ -17,7 +17,7 @@ def exr(pixels):
     box = struct.pack("<iiii", 0, 0, width - 1, height - 1)
     channels = b"".join(name + b"\0" + struct.pack("<iBBBBii", 2, 0, 0, 0, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
     head = b"".join((
-        struct.pack("<ii", 20000630, 2),
+        struct.pack("<ii", 20000630, 2),  # OpenEXR's magic number, and version 2 of the format
         attribute(b"channels", b"chlist", channels),
         attribute(b"compression", b"compression", b"\0"),
         attribute(b"dataWindow", b"box2i", box),
@@ -37,7 +37,7 @@ def exr(pixels):
 
 
 def png(codes):
-    """The bytes of a PNG file. `codes`: uint8, (height, width, 3) or (height, width), rows from the top."""
+    """Returns the bytes of a PNG file. `codes`: uint8, (height, width, 3) or (height, width), rows from the top."""
     height, width = codes.shape[:2]
     channels = 1 if codes.ndim == 2 else 3
 
@@ -51,11 +51,11 @@ def png(codes):
 
 
 def srgb_codes(linear):
-    """8-bit sRGB of linear values."""
+    """Returns 8-bit sRGB of linear values."""
     x = np.clip(linear, 0, 1)
     return (255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.power(x, 1 / 2.4) - 0.055) + 0.5).astype(np.uint8)
 
 
 def linear(srgb):
-    """Linear values of sRGB in [0, 1]."""
+    """Returns linear values of sRGB in [0, 1]."""
     return np.where(srgb <= 0.04045, srgb / 12.92, np.power((np.maximum(srgb, 0) + 0.055) / 1.055, 2.4))

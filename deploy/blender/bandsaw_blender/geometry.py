@@ -7,7 +7,7 @@ import numpy as np
 
 
 class Vertices:
-    """`positions` (v, 3); `normals` (v, 3), or None: flat everywhere."""
+    """Vertices of a mesh: `positions` (v, 3); `normals` (v, 3), or None: the mesh is flat everywhere."""
 
     def __init__(self, positions, normals):
         self.positions, self.normals = positions, normals
@@ -31,16 +31,16 @@ class Triangles:
         return Triangles(frame.positions, frame.normals, [uv[which] for uv in self.uvs], indices.astype(np.uint32).reshape(-1, 3), ends)
 
     def box(self):
-        """The lowest and the highest coordinates."""
+        """Returns the lowest and the highest coordinates, two arrays of 3."""
         return self.positions.min(axis=0), self.positions.max(axis=0)
 
     def corners(self):
-        """The same with three vertices of its own for each triangle."""
+        """Returns the same with three vertices of its own for each triangle."""
         flat = self.indices.reshape(-1)
         return self._selected(flat, np.arange(len(flat)))
 
     def compact(self):
-        """The same without vertices that no triangle uses."""
+        """Returns the same without vertices that no triangle uses."""
         return self._selected(*np.unique(self.indices.reshape(-1), return_inverse=True))
 
     def corner_normals(self):
@@ -53,6 +53,7 @@ class Triangles:
         return np.repeat(n, 3, axis=0)
 
 
+# Returns a property of all items of a Blender collection: (count, width), or (count) if the width is 1.
 def _get(collection, name, count, width, dtype):
     array = np.empty(count * width, dtype=dtype)
     collection.foreach_get(name, array)
@@ -60,7 +61,7 @@ def _get(collection, name, count, width, dtype):
 
 
 def _corner_normals(mesh, loops):
-    """The normals of the corners (loops, 3); they hold flat and smooth faces and the user's own normals."""
+    """Returns the normals of the corners (loops, 3); they hold flat and smooth faces and the user's own normals."""
     if hasattr(mesh, "corner_normals"):  # Blender 4.1
         return _get(mesh.corner_normals, "vector", loops, 3, np.float32)
     mesh.calc_normals_split()
@@ -86,7 +87,7 @@ class Pose:
             self.normals = _corner_normals(mesh, loops)
 
     def fits(self, other):
-        """True if both are the same mesh with its vertices at other places."""
+        """Returns true if both are the same mesh with its vertices at other places."""
         return (len(self.positions) == len(other.positions) and np.array_equal(self.vertex_of_loop, other.vertex_of_loop) and
                 (self.normals is None) == (other.normals is None))
 
@@ -96,7 +97,7 @@ class Pose:
 
 
 def triangles_of(mesh, uv_names, ends=None):
-    """A dictionary from the indices of the material slots that the mesh uses to their Triangles. `uv_names`: the names of the uv maps to
+    """Returns a dictionary from the indices of the material slots that the mesh uses to their Triangles. `uv_names`: the names of the uv maps to
     keep, at most two; "" is the active one. `ends`: the Poses of the mesh when the shutter opens and when it closes, which fit to it; None: it
     does not deform."""
     mesh.calc_loop_triangles()
@@ -165,7 +166,7 @@ def _indexed(pose, uvs, corners, of_corner, ends):
 
 
 def box(low, high):
-    """The Triangles of an axis-aligned box, outwards."""
+    """Returns the Triangles of an axis-aligned box, whose normals point outwards. `low`, `high`: two opposite corners."""
     p = np.array([[(low, high)[k >> a & 1][a] for a in range(3)] for k in range(8)], dtype=np.float32)
     quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
     return Triangles(p, None, [], np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))], dtype=np.uint32))
@@ -175,7 +176,7 @@ DEFORMS = "deforms"  # the name of the animation of a mesh that deforms
 
 
 def glb(triangles):
-    """The bytes of a GLB file with this one mesh. If it deforms, its vertices are those when the shutter opens, and a morph target, which the
+    """Returns the bytes of a GLB file with this one mesh. If it deforms, its vertices are those when the shutter opens, and a morph target, which the
     animation DEFORMS shows from the time 0 to 1, has those when it closes."""
     parts, views, accessors, attributes = [], [], [], {}
 
@@ -258,6 +259,6 @@ class Atlas:
         self.weights = np.stack([1 - b - c, b, c], axis=1)
 
     def spread(self, per_corner):
-        """Values at the texels of values at the corners (3 t, k)."""
+        """Interpolates values at the corners of the triangles (3 t, k); returns the values at the texels (side * side, k)."""
         by_triangle = per_corner.reshape(-1, 3, per_corner.shape[1])[np.maximum(self.triangle, 0)]
         return np.einsum("nk,nkd->nd", self.weights, by_triangle)

@@ -17,11 +17,11 @@ import bpy
 
 from . import engine, scene as scenes
 
-_folder, _name = [""], ["scene"]
+_folder, _name = [""], ["scene"]  # FOLDER and NAME of the export in progress, for ExportEngine
 
 
 class ExportEngine(bpy.types.RenderEngine):
-    """Renders nothing: it is the way to a dependency graph in render mode."""
+    """Renders nothing, but writes the scene's files: only a render engine gets a dependency graph in render mode."""
 
     bl_idname = "BANDSAW_EXPORT"
     bl_label = "Bandsaw (scene files)"
@@ -52,6 +52,7 @@ def fail(folder, message):
         file.write(message.replace("\n", " ") + "\n")
 
 
+# Removes the files of the frame before; the add-on itself lies in the same folder.
 def remove_results(folder, addon="bandsaw_blender.zip"):
     for name in os.listdir(folder):
         if name != addon:

@@ -1,6 +1,7 @@
-"""Converts Blender's lights and world. Powers become radiances, intensities and irradiances; Blender's manual, "Light Objects", and
-deploy/blender/README.md define the units. In add_*(), `place` is the light's position, `toward` the direction in which it shines, both in the
-axes of scene files, and `tint` its colour times its power."""
+"""Converts Blender's lights, world and volumes to those of a scene file. Powers become radiances, intensities and irradiances; Blender's manual,
+"Light Objects", and deploy/blender/README.md define the units. `out` is the scene.Scene in the making. In add_*(), `thing` is the light's object,
+`placed` its matrix, `place` its position and `toward` the direction in which it shines, all in the axes of scene files, and `tint` is its colour
+times its power."""
 
 import math
 
@@ -34,7 +35,7 @@ def add_light(out, thing, matrix):
 
 
 def node_factor(out, light):
-    """The colour that the light's nodes multiply its power with."""
+    """Returns the colour that the light's nodes multiply its power with."""
     if not light.use_nodes or light.node_tree is None:
         return np.ones(3)
     end = shading.output_node(light.node_tree)
@@ -155,7 +156,7 @@ def world_background(out, world):
 
 
 def radiance_of(out, output, points, values=None):
-    """The radiance of the world's shader at points, whose generated coordinates are directions."""
+    """Returns the radiance of the world's shader at points, whose generated coordinates are directions."""
     node = output.node
     values = values or evaluate.Evaluator(points, out.images.pixels)
     if node.type in ("BACKGROUND", "EMISSION"):
@@ -171,7 +172,7 @@ def radiance_of(out, output, points, values=None):
 
 
 def plain_environment(out, output):
-    """An environment image that is only turned and scaled; None: it is more than that."""
+    """Returns the message Background of a world that is one environment image, only turned and scaled; None: it is more than that."""
     node = output.node
     if node.type not in ("BACKGROUND", "EMISSION") or from_node(input_of(node, "Strength")) is not None:
         return None
@@ -207,7 +208,7 @@ def plain_environment(out, output):
 
 
 def baked_environment(out, output, width=1024):
-    """The world's nodes, evaluated in all directions."""
+    """Returns a message Background with an image of the world's nodes, evaluated in all directions. `width`: pixels."""
     height = width // 2
     y, x = np.divmod(np.arange(width * height), width)
     longitude = (0.5 - (x + 0.5) / width) * 2 * np.pi
@@ -223,7 +224,8 @@ def baked_environment(out, output, width=1024):
 
 
 def medium_of(out, output, where, density_grid=None):
-    """The Medium of a volume shader, without a name; None: there is none."""
+    """Returns the message Medium of a volume shader, without a name; None: it cannot be shown, and a warning says so. `where`: the volume's
+    owner, for warnings; `density_grid`: the name of the grid that the caller adds, None: no grid."""
     node = output.node
     values = evaluate.Evaluator(evaluate.Points(1), out.images.pixels)
     try:
@@ -264,6 +266,7 @@ def anisotropy(values, node):
     return min(max(float(evaluate.number(values.of(node, "Anisotropy"))[0]), -0.999), 0.999)
 
 
+# Returns the Medium whose coefficients are the sums of those of `parts`; the anisotropy is the mean, weighted by scattering.
 def sum_of_media(parts):
     if not parts:
         return None

@@ -11,8 +11,9 @@ def _rotate(x, k):
     return ((x << np.uint32(k)) | (x >> np.uint32(32 - k))).astype(np.uint32)
 
 
+# The constants of _hash, _hash4, _gradient, signed and checker are Blender's.
 def _hash(*keys):
-    """Jenkins' lookup3 final mix of one to three uint32 arrays."""
+    """Returns the hash of one to three uint32 arrays, row by row: the final mix of Jenkins' lookup3."""
     start = np.uint32((0xDEADBEEF + (len(keys) << 2) + 13) & 0xFFFFFFFF)
     a, b, c = (np.broadcast_to(start, keys[0].shape).astype(np.uint32) for _ in range(3))
     with np.errstate(over="ignore"):
@@ -36,16 +37,17 @@ def _bits(x):
 
 
 def _hash_floats(*keys):
-    """A number in [0, 1] for each row of keys, which are float arrays."""
+    """Returns a number in [0, 1] for each row of keys, which are float arrays."""
     return _hash(*(_bits(key) for key in keys)).astype(np.float64) / 0xFFFFFFFF
 
 
 def _offset(seed):
-    """The shift by which Blender makes a second, independent noise."""
+    """Returns the shift by which Blender makes a second, independent noise."""
     one = np.full(1, seed, dtype=np.float32)
     return 100 + 100 * np.array([_hash_floats(one, np.full(1, k, dtype=np.float32))[0] for k in (0, 1, 2)])
 
 
+# Returns the dot product of (x, y, z) with one of the gradients of Perlin noise, which the hash `h` selects.
 def _gradient(h, x, y, z):
     h = h & np.uint32(15)
     u = np.where(h < 8, x, y)
@@ -54,7 +56,7 @@ def _gradient(h, x, y, z):
 
 
 def signed(p):
-    """Perlin noise in about [-1, 1]."""
+    """Returns Perlin noise in about [-1, 1], (n)."""
     cell = np.floor(p)
     f = p - cell
     i = cell.astype(np.int64).astype(np.uint32)
@@ -70,7 +72,8 @@ def signed(p):
 
 
 def fractal(p, detail, roughness, lacunarity=2.0):
-    """Blender's fractal noise in [0, 1]: octaves of noise, normalised by their amplitudes."""
+    """Returns Blender's fractal noise in [0, 1]: octaves of noise, normalised by their amplitudes. `detail`: the number of further octaves,
+    not always whole; `roughness`: the amplitude of an octave over that of the one before; `lacunarity`: the same for the frequency."""
     detail = min(max(float(detail), 0.0), 15.0)
     whole = int(detail)
     scale = amplitude = 1.0
@@ -88,7 +91,7 @@ def fractal(p, detail, roughness, lacunarity=2.0):
 
 
 def texture(p, detail, roughness, distortion, lacunarity=2.0):
-    """The Noise Texture: its value (n) and its colour (n, 3)."""
+    """Returns the Noise Texture: its value (n) and its colour (n, 3)."""
     if distortion != 0:
         p = p + distortion * np.stack([signed(p + _offset(k)) for k in (0, 1, 2)], axis=1)
     parts = [fractal(q, detail, roughness, lacunarity) for q in (p, p + _offset(3), p + _offset(4))]
@@ -96,7 +99,7 @@ def texture(p, detail, roughness, distortion, lacunarity=2.0):
 
 
 def voronoi(p, randomness):
-    """The Voronoi Texture F1 with Euclidean distance: distance (n), colour and position (n, 3)."""
+    """Returns the Voronoi Texture F1 with Euclidean distance: distance (n), colour and position (n, 3)."""
     cell = np.floor(p)
     best, chosen, place = np.full(len(p), 1e30), np.zeros_like(p), np.zeros_like(p)
     for x in (-1, 0, 1):
@@ -112,12 +115,13 @@ def voronoi(p, randomness):
 
 
 def _hash_point(k):
-    """Three numbers in [0, 1] for each cell."""
+    """Returns three numbers in [0, 1] for each cell."""
     x, y, z = (_bits(k[:, i]) for i in range(3))
     four = [_bits(np.full(len(k), w, dtype=np.float32)) for w in (1, 2)]
     return np.stack([_hash(x, y, z).astype(np.float64) / 0xFFFFFFFF, _hash4(x, y, z, four[0]), _hash4(x, y, z, four[1])], axis=1)
 
 
+# Returns numbers in [0, 1] for four uint32 arrays, by lookup3 as _hash().
 def _hash4(kx, ky, kz, kw):
     start = np.uint32((0xDEADBEEF + (4 << 2) + 13) & 0xFFFFFFFF)
     with np.errstate(over="ignore"):
@@ -140,14 +144,14 @@ def _hash4(kx, ky, kz, kw):
 
 
 def checker(p):
-    """1 where the Checker Texture shows its first colour, else 0."""
+    """Returns 1 where the Checker Texture shows its first colour, else 0."""
     q = (p + 0.000001) * 0.999999
     i = np.abs(np.floor(q).astype(np.int64))
     return ((i[:, 0] % 2 == i[:, 1] % 2) == (i[:, 2] % 2 != 0)).astype(float)
 
 
 def gradient(p, kind):
-    """The Gradient Texture of Blender's kind."""
+    """Returns the Gradient Texture in [0, 1]. `kind`: Blender's gradient_type."""
     x, y = p[:, 0], p[:, 1]
     if kind == "LINEAR":
         value = x
@@ -167,7 +171,7 @@ def gradient(p, kind):
 
 
 def wave(p, node, distortion, detail, detail_scale, roughness, phase):
-    """The Wave Texture in [0, 1]. `node`: for its kind, direction and profile."""
+    """Returns the Wave Texture in [0, 1]. `node`: for its kind, direction and profile."""
     q = (p + 0.000001) * 0.999999
     if node.wave_type == "BANDS":
         axis = {"X": q[:, 0], "Y": q[:, 1], "Z": q[:, 2]}.get(node.bands_direction)

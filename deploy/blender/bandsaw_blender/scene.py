@@ -1,7 +1,7 @@
-"""Walks over Blender's evaluated scene and makes a scene of Bandsaw of it: a scene file and its files, in memory.
+"""Walks over Blender's evaluated scene and makes a scene of Bandsaw of it: a scene file (proto/scene.proto, as JSON) and the files that it names.
 
-Vertices stay in the space of their mesh; the change from Blender's axes (z up) to those of scene files (y up) is part of the placements. What
-cannot be shown is named in `warnings`."""
+Vertices stay in the space of their mesh; the change from Blender's axes (z up) to those of scene files (y up) is part of the placements. Features
+that cannot be shown are named in `warnings`. In the functions, `out` is the Scene in the making, and `thing` an object of Blender."""
 
 import contextlib
 import hashlib
@@ -21,8 +21,9 @@ GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
 class Scene:
-    """A scene in the making. `scene`: the message Scene as a dictionary; `files`: from names to bytes or paths; `warnings`: sentences. Large files
-    are kept in a temporary folder, which is removed with the scene: Blender needs the memory."""
+    """A scene in the making. `scene`: the message Scene as a dictionary; `files`: from names to bytes or paths; `warnings`: sentences; `suns`: the
+    suns with a size, for lights.finish_suns; `low`, `high`: the box around the scene in Blender's axes. Large files are kept in a temporary folder,
+    which is removed with the scene, because Blender needs the memory."""
 
     MAIN = "scene.json"
     LARGE = 16 << 20  # bytes
@@ -63,6 +64,7 @@ class Scene:
             self.scene["material"].append({"name": self._materials[key], **message})
         return self._materials[key]
 
+    # Adds a medium; equal ones are one. Returns its name.
     def medium(self, message):
         key = json.dumps(message, sort_keys=True)
         if key not in self._media:
@@ -70,6 +72,7 @@ class Scene:
             self.scene["medium"].append({"name": self._media[key], **message})
         return self._media[key]
 
+    # Returns the name of a material that emits to the side of the normal. `hidden`: the camera does not see it.
     def lamp_material(self, radiance, hidden):
         emissive = {"radiance": shading.rgb(radiance), "one_sided": True}
         if hidden:
@@ -80,10 +83,12 @@ class Scene:
         """Adds a shape that emits to the side of its normal. `hidden`: the camera does not see it."""
         self.scene["shape"].append({**shape, "material": self.lamp_material(radiance, hidden)})
 
+    # Returns the 12 numbers of an affine map, as Model.matrix has them.
     @staticmethod
     def rows(matrix):
         return [float(matrix[row][column]) for row in range(3) for column in range(4)]
 
+    # Returns the scene file: JSON.
     def text(self):
         return json.dumps({field: value for field, value in self.scene.items() if value not in ([], "", {})})
 
@@ -96,7 +101,8 @@ class Scene:
 
 
 class Shape:
-    """What all placements of one mesh with the same materials share. `parts`: fields of Model for each material slot."""
+    """A mesh with its materials, which all its placements share. `parts`: for each material slot, fields of the message Model; `placements`: pairs
+    of a matrix and, if it moves, the matrices at both ends of the shutter."""
 
     def __init__(self, parts):
         self.parts, self.placements = parts, []
@@ -145,7 +151,8 @@ def build(depsgraph, scene, size, region=None, camera=None, frame_set=None):
 
 
 class Moved:
-    """The placements at the times when the shutter opens and closes, and the poses of meshes that may deform; none without motion blur."""
+    """Finds what moves: the placements at the times when the shutter opens and closes, and the poses of meshes that may deform. Without motion blur
+    it has none, and `times` is None."""
 
     def __init__(self, depsgraph, scene, frame_set):
         self.times, self.before, self.after = None, {}, {}
@@ -166,6 +173,7 @@ class Moved:
             found["camera"] = camera.matrix_world.copy()
         frame_set(math.floor(frame), frame - math.floor(frame))
 
+    # Returns a key by which an instance is found again at another time.
     @staticmethod
     def key(instance):
         parent = instance.parent.name_full if instance.parent is not None else ""
@@ -186,7 +194,7 @@ class Moved:
             poses[thing.name_full] = data, geometry.Pose(mesh) if mesh is not None else None
 
     def ends_of(self, out, thing, mesh):
-        """The Poses of a mesh when the shutter opens and when it closes; None: it does not deform."""
+        """Returns the Poses of a mesh when the shutter opens and when it closes; None: it does not deform."""
         if self.times is None or not may_deform(thing):
             return None
         first, last = (poses.get(thing.name_full, (None, None))[1] for poses in (self.poses_before, self.poses_after))
@@ -199,7 +207,7 @@ class Moved:
         return first, last
 
     def of(self, instance):
-        """The two placements of an instance that moves; None: it does not."""
+        """Returns the two placements of an instance that moves; None: it does not."""
         if self.times is None or not blurred(instance.object, "use_motion_blur"):
             return None
         key = self.key(instance)
@@ -210,12 +218,12 @@ class Moved:
 
 
 def blurred(thing, setting):
-    """True unless the object's settings for Cycles say that its motion is not blurred."""
+    """Returns true unless the object's settings for Cycles say that its motion is not blurred."""
     return getattr(getattr(thing.original, "cycles", None), setting, True)
 
 
 def may_deform(thing):
-    """True if an object has something that can move its vertices."""
+    """Returns true if an object has something that can move its vertices."""
     if thing.type not in GEOMETRY or not blurred(thing, "use_motion_blur") or not blurred(thing, "use_deform_motion"):
         return False
     data = thing.original.data
@@ -225,7 +233,7 @@ def may_deform(thing):
 
 @contextlib.contextmanager
 def mesh_of(thing):
-    """The mesh of an evaluated object; None: it has none."""
+    """Yields the mesh of an evaluated object; None: it has none."""
     if thing.type == "MESH":
         yield thing.data
         return
@@ -236,7 +244,8 @@ def mesh_of(thing):
 
 
 def key_of(time, matrix, previous=None):
-    """A message Key of a placement, in the axes of scene files. Returns it and the rotation, for the next one."""
+    """Returns the message Key of a placement at a time, in the axes of scene files, and the placement's rotation. `previous`: the rotation of the
+    key before, so that both are on one side and the rotation takes the shorter way."""
     location, rotation, scale = (TO_SCENE @ matrix).decompose()
     if previous is not None and rotation.dot(previous) < 0:
         rotation.negate()
@@ -247,6 +256,7 @@ def key_of(time, matrix, previous=None):
     return made, rotation
 
 
+# True if a placement is not a product of a scale, a rotation and a translation, as a Key must be.
 def sheared(matrix):
     location, rotation, scale = matrix.decompose()
     again = Matrix.LocRotScale(location, rotation, scale)
@@ -258,7 +268,7 @@ def sheared(matrix):
 
 
 def view(matrix_world):
-    """The fields of a message Camera that say where it is."""
+    """Returns the fields of a message Camera that say where it is."""
     matrix = TO_SCENE @ matrix_world.normalized()
     turned = matrix.to_3x3()
     place, ahead, up = matrix.translation, -turned.col[2], turned.col[1]
@@ -330,6 +340,7 @@ def add_geometry(out, shapes, thing, matrix, moved, motion):
     shape.placements.append((matrix, motion))
 
 
+# Returns Shape.parts of a mesh, and stores its files. `ends`: the Poses at both ends of the shutter, or None.
 def parts_of(out, thing, mesh, matrix, ends):
     materials = materials_of(thing, mesh)
     names = [""] + [name for name in uv_names(materials) if name]
@@ -352,6 +363,7 @@ def parts_of(out, thing, mesh, matrix, ends):
     return parts
 
 
+# Returns the name of the first uv map that the materials name, in a list; an empty list: they name none.
 def uv_names(materials):
     found = []
     for material in materials:
@@ -367,7 +379,7 @@ def uv_names(materials):
 
 
 def material_part(out, material, piece, thing):
-    """Fields of Model for a piece of geometry; None: nothing of it is visible."""
+    """Returns fields of Model for a piece of geometry; None: nothing of it is visible."""
     if material is None:
         return {"material": out.material({"diffuse": {"color": shading.rgb((0.8, 0.8, 0.8))}})}
     medium = interior_of(out, material, thing)
@@ -401,7 +413,7 @@ def interior_of(out, material, thing):
 
 
 def add_grid(out, thing, matrix):
-    """An OpenVDB object: its box, filled with the grid's medium."""
+    """Adds an OpenVDB object: its box, filled with the grid's medium."""
     path = bpy.path.abspath(thing.data.filepath) if thing.data.filepath else ""
     if thing.data.is_sequence:
         path = thing.data.grids.frame_filepath if hasattr(thing.data.grids, "frame_filepath") else path
@@ -450,6 +462,7 @@ def place(out, shapes):
             out.scene["instance"].append({"of": name, **placed(out, *placement)})
 
 
+# Returns the fields of Model and Instance for a placement: a matrix, or keys at both ends of the shutter.
 def placed(out, matrix, motion):
     if motion is None:
         return {"matrix": out.rows(TO_SCENE @ matrix)}

@@ -21,7 +21,7 @@ class Value:
 
     @property
     def number(self):
-        """The constant's luminance; 1 for a texture."""
+        """Returns the constant's luminance; 1 for a texture."""
         return 1.0 if self.constant is None else float(self.constant @ (0.2126, 0.7152, 0.0722))
 
     def is_constant(self, number):
@@ -48,6 +48,7 @@ class Value:
         return Value(texture={"mix": {"a": {"color": rgb((1, 1, 1))}, "b": {"color": rgb((0, 0, 0))}, "amount": self.texture}})
 
 
+# Returns the message Color.
 def rgb(values):
     return {"rgb": [float(max(x, 0.0)) for x in values]}
 
@@ -76,7 +77,7 @@ class Piece:
         return self.atlas
 
     def finished(self):
-        """The triangles as they are sent."""
+        """Returns the triangles as they are sent."""
         if self.atlas is None:
             return self.triangles
         corners = self.triangles.corners()
@@ -85,7 +86,7 @@ class Piece:
         return corners
 
     def points(self, du=0.0, dv=0.0):
-        """The atlas's texels, moved by du and dv texels, as Points."""
+        """Returns the atlas's texels, moved by du and dv texels, as Points."""
         atlas = self.make_atlas()
         weights = atlas.weights
         if du or dv:
@@ -135,7 +136,7 @@ class Images:
         return "ENCODING_SRGB"
 
     def file(self, image):
-        """The name of the image's file in the scene. Raises Unsupported if there is none."""
+        """Returns the name of the image's file in the scene. Raises Unsupported if there is none."""
         key = image.name_full
         if key not in self._files:
             self._files[key] = self._stored(image)
@@ -179,7 +180,7 @@ class Shader:
         return made
 
     def constant(self, socket):
-        """The value if it is the same everywhere; None: it is not. Raises Unsupported."""
+        """Returns the value if it is the same everywhere; None: it is not. Raises Unsupported."""
         try:
             value = self.evaluator(evaluate.Points(1)).socket(socket)
         except evaluate.NeedsCoordinates:
@@ -187,7 +188,7 @@ class Shader:
         return value[0] if value.ndim == 2 else np.repeat(value[:1], 3)
 
     def value(self, socket, is_number=False, default=0.0):
-        """A Value of an input; `default` if the shader has no such input. What cannot be evaluated is named and gets the input's own value."""
+        """Returns the Value of an input; `default` if the shader has no such input. If it cannot be evaluated, warns and returns the input's own value."""
         if socket is None:
             return Value(default)
         try:
@@ -205,7 +206,7 @@ class Shader:
         return self.value(input_of(node, *names), True, default)
 
     def plain(self, node, *names, default=0.0):
-        """A number for fields that take no texture: the mean of a texture, which is then named."""
+        """Returns a number for a field that takes no texture. Of a texture it is the mean, and a warning says so."""
         socket = input_of(node, *names)
         value = self.value(socket, True, default)
         if value.constant is None:
@@ -214,7 +215,7 @@ class Shader:
         return value.number
 
     def direct_image(self, socket):
-        """The Value of an image that is used as it is; None: it has to be baked."""
+        """Returns the Value of an image that is used as it is; None: it has to be baked."""
         output = from_node(socket)
         if output is None or output.node.type != "TEX_IMAGE" or output.name != "Color" or self.in_group(output):
             return None
@@ -229,11 +230,12 @@ class Shader:
         image = {"file": self.out.images.file(node.image), "wrap": wrap, "filter": nearest, "encoding": self.out.images.encoding(node.image), **placed}
         return Value(texture={"image": image})
 
+    # True if the node is in another node tree than the shader that is converted.
     def in_group(self, output):
         return output.node.id_data != self.tree
 
     def placement(self, node):
-        """How the image lies on the first uv set, as fields of ImageTexture; None: on something else."""
+        """Returns how the image of a node lies on the first uv set, as fields of ImageTexture; None: it does not lie on that set."""
         output = from_node(input_of(node, "Vector"))
         fields = {}
         if output is not None and output.node.type == "MAPPING" and output.node.vector_type == "POINT" and not self.in_group(output):
@@ -258,6 +260,7 @@ class Shader:
             return None
         return fields if name in ("", self.piece.uv_names[0]) else None
 
+    # Returns the Value of an input as an image: over the uvs if they lie in [0, 1] and nothing else matters, otherwise in the atlas.
     def baked(self, socket, is_number):
         uvs = self.piece.triangles.uvs
         if uvs and uvs[0].min() >= -1e-6 and uvs[0].max() <= 1 + 1e-6:
@@ -275,7 +278,8 @@ class Shader:
         return self.stored(value, (side, side), is_number, {"uv_set": "UV_SET_SECOND", "wrap": "WRAP_CLAMP"})
 
     def bake_size(self, socket):
-        """Width and height of the largest image among the nodes before the socket."""
+        """Returns the width and height for baking an input: those of the largest image among the nodes before it, and at least 1,024 with a
+        procedural texture; at most MOST_BAKED."""
         width, height, seen, waiting = 256, 256, set(), [from_node(socket)]
         while waiting:
             output = waiting.pop()
@@ -290,6 +294,8 @@ class Shader:
             waiting.extend(from_node(s) for s in node.inputs)
         return min(width, MOST_BAKED), min(height, MOST_BAKED)
 
+    # Stores baked values as an image of `size` (width, height), rows from the bottom. Returns its Value, whose `mean` is set. `fields`: of
+    # ImageTexture.
     def stored(self, value, size, is_number, fields):
         width, height = size
         value = evaluate.number(value) if is_number else evaluate.color(value)
@@ -322,6 +328,7 @@ class Shader:
         except (Unsupported, ValueError) as error:
             self.warn(f"{error} cannot be shown; the surface keeps its own normal")
 
+    # Returns the normal map that a node gives, a Value, and its scale. Raises Unsupported.
     def normal_of(self, output):
         node = output.node
         if node.type == "NORMAL_MAP" and node.space == "TANGENT":
@@ -337,7 +344,7 @@ class Shader:
         raise Unsupported(f'the node "{node.name}" ({node.bl_label}) as a normal')
 
     def bump(self, node):
-        """A normal map in the atlas: the slope of the height at each texel, by differences of half a texel to both sides."""
+        """Returns a normal map in the atlas: the slope of the height at each texel, by differences of half a texel to both sides."""
         height = input_of(node, "Height")
         if from_node(height) is None:
             raise Unsupported("a bump without height")
@@ -388,7 +395,7 @@ class Shader:
     # ---- shaders ----
 
     def surface(self):
-        """The Surface of the material; None: it has none (a volume alone)."""
+        """Returns the Surface of the material; None: it has none (a volume alone)."""
         if not self.blender.use_nodes or self.blender.node_tree is None:
             self.tree = None
             made = Surface("diffuse", texture=Value(list(self.blender.diffuse_color)[:3]).message())
@@ -403,6 +410,7 @@ class Shader:
         output = from_node(end.inputs["Surface"])
         return None if output is None else self.shader(output)
 
+    # Returns the Surface of a shader node; one of type T is converted by the method shader_T(node, output). Raises Unsupported.
     def shader(self, output):
         node = output.node
         function = getattr(self, "shader_" + node.type.lower(), None)
@@ -411,7 +419,7 @@ class Shader:
         return function(node, output)
 
     def linked(self, socket):
-        """The Surface of a shader input; black if nothing is linked."""
+        """Returns the Surface of a shader input; black if nothing is linked."""
         try:
             output = from_node(socket)
             return Surface("") if output is None else self.shader(output)
@@ -545,7 +553,7 @@ class Shader:
         return self.mixture(a, b, factor)
 
     def fresnel_index(self, node):
-        """The index of a Fresnel node that controls the mixture, or of a Layer Weight node's Fresnel output; None: another control."""
+        """Returns the index of a Fresnel node that controls the mixture, or of a Layer Weight node's Fresnel output; None: another control."""
         output = from_node(node.inputs[0])
         try:
             if output is not None and output.node.type == "FRESNEL":
@@ -575,7 +583,7 @@ class Shader:
         return tuple(found)
 
     def mixture(self, a, b, factor):
-        """a where factor is 0, b where it is 1."""
+        """Returns the Surface that is a where factor is 0, and b where it is 1."""
         if a.kind == "transparent" and b.kind == "transparent":
             return a
         if a.kind == "transparent":
@@ -622,7 +630,7 @@ class Shader:
         return made
 
     def old_diffuse(self, metallic, roughness, index):
-        """The factor on a base colour that makes a surface as bright as with the Principled BSDF before Blender 4. That one adds its reflection
+        """Returns the factor on a base colour that makes a surface as bright as with the Principled BSDF before Blender 4. That one adds its reflection
         to the diffuse part, which here gets only the light that is not reflected, and its diffuse part (Burley 2012) depends on the
         roughness. Fitted to the values in deploy/blender/README.md."""
         if self.version >= (4, 0, 0) or metallic.constant is None or roughness.constant is None:
@@ -632,7 +640,7 @@ class Shader:
         return 1 + (factor - 1) * (1 - min(max(metallic.number, 0.0), 1.0))
 
     def index(self, node):
-        """The index of refraction with the reflection at normal incidence that Blender's inputs give."""
+        """Returns the index of refraction with the reflection at normal incidence that Blender's inputs give."""
         level = input_of(node, "Specular IOR Level")
         if level is not None:
             index = self.plain(node, "IOR", default=1.5)
@@ -669,12 +677,13 @@ class Shader:
             self.warn("a specular tint is not shown")
 
 
+# Returns the message Parameter.
 def parameter(value):
     return {"value": min(max(value.number, 0.0), 1.0)} if value.constant is not None else {"texture": value.message()}
 
 
 def added(a, b):
-    """The sum of two emissions: twice their mean."""
+    """Returns the sum of two emissions. Textures can be mixed but not added, so it is twice their mean."""
     if a.constant is not None and b.constant is not None:
         return Value(a.constant + b.constant)
     mean = Value(texture={"mix": {"a": a.message(), "b": b.message()}})
@@ -682,13 +691,13 @@ def added(a, b):
 
 
 def output_node(tree):
-    """The active output node that applies to Cycles; None: there is none."""
+    """Returns the active output node that applies to Cycles; None: there is none."""
     ends = [n for n in tree.nodes if n.type in ("OUTPUT_MATERIAL", "OUTPUT_WORLD", "OUTPUT_LIGHT") and getattr(n, "target", "ALL") in ("ALL", "CYCLES")]
     return next((n for n in ends if n.is_active_output), ends[0] if ends else None)
 
 
 def message(surface, out):
-    """The Material message of a Surface, without a name. Materials that it is mixed of are added to `out`."""
+    """Returns the Material message of a Surface, without a name. Materials that it is mixed of are added to `out`."""
     fields, emission, opacity = dict(surface.fields), surface.emission, surface.opacity
     if surface.kind == "mix":
         for part in surface.parts:  # what belongs to the whole is the same in both parts
@@ -730,7 +739,7 @@ def message(surface, out):
 
 
 def with_properties(kind, fields, surface, emission, opacity):
-    """A message Material of a kind that has no fields of its own for emission, opacity and normals."""
+    """Returns a message Material of a kind that has no fields of its own for emission, opacity and normals."""
     made = {kind: fields}
     if emission is not None:
         if emission.constant is not None:
