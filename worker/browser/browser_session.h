@@ -20,7 +20,7 @@ struct BrowserBand {
   std::string lease;
 };
 
-/// Effects of a message from the coordinator, to be applied in this order.
+/// Effects of a message from the coordinator: what the page's JavaScript has to do.
 struct BrowserOrders {
   std::vector<TaskId> stop;
   std::optional<BrowserBand> start;

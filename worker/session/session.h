@@ -35,7 +35,7 @@ struct Dismissal {
   bool for_ever = false;
 };
 
-/// Effects of a message from the coordinator, to be applied in this order.
+/// Effects of a message from the coordinator: what the caller has to do.
 struct SessionEffects {
   std::vector<TaskId> stop;  ///< no longer wanted: cancel rendering or drop the result
   std::vector<Task> start;   ///< in rendering order
