@@ -1,8 +1,8 @@
 #pragma once
 
-// The leases that were given to browsers which render (a lease: a range of rows and samples, to be
-// rendered by one worker). They decide what a holder of the link for browsers may do: read the
-// scenes of these leases while their jobs run, and send the bands of these leases.
+// The leases that were given to browsers which render; a lease assigns a band (a range of rows and
+// samples of a job's image) to one worker. They decide what a holder of the link for browsers may
+// do: read the scenes of these leases while their jobs run, and send the bands of these leases.
 
 #include <cstdint>
 #include <deque>

@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kMaxProgramBytes = 256 << 20;  // far more than it has
+constexpr std::size_t kMaxProgramBytes = 256 << 20;  // the module has about 1 MB
 
 }  // namespace
 

@@ -30,7 +30,8 @@ bool is_loopback(const std::string& host) {
   return host == "localhost" || host == "::1" || absl::StartsWith(host, "127.");
 }
 
-/// The parts of the dashboard, in the order in which they use each other.
+/// Owns all parts of the dashboard. The HTTP server passes each request to access_, then to
+/// router_.
 class Dashboard::Impl {
  public:
   Impl(Engine& engine, const link::Identity& identity, TlsContext tls,

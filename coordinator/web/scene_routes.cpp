@@ -85,8 +85,8 @@ class Upload {
   std::FILE* file_ = nullptr;
 };
 
-/// Returns the file's name without folders, with unsafe characters replaced. INVALID_ARGUMENT: it
-/// has not the suffix of a format that can be read from one file.
+/// Returns the file's name without folders, with unsafe characters replaced. INVALID_ARGUMENT: its
+/// suffix is not that of a format whose scenes may consist of one file.
 absl::StatusOr<std::string> file_name(const std::string& given) {
   constexpr std::size_t kMaxStem = 80;
   std::string name = given.substr(given.find_last_of("/\\") + 1);
