@@ -3,7 +3,7 @@
 
 const SCENES = 2;  // at most; in a sequence they are those of the present frame and of the next one
 const AHEAD = 4;   // blobs that are fetched while earlier ones are copied
-export const SCENE_PER_BYTE = 4;  // a scene takes this many times the bytes of its blobs (coordinator/scheduler/README.md)
+export const SCENE_PER_BYTE = 4;  // a scene is assumed to take so many times the bytes of its blobs (coordinator/scheduler/README.md)
 
 /// The renderer has ended; another one can be started in its place. `sceneBytes`: the bytes of the blobs of the only scene that
 /// it had or was loading; 0: it had no scene, or several.
