@@ -192,10 +192,8 @@ absl::StatusOr<input::Heartbeat> heartbeat(const farm::Heartbeat& message) {
   input::Heartbeat beat{.session = 0, .leases = {}, .doing = message.doing()};
   for (const farm::LeaseProgress& lease : message.lease()) {
     RETURN_IF_ERROR(check_range("heartbeat.lease.rows_done", lease.rows_done(), 0, kMaxSide));
-    beat.leases.push_back({.lease = lease.lease(),
-                           .rows_done = lease.rows_done(),
-                           .preparing = lease.preparing(),
-                           .prepared = lease.prepared()});
+    beat.leases.push_back(
+        {.lease = lease.lease(), .rows_done = lease.rows_done(), .prepared = lease.prepared()});
   }
   return beat;
 }

@@ -174,7 +174,6 @@ farm::FromWorker Session::heartbeat() const {
     farm::LeaseProgress* progress = beat->add_lease();
     progress->set_lease(held.name.lease);
     progress->set_rows_done(held.rows_done);
-    progress->set_preparing(held.stage == Stage::kPreparing);
     progress->set_prepared(held.prepared);
   }
   return message;

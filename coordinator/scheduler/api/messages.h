@@ -58,7 +58,6 @@ struct WorkerHello {
 struct LeaseProgress {
   LeaseId lease = 0;
   std::uint32_t rows_done = 0;
-  bool preparing = false;      ///< the scene is being fetched or built
   std::uint64_t prepared = 0;  ///< grows while the scene is being fetched or built
 };
 

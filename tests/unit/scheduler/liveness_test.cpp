@@ -65,7 +65,7 @@ TEST(Liveness, RevokesALeaseWithoutProgress) {
   farm.hello(1, "a");
   farm.pass_time(20, {1});
   const LeaseId id = farm.all<action::Lease>()[0].lease;
-  farm.send(input::Heartbeat{1, {{id, 0, true, 17}}, "fetching scene"});
+  farm.send(input::Heartbeat{1, {{id, 0, 17}}, "fetching scene"});
   farm.pass_time(20, {1});
   EXPECT_TRUE(farm.all<action::Revoke>().empty());
   farm.pass_time(20, {1});
@@ -78,7 +78,7 @@ TEST(Liveness, AnUploadHasALongerTimeout) {
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
   const action::Lease lease = farm.all<action::Lease>()[0];
-  farm.send(input::Heartbeat{1, {{lease.lease, lease.band.rows.count(), true, 0}}, "sending"});
+  farm.send(input::Heartbeat{1, {{lease.lease, lease.band.rows.count(), 0}}, "sending"});
   farm.pass_time(300, {1});
   EXPECT_TRUE(farm.all<action::Revoke>().empty());
   farm.pass_time(600, {1});

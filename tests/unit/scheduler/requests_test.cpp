@@ -66,7 +66,7 @@ TEST(Pause, RevokesLeasesThatAreNotRenderedASecondLater) {
   ASSERT_EQ(leases.size(), 2u);
   farm.send(input::Pause{job});
   const auto rows = leases[1].band.rows.count();
-  farm.send(input::Heartbeat{2, {{leases[1].lease, rows, false, 0}}, "sending"});
+  farm.send(input::Heartbeat{2, {{leases[1].lease, rows, 0}}, "sending"});
   farm.pass_time(0.5, {1, 2});
   EXPECT_TRUE(farm.all<action::Revoke>().empty());
   farm.pass_time(1, {1, 2});

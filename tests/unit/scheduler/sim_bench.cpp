@@ -77,7 +77,7 @@ class Bench {
         const double done = first ? (agenda_.now() - worker.begun_at) / worker.takes : 0;
         beat.leases.push_back(
             {lease.lease, static_cast<std::uint32_t>(std::min(1.0, done) * lease.band.rows.count()),
-             false, 0});
+             0});
       }
       agenda_.in(farm_.trip_s, [this, beat] { take(scheduler_.step(beat, agenda_.now())); });
       this->beat(i);

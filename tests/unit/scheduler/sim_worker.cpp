@@ -286,7 +286,7 @@ void SimWorker::heartbeat() {
                                                 : 0;
       beat.leases.push_back(
           {h.lease.lease,
-           static_cast<std::uint32_t>(std::min(1.0, done) * h.lease.band.rows.count()), preparing,
+           static_cast<std::uint32_t>(std::min(1.0, done) * h.lease.band.rows.count()),
            preparing ? static_cast<std::uint64_t>((agenda_.now() - h.begun_at) * 1000) : 0});
     }
     up(beat);

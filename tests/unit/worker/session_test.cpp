@@ -86,10 +86,8 @@ TEST(Session, StartsLeasesAndReportsTheirRows) {
   const farm::Heartbeat& beat = message.heartbeat();
   ASSERT_EQ(beat.lease_size(), 2);
   EXPECT_EQ(beat.lease(0).lease(), 10U);
-  EXPECT_TRUE(beat.lease(0).preparing());
   EXPECT_EQ(beat.lease(0).prepared(), 1000U);
   EXPECT_EQ(beat.lease(1).rows_done(), 2U);
-  EXPECT_FALSE(beat.lease(1).preparing());
   EXPECT_EQ(beat.doing(), "rendering");
 }
 
@@ -104,7 +102,6 @@ TEST(Session, StepsOfThePreparationBeforeTheFirstRowAreProgress) {
   const std::uint64_t begun = session.heartbeat().heartbeat().lease(0).prepared();
   EXPECT_FALSE(session.rendering(task, 0));
   EXPECT_GT(session.heartbeat().heartbeat().lease(0).prepared(), begun);
-  EXPECT_FALSE(session.heartbeat().heartbeat().lease(0).preparing());
   EXPECT_FALSE(session.rendering(task, 1));
   EXPECT_FALSE(session.rendering(task + 1, 0));  // not held
 }
