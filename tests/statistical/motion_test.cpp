@@ -145,13 +145,12 @@ TEST(MovingLight, EmitsFromItsPositionAtTheTime) {
   Shapes disk;
   disk.disks.push_back({{0, 0, 0}, {0, 1, 0}, 0.05, MaterialId{0}});
   // E = A |cos| / d^2 for a small one; the mean of |cos| over half a turn is 2 / pi.
-  const double small = kPi * 0.0025 / 100 * 2 / kPi;
+  const double closed_form = kPi * 0.0025 / 100 * 2 / kPi;
   SceneMaker turning = moving_lamp(disk, Key(0, translation({0, 10, 0})),
                                    Key(1, translation({0, 10, 0}) * rotation({1, 0, 0}, 90)));
   turning.scene.geometry.frames[0].keys.emplace_back(
       2, translation({0, 10, 0}) * rotation({1, 0, 0}, 180));
   std::get<PerspectiveCamera>(turning.scene.camera).shutter = {0, 2};
-  const double closed_form = small;
   SceneMaker maker = turning;
   maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
   const auto scene = maker.build();

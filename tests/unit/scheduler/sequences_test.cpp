@@ -58,7 +58,7 @@ class FrameFarm : public FarmDriver {
         const std::string instance = instances.at(lease->session);
         sessions_of[lease->job].insert(lease->session);
         now += 0.02;
-        if (fails.contains(lease->job) || fail_all) {
+        if (fails.contains(lease->job)) {
           send(input::BandFailed{lease->session, lease->lease, "the mesh is broken", {}});
         } else {
           stored(*lease, instance, 0.1);
@@ -109,7 +109,6 @@ class FrameFarm : public FarmDriver {
   std::map<JobId, std::set<SessionId>> sessions_of;  ///< who rendered bands of a job
   std::map<JobId, int> results;
   std::set<JobId> fails;  ///< jobs whose bands fail
-  bool fail_all = false;  ///< all bands fail
 
  private:
   std::size_t next_ = 0;
