@@ -216,7 +216,7 @@ bool run_one(const fs::path& scene, const Options& options, Pool& pool) {
   const std::string name = (scene.parent_path().filename() / stem).string();
   const auto ours = render(scene.string(), options, pool);
   if (!ours.ok()) {
-    std::printf("| %s | | error | %s |\n", name.c_str(),
+    std::printf("| %s | | error | %s | | | |\n", name.c_str(),
                 std::string(ours.status().message()).c_str());
     return false;
   }
@@ -232,12 +232,12 @@ bool run_one(const fs::path& scene, const Options& options, Pool& pool) {
     for (const double whole : ours->whole) {
       mean += whole / static_cast<double>(ours->whole.size());
     }
-    std::printf("| %s | %llu | no reference | mean %.4g |\n", name.c_str(),
+    std::printf("| %s | %llu | no reference | mean %.4g | | | |\n", name.c_str(),
                 static_cast<unsigned long long>(ours->samples), mean);
     return true;
   }
   if (reference->width != ours->width || reference->height != ours->height) {
-    std::printf("| %s | | other size | |\n", name.c_str());
+    std::printf("| %s | | other size | | | | |\n", name.c_str());
     return false;
   }
   const Comparison found = compare(*ours, *reference, *variance);
@@ -267,8 +267,8 @@ int run(const Options& options) {
   }
   std::sort(scenes.begin(), scenes.end());
   std::printf(
-      "| scene | samples a pixel | result | difference of the means | failing channels | "
-      "with the reference's variance alone |\n|---|---|---|---|---|---|\n");
+      "| scene | samples a pixel | result | difference of the means | of each channel | "
+      "failing channels | with the reference's variance alone |\n|---|---|---|---|---|---|---|\n");
   Pool pool(2);
   int failed = 0;
   for (const fs::path& scene : scenes) {
