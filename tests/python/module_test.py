@@ -9,6 +9,7 @@ import struct
 import sys
 import tempfile
 import threading
+import types
 import unittest
 import zlib
 
@@ -290,7 +291,6 @@ class AddOn(unittest.TestCase):
     def setUpClass(cls):
         # The package's own __init__ needs Blender; these modules do not.
         import importlib
-        import types
         package = types.ModuleType("bandsaw_blender")
         package.__path__ = [os.path.join(SOURCE, "deploy", "blender", "bandsaw_blender")]
         sys.modules["bandsaw_blender"] = package
@@ -394,6 +394,21 @@ class AddOn(unittest.TestCase):
         np = bandsaw.numpy
         colors = np.random.default_rng(2).uniform(0, 1, (1000, 3))
         self.assertLess(abs(self.evaluate.from_hsv(self.evaluate.to_hsv(colors)) - colors).max(), 1e-12)
+
+    def test_a_vector_becomes_a_number_by_its_mean_and_a_colour_by_its_luminance(self):
+        np, node = bandsaw.numpy, types.SimpleNamespace
+
+        def socket_after(kind, output_type, type="VALUE", **more):
+            output = node(node=node(type=kind, mute=False, as_pointer=lambda: kind, **more), type=output_type, identifier="", name="Position")
+            return node(type=type, is_linked=True, links=[node(is_valid=True, from_socket=output)])
+
+        values = self.evaluate.Evaluator(self.evaluate.Points(2, position=np.array([[3.0, 1.0, 2.0], [0.0, 0.0, -3.0]])), None)
+        vector = socket_after("NEW_GEOMETRY", "VECTOR")
+        self.assertEqual(self.evaluate.number(values.socket(vector)).tolist(), [2, -1])
+        color = socket_after("RGB", "RGBA", outputs=[node(default_value=(1, 0, 0, 1))])
+        self.assertEqual(self.evaluate.number(values.socket(color)).tolist(), [0.2126])
+        kept = socket_after("NEW_GEOMETRY", "VECTOR", "VECTOR")
+        self.assertEqual(values.socket(kept).tolist(), [[3, 1, 2], [0, 0, -3]])
 
 
 if __name__ == "__main__":

@@ -47,7 +47,7 @@ def input_of(node, *names):
 
 
 def number(value):
-    """Returns a value as a number: the luminance of a colour or vector, or the number itself."""
+    """Returns a value as a number: the luminance of a colour, or the number itself. (Evaluator.socket converts vectors.)"""
     return value if value.ndim == 1 else value @ np.array([0.2126, 0.7152, 0.0722])
 
 
@@ -65,10 +65,12 @@ class Evaluator:
         self.points, self.images, self.groups, self.memory = points, images, [], {}
 
     def socket(self, socket):
-        """Returns the value of an input socket: what is linked to it, or its own."""
+        """Returns the value of an input socket: what is linked to it, or its own. A vector at an input for a number becomes the mean of its
+        components, as in Blender; number() converts a colour."""
         output = from_node(socket)
         if output is not None:
-            return self.output(output)
+            value = self.output(output)
+            return value.mean(axis=1) if (output.type, socket.type, value.ndim) == ("VECTOR", "VALUE", 2) else value
         if not hasattr(socket, "default_value"):
             raise Unsupported(f'the input "{socket.name}"')
         value = np.atleast_1d(np.array(socket.default_value, dtype=float))
