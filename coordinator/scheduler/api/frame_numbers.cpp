@@ -82,9 +82,11 @@ absl::StatusOr<std::vector<FrameNumber>> parse_frames(absl::string_view text) {
   std::vector<FrameNumber> numbers;
   for (const absl::string_view item : absl::StrSplit(text, ',')) {
     RETURN_IF_ERROR(add_item(absl::StripAsciiWhitespace(item), numbers));
-    // Bounds the memory. Not at kMaxFrames, because items may overlap.
+    // Bounds the memory and the time. Not at kMaxFrames, because items may overlap.
     if (numbers.size() > 2 * kMaxFrames) {
-      break;
+      return absl::InvalidArgumentError(
+          absl::StrCat("'", text.substr(0, 40), "' lists more than ", 2 * kMaxFrames,
+                       " frames, repeated ones included; list each once, or submit them in parts"));
     }
   }
   std::sort(numbers.begin(), numbers.end());

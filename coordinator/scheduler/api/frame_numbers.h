@@ -20,7 +20,8 @@ inline constexpr FrameNumber kMaxFrameNumber = 1'000'000'000;
 /// Parses a list of numbers and ranges, separated by commas. A range is FIRST:LAST or FIRST-LAST,
 /// both included; a step may follow, as in 1:240:2 or 1-240x2. Returns the numbers in ascending
 /// order, each once. INVALID_ARGUMENT, beginning with the item: not a number or range, a range that
-/// runs backwards, a number beyond kMaxFrameNumber, more than kMaxFrames numbers, or none.
+/// runs backwards, a number beyond kMaxFrameNumber, more than kMaxFrames different numbers, more
+/// than twice as many with those that are repeated, or none.
 absl::StatusOr<std::vector<FrameNumber>> parse_frames(absl::string_view text);
 
 /// Returns the shortest list of ranges, as parse_frames reads them. `numbers` MUST be ascending.

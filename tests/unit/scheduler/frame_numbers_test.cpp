@@ -51,6 +51,13 @@ TEST(FrameNumbers, WrongOnesAreNamed) {
   EXPECT_THAT(wrong("99999999999999999999"), HasSubstr("neither"));
 }
 
+TEST(FrameNumbers, RepeatedOnesAreReadUpToALimit) {
+  EXPECT_EQ(parsed("1-30000,1-30000,1-30000,40000").size(), 30'001U);
+  // Sooner than a number is left out.
+  EXPECT_THAT(std::string(parse_frames("1-30000,1-30000,1-30000,1-30000,40000").status().message()),
+              HasSubstr("lists more than 100000 frames"));
+}
+
 TEST(FrameNumbers, TextAndNumbersAreInverse) {
   EXPECT_EQ(frames_text({1, 2, 3, 4, 7, 9, 11, 20}), "1-4,7-11x2,20");
   EXPECT_EQ(frames_text({1, 3, 5, 6, 7}), "1,3,5-7");
