@@ -216,7 +216,9 @@ absl::StatusOr<DecodedBandRecord> decode_band_record(absl::Span<const std::byte>
   }
   const std::byte* const begin = bytes.data() + (bytes.size() - there);
   if (std::memcmp(begin, kBandRecordMagic.data(), std::min<std::size_t>(kMagicSize, there)) != 0) {
-    return damaged(offset, "no band record of format 3 begins here");
+    return damaged(offset,
+                   absl::StrCat("no band record of format ",
+                                absl::string_view(&kBandRecordMagic.back(), 1), " begins here"));
   }
   if (there < kHeaderSize + kHashSize) {
     return cut_off(offset, kHeaderSize + kHashSize, there);

@@ -36,7 +36,8 @@
 
 namespace bandsaw {
 
-/// First bytes of a record; also used to find the next record after a damaged one.
+/// First bytes of a record, the last of them the format; also used to find the next record after a
+/// damaged one.
 inline constexpr std::array<char, 8> kBandRecordMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '4'};
 
 /// The content of a record.

@@ -15,6 +15,7 @@
 namespace bandsaw {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 BandRecord record() {
@@ -99,6 +100,13 @@ TEST(BandFile, TruncationsReportWhereTheRecordBegins) {
   }
   EXPECT_FALSE(decode_band_record({}).ok());
   EXPECT_FALSE(decode_band_record(file, file.size() + 5).ok());
+}
+
+TEST(BandFile, TheErrorNamesTheFormatOfTheMagic) {
+  std::vector<std::byte> older = encoded();
+  older[kBandRecordMagic.size() - 1] = std::byte{'3'};
+  EXPECT_THAT(std::string(decode_band_record(older).status().message()),
+              HasSubstr(std::string("no band record of format ") + kBandRecordMagic.back()));
 }
 
 TEST(BandFile, EveryFlippedBitIsDetected) {
