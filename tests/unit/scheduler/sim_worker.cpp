@@ -38,6 +38,11 @@ void SimWorker::kill() {
   running_ = false;
 }
 
+std::string SimWorker::instance() const {
+  const std::string number = nature_.number > 0 ? absl::StrCat(" ", nature_.number) : "";
+  return absl::StrCat(name_, number, "/", process_);
+}
+
 void SimWorker::connect() {
   if (stream_ != nullptr) {
     return;
@@ -51,8 +56,7 @@ void SimWorker::connect() {
   stream_->id =
       coordinator_.open([this, stream = stream_](const Action& action) { down(stream, action); });
   WorkerHello hello;
-  const std::string number = nature_.number > 0 ? absl::StrCat(" ", nature_.number) : "";
-  hello.instance = absl::StrCat(name_, number, "/", process_);
+  hello.instance = instance();
   hello.name = name_;
   hello.protocol = 1;
   hello.pixel_version = 2;
@@ -242,7 +246,7 @@ void SimWorker::upload(LeaseId id) {
   band.job = held->lease.job;
   band.band = held->lease.band;
   band.row_digests = held->digests;
-  band.instance = absl::StrCat(name_, "/", process_);
+  band.instance = instance();
   band.render_s = held->render_s;
   band.cpu_s = held->render_s * nature_.threads;
   // The result is sent once. In the share `loses` of all cases it gets lost or arrives twice.

@@ -80,6 +80,8 @@ class SimWorker {
 
   /// Calls `what` after this time, unless the process has ended; a frozen process calls it later.
   void later(double seconds, std::function<void()> what);
+  /// Returns the name of the current process, under which the farm knows it.
+  std::string instance() const;
   void connect();
   /// Connects again after `wait` seconds.
   void disconnected(double wait);
