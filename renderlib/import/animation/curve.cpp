@@ -104,14 +104,16 @@ bool Curve::rests(double from, double to) const {
   }
   const Place first = place_of(from);
   const Place last = place_of(to);
-  for (std::size_t key = first.key; key <= last.next; ++key) {
-    const bool moves =
-        interpolation_ == Interpolation::kCubic && key < last.next &&
-        std::any_of(values_.begin() + static_cast<std::ptrdiff_t>((3 * key + 2) * width_),
-                    values_.begin() + static_cast<std::ptrdiff_t>((3 * key + 4) * width_),
-                    [](double tangent) { return tangent != 0; });
-    if (moves || value(key) != value(first.key)) {
+  const bool has_tangents =
+      interpolation_ == Interpolation::kCubic || interpolation_ == Interpolation::kSmooth;
+  for (std::size_t key = first.key; key < last.next; ++key) {
+    if (value(key) != value(key + 1)) {
       return false;
+    }
+    for (std::size_t i = 0; has_tangents && i < width_; ++i) {
+      if (tangent(key, i, false) != 0 || tangent(key + 1, i, true) != 0) {
+        return false;
+      }
     }
   }
   return true;

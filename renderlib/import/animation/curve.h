@@ -38,8 +38,7 @@ class Curve {
   /// Returns the unit quaternion of the numbers x, y, z, w; the width MUST be 4. Keys of length 0
   /// stand for no rotation.
   Quaternion rotation_at(double time) const;
-  /// Returns true if the value is the same at all times of [from, to]. Not for kSmooth, whose
-  /// tangents depend on further keys.
+  /// Returns true if the value is the same at all times of [from, to].
   bool rests(double from, double to) const;
 
  private:

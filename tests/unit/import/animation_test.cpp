@@ -80,6 +80,16 @@ TEST(Curve, KnowsWhereItRests) {
       << "equal keys with tangents";
 }
 
+// Between the equal keys at 1 and 2 the curve swings, as the tangent at 2 depends on the key at 3.
+TEST(Curve, ASmoothOneMovesWhereATangentDoesNotVanish) {
+  const Curve curve = numbers({0, 1, 2, 3, 4}, {5, 5, 5, 6, 6}, Interpolation::kSmooth);
+  EXPECT_TRUE(curve.rests(-2, 0.9));
+  EXPECT_THAT(curve.at(1.5), testing::Not(ElementsAre(5)));
+  EXPECT_FALSE(curve.rests(1.1, 1.9));
+  EXPECT_FALSE(curve.rests(3.1, 3.9));
+  EXPECT_TRUE(curve.rests(4, 9));
+}
+
 TEST(NodeMotion, APropertyWithoutACurveKeepsItsRestPose) {
   NodeMotion motion;
   motion.translate = {1, 2, 3};
