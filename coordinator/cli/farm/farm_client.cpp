@@ -55,9 +55,10 @@ bool FarmClient::stopped() const {
 }
 
 void FarmClient::pause(milliseconds time) {
+  const auto end = std::chrono::steady_clock::now() + time;
   MutexLock lock(mutex_);
-  if (!stopped_) {
-    changed_.wait_for(mutex_, time);
+  while (!stopped_ && std::chrono::steady_clock::now() < end) {
+    changed_.wait_for(mutex_, end - std::chrono::steady_clock::now());
   }
 }
 
