@@ -269,6 +269,9 @@ absl::StatusOr<std::string> unpack_scene(const std::string& zip, const std::stri
   ASSIGN_OR_RETURN(const std::string list, read_output(folder->path() + "/list", kMaxListBytes));
   ASSIGN_OR_RETURN(const std::vector<ListedFile> files, read_file_list(list));
   for (const ListedFile& file : files) {
+    if (file.number == ListedFile::kOld) {
+      return absl::DataLossError(absl::StrCat(name, ": the importer left a broken list of files"));
+    }
     const fs::path target = fs::path(to) / file.name;
     std::error_code error;
     fs::create_directories(target.parent_path(), error);

@@ -176,6 +176,19 @@ TEST(ImportProcess, ForwardsTheImportersError) {
   EXPECT_FALSE(import_in_process(folder.path(), limits()).ok());
 }
 
+// A hostile archive may have taken control of the importer.
+TEST(ImportProcess, AListOfAnArchiveMustNotNameFilesThatTheImporterFound) {
+  const TempDir folder;
+  const std::string program =
+      write_text(folder, "importer.sh", "#!/bin/sh\necho 'found s.textproto' > \"$3/list\"\n");
+  ASSERT_EQ(chmod(program.c_str(), 0700), 0);
+  ImportLimits in;
+  in.program = program;
+  const auto imported = import_in_process(folder / "a.zip", in);
+  EXPECT_EQ(imported.status().code(), absl::StatusCode::kDataLoss) << imported.status();
+  EXPECT_EQ(imported.status().message(), "a.zip: the importer left a broken list of files");
+}
+
 TEST(ImportProcess, AMissingProgramIsAnError) {
   ImportLimits in;
   in.program = "/no/such/bandsaw-import";
