@@ -12,6 +12,7 @@
 #include "renderlib/base/mutex.h"
 #include "renderlib/guiding/guiding_field.h"
 #include "renderlib/guiding/photon_map.h"
+#include "renderlib/light/portals.h"
 
 namespace bandsaw {
 
@@ -31,6 +32,8 @@ struct GuidingKey {
 /// A field and what its training cost.
 struct TrainedGuiding {
   GuidingField field;
+  /// Openings through which the background is sampled (integrate/find_portals.h); maybe none.
+  Portals portals;
   std::uint64_t paths = 0;    ///< training paths from the camera
   std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
   std::uint64_t rays = 0;     ///< rays of both, of pilots and of the first photon map

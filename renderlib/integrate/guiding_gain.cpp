@@ -124,9 +124,8 @@ bool GuidingGain::maps_pay() const { return share_of(by_photons) > kMinShareOfMa
 bool GuidingGain::photons_pay() const { return share_of(by_photons) > kMinShareOfPhotons; }
 
 std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& key,
-                                         const GuidingField& field, const CausticMaps* caustics,
+                                         const GuidingField& field, const PathOptions& options,
                                          const Preparation& preparation) {
-  const PathOptions options{.max_depth = key.max_depth, .caustics = caustics};
   const RayGenerator camera(scene.camera(), static_cast<int>(key.width),
                             static_cast<int>(key.height), scene.camera_at_close());
   std::vector<PixelStatistics> pixels(kPixels);

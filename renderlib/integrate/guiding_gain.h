@@ -7,12 +7,11 @@
 
 #include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/guiding/guiding_field.h"
+#include "renderlib/integrate/path.h"
 #include "renderlib/integrate/preparation.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
-
-class CausticMaps;  // renderlib/integrate/caustics.h
 
 /// The variance of one sample of a pixel's luminance, and two parts of it. Each is divided by the
 /// square of the pixel's mean and averaged over pixels. The mean is the measured one, or the one
@@ -37,11 +36,11 @@ struct GuidingGain {
 
 /// Measures the variance with 8 samples in each of 512 pixels. Estimates the parts from the cells
 /// of `field` at the first surface of each sample that can be guided: they hold the irradiance, and
-/// the second moment of a sampled direction's contribution (GuidingCell). The caustics come from
-/// `caustics` if it is not null. The result is a pure function of all arguments except
-/// `preparation`. Returns std::nullopt if it was stopped.
+/// the second moment of a sampled direction's contribution (GuidingCell). `options.guiding` MUST be
+/// null. The result is a pure function of all arguments except `preparation`. Returns std::nullopt
+/// if it was stopped.
 std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& key,
-                                         const GuidingField& field, const CausticMaps* caustics,
+                                         const GuidingField& field, const PathOptions& options,
                                          const Preparation& preparation);
 
 }  // namespace bandsaw

@@ -12,6 +12,7 @@
 #include "renderlib/integrate/casters.h"
 #include "renderlib/integrate/caustic_maps.h"
 #include "renderlib/integrate/caustics.h"
+#include "renderlib/integrate/find_portals.h"
 #include "renderlib/integrate/guiding_gain.h"
 #include "renderlib/integrate/training_paths.h"
 #include "renderlib/integrate/training_photons.h"
@@ -49,16 +50,18 @@ bool add_round(std::uint32_t round, std::uint64_t count, const Preparation& prep
 }
 
 /// Trains as for an image of this many pixels: with photons that start at `casters` unless that is
-/// null, and with paths. `caustics` may be null. Returns std::nullopt if stopped.
+/// null, and with paths that have these options, guided by the field so far. Returns std::nullopt
+/// if stopped.
 std::optional<TrainedGuiding> train(const Scene& scene, const GuidingKey& key, std::uint64_t pixels,
-                                    const Casters* casters, const CausticMaps* caustics,
+                                    const Casters* casters, const PathOptions& options,
                                     const Preparation& preparation) {
   TrainedGuiding trained;
   std::vector<GuidingRecord> records;
   if (casters != nullptr && !casters->empty() && scene.features().lights) {
     trained.photons = 2 * pixels / kChunks * kChunks;
     const auto photons = [&](const TrainingChunk& chunk) {
-      return training_photons(scene, *casters, key, chunk, trained.photons, caustics != nullptr);
+      return training_photons(scene, *casters, key, chunk, trained.photons,
+                              options.caustics != nullptr);
     };
     if (!add_round(0, trained.photons, preparation, records, trained, photons)) {
       return std::nullopt;
@@ -67,8 +70,10 @@ std::optional<TrainedGuiding> train(const Scene& scene, const GuidingKey& key, s
   for (std::uint32_t round = 1; round <= 2; ++round) {
     const std::uint64_t count = pixels / (round == 1 ? 4 : 2) / kChunks * kChunks;
     const GuidingField field = std::move(trained.field);
+    PathOptions guided = options;
+    guided.guiding = field.cells() == 0 ? nullptr : &field;
     const auto paths = [&](const TrainingChunk& chunk) {
-      return training_paths(scene, key, chunk, field.cells() == 0 ? nullptr : &field, caustics);
+      return training_paths(scene, key, chunk, guided);
     };
     trained.paths += count;
     if (!add_round(round, count, preparation, records, trained, paths)) {
@@ -81,15 +86,15 @@ std::optional<TrainedGuiding> train(const Scene& scene, const GuidingKey& key, s
 /// Trains a field with few paths and photons, and returns the gain that it predicts; std::nullopt
 /// if stopped. Adds to `rays`.
 std::optional<GuidingGain> pilot(const Scene& scene, const GuidingKey& key, const Casters& casters,
-                                 const CausticMaps* caustics, const Preparation& preparation,
+                                 const PathOptions& options, const Preparation& preparation,
                                  std::uint64_t& rays) {
   const std::optional<TrainedGuiding> trained =
-      train(scene, key, kPilotPixels, &casters, caustics, preparation);
+      train(scene, key, kPilotPixels, &casters, options, preparation);
   if (!trained) {
     return std::nullopt;
   }
   rays += trained->rays;
-  return expected_gain(scene, key, trained->field, caustics, preparation);
+  return expected_gain(scene, key, trained->field, options, preparation);
 }
 
 }  // namespace
@@ -99,9 +104,15 @@ std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const Gu
                                                     bool caustic_maps) {
   const auto casters = std::make_shared<const Casters>(scene);
   std::uint64_t rays = 0;
+  const std::optional<Portals> portals = find_portals(scene, key, preparation, rays);
+  if (!portals) {
+    return nullptr;
+  }
+  PathOptions options{.max_depth = key.max_depth,
+                      .portals = portals->empty() ? nullptr : &*portals};
   std::optional<GuidingGain> gain;  // set if the gain decides what is used
   if (key.only_if_it_pays) {
-    gain = pilot(scene, key, *casters, nullptr, preparation, rays);
+    gain = pilot(scene, key, *casters, options, preparation, rays);
     if (!gain) {
       return nullptr;
     }
@@ -121,9 +132,9 @@ std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const Gu
       caustics.emplace(*casters).use_for_all(map->map);
     }
   }
-  const CausticMaps* const maps = caustics ? &*caustics : nullptr;
-  if (gain && maps != nullptr) {  // the gain of a field for the light that is not in the maps
-    gain = pilot(scene, key, *casters, maps, preparation, rays);
+  options.caustics = caustics ? &*caustics : nullptr;
+  if (gain && caustics) {  // the gain of a field for the light that is not in the maps
+    gain = pilot(scene, key, *casters, options, preparation, rays);
     if (!gain) {
       return nullptr;
     }
@@ -133,12 +144,14 @@ std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const Gu
   if (with_photons || gain->paths_pay()) {
     const std::uint64_t pixels =
         std::clamp(std::uint64_t{key.width} * key.height, kMinTrainingPixels, kMaxTrainingPixels);
-    trained = train(scene, key, pixels, with_photons ? casters.get() : nullptr, maps, preparation);
+    trained =
+        train(scene, key, pixels, with_photons ? casters.get() : nullptr, options, preparation);
     if (!trained) {
       return nullptr;
     }
   }
   trained->rays += rays;
+  trained->portals = *portals;
   trained->casters = caustics ? casters : nullptr;
   return std::make_shared<const TrainedGuiding>(*std::move(trained));
 }

@@ -23,6 +23,8 @@
 //   hidden boundary of nested glass, or beyond a surface that the path passed. The exception are
 //   surfaces that sample lights on both of their sides (is_diffuse_behind).
 
+#include <cmath>
+
 #include "renderlib/light/receiver.h"
 
 namespace bandsaw {
@@ -32,6 +34,12 @@ namespace bandsaw {
 inline double power_heuristic(double p, double q) {
   const double ratio = q / p;
   return 1 / (1 + ratio * ratio);
+}
+
+/// Returns the pdf to insert for two other strategies with the pdfs p and q, so that the weight
+/// above is that of the power heuristic for all three.
+inline double either(double p, double q) {
+  return p > 0 && q > 0 ? std::sqrt(p * p + q * q) : p + q;
 }
 
 /// The previous vertex of a path and the pdf with which the path left it: the inputs of the MIS
@@ -46,6 +54,8 @@ struct PreviousVertex {
   /// At a vertex in a medium: the pdf of its distance in light sampling over that in scattering
   /// (free flight). 1 on surfaces, where both strategies use the same point.
   double distance_pdf_ratio = 1;
+  /// True if the background was sampled through the portals for the side to which the path left.
+  bool portals = false;
 };
 
 /// Returns the MIS weight of emission that the path hit from `previous`, which is not `delta`, and

@@ -21,6 +21,7 @@
 #include "renderlib/integrate/trace_photons.h"
 #include "renderlib/integrate/visibility.h"
 #include "renderlib/light/emission.h"
+#include "renderlib/light/portals.h"
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/bsdf.h"
 #include "renderlib/material/opacity.h"
@@ -49,17 +50,22 @@ float emission_weight(const Scene& scene, const PreviousVertex& previous, const 
 }
 
 /// Returns the background radiance in a direction in which a ray leaves the scene, times its MIS
-/// weight.
-Rgb weighted_background(const Scene& scene, const PreviousVertex& previous, const Vec3& direction,
-                        Technique technique) {
+/// weight against light sampling of the environment and against the portals (may be null).
+Rgb weighted_background(const Scene& scene, const Portals* portals, const PreviousVertex& previous,
+                        const Vec3& direction, Technique technique) {
   const Rgb background = radiance(scene.background(), scene.textures(), direction);
-  if (previous.delta || !scene.background().environment ||
-      technique == Technique::kScatteringOnly) {
+  if (previous.delta || technique == Technique::kScatteringOnly) {
     return background;
   }
-  const double light_pdf = scene.lights().environment_pdf(previous.receiver, direction);
+  double light_pdf = scene.background().environment
+                         ? scene.lights().environment_pdf(previous.receiver, direction)
+                         : 0;
+  if (previous.portals && portals != nullptr) {
+    light_pdf = either(light_pdf, portals->pdf(previous.receiver.position, direction));
+  }
   if (technique == Technique::kLightsOnly) {
-    // Light sampling never samples the uniform part of an environment.
+    // Light sampling samples neither the uniform part of an environment nor directions beside the
+    // portals.
     return light_pdf > 0 ? Rgb{} : background;
   }
   return background * static_cast<float>(bsdf_sampling_weight(previous, light_pdf));
@@ -76,6 +82,8 @@ struct CompetingBsdfSampling {
   bool beyond_surface = false;
   /// True if photons find the light of emissive surfaces, so that they are not sampled here.
   bool without_surfaces = false;
+  /// The portals through which the background is sampled as well; null: none.
+  const Portals* portals = nullptr;
 };
 
 /// Returns true if photons find the light that emissive surfaces send to this caster, before which
@@ -132,9 +140,42 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
   if (is_black(passing)) {
     return {};
   }
-  const double weight =
-      is_also_sampled_by_bsdf(*light, competing) ? power_heuristic(light->pdf, scattered.pdf) : 1;
-  return scattered.value * light->radiance * static_cast<float>(weight / light->pdf) * passing;
+  double other_pdf = is_also_sampled_by_bsdf(*light, competing) ? scattered.pdf : 0;
+  if (competing.portals != nullptr && light->distant && !light->delta) {
+    other_pdf = either(other_pdf, competing.portals->pdf(point.position, light->direction));
+  }
+  return scattered.value * light->radiance *
+         static_cast<float>(power_heuristic(light->pdf, other_pdf) / light->pdf) * passing;
+}
+
+/// Returns the estimate of the background's light that arrives through the portals on the
+/// receiver's side and is scattered at the point, with its MIS weight. The arguments are those of
+/// sample_light().
+Rgb sample_portals(const PathContext& context, const SurfacePoint& point, const Receiver& receiver,
+                   const Bsdf& bsdf, const GuidingCones& cones, std::uint32_t depth) {
+  const Scene& scene = context.scene;
+  const Sample4 numbers = context.numbers(group_portal(depth));
+  const std::optional<Portals::Sample> portal =
+      context.options.portals->sample(point.position, numbers[0], numbers[1], numbers[2]);
+  if (!portal || !(dot(portal->direction, *receiver.normal) > 0)) {
+    return {};
+  }
+  const BsdfValue scattered = evaluate(bsdf, cones, portal->direction);
+  const Rgb background = radiance(scene.background(), scene.textures(), portal->direction);
+  if (is_black(scattered.value) || is_black(background)) {
+    return {};
+  }
+  const Rgb passing = transmittance(scene, spawn_ray(point, portal->direction),
+                                    context.stream(group_portal(depth)), context.rays);
+  if (is_black(passing)) {
+    return {};
+  }
+  double other_pdf = context.options.technique == Technique::kBoth ? scattered.pdf : 0;
+  if (scene.background().environment) {
+    other_pdf = either(other_pdf, scene.lights().environment_pdf(receiver, portal->direction));
+  }
+  return scattered.value * background *
+         static_cast<float>(power_heuristic(portal->pdf, other_pdf) / portal->pdf) * passing;
 }
 
 /// Returns the environment's radiance in a direction that local shading sampled from the BSDF, with
@@ -144,7 +185,7 @@ Rgb environment_along(const Scene& scene, const SurfacePoint& point, const Previ
   const Rgb passing = transmittance(scene, spawn_ray(point, direction), media, rays);
   return is_black(passing)
              ? Rgb{}
-             : weighted_background(scene, previous, direction, Technique::kBoth) * passing;
+             : weighted_background(scene, nullptr, previous, direction, Technique::kBoth) * passing;
 }
 
 bool is_metal(const Material& material) {
@@ -216,8 +257,8 @@ void add_emission(const PathContext& context, const SurfacePoint& point, std::ui
 
 void add_background(const PathContext& context, PathState& path) {
   path.radiance +=
-      path.throughput * weighted_background(context.scene, path.previous, path.ray.direction,
-                                            context.options.technique);
+      path.throughput * weighted_background(context.scene, context.options.portals, path.previous,
+                                            path.ray.direction, context.options.technique);
 }
 
 std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& point,
@@ -280,12 +321,15 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
     path.radiance += path.throughput * caustics_at(context, point, bsdf, depth, path);
   }
 
+  const Portals* const portals =
+      has_pdf(bsdf) && options.technique != Technique::kScatteringOnly ? options.portals : nullptr;
   // Light sampling, on the side from which the path came and, where only light sampling reaches
   // some lights, on the far side.
   if (context.samples_lights() && has_pdf(bsdf)) {
     const Sample4 numbers = context.numbers(group_light(depth));
     CompetingBsdfSampling competing = is_last ? CompetingBsdfSampling{Technique::kLightsOnly, true}
                                               : CompetingBsdfSampling{options.technique, false};
+    competing.portals = portals;
     competing.without_surfaces =
         role == CausticRole::kCaster && is_left_to_photons(context, path.chain);
     path.radiance +=
@@ -294,11 +338,15 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
                                        context.rays);
     if (has_pdf_behind(bsdf) && (both_sides || is_last || scene.lights().any_delta())) {
       competing.beyond_surface = !both_sides;
+      competing.portals = nullptr;
       path.radiance +=
           path.throughput *
           sample_light(scene, point, behind, bsdf, cones, numbers, competing,
                        context.stream(group_shadow(depth, ShadowUse::kLightBehind)), context.rays);
     }
+  }
+  if (portals != nullptr) {
+    path.radiance += path.throughput * sample_portals(context, point, receiver, bsdf, cones, depth);
   }
   if (is_last) {
     const Rgb albedo = albedo_at(material, scene.textures(), point);
@@ -317,6 +365,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   const bool passes = dot(next->wi, *receiver.normal) <= 0;
   path.previous = {passes && both_sides ? behind : receiver, next->pdf,
                    next->delta || (passes && !both_sides)};
+  path.previous.portals = portals != nullptr && !passes;
   path.throughput *= next->weight;
   path.chain = role == CausticRole::kReceiver && !next->delta           ? 0
                : role == CausticRole::kCaster && path.chain != kNoChain ? path.chain + 1

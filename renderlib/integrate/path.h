@@ -18,6 +18,7 @@ namespace bandsaw {
 
 class CausticMaps;   // renderlib/integrate/caustics.h
 class GuidingField;  // renderlib/guiding/guiding_field.h
+class Portals;       // renderlib/light/portals.h
 
 /// Strategies used to find light. All have the same expected value; the second and third exist only
 /// so that tests can compare them with the first.
@@ -46,6 +47,9 @@ struct PathOptions {
   /// If not null, caustics come from these photon maps and not from paths (integrate/caustics.h),
   /// and `branches` MUST be 1. MUST outlive the paths.
   const CausticMaps* caustics = nullptr;
+  /// If not null, the background is also sampled through these portals at surfaces, which changes
+  /// no expected value. MUST outlive the paths.
+  const Portals* portals = nullptr;
 };
 
 /// Returns the value of `PathOptions::branches` that is most efficient for the scene (README.md,

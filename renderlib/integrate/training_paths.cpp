@@ -153,11 +153,9 @@ PixelSampler training_sampler(const TrainingChunk& chunk) {
 }
 
 TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
-                               const TrainingChunk& chunk, const GuidingField* field,
-                               const CausticMaps* caustics) {
+                               const TrainingChunk& chunk, const PathOptions& options) {
   const RayGenerator camera(scene.camera(), static_cast<int>(key.width),
                             static_cast<int>(key.height), scene.camera_at_close());
-  const PathOptions options{.max_depth = key.max_depth, .guiding = field, .caustics = caustics};
   const PixelSampler sampler = training_sampler(chunk);
   TrainingRecords out;
   std::vector<Vertex> vertices;

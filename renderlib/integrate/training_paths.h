@@ -8,12 +8,11 @@
 
 #include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/guiding/guiding_record.h"
+#include "renderlib/integrate/path.h"
 #include "renderlib/sampling/sampler.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
-
-class CausticMaps;  // renderlib/integrate/caustics.h
 
 /// Some of the training paths or photons of one round. A chunk is traced by one thread.
 struct TrainingChunk {
@@ -28,13 +27,11 @@ struct TrainingRecords {
   std::uint64_t rays = 0;  ///< rays that were traced
 };
 
-/// Traces the paths of a chunk through random places of the image. `field` guides them, and
-/// `caustics` has their caustics; either may be null. Returns a record for each of the first eight
-/// vertices of a path whose direction can be guided. It holds the light that the path found after
-/// that vertex; light sampling at the vertex itself is excluded.
+/// Traces the paths of a chunk through random places of the image. Returns a record for each of the
+/// first eight vertices of a path whose direction can be guided. It holds the light that the path
+/// found after that vertex; light sampling at the vertex itself is excluded.
 TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
-                               const TrainingChunk& chunk, const GuidingField* field,
-                               const CausticMaps* caustics);
+                               const TrainingChunk& chunk, const PathOptions& options);
 
 /// Returns the sampler of a chunk. It is that of a pixel outside of the largest image, so no image
 /// uses the same random numbers.

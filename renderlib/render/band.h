@@ -82,11 +82,13 @@ struct Counters {
   std::uint64_t truncated_paths = 0;
   /// Scene::dropped_primitives; the same in all bands of a scene.
   std::uint64_t dropped_primitives = 0;
-  /// What path tracing used besides light and BSDF sampling: a sum of the two flags below. The same
+  /// What path tracing used besides light and BSDF sampling: a sum of the flags below. The same
   /// in all bands of an image.
   std::uint32_t techniques = 0;
   static constexpr std::uint32_t kPathGuiding = 1;
   static constexpr std::uint32_t kPhotonMaps = 2;
+  static constexpr std::uint32_t kPortals = 4;
+  static constexpr std::uint32_t kAllTechniques = 7;
   /// Rays of the training of guiding and of its pilots. The same in all bands of an image, so add()
   /// does not sum it.
   std::uint64_t training_rays = 0;

@@ -98,7 +98,7 @@ absl::Status check(const BandRecord& record) {
   if (counters.truncated_paths > most) {
     return absl::InvalidArgumentError("counters: more paths are truncated than there are");
   }
-  if (counters.techniques > (Counters::kPathGuiding | Counters::kPhotonMaps)) {
+  if (counters.techniques > Counters::kAllTechniques) {
     return absl::InvalidArgumentError("counters: unknown techniques");
   }
   if (!std::isfinite(record.cpu_s) || record.cpu_s < 0) {

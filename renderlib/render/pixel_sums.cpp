@@ -22,8 +22,7 @@ Technique technique_of(Integrator integrator) {
 }  // namespace
 
 PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const Band& band,
-                     const GuidingField* guiding, const CausticMaps* caustics,
-                     const std::atomic<bool>& stop)
+                     const PathOptions& uses, const std::atomic<bool>& stop)
     : scene_(scene),
       settings_(settings),
       band_(band),
@@ -31,9 +30,12 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
       options_{.max_depth = settings.max_depth,
                .technique = technique_of(settings.integrator),
                .local = settings.integrator == Integrator::kDirect,
-               .branches = settings.integrator == Integrator::kDirect ? 1 : branches_for(scene),
-               .guiding = guiding,
-               .caustics = caustics},
+               .branches = settings.integrator == Integrator::kDirect || uses.portals != nullptr
+                               ? 1
+                               : branches_for(scene),
+               .guiding = uses.guiding,
+               .caustics = uses.caustics,
+               .portals = uses.portals},
       camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height),
               scene.camera_at_close()),
       samples_through_lens_(!scene.lights().empty() && computes_radiance(settings.integrator)),

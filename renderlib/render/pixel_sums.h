@@ -23,11 +23,9 @@ namespace bandsaw {
 class PixelSums {
  public:
   /// All references and pointers MUST outlive this object. `settings` and `band` MUST be valid.
-  /// `guiding`: the field of path guiding, or nullptr. `caustics`: the photon maps of the band's
-  /// samples, or nullptr.
+  /// The guiding field, the photon maps and the portals are those of `uses`.
   PixelSums(const Scene& scene, const RenderSettings& settings, const Band& band,
-            const GuidingField* guiding, const CausticMaps* caustics,
-            const std::atomic<bool>& stop);
+            const PathOptions& uses, const std::atomic<bool>& stop);
 
   bool stopped() const { return stop_.load(std::memory_order_relaxed); }
 

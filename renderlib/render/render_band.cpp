@@ -101,18 +101,21 @@ absl::StatusOr<BandPixels> render_part(const Render& render, const BandPart& par
                                        const CausticMaps* caustics, const RowsDone& progress) {
   const RenderSettings& settings = render.settings;
   const Band& band = part.band;
-  const GuidingField* const field = render.guiding != nullptr && render.guiding->field.cells() > 0
-                                        ? &render.guiding->field
-                                        : nullptr;
-  const PixelSums pixel_sums(render.scene, settings, band, field, caustics, render.stop);
+  PathOptions uses{.caustics = caustics};
+  if (render.guiding != nullptr) {
+    uses.guiding = render.guiding->field.cells() > 0 ? &render.guiding->field : nullptr;
+    uses.portals = render.guiding->portals.empty() ? nullptr : &render.guiding->portals;
+  }
+  const PixelSums pixel_sums(render.scene, settings, band, uses, render.stop);
   const Units units(pixel_sums, band, {settings.width, settings.height});
   BandPixels pixels{
       .band = band,
       .width = settings.width,
       .sums = std::vector<double>(std::size_t{band.rows.count()} * settings.width * 3),
       .counters = {.dropped_primitives = render.scene.dropped_primitives(),
-                   .techniques = (field != nullptr ? Counters::kPathGuiding : 0) |
-                                 (caustics != nullptr ? Counters::kPhotonMaps : 0),
+                   .techniques = (uses.guiding != nullptr ? Counters::kPathGuiding : 0) |
+                                 (uses.caustics != nullptr ? Counters::kPhotonMaps : 0) |
+                                 (uses.portals != nullptr ? Counters::kPortals : 0),
                    .training_rays = render.guiding != nullptr ? render.guiding->rays : 0}};
   std::vector<Counters> counters(static_cast<std::size_t>(units.count()));
   std::vector<std::atomic<std::uint32_t>> units_done(units.strips());

@@ -151,7 +151,7 @@ absl::Status check_counters(const BandPixels& pixels, const TileSamples& tiles) 
         "the band has ", samples, " samples; it must not count ", counters.bad_samples, " bad, ",
         counters.negative_samples, " negative, ", counters.truncated_paths, " truncated ones"));
   }
-  if (counters.techniques > (Counters::kPathGuiding | Counters::kPhotonMaps)) {
+  if (counters.techniques > Counters::kAllTechniques) {
     return absl::InvalidArgumentError(
         absl::StrCat("the band used techniques ", counters.techniques, ", which are not known"));
   }

@@ -68,6 +68,11 @@ constexpr std::uint32_t group_bsdf(std::uint32_t bounce) { return 2 + 2 * bounce
 /// Light sampling at scattering `bounce`: light choice, light u, v, low bits of the choice (which
 /// needs more than 32 bits if there are many lights).
 constexpr std::uint32_t group_light(std::uint32_t bounce) { return 3 + 2 * bounce; }
+/// Sampling of the background through portals at scattering `bounce` (below 2^11): choice, u, v,
+/// unused; as a stream, the transmittance of media along its shadow ray.
+constexpr std::uint32_t group_portal(std::uint32_t bounce) {
+  return 0x10000000u | (bounce & 0x7ffu);
+}
 /// Alpha test of surface number `passed` (below 2^20) on the ray towards scattering `bounce` (below
 /// 2^11): opacity, part of a mixture, unused, unused.
 constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) {

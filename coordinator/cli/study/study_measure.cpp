@@ -299,7 +299,7 @@ const char* method_name(Method method) {
     case Method::kFull:
       return "all techniques";
     case Method::kNoGuiding:
-      return "no guiding, no photon maps";
+      return "no guiding, maps, portals";
     case Method::kNoMis:
       return "light sampling without MIS";
     case Method::kNoLights:

@@ -85,6 +85,7 @@ TEST(Report, IsJsonWithAllFields) {
   EXPECT_EQ(at(json, "health", "dropped_primitives").number_value(), 4);
   EXPECT_FALSE(at(json, "work", "path_guiding").bool_value());
   EXPECT_TRUE(at(json, "work", "photon_maps").bool_value());
+  EXPECT_FALSE(at(json, "work", "portals").bool_value());
   EXPECT_EQ(at(json, "work", "training_rays").number_value(), 77);
   EXPECT_EQ(at(json, "hashes", "pixels_sha256").string_value().size(), 64u);
 }

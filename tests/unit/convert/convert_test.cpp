@@ -23,7 +23,7 @@ const Counters kCounters{.rays = 1,
                          .negative_samples = 6,
                          .truncated_paths = 7,
                          .dropped_primitives = 8,
-                         .techniques = 3,
+                         .techniques = 7,
                          .training_rays = 9};
 
 TEST(Convert, SettingsRoundTrip) { EXPECT_EQ(settings_of(to_message(kSettings)), kSettings); }

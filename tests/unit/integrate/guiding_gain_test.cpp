@@ -22,7 +22,7 @@ constexpr std::uint32_t kDepth = 6;
 GuidingGain gain_of(const Scene& scene, int threads = 2) {
   Pool pool(threads);
   const GuidingKey key{kWidth, kHeight, kDepth};
-  return *expected_gain(scene, key, train_guiding(scene, key, {pool, kGoOn})->field, nullptr,
+  return *expected_gain(scene, key, train_guiding(scene, key, {pool, kGoOn})->field, {.max_depth = kDepth},
                         {pool, kGoOn});
 }
 

@@ -37,7 +37,7 @@ BandRecord record() {
                             .negative_samples = 1,
                             .truncated_paths = 168,
                             .dropped_primitives = 1ull << 40,
-                            .techniques = 3,
+                            .techniques = 7,
                             .training_rays = 1ull << 41};
   record.cpu_s = 0.3;
   record.process = 0xFEDCBA9876543210u;

@@ -127,7 +127,8 @@ TEST(Band, CountersAddUpExceptThoseOfTheScene) {
   EXPECT_EQ(sum.dropped_primitives, 3u);
   sum.add({.techniques = Counters::kPathGuiding, .training_rays = 5});
   sum.add({.techniques = Counters::kPhotonMaps, .training_rays = 5});
-  EXPECT_EQ(sum.techniques, Counters::kPathGuiding | Counters::kPhotonMaps);
+  sum.add({.techniques = Counters::kPortals, .training_rays = 5});
+  EXPECT_EQ(sum.techniques, Counters::kAllTechniques);
   EXPECT_EQ(sum.training_rays, 5u);
 }
 

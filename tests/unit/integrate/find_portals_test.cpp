@@ -1,0 +1,161 @@
+// Finding the openings through which the sky lights a room, from the rays that surfaces scatter.
+
+#include "renderlib/integrate/find_portals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+#include "renderlib/render/render_band.h"
+#include "renderlib/sampling/basis.h"
+#include "renderlib/sampling/warp.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+/// A room of 6 x 3 x 8 with its corner at the origin.
+constexpr Vec3 kRoom = {6, 3, 8};
+
+/// The room's axes, which may be turned.
+struct Axes {
+  Vec3 x = {1, 0, 0};
+  Vec3 y = {0, 1, 0};
+  Vec3 z = {0, 0, 1};
+  Vec3 operator()(const Vec3& p) const { return x * p.x + y * p.y + z * p.z; }
+};
+
+/// Returns `count` rays in cosine-distributed directions from random points of the walls of the
+/// room. They escape through the windows, which are in the coordinates of the room.
+std::vector<ScatteredRay> rays_of_room(const std::vector<Portal>& windows, const Axes& axes,
+                                       int count) {
+  test::Random random(3);
+  std::vector<ScatteredRay> rays;
+  for (int i = 0; i < count; ++i) {
+    const int wall = static_cast<int>(random.below(6));
+    const int axis = wall / 2;
+    Vec3 at = {kRoom.x * random.uniform(), kRoom.y * random.uniform(), kRoom.z * random.uniform()};
+    Vec3 normal;
+    (axis == 0 ? at.x : axis == 1 ? at.y : at.z) = wall % 2 == 0 ? 0 : kRoom[axis];
+    (axis == 0 ? normal.x : axis == 1 ? normal.y : normal.z) = wall % 2 == 0 ? 1 : -1;
+    const Vec3 direction = orthonormal_basis(normal).to_world(
+        sample_cosine_hemisphere(random.uniform(), random.uniform()));
+    const bool escapes = std::any_of(windows.begin(), windows.end(), [&](const Portal& window) {
+      return window.passes(at, direction);
+    });
+    rays.push_back({axes(at), axes(normal), axes(direction), escapes});
+  }
+  return rays;
+}
+
+/// A window of 1.2 x 1 in the wall x = 0, one of 2 x 1 in the wall z = 8, and one beside the first.
+constexpr Portal kLeft = {{0, 1, 2}, {0, 1, 0}, {0, 0, 1.2}};
+constexpr Portal kBack = {{2, 1, 8}, {2, 0, 0}, {0, 1, 0}};
+constexpr Portal kBeside = {{0, 1, 5}, {0, 1, 0}, {0, 0, 1}};
+
+double area(const Portal& portal) { return length(portal.u) * length(portal.v); }
+
+/// Expects that each window is one of the portals, at most 10 % larger or smaller and at most a
+/// fiftieth of its size away from its plane.
+void expect_windows(const Portals& portals, const std::vector<Portal>& windows, const Axes& axes) {
+  ASSERT_EQ(portals.portals().size(), windows.size());
+  for (const Portal& window : windows) {
+    const Vec3 middle = axes(window.corner + (window.u + window.v) * 0.5);
+    const Vec3 normal = axes(normalize(cross(window.u, window.v)));
+    const auto same =
+        std::find_if(portals.portals().begin(), portals.portals().end(), [&](const Portal& portal) {
+          const Vec3 off = portal.corner + (portal.u + portal.v) * 0.5 - middle;
+          return length(off) < 0.1 && std::abs(dot(off, normal)) < 0.02 &&
+                 std::abs(area(portal) / area(window) - 1) < 0.1;
+        });
+    EXPECT_NE(same, portals.portals().end()) << middle.x << " " << middle.y << " " << middle.z;
+  }
+}
+
+TEST(FindPortals, FindsAWindow) {
+  expect_windows(portals_of(rays_of_room({kLeft}, {}, 20000)), {kLeft}, {});
+}
+
+TEST(FindPortals, FindsSeveralWindowsInOneWallAndInOthers) {
+  const std::vector<Portal> windows = {kLeft, kBack, kBeside};
+  expect_windows(portals_of(rays_of_room(windows, {}, 40000)), windows, {});
+}
+
+TEST(FindPortals, FindsTheWindowsOfATurnedRoom) {
+  const double angle = 0.5;
+  const Axes axes{.x = {std::cos(angle), 0, std::sin(angle)},
+                  .y = {0, 1, 0},
+                  .z = {-std::sin(angle), 0, std::cos(angle)}};
+  const std::vector<Portal> windows = {kLeft, kBack};
+  expect_windows(portals_of(rays_of_room(windows, axes, 40000)), windows, axes);
+}
+
+TEST(FindPortals, NeedsRaysThatEscape) {
+  EXPECT_TRUE(portals_of({}).empty());
+  EXPECT_TRUE(portals_of(rays_of_room({}, {}, 20000)).empty());
+}
+
+TEST(FindPortals, LeavesWideOpeningsToTheBsdf) {
+  // The room without its ceiling.
+  const Portal ceiling = {{0, 3, 0}, {6, 0, 0}, {0, 0, 8}};
+  EXPECT_TRUE(portals_of(rays_of_room({ceiling}, {}, 20000)).empty());
+}
+
+TEST(FindPortals, FindsNoneWhereRaysEscapeHereAndThere) {
+  // As through the leaves of a tree: every tenth ray, wherever it goes.
+  std::vector<ScatteredRay> rays = rays_of_room({}, {}, 20000);
+  for (std::size_t i = 0; i < rays.size(); i += 10) {
+    rays[i].escapes = true;
+  }
+  EXPECT_TRUE(portals_of(rays).empty());
+}
+
+/// A room of 4 x 4 x 4 around the origin under a sky. Its wall x = -2 has a window of 1 x 1.
+std::shared_ptr<const Scene> room_with_window() {
+  test::SceneMaker maker;
+  const MaterialId wall = maker.diffuse(0.6f);
+  maker.quad({-2, -2, 2}, {4, 0, 0}, {0, 0, -4}, wall);
+  maker.quad({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, wall);
+  maker.quad({2, -2, -2}, {0, 0, 4}, {0, 4, 0}, wall);
+  maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, wall);
+  maker.quad({-2, -2, 2}, {4, 0, 0}, {0, 4, 0}, wall);
+  maker.quad({-2, -2, -2}, {0, 0, 4}, {0, 2, 0}, wall);
+  maker.quad({-2, 1, -2}, {0, 0, 4}, {0, 1, 0}, wall);
+  maker.quad({-2, 0, -2}, {0, 0, 2}, {0, 1, 0}, wall);
+  maker.quad({-2, 0, 1}, {0, 0, 1}, {0, 1, 0}, wall);
+  maker.background({4, 4, 4}, {8, 8, 8});
+  maker.camera({1.5, 0, 1.8}, {-1, 0, -2}, 60);
+  return maker.build();
+}
+
+BandPixels pixels_of(const Scene& scene, Integrator integrator) {
+  constexpr std::uint32_t kWidth = 24;
+  constexpr std::uint32_t kHeight = 16;
+  Pool pool(2);
+  const std::atomic<bool> stop = false;
+  return *render_band(
+      scene, {.width = kWidth, .height = kHeight, .max_depth = 8, .integrator = integrator},
+      {{0, 256}, {0, kHeight}}, pool, stop, {});
+}
+
+TEST(FindPortals, TheWindowOfARoomIsUsedAndChangesNoMean) {
+  const auto scene = room_with_window();
+  const BandPixels with = pixels_of(*scene, Integrator::kPath);
+  const BandPixels without = pixels_of(*scene, Integrator::kPathPlain);
+  EXPECT_EQ(with.counters.techniques & Counters::kPortals, Counters::kPortals);
+  EXPECT_EQ(without.counters.techniques, 0u);
+  const auto sum = [](const BandPixels& pixels) {
+    return std::accumulate(pixels.sums.begin(), pixels.sums.end(), 0.0);
+  };
+  // The standard error of the image without portals is about 1 % of its mean.
+  EXPECT_NEAR(sum(with) / sum(without), 1, 0.04);
+}
+
+}  // namespace
+}  // namespace bandsaw
