@@ -1,12 +1,15 @@
 #!/usr/bin/env bash
-# Runs the tests that are too long for CI: every label, sanitizers, the other compiler, the other Debian, ARM64, fuzzing. It continues
-# after a part that fails, and writes one table of the parts that passed, failed or were skipped. Exit 1: a part in the table failed.
+# Runs the tests that are too long for CI, in parts: every label of CTest, sanitizers, the other compiler, the other Debian, ARM64, fuzzing
+# and more. It continues after a part that fails, and writes a table that says of each part whether it passed, failed or was skipped.
+# Exit 1: a part in the table failed.
 # Usage: deploy/nightly.sh [--continue] [--fuzz-minutes N] [--calibration-minutes N] [--out FOLDER] [PART...]
-#   --continue: keeps the rows that the table in FOLDER has; each states its commit. Parts that are named run again; without PART
-#      those run that have no row of this commit. So several runs, in several nights, add up to one table. tests/nightly.md is the
-#      last one that was kept; copy it to FOLDER/table.md to go on from it.
-#   N: minutes for each fuzz target (default 1), and for the calibration, which continues from there in the next run (default 60)
-#   FOLDER: table.md and a log for each part (default: out/nightly)
+#   --continue: keeps the rows of the table that an earlier run wrote to FOLDER, so that the runs of several nights add up to one table.
+#      Each row states its commit. If PARTs are given, exactly these run, whether they have a row or not. If none is given, the parts
+#      without a row of the present commit run. To go on from the table that is kept in the repository, first copy tests/nightly.md to
+#      FOLDER/table.md.
+#   --fuzz-minutes N: minutes for each fuzz target (default: 1)
+#   --calibration-minutes N: minutes for the calibration (default: 60). The next run continues where it stopped, in build/calibration.
+#   --out FOLDER: where table.md and a log for each part are written (default: out/nightly)
 #   PART: parts to run: default labels wasm browser blender asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
 #         (default: all, in this order; about seven hours on two cores)
 # A part whose requirements this machine lacks (root, debootstrap) is skipped, and the table states the reason. A compiler and a browser
@@ -135,7 +138,7 @@ row() {
     $(($3 / 3600)) $(($3 / 60 % 60)) "$commit" "$(date --utc +%Y-%m-%d)" "$(basename "$log")"
 }
 
-# The row of each part. A dirty checkout is no commit, so its rows are made again.
+# The row of each part. A row that was made from uncommitted changes counts for no commit, so its part runs again.
 declare -A rows=()
 if [ -n "$continues" ]; then
   for part in "${every_part[@]}"; do rows[$part]=$(grep -sm1 "^| $part |" "$table"); done

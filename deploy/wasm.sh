@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
-# Builds the renderer for browsers as WebAssembly: installs what that needs (deploy/install.sh wasm), unpacks Debian's source packages of
-# Abseil and protobuf into build/wasm/sources, and builds build/wasm/bandsaw.wasm, compressed bandsaw.wasm.br, and the module of the
-# tests of the label wasm. The first two are copied to build/release/share/bandsaw/browser, where the coordinator of that build looks
-# for them, and from which they are installed.
+# Builds the renderer as a WebAssembly module, which browsers load when they join a farm as workers. The results are in build/wasm:
+# bandsaw.wasm, the same compressed as bandsaw.wasm.br, and bandsaw_test.wasm for the tests with the label wasm. The first two are copied
+# to build/release/share/bandsaw/browser: there the coordinator of the release build finds them, and an installation takes them from there.
+# The script first installs the compiler and tools (deploy/install.sh wasm), and unpacks Debian's source packages of Abseil and protobuf
+# into build/wasm/sources.
 # Usage: deploy/wasm.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 deploy/install.sh wasm
-# The sources of the release that runs here, without a change of the system's list of package sources.
+# get_sources: downloads the source packages of the Debian release that runs here. apt gets a list of package sources of its own, so
+# that the system's list stays as it is.
 sources=$PWD/build/wasm/sources
 get_sources() {
   local release mirror
@@ -26,7 +28,7 @@ get_sources() {
     mkdir "$sources/$package"
     tar -xf "$sources/${package}"_*.orig.tar.* --strip-components=1 -C "$sources/$package"
     tar -xf "$sources/${package}"_*.debian.tar.* -C "$sources/$package"
-    dpkg-source --before-build "$sources/$package" >/dev/null  # applies Debian's patches
+    dpkg-source --before-build "$sources/$package" >/dev/null  # apply Debian's patches
   done
   touch "$sources/complete"
 }

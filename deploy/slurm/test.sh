@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Tests a farm whose workers are jobs of Slurm. The script runs a Slurm on this machine, in a folder of its own, and installs nothing. While a
-# job renders, it adds workers, requeues one and cancels others; these must drain. The image must have the bytes of `bandsaw render`.
+# job of the farm renders, it adds workers, requeues one and cancels others. A worker that is requeued or cancelled must drain: it finishes its
+# bands and takes no more. The image must have the bytes of `bandsaw render`.
 # Exit status 77: Slurm is not installed.
 # Usage: deploy/slurm/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
@@ -12,6 +13,7 @@ skip() { echo "skipped: $*"; exit 77; }
 for program in munged slurmctld slurmd sbatch; do
   command -v "$program" >/dev/null || skip "$program is not here (packages slurm-wlm, munge)"
 done
+# slurmd must be run by root.
 [ "$(id -u)" -eq 0 ] || skip "slurmd takes root"
 
 dir=$(mktemp -d)
@@ -108,7 +110,9 @@ bandsaw submit "$scene" "${settings[@]}" -o "$dir/farm.pfm" >"$dir/submit.log" 2
 submit=$!
 until_true 30 log_holds "${first}_1" 'rendered job='
 
-mkdir "$dir/shared"  # as on nodes of several architectures
+# Like a shared disk of a cluster with several architectures: worker.sbatch gets the path shared/bandsaw-worker, which does not exist, and
+# must run the file whose name ends with the architecture of the node.
+mkdir "$dir/shared"
 cp "$programs/bandsaw-worker" "$dir/shared/bandsaw-worker-$(uname -m)"
 second=$(start_workers 3-4 "$dir/shared/bandsaw-worker")
 until_true 30 log_holds "${second}_4" 'rendered job='

@@ -20,7 +20,8 @@ if [ -n "$said" ]; then
   exit 1
 fi
 for unit in bandsaw bandsaw-worker; do
-  # In tenths; 10 is a service that may do everything, 2 and less is "OK".
+  # systemd rates the exposure of a service from 0 to 10; 10 is a service that may do everything. --threshold is in tenths: a rating
+  # above 2.0 fails.
   systemd-analyze security --offline=true --threshold=20 --no-pager "$dir/$unit.service" >"$dir/found" || {
     cat "$dir/found" >&2
     exit 1
