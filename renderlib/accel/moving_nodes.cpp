@@ -67,7 +67,7 @@ class Bounds {
     };
     const float from = rounded(open + outwards * margin);
     const float change = rounded(close + outwards * margin) - from;
-    if (!std::isfinite(change)) {  // No ray may miss a box whose movement no float holds.
+    if (!std::isfinite(change)) {  // The movement is too large for a float: use an infinite bound.
       tree_.nodes[node].bounds[row][i] = outwards < 0 ? -FloatBox::kInf : FloatBox::kInf;
       return;
     }

@@ -1,7 +1,8 @@
 #pragma once
 
-// Boxes whose sides move linearly during the shutter interval, for the nodes of BVHs: that of
-// moving instances (moving_tree.h) and those of meshes that deform (mesh_tree.h).
+// Bounding boxes whose sides move linearly during the shutter interval. The nodes of two kinds of
+// BVH have such boxes: the BVH over all moving instances (moving_tree.h), and the BVHs of meshes
+// that deform (mesh_tree.h).
 
 #include <array>
 #include <cstdint>
@@ -16,8 +17,9 @@
 namespace bandsaw {
 
 /// Element [node][row][child] is the change of WideNode::bounds[row][child] from the beginning to
-/// the end of the interval. The tree itself has the bounds at the beginning, and a `reach` that
-/// covers all times.
+/// the end of the interval. The tree itself has the bounds at the beginning. Its `reach`, the
+/// largest absolute coordinate of any bound, by which FloatRay bounds rounding errors, is valid for
+/// all times.
 using NodeChanges = HugeVector<std::array<std::array<float, WideNode::kChildren>, 6>>;
 
 /// Returns a box that contains both.
@@ -26,8 +28,9 @@ Box both(const Box& a, const Box& b);
 Box middle(const MovingBox& box);
 
 /// Replaces the bounds of all nodes by those at the beginning of the interval, and returns their
-/// changes. leaf_box(leaf) returns the bounds of a leaf. Interpolated in float, a node's bounds
-/// contain those of its leaves at all times (README.md, "Moving boxes").
+/// changes; also sets tree.reach. leaf_box(leaf) returns the bounds of a leaf at both ends. The
+/// stored bounds have a margin: even when they are interpolated in float, the box of a node
+/// contains the boxes of its leaves at all times (README.md, "Moving boxes").
 NodeChanges set_moving_bounds(absl::FunctionRef<MovingBox(ChildRef leaf)> leaf_box, WideTree& tree);
 
 /// Does what enter_children() (accel/traverse.h) does: sets `enter` to the distances at which the

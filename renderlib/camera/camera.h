@@ -38,9 +38,9 @@ struct ImageWindow {
   friend bool operator==(const ImageWindow&, const ImageWindow&) = default;
 };
 
-/// A pinhole camera, or a thin lens (Potmesil and Chakravarty 1981). With a lens that is focused at
-/// the distance f, a point at distance z along the view direction is spread over a disk on the
-/// plane of focus, whose radius is aperture / 2 |z - f| / z.
+/// A pinhole camera, or a thin lens (Potmesil and Chakravarty 1981). A lens that is focused at the
+/// distance f spreads a point at distance z along the view direction over a disk. The radius of the
+/// disk on the plane of focus is (aperture / 2) * |z - f| / z.
 struct PerspectiveCamera {
   Vec3 position{0, 0, 0};
   Vec3 look_at{0, 0, -1};
@@ -84,7 +84,7 @@ struct MovingCamera {
   std::optional<Camera> at_close = std::nullopt;  ///< of the same kind; absent: it does not move
 };
 
-// Members that both kinds of camera have.
+// These functions return the members that both kinds of camera have.
 View view_of(const Camera& camera);
 bool is_mirrored(const Camera& camera);
 const std::optional<ImageWindow>& window_of(const Camera& camera);

@@ -1,5 +1,5 @@
-// Maps values in [0, 1] to colours from black over violet, red and yellow to white, by
-// interpolation between six colours.
+// Interpolates between six colours in sRGB codes, so that equal differences of the values look
+// equally large, and converts the result to linear RGB.
 
 #include "renderlib/compare/false_color.h"
 

@@ -7,8 +7,9 @@
 
 namespace bandsaw {
 
-/// Maps each value of [0, 1] to a colour from black over violet, red and yellow to white, of
-/// increasing lightness: linear RGB for an 8-bit file.
+/// Returns an image in linear RGB that shows each value by a colour: from black at 0 over violet,
+/// red and yellow to nearly white at 1, in even steps of lightness. Values outside of [0, 1] are
+/// clamped. Stored as 8-bit sRGB, the image has exactly the intended colours.
 Image false_color(const Plane& values);
 
 }  // namespace bandsaw

@@ -38,8 +38,9 @@ struct ImportChoices {
   std::string camera = {};  ///< name of a camera of the scene's models; empty: the scene's own
   std::map<std::string, std::string> parameters = {};  ///< parameters of a Mitsuba scene
   bool strict = false;                                 ///< a warning is an error
-  std::optional<FrameChoice> frame = {};  ///< absent: the scene at time 0, models without animation
-  /// Name of the animation of the scene's models; empty: with a frame the first, otherwise none.
+  std::optional<FrameChoice> frame = {};               ///< absent: the scene is imported at time 0
+  /// Name of the animation of those models for which the scene file names none. Empty: if a frame
+  /// is chosen, each model has its first animation, otherwise none.
   std::string animation = {};
   /// A folder that contains the folder of a Mitsuba scene: files below it may be read. Empty: only
   /// files below the scene's own folder.
@@ -61,7 +62,7 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path,
                                            const ImportChoices& choices = {},
                                            ImportMemory* memory = nullptr);
 
-/// A foreign scene or a model as a scene file of ours, for `bandsaw import`.
+/// A foreign scene or a model, converted to a scene file of Bandsaw, for `bandsaw import`.
 struct SceneAsText {
   std::string text;                                ///< protobuf text format
   std::map<std::string, std::string> made_files;   ///< name in the scene -> bytes
@@ -69,9 +70,10 @@ struct SceneAsText {
   std::vector<std::string> warnings;
 };
 
-/// Converts a scene of pbrt-v4 or Mitsuba, or a single model. The scene is read as import_scene
-/// does it, so that the text is known to be valid; errors are the same. Ignores `environment` and
-/// `camera` of the choices. Returns INVALID_ARGUMENT also for a scene file of ours.
+/// Converts a scene of pbrt-v4 or Mitsuba, or a single model, to a scene file of Bandsaw. The
+/// result is read in the way of import_scene(), so that the text is known to be valid; errors are
+/// as there. Ignores `environment` and `camera` of the choices. Returns INVALID_ARGUMENT also if
+/// `path` is a scene file of Bandsaw already.
 absl::StatusOr<SceneAsText> scene_as_text(const std::string& path,
                                           const ImportChoices& choices = {});
 

@@ -1,3 +1,7 @@
+// make_caustic_map() traces the photons of a map in chunks, on all threads, and builds the map from
+// them. can_have_caustic_maps() excludes scenes in which photons and paths would not find the same
+// light.
+
 #include "renderlib/integrate/caustic_maps.h"
 
 #include <algorithm>
@@ -13,10 +17,12 @@
 namespace bandsaw {
 namespace {
 
-/// Fixed, so that the sums do not depend on the number of threads.
+/// Number of parts in which photons are traced. It is fixed, so that the sums over the parts have
+/// the same bits with any number of threads.
 constexpr std::uint32_t kChunks = 64;
 
-/// Solid angle in steradians, as seen from the casters: paths find larger lamps well enough.
+/// Largest mean solid angle of the lamps as seen from the casters, in steradians, for which photon
+/// maps pay. Paths hit larger lamps often enough, so that their caustics have little noise anyway.
 constexpr double kLargestLamp = 0.5;
 
 bool has_emissive_surface(const Scene& scene) {
@@ -58,8 +64,9 @@ std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Cast
     power_by_angle += chunk.power_by_angle;
   }
   traced.lamp_angle = power > 0 ? power_by_angle / power : 0;
-  // The area of a disk falls with the power alpha - 1 = -1/3 of the map's number, its radius with
-  // the root of that.
+  // Each photon spreads its power over a disk. Knaus and Zwicker multiply the area of the disks of
+  // map n = 0, 1, … by about (n + 1)^(alpha - 1), here with alpha = 2/3. So the factor of the area
+  // is (n + 1)^(-1/3), and that of the radius is its root, (n + 1)^(-1/6).
   const double factor = pow(key.number + 1.0, -1.0 / 6);
   traced.map = PhotonMap(std::move(photons), factor, split_mix(key.seed ^ key.number),
                          preparation.pool, [&](const CausticPhoton& photon) {
@@ -70,6 +77,12 @@ std::shared_ptr<const TracedMap> make_caustic_map(const Scene& scene, const Cast
 }
 
 bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
+  // In scenes with these materials photons and paths would not find the same light:
+  // - Hidden lamps: paths pass through them, but a photon ends at any emitter that it hits.
+  // - Nested glass: its index of refraction depends on the other glasses around the point, which a
+  //   photon that starts there does not know.
+  // - Mixtures with a caster: a path that meets such a part takes it for a caster, but photons do
+  //   not start there.
   const auto hinders = [&](const Material& material) {
     const auto* mix = std::get_if<Mix>(&material.kind);
     return is_hidden_lamp(material) || nested_glass(material) != nullptr ||

@@ -1,5 +1,5 @@
-// Counts the primitives that Lights would number: all loose shapes, and all primitives of instances
-// that emit light.
+// Counts the primitives that Lights would number: all shapes that are not in an instance, and all
+// primitives of each instance that emits light anywhere.
 
 #include "renderlib/light/check_light_counts.h"
 

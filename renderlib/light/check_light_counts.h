@@ -13,13 +13,13 @@
 
 namespace bandsaw {
 
-/// Maximum number of lights, which are numbered in 31 bits. The primitives of instances that emit
-/// light are numbered too, including those of their primitives that emit none themselves.
+/// Maximum number of lights: they are numbered in 31 bits. Some primitives that emit nothing get
+/// numbers too: if an instance emits light anywhere, all of its primitives are numbered.
 inline constexpr std::uint64_t kMaxLights = (std::uint64_t{1} << 31) - 1;
 
-/// Returns INVALID_ARGUMENT if there are more than kMaxLights of these together: loose shapes,
-/// primitives of instances that emit light, and the number `delta_lights`. Indices of meshes,
-/// groups, materials and textures MUST be valid.
+/// Returns INVALID_ARGUMENT if more than kMaxLights numbers are needed: one for each shape that is
+/// not in an instance, one for each primitive of each instance that emits light anywhere, and
+/// `delta_lights` more. Indices of meshes, groups, materials and textures MUST be valid.
 absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Material> materials,
                                 absl::Span<const Texture> textures, std::uint64_t delta_lights);
 

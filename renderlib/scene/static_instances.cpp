@@ -1,5 +1,5 @@
-// An instance is static if all frames above it have the same transform throughout the shutter
-// interval. It then gets the placement of that time, and no frame.
+// An instance is static if each frame above it has a constant transform throughout the shutter
+// interval.
 
 #include "renderlib/scene/static_instances.h"
 
@@ -10,7 +10,7 @@
 namespace bandsaw {
 namespace {
 
-/// Returns true if the frame, without its parents, has the same transform throughout the interval.
+/// Returns true if the frame's own transform, relative to its parent, is constant in the interval.
 bool stands(const Frame& frame, const Interval& interval) {
   const Transform at_open = motion_at(frame, interval.open);
   const bool ends_there = motion_at(frame, interval.close) == at_open;

@@ -1,5 +1,5 @@
-// Searches the files that a Mitsuba scene names, in the folders of its <path> elements, the last
-// one first, and in the scene's folder. Nothing outside the import's folder is found.
+// find() looks for a file in the folders of the scene's <path> elements, the last one first, and
+// then in the scene's own folder. A file outside of the import's folder is never found.
 
 #include "renderlib/import/mitsuba/files.h"
 

@@ -26,13 +26,14 @@ void name_unused_textures(MaterialReader& reader) {
       reader.unsupported(absl::StrCat("its ", what, " map is left out"));
     }
   }
+  // An occlusion map approximates how much light reaches a point; path tracing computes this light.
   if (reader.has({aiTextureType_LIGHTMAP}) || reader.has({aiTextureType_AMBIENT_OCCLUSION})) {
     reader.unsupported("its occlusion map is left out: light is followed instead");
   }
 }
 
-// KHR_materials_unlit is meant to show its base colour whatever the light is. No surface does so;
-// it becomes a diffuse one.
+// A surface with KHR_materials_unlit is shown in its base colour under any light. Bandsaw has no
+// such material; the surface becomes a diffuse one of that colour.
 absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
   reader.unsupported("is unlit, which is taken as a diffuse surface");
   const Rgb base = reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1});

@@ -1,4 +1,5 @@
-// Collects the cameras of a scene's models, and finds one by the forms of its name.
+// Collects the cameras of a scene's models, and finds one by name. A camera has three names, which
+// are tried in this order: the name of its node, its own name, and "FILE/NODE".
 
 #include "renderlib/import/scene_file/use_camera.h"
 
@@ -18,7 +19,8 @@ std::string with_file(const FoundCamera& camera) {
   return absl::StrCat(camera.model, "/", camera.name);
 }
 
-/// Returns the cameras with this name, by the first kind of name that any camera has.
+/// Returns the cameras whose node has this name; if there are none, those that have it as their own
+/// name; if there are none either, those for which it is "FILE/NODE".
 std::vector<const FoundCamera*> called(const std::string& name,
                                        const std::vector<FoundCamera>& cameras) {
   const auto all = [&](auto name_of) {
