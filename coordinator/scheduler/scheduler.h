@@ -77,8 +77,8 @@ class Scheduler {
   /// belong to it.
   std::vector<KeptJob> kept() const { return views_.kept(); }
   std::vector<WorkerView> workers(Time now) const;  ///< by name
-  /// Returns true if a browser of this instance has joined, in this epoch or for a job that is not
-  /// over.
+  /// Returns true if the worker process with this instance id joined as a browser. Browsers that
+  /// have left are forgotten when the last active job ends, not at a restart of the coordinator.
   bool is_browser(const std::string& instance) const;
 
   /// Returns a sentence about the first invariant that does not hold; std::nullopt: all hold. For
@@ -122,7 +122,7 @@ class Scheduler {
   void on(const input::Tick& in);
   Step finish_step();
 
-  // Each part uses the context and parts above it.
+  // Each part uses the context and some of the parts that are declared before it.
   Context context_;
   ReconnectBarrier barrier_;
   LeaseLedger ledger_;

@@ -19,9 +19,10 @@ namespace bandsaw::worker {
 
 /// Callbacks, called from the executor's and the pool's threads; MUST be quick. For each task,
 /// `preparing` and `rendering` are called any number of times, then `finished` or `failed` once.
-/// `prepared` only increases while the scene is loaded. `rows_done` is the number of finished rows;
-/// it is 0 when rendering begins and after each step that the renderer makes before the first row.
-/// A task that is stopped gets no further callbacks.
+/// `preparing` reports that the scene is being loaded; `prepared` is a measure of the progress,
+/// which grows from call to call. `rendering` reports the number of finished rows. It reports 0
+/// when rendering begins, and again after each step of preparations such as the training of path
+/// guiding, which come before the first row. A task that is stopped gets no further callbacks.
 struct ExecutorEvents {
   std::function<void(TaskId, std::uint64_t prepared)> preparing;
   std::function<void(TaskId, std::uint32_t rows_done)> rendering;
@@ -44,7 +45,7 @@ class Executor {
   void stop(TaskId task) EXCLUDES(mutex_);
 
  private:
-  /// What a task has reached: a thread took it, its scene is loaded, its first row is finished.
+  /// How far a task has got: a thread took it, its scene is loaded, its first row is finished.
   enum class Reached { kTaken, kScene, kRows };
   struct Running {
     explicit Running(const Task& t) : task(t) {}

@@ -24,8 +24,8 @@ struct Task {
   TileSamples tiles = {};  ///< adaptive samples of the band's half tiles; empty: all samples
 };
 
-/// Cost of rendering a band. While two bands overlap, the time is counted once, for the one that
-/// ends first.
+/// Cost of rendering a band. Time in which two bands are rendered at once is counted only once: for
+/// the band that ends first.
 struct RenderCost {
   double render_s = 0;  ///< wall clock
   double cpu_s = 0;     ///< summed over threads

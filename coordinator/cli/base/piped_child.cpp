@@ -80,7 +80,7 @@ absl::Status PipedChild::finish() {
 }
 
 std::string PipedChild::last_error_line() const {
-  constexpr std::size_t kMaxBytes = 4096;  // of the end of the file: more than one line needs
+  constexpr std::size_t kMaxBytes = 4096;  // Only the end is read; a line is shorter than this.
   const off_t size = lseek(errors_, 0, SEEK_END);
   std::string text(kMaxBytes, '\0');
   const ssize_t got =

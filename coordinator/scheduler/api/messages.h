@@ -125,8 +125,8 @@ struct BandFailed {
   std::string reason;
   std::vector<std::string> log;  ///< the last lines of the worker's log
 };
-/// A band's pixels are on disk. MUST also be sent for a band whose rows were all stored before,
-/// which is not written again, so that its digests are compared.
+/// A band's pixels are on disk. MUST also be sent for a second result of rows that are stored
+/// already, so that the digests of both results are compared. Such a result is not written.
 struct BandStored {
   JobId job = 0;
   Band band;
@@ -134,14 +134,14 @@ struct BandStored {
   std::string instance;         ///< of the worker that rendered it; empty if read back from disk
   WorkerProcessId process = 0;  ///< process that rendered it, if read back from disk
   Counters counters;
-  /// Time that the worker rendered it; 0: unknown, as if read back from disk.
+  /// Time in which the worker rendered it; 0: unknown, which is so if it was read back from disk.
   double render_s = 0;
   double cpu_s = 0;     ///< CPU time of its threads
   bool written = true;  ///< false: all rows were stored already and it was only compared
 };
-/// The film has merged every row of samples [0, samples). It is also sent just before the finished
-/// image is written, because earlier messages may have the error of more samples than the image
-/// has.
+/// The film has all rows of the samples [0, samples), and their error is estimated. The film may
+/// have some rows of later samples too, which the estimate then includes. So this message is sent
+/// again just before the finished image is written, with the error of exactly the image's samples.
 struct PassMerged {
   JobId job = 0;
   std::uint64_t samples = 0;
@@ -197,7 +197,7 @@ using Input =
 
 // ---- actions ----
 namespace action {
-/// Admits the worker of a session, under a displayed name that no other worker has.
+/// Admits the worker of a session and gives it a displayed name that no other worker has.
 struct Welcome {
   SessionId session = 0;
   std::string name;
@@ -231,7 +231,7 @@ struct Revoke {
   SessionId session = 0;
   std::vector<LeaseId> leases;
 };
-/// Log that an idle worker was given rows that another worker holds a lease of.
+/// Log that an idle worker was given rows for which another worker holds a lease.
 struct LogReassignment {
   JobId job = 0;
   Band band;

@@ -1,4 +1,4 @@
-// The leases by id. An epoch is one run of the coordinator.
+// The table of leases, by id. An epoch is one run of the coordinator.
 
 #include "coordinator/scheduler/context/leases.h"
 
@@ -13,8 +13,9 @@ Leases::Leases(const std::string& epoch)
     : next_(epoch.empty() ? 1 : ((text_hash(epoch) >> 40) << 39) + 1) {}
 
 LeaseId Leases::new_id() {
-  // kFree and kStored mean rows without a lease (coverage.h). Ids of adopted leases may be in the
-  // range of this epoch.
+  // The values kFree and kStored mark rows without a lease (coverage.h), so they are not used as
+  // ids. An id may be in use already: leases of an earlier epoch, which workers still hold after a
+  // restart, keep their ids, and these may lie in the range of this epoch.
   while (next_ == kFree || next_ == kStored || all_.contains(next_)) {
     ++next_;
   }

@@ -25,9 +25,9 @@ struct Lease {
   LeaseId backup_of = 0;
   /// A second rendering of stored rows, to compare (model/audit.h); it owns no rows.
   bool audit = false;
-  /// The worker named the lease when it reconnected, so its result may come before the worker has
-  /// read the reply (LeaseLedger::end_rendered).
-  bool in_hello = false;  ///< named in a Hello: its result may come before the worker has the reply
+  /// The worker named the lease in its Hello when it reconnected. So it may send the result before
+  /// it has read the reply (LeaseLedger::end_rendered).
+  bool in_hello = false;
   std::uint32_t rows_done = 0;  ///< rows that the worker reported as rendered
   std::uint64_t prepared = 0;   ///< as in LeaseProgress
   Time progress_at = 0;         ///< wall clock: when rows_done last grew
@@ -39,8 +39,8 @@ struct Lease {
 
 class Leases {
  public:
-  /// The first id depends on the epoch. Leases of other epochs are adopted with their ids, so the
-  /// ranges of two epochs should not overlap.
+  /// The first id depends on the epoch, so that the ids of two epochs are different with high
+  /// probability. That matters because leases of an earlier epoch are adopted with their ids.
   explicit Leases(const std::string& epoch);
 
   /// Returns an id that no lease has.

@@ -1,6 +1,6 @@
-// Quarantined worker processes. A native worker is refused by its process and by the name that it
-// reports, a browser by its process only. The lists of native workers and browsers are limited
-// separately.
+// The list of quarantined worker processes. A native worker is recognised by the id of its process
+// and by the name that it reports, a browser only by the id of its process. The numbers of native
+// workers and of browsers in the list are limited separately.
 
 #include "coordinator/scheduler/context/quarantine_list.h"
 

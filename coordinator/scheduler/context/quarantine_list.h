@@ -26,9 +26,9 @@ class QuarantineList {
     bool browser = false;
     bool lifted = false;  ///< the machine is admitted again; the process's results stay void
   };
-  /// While this many browsers are under quarantine, no browser is admitted. Otherwise whoever has
-  /// the link for browsers could make the list longer by each reload of the page, and entries would
-  /// have to be forgotten.
+  /// While this many browsers are under quarantine, no browser is admitted. Without this limit the
+  /// list could grow without end, because a page that is loaded again is a new worker process: a
+  /// browser could return wrong pixels, be quarantined and join again any number of times.
   static constexpr std::size_t kMaxBrowsers = 256;
 
   /// Adds or replaces an entry. If there are kMaxNatives entries of native workers, one of these is
@@ -37,16 +37,17 @@ class QuarantineList {
   /// Lifts the quarantine of all processes with this name.
   void lift(const std::string& name);
 
-  /// Forgets the lifted entries of browsers; if kMaxBrowsers are not lifted, so that no browser is
-  /// admitted, forgets all entries of browsers. No active job may have bands that browsers
-  /// rendered. The entries are not needed then: a page that is loaded again is a new process, which
-  /// they do not exclude.
+  /// Forgets the lifted entries of browsers. If too_many_browsers(), forgets all entries of
+  /// browsers, so that browsers are admitted again. MUST be called only while no active job has
+  /// bands that browsers rendered: entries are needed as long as results of their processes may
+  /// have to be discarded. They are not needed to keep a browser out, because the page loaded again
+  /// is a new process without an entry.
   void forget_browsers();
 
-  /// Returns true if the process was ever quarantined.
+  /// Returns true if the process has an entry, lifted or not.
   bool contains(WorkerProcessId process) const { return entries_.contains(process); }
-  /// Returns why a worker is not admitted; std::nullopt: it is. `reported_name`: empty for a
-  /// browser, which is known by its process only.
+  /// Returns why a worker is not admitted; std::nullopt: it is admitted. `instance` identifies its
+  /// process. `reported_name`: empty for a browser, which is recognised by its process only.
   std::optional<std::string> reason_against(const std::string& instance,
                                             const std::string& reported_name) const;
   /// Returns true if kMaxBrowsers browsers are under quarantine.

@@ -27,8 +27,9 @@ class AuditLeases {
   bool may_render(const Worker& worker, const Job& job, const Audit& audit) const;
   /// Returns the first waiting audit that the worker may render; nullptr: none.
   Audit* next_for(const Worker& worker, Job& job) const;
-  /// Leases the audit's rows up to `end_row` to the worker. The rows from there on become an audit
-  /// of their own, unless it is disputed. Invalidates `audit`.
+  /// Leases the rows of the audit before `end_row` to the worker; the other rows become an audit of
+  /// their own. An audit that is disputed is leased as a whole, and so is any audit if the job has
+  /// Job::kMaxAudits of them. Invalidates `audit`.
   void grant(Worker& worker, Job& job, Audit& audit, std::uint32_t end_row);
   /// Ends an audit lease that the worker could not render. This does not count as a failure of the
   /// band: another machine is chosen for the audit, if there is one.

@@ -25,17 +25,19 @@ struct Sizing {
   absl::Span<const float> tile_row_shares = {};  ///< as in CostMap::of
   double work_rate = 0;                          ///< work per second of the worker on this job, > 0
   bool measured = false;  ///< false: the rate is a guess; the band is small, to measure it
-  /// The worker's share of the farm's work rate, (0, 1]; 2: it works alone on the job.
+  /// The worker's share of the farm's work rate, (0, 1]. A band gets at most half of this share of
+  /// the work that is left. 2: the worker is the only one on the job, so a band may get all of it.
   double farm_share = 1;
   double work_left = 0;  ///< work of the job that is neither leased nor stored
   double target_s = 1;   ///< render time of a band, > 0
 };
 
-/// Returns a part of `free`. A band that is long enough ends at the end of a row of tiles
-/// (render/tile_samples.h): if the scene shares paths between pixels (render/pixel_groups.h) and a
-/// tile is divided between two bands, both bands trace the whole tile. For the same reason, if the
-/// first row of tiles takes more than two target times, the band gets all of its rows with fewer
-/// samples. Only if a single block of samples is too much work, the band gets fewer rows.
+/// Returns a part of `free` that begins at its first row. It avoids to divide a row of tiles
+/// (render/tile_samples.h) between two bands: if the pixels of a tile share paths
+/// (render/pixel_groups.h), both bands would have to trace the whole tile. So a band ends at the
+/// end of a row of tiles if it is long enough. If the first row of tiles alone takes more than two
+/// target times, the band gets all rows of it with fewer samples. Only if even a single block of 8
+/// samples of them is too much work, the band gets fewer rows.
 Band size_band(const Sizing& sizing);
 
 /// Returns the maximum number of rows of a band that fit into a message.
