@@ -1,5 +1,7 @@
-"""Runs in the Blender that window.sh has started in a window. It prepares a scene and writes one word for each thing that has happened
-to the file `state`: ready (Blender takes keys), looked (the add-on has fetched a preview), cancelled (the job is cancelled)."""
+"""The part of a test of the add-on that runs inside Blender, in the window that window.sh has opened. This script prepares a scene and a fake
+farm. window.sh then presses F12, which starts a render, and Escape, which must cancel the job at the farm; meanwhile the picture must grow.
+The script tells window.sh what has happened by appending words to the file `state`: "ready" (Blender takes keys), "looked" (Blender has
+been given a preview), "cancelled" (the job is cancelled)."""
 
 import os
 import sys
@@ -38,7 +40,8 @@ def wait_for(holds):
 
 
 def watch():
-    # The add-on asks for the next preview after it has given the last one to Blender. So with the second question one is shown.
+    # The add-on requests the next preview only after it has given the last one to Blender. So when the second request arrives, Blender has
+    # the first preview.
     wait_for(lambda: sum(job["looks"] for job in list(fake.jobs.values())) >= 2)
     tell("looked")
     wait_for(lambda: any(job["state"] == "cancelled" for job in list(fake.jobs.values())))

@@ -1,5 +1,6 @@
-// Checks that the table of README.md and the list cases.txt have every hard case once, and that
-// every case has its test, whose name begins with the case's id.
+// Checks that the table of README.md and the list cases.txt have every hard case once. Each row of
+// the table must name the files of the tests of its case, or say in bold why there is no test. The
+// name of a test begins with the ids of its cases.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +34,8 @@ std::vector<std::string> lines_of(const std::string& path) {
   return lines;
 }
 
-/// Returns the ids of all cases; the table gives the number of cases of each section.
+/// Returns the ids of all cases, such as "S1", in order. `sections` has the letter and the number
+/// of cases of each section of cases.txt.
 std::vector<std::string> known_ids() {
   const std::pair<const char*, int> sections[] = {
       {"S", 12}, {"T", 15}, {"Q", 8},  {"B", 12}, {"O", 8}, {"C", 10}, {"X", 9}, {"M", 15},
@@ -47,7 +49,8 @@ std::vector<std::string> known_ids() {
   return ids;
 }
 
-/// Returns the files of each id that begins a test's name: TEST(Media, V6V7_…).
+/// Returns, for each id of a case, the files that have a test whose name begins with it. A name may
+/// begin with several ids: TEST(Media, V6V7_…).
 std::map<std::string, std::set<std::string>> files_by_id() {
   std::map<std::string, std::set<std::string>> files;
   const std::regex test(R"(\bTEST(?:_F|_P)?\(\w+,\s*((?:[A-Z]{1,2}[0-9]+)+)(?=[_A-Z]))");
@@ -91,6 +94,7 @@ TEST(HardCaseTable, NamesTheTestOfEveryCaseOrTheReasonForNone) {
     EXPECT_NE(std::find(ids.begin(), ids.end(), id), ids.end()) << id << " in " << *where.begin();
   }
   for (const std::string& line : lines_of(kTests + "/hard_cases/README.md")) {
+    // A row of the table begins with "| S1 |": the id is between the second character and a space.
     const std::string id =
         line.substr(0, line.find(' ', 2)).substr(std::min<std::size_t>(2, line.size()));
     if (std::find(ids.begin(), ids.end(), id) == ids.end()) {

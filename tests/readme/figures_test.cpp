@@ -1,5 +1,5 @@
-// Tests deploy/figures.sh, which makes the figures of the gallery's README: it makes every stored
-// figure and no other. The figures of the test are 24 pixels wide.
+// Tests deploy/figures.sh, which makes the figures of the gallery's README, and a sheet of any
+// scenes. To be fast, the tests make figures 24 pixels wide.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Figures, AreMadeByOneCommandEach) {
+TEST(Figures, AllMakesEveryStoredFigureAndNoOther) {
   const TempDir folder;
   const std::string build = fs::path(BANDSAW_BIN).parent_path().parent_path();
   const Finished finished = run(

@@ -1,10 +1,14 @@
-// Scattering half-spaces under a white sky: Chandrasekhar, "Radiative Transfer", R = 1 - H(mu)
-// sqrt(1 - albedo), where mu is the cosine of the viewing direction. Within 4 standard errors. H
-// is, by Stibbs and Weir 1959, "On the H-functions for isotropic scattering", MNRAS 119, the
-// exponential of -mu / pi times the integral over x in [0, pi / 2] of ln(1 - albedo x cot x) /
-// (cos^2 x + mu^2 sin^2 x): integrated to 20 digits. Rounding albedos to floats changes R by less
-// than 1e-7 of it. An id such as V3 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// The radiance of scattering half-spaces under a white sky must be within 4 standard errors of the
+// closed form of Chandrasekhar, "Radiative Transfer", where mu is the cosine of the viewing
+// direction to the normal:
+//
+//   R = 1 - H(mu) sqrt(1 - albedo)
+//   H(mu) = exp(-mu / pi * integral over x in [0, pi / 2] of f(x))
+//   f(x) = ln(1 - albedo * x * cot(x)) / (cos(x)^2 + mu^2 sin(x)^2)
+//
+// H is from Stibbs and Weir 1959, "On the H-functions for isotropic scattering", MNRAS 119; it was
+// integrated to 20 digits. Rounding the albedos to floats changes R by less than 1e-7 of R. An id
+// such as V3 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -26,11 +30,13 @@ struct Seen {
   double reflectance;  ///< radiance along the ray under a sky of radiance 1
 };
 
-/// The sky is an area light that covers all of it, so that it is sampled at every scattering; a
-/// background would be found by path sampling alone, which takes many times the samples. It is 8e6
-/// mean free paths wide and misses 5e-7 of the sky. A wider one is worse: shadow rays end 2^-40 of
-/// its size before it, and at 8e9 that is a hundredth of a mean free path, which makes grazing
-/// segments through the medium longer and the half-space darker by 0.1 %.
+/// Returns a scene with an isotropic medium of this albedo below y = 0 and a white sky above it.
+/// `density` is the extinction coefficient. The sky is an area light, so that it is sampled at
+/// every scattering; a background would be found by BSDF sampling alone, which takes many times the
+/// samples. The light is a square whose side is 8e6 mean free paths; it leaves out 5e-7 of the sky.
+/// A larger square is worse, because a shadow ray ends 2^-40 of the light's size before the light.
+/// With a side of 8e9 mean free paths that is a hundredth of a mean free path. Then grazing shadow
+/// rays are flatter and longer within the medium, and the half-space is darker by 0.1 %.
 std::shared_ptr<const Scene> half_space(float albedo, float density) {
   SceneMaker maker;
   const double far = 4000 / density;
@@ -41,6 +47,8 @@ std::shared_ptr<const Scene> half_space(float albedo, float density) {
   return maker.build();
 }
 
+/// `density`: as in half_space(). `error`: the largest standard error that is accepted, relative to
+/// the reflectance.
 void expect_half_space(const Seen& seen, float density, double error, std::uint64_t samples) {
   const Ray ray{.origin = {0, 1 / density, 0},
                 .direction = {std::sqrt(1 - seen.mu * seen.mu), -seen.mu, 0}};
@@ -52,7 +60,7 @@ void expect_half_space(const Seen& seen, float density, double error, std::uint6
   EXPECT_LE(radiance.standard_error(), error * seen.reflectance) << seen.albedo << " " << seen.mu;
 }
 
-/// The tolerances are as small as one can reach with about a second of sampling.
+/// Each accepted standard error is about the smallest that one second of sampling can reach.
 TEST(HalfSpace, ReflectanceIsThatOfTheHFunction) {
   for (const Seen& seen :
        {Seen{0.5f, 1, 0.11522588}, Seen{0.5f, 0.5, 0.16014443}, Seen{0.8f, 1, 0.28525450},

@@ -38,7 +38,7 @@ SceneMaker white_sky() {
 }
 
 TEST(Media, V6AbsorptionIsExponential) {
-  // Through one and two spheres at every distance from the middle.
+  // Rays through one and two spheres, at several distances from their middle.
   for (const double b : {0.0, 0.3, 0.9, 0.999999}) {
     SceneMaker maker = white_sky();
     const MediumId smoke = test::add(maker, medium(0.7f, 0));
@@ -61,7 +61,8 @@ TEST(Media, V6AbsorptionIsExponential) {
   test::report_hard_case("V6", "T within 4 SE");
 }
 
-/// Camera and light inside, the light in the boundary, and the camera in endless fog.
+/// The camera is in the middle of a ball of smoke; the light is inside of the ball, on its boundary
+/// or outside. Then the camera is in endless fog.
 TEST(Media, V7AroundTheCameraAttenuateALight) {
   const Ray ray{.origin = {0, 0, 0}, .direction = {0, 0, -1}};
   for (const double distance : {0.5, 2.0, 3.0}) {
@@ -81,8 +82,9 @@ TEST(Media, V7AroundTheCameraAttenuateALight) {
   test::report_hard_case("V7", "within 4 SE");
 }
 
-/// Scattering in front of a light does not make its edge noisy: half of these paths are scattered
-/// before they reach it, and all of them have its light.
+/// A light that the camera ray hits is added to every path, attenuated by the media in front of it,
+/// and not only to the paths that are not scattered there. So the pixel has no noise, although
+/// about half of these paths are scattered before they reach the light.
 TEST(Media, InFrontOfALightAttenuateEverySampleEqually) {
   SceneMaker maker;
   maker.sphere({10, 0, 0}, 1e-3, maker.lamp(5));
@@ -185,8 +187,9 @@ double scattered_once(const Medium& fog, const DeltaLight& light) {
   });
 }
 
-/// A ray crosses the cone of a spot light close to its tip, far from where most light is scattered.
-/// Samples there must not be far too bright (fireflies), so the standard error is bounded.
+/// A ray crosses the cone of a spot light close to its tip, but most of the light along the ray is
+/// scattered elsewhere. Samples near the tip must not be far too bright (fireflies), so the
+/// standard error is bounded.
 TEST(Media, ScatterASpotAmongOtherLightsWithoutFireflies) {
   const Medium smoke = medium(0.02f, 0.1f);
   SceneMaker maker;
@@ -337,7 +340,7 @@ TEST(MediaTechniques, R8_RouletteKeepsTheMean) {
   test::report_hard_case("R8", "same mean with and without, within 4 SE");
 }
 
-/// Without absorption and scattering the light is the same to the bit.
+/// A medium without absorption and scattering changes no bit of the radiance.
 TEST(Media, V1EmptyMediaChangeNoBit) {
   SceneMaker without;
   without.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, without.diffuse(0.6f));

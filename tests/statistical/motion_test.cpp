@@ -1,5 +1,5 @@
-// Disks, instanced lights and moving lights against closed forms; motion blur is proportional to
-// the motion. An id such as X9 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// Compares disk lights, instanced lights, moving lights and motion blur with closed forms. An id
+// such as X9 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -26,8 +26,8 @@ Instance of_group(std::uint32_t group, const Transform& to_world) {
   return instance;
 }
 
-/// Adds a white patch at the origin with normal +y and expects its irradiance, averaged over the
-/// time that the shutter is open.
+/// Adds a small white patch at the origin with the normal +y, and expects this irradiance of it,
+/// averaged over the time in which the shutter is open.
 void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples = 1024,
                        Technique technique = Technique::kBoth) {
   maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
@@ -86,6 +86,7 @@ TEST(PlacedLight, X9_EmitsAccordingToItsSizeInTheWorld) {
   quad.scene.geometry.groups[0].quads.push_back(
       {{-0.5, 0, -0.5}, {1, 0, 0}, {0, 0, 1}, quad.lamp(1)});
   quad.scene.geometry.instances.push_back(of_group(0, translation({0, 1, 0}) * scaling({2, 9, 2})));
+  // A square of side 2 at distance 1, parallel to the patch: 2 sqrt(2) atan(1 / sqrt(2)).
   expect_irradiance(quad, 1.740839502734);
   test::report_hard_case("X9", "within 4 SE");
 }
@@ -166,7 +167,8 @@ TEST(MovingLight, EmitsFromItsPositionAtTheTime) {
     }
     means.add(sum / 4096);
   }
-  // The disk is not infinitely small: 1e-4 of the value.
+  // The closed form is that of an infinitely small disk. This one has 1/200 of its distance as
+  // radius, so the two may differ by some (1/200)^2 = 2.5e-5 of the value; 2e-4 is accepted.
   EXPECT_NEAR(means.mean() * kPi, closed_form,
               4 * kPi * means.standard_error() + 2e-4 * closed_form);
 }

@@ -60,9 +60,10 @@ Ray random_ray(const Transform& to_world, Random& random) {
   return {.origin = origin, .direction = normalize(target - origin)};
 }
 
-/// Radiance scales with the squared index in glass: a path that enters and is not detected to leave
-/// carries 2.25 or 0.44 instead of 1. A few paths are reflected along the rim inside the ball
-/// thousands of times, and are truncated.
+/// Each path must carry the radiance 1 of the sky. In glass radiance is greater by the squared
+/// index, 2.25. So a path that enters the ball carries 1 / 2.25 = 0.44 if its exit is missed, and a
+/// path that leaves it 2.25 if its entry was missed. A few paths are reflected along the rim inside
+/// the ball thousands of times, and are truncated.
 TEST(Squashed, S12_AGlassBallIsInvisibleInAWhiteSky) {
   int wrong = 0;
   int paths = 0;
@@ -89,8 +90,8 @@ TEST(Squashed, S12_AGlassBallIsInvisibleInAWhiteSky) {
                 wrong, 0);
 }
 
-/// An absorbing ball transmits exp(-sigma chord), with the chord from the sphere's equation in its
-/// own space.
+/// An absorbing ball transmits exp(-sigma * chord). The length of the chord is computed in the
+/// space in which the ball is a unit sphere. Every second ray starts inside the ball.
 TEST(Squashed, S12_AnAbsorbingBallTransmitsTheExponentialOfItsChord) {
   test::Worst error;
   for (const double by : kThin) {
@@ -120,9 +121,10 @@ TEST(Squashed, S12_AnAbsorbingBallTransmitsTheExponentialOfItsChord) {
   test::at_most("S12", "error of what absorbing balls let pass", error.value(), 1e-4);
 }
 
-/// Through its middle a glass ball is a pane with parallel faces: a share F is reflected at each
-/// face and a share a remains after each pass, which sums up to F + (1 - F)^2 a (1 + F a) / (1 -
-/// F^2 a^2) from both sides.
+/// A ray through the middle of the ball meets it as a pane with parallel faces, perpendicularly.
+/// Each face reflects the share F = 0.04; of the light that crosses the glass once, the share a =
+/// exp(-0.8) is not absorbed. The sky is white on both sides, so the radiance is the sum of what
+/// the pane reflects and transmits: F + (1 - F)^2 a (1 + F a) / (1 - F^2 a^2).
 TEST(Squashed, S12_AbsorbingGlassIsAPaneInItsMiddle) {
   for (const double by : kThin) {
     const Transform to_world = rotation({1, 2, 3}, 40) * scaling({1, by, 2});

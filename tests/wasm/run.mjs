@@ -1,8 +1,9 @@
 // Tests that the renderer as WebAssembly gives the bits of the native programs.
 // Usage: node run.mjs bits|gallery MODULE.wasm BIN GALLERY SAME_BITS NATIVE
-//   bits     the canary and the hash of fused products are those of the program NATIVE
-//   gallery  the sums of every scene of the folder GALLERY, at 48 pixels, are those of BIN/bandsaw render, and the twelve hashes
-//            those of the file SAME_BITS
+//   bits     The module must compute the same two hashes as the program NATIVE: the canary (the hash of a small image) and the
+//            hash of the results of many fused multiply-adds, which WebAssembly emulates.
+//   gallery  Every scene of the folder GALLERY is rendered 48 pixels wide. The sums of its pixels must have the bits of
+//            BIN/bandsaw render. For the twelve scenes that the file SAME_BITS lists, the hash of the sums must also be the one there.
 // Exit status: 0 equal, 1 not, 77 the module or node's WebAssembly is missing.
 import {execFileSync} from 'node:child_process';
 import {existsSync, readFileSync, readdirSync} from 'node:fs';

@@ -111,7 +111,8 @@ TEST_F(FullDiskTest, ASecondSubmitThatCannotBeJournalledLeavesTheJobUnchanged) {
   wait_for(job, JobState::kDone);
   JobSpec same = farm_.spec(StopAtSamples{.samples = 8});
   disk_->break_it();
-  // It is journalled together with the next records.
+  // A second submit of a job makes no record of its own. So another job is submitted just before:
+  // its record cannot be written, and records are written together.
   JobSpec other = same;
   other.request_id = "another request id";
   Box<absl::Status> said;
@@ -122,7 +123,7 @@ TEST_F(FullDiskTest, ASecondSubmitThatCannotBeJournalledLeavesTheJobUnchanged) {
   expect_local_image(job);
 }
 
-TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalIs) {
+TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalCannotBeWritten) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
   disk_->break_it();

@@ -1,4 +1,5 @@
-// The curve of a job's error over its samples, and the prediction when it reaches its target.
+// Tests the curve of a job's error over its samples, and the predictions from it: at how many
+// samples the job reaches its target, and in how much CPU time.
 
 #include "coordinator/scheduler/api/error_curve.h"
 
@@ -18,8 +19,8 @@ ErrorPoint point(std::uint64_t samples, double error) {
   return {.samples = samples, .elapsed_s = n, .cpu_s = 2 * n, .estimate = {.relative_rmse = error}};
 }
 
-/// Returns the curve, up to `samples`, of a job whose error is `error_of(samples)`. The points are
-/// about a quarter apart, as the passes of a job are.
+/// Returns the curve, up to `samples`, of a job whose error is `error_of(samples)`. Each point has
+/// about a quarter more samples than the point before it, as with the passes of a job.
 template <class Error>
 ErrorCurve curve_of(std::uint64_t samples, Error error_of) {
   ErrorCurve curve;
@@ -66,8 +67,9 @@ TEST(ErrorCurve, FindsTheExponentOfTheFall) {
   EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t) { return 1.0; })), 0.5);
 }
 
-// Returns the error of a renderer with Sobol' sequences: whenever 2^k samples complete a net, the
-// error falls by a step. Over a net's doubling the exponent is 0.5 + 0.2.
+// Returns the error of an imagined renderer with Sobol' sequences. It falls as samples^-0.5 and
+// also, by a step of 2^-0.2, whenever 2^k samples complete a net. So each doubling of the samples
+// divides it by 2^0.7.
 double error_in_steps(double samples) {
   return std::pow(samples, -0.5) * std::exp2(-0.2 * std::floor(std::log2(samples)));
 }
@@ -109,9 +111,10 @@ TEST(ErrorCurve, PredictsNothingWithoutAKnownError) {
 
 using Measured = std::vector<std::pair<std::uint64_t, double>>;  ///< samples, error
 
-/// Returns predicted over actual number of samples at the end of a job with this target, which
-/// measures these errors at its checkpoints: one ratio for each checkpoint after a quarter of the
-/// work, except the job's first, which has no exponent yet.
+/// Simulates a job with this target that measures these errors at its checkpoints, and predicts at
+/// each of them how many samples the job takes in total. Returns the predicted number divided by
+/// the actual one, for each checkpoint after a quarter of the work. The job's first checkpoint is
+/// left out, because one point does not tell how fast the error falls.
 std::vector<double> foreseen(const Measured& measured, double target) {
   ErrorCurve curve;
   std::vector<std::pair<std::uint64_t, double>> predictions;

@@ -1,7 +1,8 @@
 // Simulates forty browser tabs beside a few native workers, in one thread and virtual time. Tabs
 // join, are frozen, closed, loaded again and disconnected; they reconnect with the leases that they
-// hold, fail bands and return wrong pixels ("lie"), while the coordinator crashes. A failure prints
-// its seed; BANDSAW_SEED=n in the environment repeats that one, BANDSAW_SEEDS=n runs n seeds.
+// hold, fail bands and return wrong pixels ("lie"), while the coordinator crashes. All this happens
+// in the first kStorm seconds; after that every job must be done. A failure prints its seed;
+// BANDSAW_SEED=n in the environment repeats this run, BANDSAW_SEEDS=n runs n seeds.
 
 #include <cmath>
 
@@ -23,7 +24,7 @@ struct TabOutcome {
 
 /// The farm and the events that may happen in a run.
 struct TabWeather {
-  bool liars = false;  ///< a third of the tabs; then all bands of tabs are audited
+  bool liars = false;  ///< a third of the tabs lie, and all bands of tabs are audited
   Browsers browsers = Browsers::kAlso;
   std::size_t natives = 3;
 };
@@ -61,7 +62,7 @@ class TabSimulation : SimulatedFarm {
     JobSpec job = test_job(absl::StrCat("request ", number), StopAtSamples{chance_.pick(16, 400)},
                            static_cast<std::uint32_t>(chance_.pick(8, 48)),
                            static_cast<std::uint32_t>(chance_.pick(8, 90)));
-    // Each fits into tab 0, which has 4 GB: a scene needs four times the bytes of its package.
+    // Each job fits into tab 0, which has 4 GB: a scene needs four times the bytes of its package.
     job.package_bytes = static_cast<std::uint64_t>(chance_.between_log(1e6, 9e8));
     return job;
   }
@@ -71,8 +72,8 @@ class TabSimulation : SimulatedFarm {
     return *workers_.back();
   }
 
-  // Wrong pixels are certainly found only while a native worker is connected. So, if tabs lie,
-  // nothing happens to the native workers.
+  // If tabs lie, native workers are never frozen, closed or disconnected: wrong pixels are certain
+  // to be found only if a native worker is connected all the time.
   void add_native(std::size_t number) {
     SimWorker& worker =
         add(absl::StrCat("native", number), {.samples_per_s = chance_.between_log(3'000, 30'000),
@@ -146,9 +147,10 @@ class TabSimulation : SimulatedFarm {
     });
   }
 
-  /// Half of the tabs are closed for good; the others are loaded again, stay and lie no more. A tab
-  /// that was not loaded again would not get a job of which it has failed three bands, and then a
-  /// job that fits into no other tab would wait for ever.
+  /// Ends the storm. Half of the tabs are closed for good. The others are loaded again, so that
+  /// they are new workers; they stay, and lie no more. They have to be loaded again because a
+  /// worker that has failed three bands of a job in a row gets no more of it. A job that fits only
+  /// into such a tab would wait for ever.
   void calm_down() {
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       SimWorker& worker = *workers_[i];
