@@ -58,7 +58,7 @@ std::set<wire::Digest> Collector::known_blobs_of(const KeptJob& job) {
   return blobs_of(job).value_or(std::set<wire::Digest>());
 }
 
-/// Returns the age and size of a final job, those of its frames included.
+/// Returns when a final job ended, and the size of its files; its frames are included in both.
 Collector::Final Collector::final_job(const KeptJob& kept) const {
   Final job{.id = kept.id};
   add_files_of(kept.id, job);
@@ -68,8 +68,8 @@ Collector::Final Collector::final_job(const KeptJob& kept) const {
   return job;
 }
 
-/// Adds the sizes of a job's files. The time at which the job became final is that of the last
-/// change of its folder, because its bands are removed then.
+/// Adds the sizes of a job's files. A job's bands are removed from its folder when it becomes
+/// final, so the last change of the folder tells when that was.
 void Collector::add_files_of(JobId id, Final& job) const {
   struct stat found {};
   if (::stat(folder_.job(id).c_str(), &found) == 0) {

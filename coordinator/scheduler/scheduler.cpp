@@ -70,7 +70,8 @@ void Scheduler::on(const input::Tick&) {
 }
 
 /// First compares the result with the stored digests of its rows, which may show that the sending
-/// machine is wrong. Then measures and stores the band, and ends the leases that it makes useless.
+/// machine is wrong. Otherwise measures the work rate, counts the rows as stored, and ends the
+/// leases whose rows nobody needs any more.
 void Scheduler::on(const input::BandStored& in) {
   Job* job = context_.jobs.find(in.job);
   Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(in.band);

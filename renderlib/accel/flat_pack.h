@@ -1,8 +1,8 @@
 #pragma once
 
 // A leaf of a BVH: up to eight triangles in float, in structure-of-arrays layout. Corners of mesh
-// triangles are exact; those of loose triangles are rounded from double. A quad is two triangles
-// that share its diagonal and its number.
+// triangles are exact; corners of triangles that belong to no mesh are rounded from double. A quad
+// is stored as two triangles that share its diagonal and its number.
 
 #include <array>
 #include <cstddef>

@@ -42,9 +42,9 @@ struct FloatRay {
   float above(double t) const { return static_cast<float>(t * scale * (1 + 0x1p-20)); }
 
  private:
-  /// Sets the elements k of the arrays `near` to `far_offset`. `from` is component k of the origin,
-  /// `factor` the reciprocal of that of the scaled direction; `slack` is added to the margin for
-  /// rounding.
+  /// Sets element k of each of the arrays from `near` to `far_offset`. `from` is component k of the
+  /// origin, `factor` is 1 / component k of the scaled direction; `slack` is added to the margin
+  /// for rounding.
   void set_planes(std::size_t k, double from, float factor, double slack);
   /// Lets the ray enter all boxes.
   void disable_culling();

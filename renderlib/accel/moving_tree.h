@@ -12,8 +12,8 @@ namespace bandsaw {
 struct MovingInstance {
   Prototype prototype;
   std::uint32_t instance = 0;  ///< as in PrimitiveId
-  /// True if the instance neither rotates nor scales. Then the linear part of its placement is
-  /// constant, and that of the inverse is the linear part of `to_object`.
+  /// True if the instance neither rotates nor scales. In this case the linear part of its placement
+  /// is constant, and the inverse of the placement has the linear part of `to_object` at all times.
   bool slides = false;
   Transform to_object;  ///< from the world to the prototype when the shutter opens
 };

@@ -1,8 +1,7 @@
 #pragma once
 
-// A map that keeps values from one round of work to the next, such as from the encoding of one
-// frame of an animation to that of the next. A value that a round does not use is removed at its
-// end.
+// A map that keeps values from one round of work to the next. A round is, for example, the encoding
+// of one frame of an animation. A value that a round does not use is removed at the end of it.
 
 #include <map>
 #include <utility>

@@ -1,7 +1,7 @@
 #pragma once
 
-// Statistical test of whether an image differs from a reference by more than noise: the differences
-// of noise have random signs, those of a bias have one sign.
+// Statistical test of whether an image differs from a reference by more than noise: differences
+// that noise causes have random signs, differences that a bias causes have one sign.
 
 #include <cstdint>
 

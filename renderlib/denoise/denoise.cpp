@@ -269,8 +269,8 @@ CleanError total_of(const std::vector<RowSums>& rows, std::size_t pixels) {
           .bias_share = all.clean > 0 ? std::clamp(1 - all.variance / all.clean, 0.0, 1.0) : 0};
 }
 
-/// Returns the number of rows of a strip: those of about a quarter of a megapixel, but at least 64,
-/// and even.
+/// Returns the number of rows of a strip, which is even: so many that the strip has about a quarter
+/// of a megapixel, but at least 64.
 int rows_of_strip(int width) {
   constexpr int kPixels = 1 << 18;
   constexpr int kMinRows = 64;

@@ -304,9 +304,9 @@ std::vector<Densities> crossed_densities(const Place& place, absl::Span<const Se
 }
 
 /// Returns the expected second moment of light over pdf, in units of the squared mean, where the
-/// clusters are sampled with probability `share`, otherwise the cosine. The light is taken to have
-/// the density of the clusters, but at least that of the cosine: in directions that no cluster
-/// covers, sampling the clusters only takes samples away.
+/// clusters are sampled with probability `share`, otherwise the cosine. The density of the light is
+/// taken to be the greater of the densities of the clusters and of the cosine: so sampling the
+/// clusters costs something in directions that no cluster covers, which get fewer samples.
 double second_moment(absl::Span<const Densities> densities, double share) {
   double sum = 0;
   for (const Densities& at : densities) {

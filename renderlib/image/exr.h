@@ -12,7 +12,7 @@
 
 namespace bandsaw {
 
-/// Encodes scan lines from the top, with channels R, G, B and those of the layers, ZIP compressed.
+/// Encodes scan lines from the top, ZIP compressed; the channels are R, G, B and those of `layers`.
 /// Floats are exact; halves are rounded to nearest and clamped to +-65504. Returns INVALID_ARGUMENT
 /// if a layer has another size or a name of more than 200 bytes, RESOURCE_EXHAUSTED if the image is
 /// too large to encode. `half`: R, G and B are stored as halves.

@@ -1,5 +1,5 @@
-// With the probability `share` of the cones a direction is sampled in a cone, otherwise by the
-// BSDF. The pdf is in both cases that of the mixture of the two.
+// A direction is sampled in one of the cones with the probability `share` of the cones, otherwise
+// by the BSDF. In both cases the returned pdf is the pdf of the mixture of the two.
 
 #include "renderlib/integrate/guided_bsdf.h"
 

@@ -10,10 +10,11 @@
 
 namespace bandsaw {
 
-/// Returns the reflectance of diffuse surfaces and metals (at normal incidence), that of the
-/// surface below the coat of plastic, the sum of reflectance and transmittance of sheets, the base
-/// colour of glTF and principled materials, white for dielectrics, and the radiance of emissive
-/// surfaces, clamped to 1. Each channel is in [0, 1]. The material MUST NOT be a mixture.
+/// Returns the albedo, by the kind of material: of diffuse surfaces the reflectance; of metals the
+/// reflectance at normal incidence; of plastic the reflectance of the surface below the coat; of
+/// sheets the sum of reflectance and transmittance; of glTF and principled materials the base
+/// colour; of dielectrics white; of emissive surfaces the radiance, clamped to 1. Each channel is
+/// in [0, 1]. The material MUST NOT be a mixture.
 Rgb albedo_at(const Material& material, absl::Span<const Texture> textures,
               const SurfacePoint& point);
 

@@ -1,5 +1,6 @@
 // bsdf_at() evaluates the material's parameters at the point. sample() and evaluate() of the simple
-// BSDFs are here; those of the others are in files of their own and are called from here.
+// BSDFs are here. The other BSDFs have files of their own with these functions, which are called
+// from here.
 
 #include "renderlib/material/bsdf.h"
 

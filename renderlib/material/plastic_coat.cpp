@@ -55,8 +55,8 @@ Shares shares_of(double cos_theta, double eta, const Facets& facets) {
 }
 
 /// Returns the mean reflectance r of a smooth boundary for diffuse light from the denser side. It
-/// is computed from the mean reflectance s of the other side, by r = 1 - (1 - s) / index^2: the
-/// integral of s has no kink, while that of r has one at the angle of total reflection.
+/// is computed from the mean reflectance s of the other side, by r = 1 - (1 - s) / index^2. The
+/// integrand of s is smooth, while the integrand of r has a kink at the angle of total reflection.
 double internal_smooth(double index) {
   constexpr int kSteps = 256;
   double outside = 0;

@@ -13,8 +13,8 @@ namespace bandsaw {
 /// Tables of the coat's transmittance from the outside, by the cosine, and of its reflectance from
 /// the inside. They are for the alpha of Plastic::surface or, if that has a map, for all alphas up
 /// to it. Scattering is single: light that meets another facet is lost, as in the coat's
-/// reflection. As Mitsuba 3's roughplastic does, the transmittance of a rough coat is interpolated
-/// linearly between 64 cosines; that of a smooth coat is exact.
+/// reflection. The transmittance of a rough coat is interpolated linearly between 64 cosines, as in
+/// Mitsuba 3's roughplastic; the transmittance of a smooth coat is exact.
 class PlasticCoat {
  public:
   PlasticCoat(const Microfacets& surface, double index_of_refraction);

@@ -36,7 +36,7 @@ constexpr double kFirstNm = 380;
 constexpr double kStepNm = 10;
 /// The second radiation constant, nm K (CODATA 2018).
 constexpr double kSecond = 1.438776877e7;
-/// The hue of lower and higher temperatures is that of these (blackbody.h).
+/// Temperatures below the first and above the second have the hue of that limit (blackbody.h).
 constexpr double kMinHue_K = 500;
 constexpr double kMaxHue_K = 1e5;
 

@@ -23,9 +23,9 @@ class BrickBuilder {
   /// at most kMaxGridBricks.
   BrickBuilder(const std::array<std::uint32_t, 3>& cells, std::uint32_t channels);
 
-  /// Sets the numbers of the brick whose first cell is (8 x, 8 y, 8 z). `numbers` holds those of
-  /// its cells, x fastest, the channels of a cell together: kBrickCells * channels numbers, each
-  /// finite and >= 0. Numbers of cells outside of the box of `cells` become 0.
+  /// Sets the numbers of the brick whose first cell is (8 x, 8 y, 8 z). `numbers` has kBrickCells *
+  /// channels numbers, each finite and >= 0: cell after cell, x fastest, the channels of a cell
+  /// together. Numbers of cells outside of the box of `cells` become 0.
   void set(std::uint32_t x, std::uint32_t y, std::uint32_t z, absl::Span<const float> numbers);
 
   /// Returns the grid: cells, channels, format, index and values are set, the other members are as

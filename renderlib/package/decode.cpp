@@ -278,7 +278,7 @@ class Decoder {
     return absl::OkStatus();
   }
 
-  // Adds the mesh to the list: that of an earlier package if its message is the same.
+  // Adds the mesh to the list. If an earlier package had the same message, its mesh is shared.
   absl::Status add_mesh(const package::Mesh& from, const std::string& field, MeshList& to) {
     const std::string message = parts_ != nullptr ? from.SerializeAsString() : "";
     if (std::shared_ptr<const Mesh> known = parts_ != nullptr ? parts_->mesh(message) : nullptr) {

@@ -70,9 +70,9 @@ class Mean {
   double relative_ = 0;
 };
 
-/// Returns one level per tile. Weights are divided by their root mean square, so that the marginal
-/// error reduction of a sample equals that of a uniformly sampled tile (e.g. in the other half of
-/// the image), which depends on the root of the mean variance.
+/// Returns one level per tile. Weights are divided by their root mean square. So one more sample
+/// reduces the error as much as one more sample of a tile that is sampled uniformly (such as a tile
+/// of the other half of the image), where the reduction depends on the root of the mean variance.
 std::vector<int> levels_of(std::vector<double> weights) {
   const auto count = static_cast<double>(weights.size());
   const double most = kMaxOverMean * std::accumulate(weights.begin(), weights.end(), 0.0) / count;

@@ -61,12 +61,13 @@ struct TilePlan {
 /// number of samples of the pilot. A pure function, with the same result on every machine.
 ///
 /// The pilot itself decides whether the plan pays: the plan from even groups is evaluated on the
-/// errors of odd groups, and vice versa. Unless both errors fall well below those of uniform
-/// sampling with as many samples, all levels of a half of the image are 6.
+/// errors of odd groups, and vice versa. Unless both resulting errors are well below the errors of
+/// uniform sampling with as many samples, all levels of a half of the image are 6.
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
 
-/// Returns the number of this half tile's samples over that of uniform sampling, 2^-4.5 to 8.
+/// Returns the number of samples of this half tile divided by the number that uniform sampling
+/// would give it, 2^-4.5 to 8.
 double share_of(const TilePlan& plan, std::size_t half_tile);
 
 }  // namespace bandsaw

@@ -19,7 +19,7 @@ double spread(std::size_t i) {
 }
 
 /// Returns the number of samples of the next node after `samples` samples, which are whole blocks.
-/// It is that of the longest node that may begin there, limited to a quarter of the current octave
+/// The node is the longest that may begin there. It is limited to a quarter of the current octave
 /// or to the samples owed, whichever is larger.
 std::uint64_t next_step(std::uint64_t samples, double owed) {
   const std::uint64_t aligned = longest_at(samples / kBlockSamples) * kBlockSamples;

@@ -14,8 +14,8 @@ namespace bandsaw {
 /// Maximum number of positions of a mesh: triangles refer to their corners by 32-bit indices.
 inline constexpr std::uint64_t kMaxMeshPositions = std::uint64_t{1} << 32;
 
-/// Numbers of the shapes and instances that are in one BVH: those of the scene outside of groups
-/// and meshes, or those of one group.
+/// Numbers of the shapes and instances that are in one BVH: either the BVH of the scene, which has
+/// those outside of groups and meshes, or the BVH of one group.
 struct ShapeCounts {
   std::uint64_t spheres = 0;
   std::uint64_t quads = 0;

@@ -1,7 +1,8 @@
 #pragma once
 
-// The spaces in which media vary (scene/media.h): maps from the world to the space of the medium in
-// each boundary, which is that of the boundary's frame. A Scene holds one MediumSpaces.
+// The spaces in which media vary (scene/media.h). A medium varies in the space of the frame with
+// which its boundary moves; without a frame that is the space of the world. MediumSpaces maps
+// points of the world to this space. A Scene holds one MediumSpaces.
 
 #include <cstdint>
 #include <vector>

@@ -79,8 +79,8 @@ class Session {
   bool rendering(TaskId task, std::uint32_t rows_done);
   /// Marks a band as finished. Returns false if its lease was revoked: discard the pixels.
   bool finished(TaskId task);
-  /// Removes a failed band. Returns the message to send, or std::nullopt if not connected. Then the
-  /// next Hello does not list the band, and the coordinator leases it again.
+  /// Removes a failed band. Returns the message to send; std::nullopt if not connected: in this
+  /// case the next Hello does not list the band, so the coordinator leases it again.
   std::optional<farm::FromWorker> failed(TaskId task, const std::string& reason,
                                          const std::vector<std::string>& log);
   /// Removes a band whose pixels are acknowledged.

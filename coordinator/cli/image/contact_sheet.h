@@ -19,8 +19,8 @@ inline constexpr std::size_t kMaxSheetFrames = 400;
 
 class ContactSheet {
  public:
-  /// `numbers`: those of all frames, ascending, at least one. `width`, `height`: of a frame, in
-  /// pixels, above 0.
+  /// `numbers`: the numbers of all frames, ascending, at least one. `width`, `height`: the size of
+  /// a frame in pixels, above 0.
   ContactSheet(const std::vector<std::int64_t>& numbers, std::uint32_t width, std::uint32_t height);
 
   /// Returns true if the sheet shows this frame.

@@ -31,7 +31,7 @@ std::string plain_line(const Progress& progress);
 std::vector<std::string> worker_lines(const Progress& progress, std::size_t most);
 
 /// Returns the result: "cornell.png · error 0.99 % · 21.4 s · 4 workers · report cornell.json".
-/// `name` is that of the image or of the job; `reports`: file names, or empty.
+/// `name`: of the image file or of the job. `reports`: names of the report files; empty: none.
 std::string final_line(const Progress& progress, const std::string& name,
                        const std::string& reports = {});
 
@@ -46,7 +46,7 @@ std::string doubt_line(const Progress& progress);
 /// Returns a warning about samples that were not finite or negative; empty if there are none.
 std::string bad_samples_line(const Progress& progress);
 
-/// Returns those of doubt_line() and bad_samples_line() that are not empty.
+/// Returns doubt_line() and bad_samples_line(), without those that are empty.
 std::vector<std::string> warning_lines(const Progress& progress);
 
 /// Returns what is missing in the image: "0.2 % of the paths were cut off at depth 32 · 3

@@ -42,7 +42,7 @@ class LocalPlan {
   }
 
  private:
-  /// Returns the first planned pass; if none is planned, plans those of samples [from, to) before.
+  /// Returns the first planned pass. If none is planned, first plans passes for samples [from, to).
   std::optional<SampleRange> first_of(std::uint64_t from, std::uint64_t to);
 
   StopRule stop_;

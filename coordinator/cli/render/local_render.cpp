@@ -17,8 +17,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Renders a pass of some rows, and calls `take` with each band. `done`: number of samples in all
-// pixels before this pass, to which those of the pass are added.
+// Renders a pass of some rows, and calls `take` with each band. `done` counts the samples that are
+// rendered in all pixels; the samples of this pass are added to it.
 absl::Status render_pass(const LocalJob& job, const SampleRange& pass, const RowRange& rows,
                          const TileSamples& tiles, std::uint64_t& done,
                          absl::FunctionRef<absl::Status(BandPixels)> take) {

@@ -175,7 +175,8 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
   return folder;
 }
 
-// Returns those of the paths that are in the fewest folders.
+// Returns the paths that have the smallest number of folders in them, for example "a.obj" and not
+// "models/b.obj".
 std::vector<std::string> outermost(std::vector<std::string> names) {
   const auto depth = [](const std::string& name) {
     return std::count(name.begin(), name.end(), '/');

@@ -57,8 +57,8 @@ absl::StatusOr<std::string> rotate(const std::string& folder, link::Role role) {
         absl::StrCat(folder, " is no data folder of a coordinator; name it with --data DIR"));
   }
   umask(S_IRWXG | S_IRWXO);
-  // The lock of the folder shows if a coordinator is running. Then it must do the work, because
-  // only it can end the connections that use the old secret.
+  // The lock of the folder shows if a coordinator is running. If one is, the coordinator must
+  // rotate the secret, because only it can end the connections that use the old secret.
   auto here = rotate_here(folder, role);
   if (!absl::IsFailedPrecondition(here.status())) {
     return here;

@@ -16,8 +16,8 @@ void Dispatcher::assign() {
   }
 }
 
-/// Gives each worker with a spare credit one lease. A worker that can hold more comes again later
-/// in the order, because it has more leases then.
+/// Gives each worker with a spare credit one lease. The order begins with the workers that hold the
+/// fewest leases; so a worker that can hold one more moves back in it and is visited again.
 void Dispatcher::lease_free() {
   const AvailableWorkers& available = context_.available;
   for (auto place = available.first_after(std::nullopt); place && !context_.jobs.leasable().empty();

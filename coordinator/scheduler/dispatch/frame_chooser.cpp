@@ -1,6 +1,6 @@
 // Each frame of a sequence is rendered by a job of its own, its frame job. order_for() lists the
-// frame jobs of a sequence in the order in which a worker should take them: the frame that it
-// renders now, then those that nobody renders, then those of others.
+// frame jobs of a sequence in the order in which a worker should take them: first the frame that it
+// renders now, then frames that nobody renders, last frames that other workers render.
 
 #include "coordinator/scheduler/dispatch/frame_chooser.h"
 

@@ -33,9 +33,9 @@ class LeaseLedger {
   void end_rendered(LeaseId id);
   /// Calls end_rendered() for the worker's lease of exactly this band, if it has one.
   void end_rendered(const Worker& worker, JobId job, const Band& band);
-  /// Ends those of the leases that still exist.
+  /// Ends these leases; ids of leases that have ended already are skipped.
   void end_all(const std::vector<LeaseId>& leases, Revoke revoke);
-  /// Revokes those of the leases that own nothing any more.
+  /// Revokes the leases among these that own no row any more.
   void end_overtaken(const std::vector<LeaseId>& leases);
   /// Revokes backup tasks whose rows are all stored.
   void end_useless_backups(Job& job);

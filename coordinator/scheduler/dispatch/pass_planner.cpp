@@ -1,6 +1,7 @@
-// A pass is a range of samples that is rendered for the whole image. The passes of a job with a
-// fixed number of samples are planned at once, those of a job with an error target up to the next
-// checkpoint, and those of a job with a time limit when there is nothing else to lease.
+// A pass is a range of samples that is rendered for the whole image. For a job with a fixed number
+// of samples all passes are planned at once. For a job with an error target they are planned up to
+// the next checkpoint. For a job with a time limit a pass is planned when there is nothing else to
+// lease.
 
 #include "coordinator/scheduler/dispatch/pass_planner.h"
 

@@ -32,7 +32,7 @@ class Sequences {
   void pause(const input::Pause& in);
   void resume(const input::Resume& in);
   void set_priority(const input::SetPriority& in);
-  /// Forgets those of these jobs that are final sequences, with all their frames. Skips all others.
+  /// Forgets the final sequences among these jobs, with all their frames. Skips all other jobs.
   void forget(const input::Forget& in);
 
   /// Tries failed frames again, makes the next frame jobs, and ends sequences of which no frame is

@@ -1,5 +1,6 @@
-// A band is a range of rows and samples. store() counts those of its rows that are new as stored;
-// free_damaged() makes the rows of a band that is damaged on disk free again.
+// A band is a range of rows and samples. store() marks the rows of a band as stored and counts the
+// rows that were not stored before; free_damaged() makes the rows of a band that is damaged on disk
+// free again.
 
 #include "coordinator/scheduler/jobs/stored_bands.h"
 

@@ -64,9 +64,10 @@ class Audit {
   /// earlier result, returns that earlier result, and nothing is added.
   std::optional<Result> add(Result result, bool requested);
   /// Returns the verdict once two machines agree, else std::nullopt. Two browsers count only if
-  /// `only_browsers` (Context::only_browsers) and no native worker returned a result. Exception:
-  /// the result of a machine that repeated it wins against machines that have not connected in this
-  /// epoch and so cannot render the band again; that of a native worker also wins against browsers.
+  /// `only_browsers` (Context::only_browsers) and no native worker returned a result. Exception: a
+  /// machine that rendered the band again with the same result wins against machines that have not
+  /// connected in this epoch, which cannot do so. If it is a native worker, it also wins against
+  /// browsers.
   std::optional<Verdict> verdict(bool only_browsers) const;
   /// Fills in the machine of a reporter of which only the process was known.
   void identify(const Reporter& reporter);

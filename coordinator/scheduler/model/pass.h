@@ -56,8 +56,8 @@ struct Pass {
   SampleRange samples;
   Coverage coverage;  ///< who owns each sample of each row
   TileSamples tiles;  ///< samples of all half tiles of the image
-  /// For each tile row, the number of samples that its pixels take, divided by that of uniform
-  /// sampling; empty: 1.
+  /// For each tile row, the number of samples that its pixels take, divided by the number that they
+  /// would take with uniform sampling; empty: 1 for each.
   std::vector<float> tile_row_shares;
   Totals stored;
   RowDigests digests;

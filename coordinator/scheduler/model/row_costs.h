@@ -22,7 +22,7 @@ class CostMap {
 
   /// Returns the cost of one sample of one pixel column, summed over the rows. `tile_row_shares`,
   /// for adaptive jobs: for each row of tiles (16 rows of pixels), the number of samples that its
-  /// pixels take, divided by that of uniform sampling; empty: 1.
+  /// pixels take, divided by the number of uniform sampling; empty: 1 for each.
   double of(const RowRange& rows, absl::Span<const float> tile_row_shares = {}) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
   /// Returns how many of the rows, from the first on, cost at most `max_cost` together (in units of

@@ -58,9 +58,10 @@ struct SceneDraft {
   /// Models that have been read, keyed by file, by whether the scene replaces their materials, and
   /// by animation.
   std::map<std::tuple<std::string, bool, AnimationChoice>, std::shared_ptr<const Model>> models;
-  std::vector<FoundCamera> cameras;  ///< for a model with several placements, those of the first
-  Shutter shutter;                   ///< in the scene's time: at the frame that is imported
-  AnimationChoice animation;         ///< animation of models whose entry names none
+  /// Cameras of the models. If a model is placed several times, its first placement counts.
+  std::vector<FoundCamera> cameras;
+  Shutter shutter;            ///< in the scene's time: at the frame that is imported
+  AnimationChoice animation;  ///< animation of models whose entry names none
 
   Contents world;
   /// Destination of the shapes and placements that are read: the scene, or a group while it is read

@@ -1,7 +1,7 @@
 #pragma once
 
-// The only folder that an import reads, with the folders below it: that of the scene file, or a
-// wider one that the user named.
+// The only folder that an import reads, with the folders below it: the folder of the scene file, or
+// a folder above it that the user named.
 
 #include <cstdint>
 #include <map>

@@ -1,7 +1,7 @@
 // Converts the materials of a Mitsuba scene. Makes a material for each combination of bsdf, emitter
-// and uvs that occurs, and returns the same one when it occurs again. Our glass has the larger
-// index of refraction inside. If that of a bsdf is larger outside, its shapes must exchange their
-// sides: SurfaceMaterial::turned.
+// and uvs that occurs, and returns the same one when it occurs again. Glass of Bandsaw has the
+// larger index of refraction inside. If a bsdf has the larger index outside, its shapes must
+// exchange their sides: SurfaceMaterial::turned.
 
 #include "renderlib/import/mitsuba/bsdfs.h"
 

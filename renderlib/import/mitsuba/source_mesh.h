@@ -37,7 +37,7 @@ absl::StatusOr<SourceMesh> read_serialized(absl::string_view bytes, std::int64_t
 /// Sets normals of vertices: the mean of the triangles' normals, weighted by their angles there
 /// (Thürmer and Wüthrich 1998).
 void add_smooth_normals(PlyMesh& mesh);
-/// Turns each triangle whose normal is opposite to those of its vertices.
+/// Turns each triangle whose geometric normal is opposite to the normals of its vertices.
 void orient_by_normals(PlyMesh& mesh);
 /// Turns all triangles and normals to the other side.
 void turn_over(PlyMesh& mesh);

@@ -216,8 +216,7 @@ absl::Status set_integrator(const Object& integrator, scene::Scene& scene, Conve
                                          "direct light, stands in its place"));
     }
     to.passages_are_free = type == "volpath" || type == "volpathmis";
-    // Mitsuba limits the number of segments of a path, our max_depth that of the vertices between
-    // them.
+    // Mitsuba's limit counts the segments of a path, max_depth counts the vertices between them.
     out.set_max_depth(static_cast<std::uint32_t>(
         depth < 0 ? kMaxDepth : std::clamp<std::int64_t>(depth - 1, 1, kMaxDepth)));
   }

@@ -34,9 +34,9 @@ void for_each_vertex(const Geometry& geometry, const std::vector<Instance>& inst
 
 // Finds the nearest place of a camera that sees all points, in one direction of the image. A camera
 // at (a, d) with half-angle tangent t sees a point (x, z), z towards the camera, if
-// |x - a| <= t (d - z). So d t >= x + t z - a and d t >= -x + t z + a. Let R be the maximum of
-// x + t z over the points and L that of -x + t z: the least d is (R + L) / (2 t), at a = (R - L)
-// / 2.
+// |x - a| <= t (d - z). So d t >= x + t z - a and d t >= -x + t z + a. Over all points, let R be
+// the maximum of x + t z, and L the maximum of -x + t z. Then the least d is (R + L) / (2 t), and
+// it is reached at a = (R - L) / 2.
 struct Fit {
   double tangent;
   double right = -std::numeric_limits<double>::infinity();

@@ -113,7 +113,7 @@ void read_textures_of(const Json& from, GltfMaterial& to) {
   }
 }
 
-/// Reads three numbers; absent ones are those of `otherwise`.
+/// Reads an array of three numbers; a number that is missing is taken from `otherwise`.
 std::array<double, 3> triple_of(const Json& in, const std::string& name,
                                 std::array<double, 3> otherwise) {
   const Json* values = list(in, name);

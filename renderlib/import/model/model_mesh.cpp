@@ -196,7 +196,8 @@ std::optional<std::vector<Transform>> bone_places(const ModelFile& file, unsigne
   return bones;
 }
 
-/// Returns the weights of a mesh's morph targets at a time; empty: those of the file.
+/// Returns the weights of a mesh's morph targets at a time; empty: they are not animated, so the
+/// weights in the file hold.
 std::vector<double> weights_of(const ModelFile& file, unsigned mesh, const NodePlaces& places,
                                double time) {
   const auto node = places.of_meshes.find(mesh);
@@ -207,7 +208,7 @@ std::vector<double> weights_of(const ModelFile& file, unsigned mesh, const NodeP
   return curve == file.animation->weights.end() ? std::vector<double>() : curve->second.at(time);
 }
 
-/// Returns the pose of a mesh at a time; `places` are those of the nodes then.
+/// Returns the pose of a mesh at a time; `places` are the places of the nodes at this time.
 MeshPose pose_of(const ModelFile& file, unsigned number, const NodePlaces& places, double time) {
   MeshPose pose{.weights = weights_of(file, number, places, time)};
   if (file.scene.mMeshes[number]->HasBones()) {

@@ -142,8 +142,8 @@ absl::Status read_layers(MaterialReader& reader, MetallicRoughness& to) {
   return absl::OkStatus();
 }
 
-// Converts KHR_materials_pbrSpecularGlossiness without its image. A specular colour brighter than
-// 0.5 is taken as that of a metal: the metallic share m is the one for which the mixture
+// Converts KHR_materials_pbrSpecularGlossiness without its image. A surface whose specular colour
+// is brighter than 0.5 is taken as a metal. Its metallic share m is chosen so that the mixture
 // (1 - m) 0.04 + m is as bright as the specular colour.
 void from_glossiness(MaterialReader& reader, double glossiness, MetallicRoughness& to) {
   to.roughness.factor = 1 - glossiness;

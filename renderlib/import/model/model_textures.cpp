@@ -60,8 +60,8 @@ std::string last_part(const std::string& name) {
   return slash == std::string::npos ? name : name.substr(slash + 1);
 }
 
-// Finds the file by increasingly tolerant interpretations of the name. The error is that of the
-// unchanged name.
+// Finds the file by increasingly tolerant interpretations of the name. If none succeeds, returns
+// the error for the unchanged name.
 absl::StatusOr<std::string> find_file(const SceneFolder& in, const std::string& file,
                                       const std::string& model_folder) {
   const std::string name = absl::StrReplaceAll(file, {{"\\", "/"}});

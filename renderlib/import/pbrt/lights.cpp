@@ -158,8 +158,9 @@ absl::Status goniometric(const LightSource& from) {
   return point_light(from, mean, 4 * kPi * mean);
 }
 
-/// A light that projects an image. pbrt's intensity is the image in each direction; that of our
-/// projector grows with 1 / cos^3 to the edge, so the image is divided by that.
+/// A light that projects an image. In pbrt the radiant intensity in each direction is the image; in
+/// Bandsaw it is the image times 1 / cos^3 of the angle to the axis. So the image is multiplied by
+/// cos^3.
 absl::Status projection(const LightSource& from) {
   const Parameters& in = from.parameters;
   ASSIGN_OR_RETURN(const std::string file, in.text("filename", ""));

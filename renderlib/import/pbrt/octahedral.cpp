@@ -92,7 +92,7 @@ Image equirectangular(const Sky& sky, const Transform& to_light) {
       double sum[3] = {};
       for (const double dy : {0.25, 0.75}) {
         for (const double dx : {0.25, 0.75}) {
-          // The centre of the image is +x, that of its right half +z, its top +y.
+          // The centre of the image is +x, the centre of its right half is +z, its top row is +y.
           const SinCos down = sincos_turns((y + dy) / out.height / 2);
           const SinCos around = sincos_turns((x + dx) / out.width - 0.5);
           const Vec3 world{down.sin * around.cos, down.cos, down.sin * around.sin};

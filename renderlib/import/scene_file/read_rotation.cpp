@@ -1,5 +1,5 @@
-// Reads rotations of a scene file: multiplies those of the list, each about its axis by its angle
-// in degrees.
+// Reads a list of rotations of a scene file, each about an axis by an angle in degrees, and
+// multiplies them.
 
 #include "renderlib/import/scene_file/read_rotation.h"
 

@@ -21,7 +21,8 @@ struct Sampled {
   std::vector<double> wavelengths;
   std::vector<double> values;
 
-  /// Returns the value; outside of the wavelengths that of the nearest one.
+  /// Returns the value at a wavelength in nanometres. Below the first and above the last wavelength
+  /// it is the value of the nearest one.
   double at(double nm) const;
 };
 

@@ -14,8 +14,8 @@ namespace bandsaw {
 
 /// A grid that was read from a file.
 struct FileGrid {
-  /// `to_medium` is the map to the file's space: for *.vdb, that of the grid's transform; for
-  /// *.vol, that of the box in the file.
+  /// Its `to_medium` is the map to the file's space: for *.vdb, the grid's transform; for *.vol,
+  /// the map to the box that the file gives.
   VolumeGrid grid;
   /// From the same cells to the unit cube [0, 1]^3; for *.vol alone.
   Transform to_unit_box;
