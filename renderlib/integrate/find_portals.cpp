@@ -52,8 +52,12 @@ constexpr double kMinCosine = 0.1;
 constexpr double kTrimmed = 0.01;
 /// Crossings are divided where a gap is this part of their extent.
 constexpr double kGap = 0.15;
-/// A portal is larger than the rectangle of the crossings by this part on each side.
-constexpr double kMargin = 0.02;
+/// Crossings beside the rectangle by up to this part of its size belong to the same opening.
+constexpr double kBeside = 0.05;
+/// A portal is larger than the rectangle of its crossings by this part on each side, and by so many
+/// times the mean distance between the crossings of neighbouring rays along it.
+constexpr double kMargin = 0.01;
+constexpr double kMarginInRays = 4;
 
 /// A family of parallel planes: unit vectors, perpendicular to each other. Rays cross them along
 /// `normal`.
@@ -69,6 +73,7 @@ struct Interval {
   double low = 0;
   double high = 0;
   double size() const { return high - low; }
+  bool has(double value) const { return value >= low && value <= high; }
 };
 
 /// The box of all places from which rays start. Openings lie in it.
@@ -265,12 +270,29 @@ Planes planes_of(const Vec3& normal, const std::vector<Vec3>& normals) {
   return {normal, u, cross(normal, u)};
 }
 
-Portal portal_of(const Rectangle& rectangle, const Planes& planes) {
-  const auto widened = [](const Interval& of) {
-    return Interval{of.low - kMargin * of.size(), of.high + kMargin * of.size()};
+/// Returns the portal of these rays, nearly all of which pass through the rectangle: it holds all
+/// crossings in and a little beside the rectangle, and a margin, because the border of an opening
+/// is farther outside than any of the few rays. Light beside a portal would be found by BSDF
+/// sampling alone, which shows as bright dots.
+Portal portal_of(const Rays& rays, const Rectangle& rectangle, const Planes& planes) {
+  const auto widened = [](const Interval& of, double by) {
+    return Interval{of.low - by * of.size(), of.high + by * of.size()};
   };
-  const Interval u = widened(rectangle.u);
-  const Interval v = widened(rectangle.v);
+  const Interval near_u = widened(rectangle.u, kBeside);
+  const Interval near_v = widened(rectangle.v, kBeside);
+  Interval u = rectangle.u;
+  Interval v = rectangle.v;
+  for (const ScatteredRay* ray : rays) {
+    const double at_u = crossing(*ray, planes, rectangle.offset, planes.u);
+    const double at_v = crossing(*ray, planes, rectangle.offset, planes.v);
+    if (near_u.has(at_u) && near_v.has(at_v)) {
+      u = {std::min(u.low, at_u), std::max(u.high, at_u)};
+      v = {std::min(v.low, at_v), std::max(v.high, at_v)};
+    }
+  }
+  const double margin = kMargin + kMarginInRays / static_cast<double>(rays.size());
+  u = widened(u, margin);
+  v = widened(v, margin);
   return {planes.normal * rectangle.offset + planes.u * u.low + planes.v * v.low,
           planes.u * u.size(), planes.v * v.size()};
 }
@@ -355,11 +377,11 @@ Rays crossing_in_box(const Rays& rays, const Planes& planes, double offset, cons
 /// precision.
 std::optional<Found> best_portal(const Rays& escaping, const Search& search) {
   std::optional<Found> best;
-  const auto consider = [&](const Rectangle& rectangle, const Planes& planes) {
+  const auto consider = [&](const Rays& rays, const Rectangle& rectangle, const Planes& planes) {
     if (!(rectangle.area() > 0)) {
       return;
     }
-    const Found found = judge(portal_of(rectangle, planes), search.rays);
+    const Found found = judge(portal_of(rays, rectangle, planes), search.rays);
     if (!best || static_cast<double>(found.escaping) * found.precision >
                      static_cast<double>(best->escaping) * best->precision) {
       best = found;
@@ -381,8 +403,8 @@ std::optional<Found> best_portal(const Rays& escaping, const Search& search) {
     for (const double offset : offsets) {
       for (const Rays& part :
            divided(crossing_in_box(outwards, planes, offset, search.box), planes, offset)) {
-        consider(rectangle_at(part, planes, offset), planes);
-        consider(smallest_rectangle(part, planes), planes);
+        consider(part, rectangle_at(part, planes, offset), planes);
+        consider(part, smallest_rectangle(part, planes), planes);
       }
     }
   }
