@@ -308,6 +308,8 @@ def lights():
     light("AREA", (0, 2, 3), 60, target=(0, 0, 0.5), shape="RECTANGLE", size=1, size_y=0.5)
     light("AREA", (-3, -2, 2), 20, target=(-2, 0, 0), shape="DISK", size=0.8)
     light("SUN", (0, 0, 5), 0.3, target=(1, 2, 0), angle=math.radians(5))
+    # A portal of Cycles emits nothing, whatever its power is.
+    light("AREA", (3, -3, 3), 500, size=2).data.cycles.is_portal = True
 
 
 @scene

@@ -24,6 +24,8 @@ def vector(v):
 def add_light(out, thing, matrix):
     """Adds a light object. `matrix`: its placement in Blender's axes."""
     light = thing.data
+    if light.type == "AREA" and getattr(getattr(light, "cycles", light), "is_portal", False):
+        return  # a portal emits nothing; Bandsaw finds openings itself
     tint = np.array(light.color) * light.energy * node_factor(out, light)
     if not tint.any():
         return
