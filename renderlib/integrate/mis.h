@@ -5,7 +5,8 @@
 //
 // These strategies are weighed against each other:
 //
-// - At a surface: light sampling against BSDF sampling, by the power heuristic (path.cpp).
+// - At a surface: light sampling against BSDF sampling, and for the background against sampling
+//   through portals, by the power heuristic (path.cpp).
 // - In a medium: light sampling at a sampled distance against free-flight sampling and phase
 //   function sampling, by the power heuristic over the product of distance pdf and direction pdf
 //   (through_media.cpp, through_grid_medium.cpp).
@@ -36,9 +37,9 @@ inline double power_heuristic(double p, double q) {
   return 1 / (1 + ratio * ratio);
 }
 
-/// Returns the pdf to insert for two other strategies with the pdfs p and q, so that the weight
-/// above is that of the power heuristic for all three.
-inline double either(double p, double q) {
+/// Returns the pdf that stands for two other strategies with the pdfs p and q in power_heuristic(),
+/// so that the weight is that of the power heuristic for all three.
+inline double combined_pdf(double p, double q) {
   return p > 0 && q > 0 ? std::sqrt(p * p + q * q) : p + q;
 }
 

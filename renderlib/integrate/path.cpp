@@ -61,7 +61,7 @@ Rgb weighted_background(const Scene& scene, const Portals* portals, const Previo
                          ? scene.lights().environment_pdf(previous.receiver, direction)
                          : 0;
   if (previous.portals && portals != nullptr) {
-    light_pdf = either(light_pdf, portals->pdf(previous.receiver.position, direction));
+    light_pdf = combined_pdf(light_pdf, portals->pdf(previous.receiver.position, direction));
   }
   if (technique == Technique::kLightsOnly) {
     // Light sampling samples neither the uniform part of an environment nor directions beside the
@@ -142,7 +142,7 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
   }
   double other_pdf = is_also_sampled_by_bsdf(*light, competing) ? scattered.pdf : 0;
   if (competing.portals != nullptr && light->distant && !light->delta) {
-    other_pdf = either(other_pdf, competing.portals->pdf(point.position, light->direction));
+    other_pdf = combined_pdf(other_pdf, competing.portals->pdf(point.position, light->direction));
   }
   return scattered.value * light->radiance *
          static_cast<float>(power_heuristic(light->pdf, other_pdf) / light->pdf) * passing;
@@ -172,7 +172,8 @@ Rgb sample_portals(const PathContext& context, const SurfacePoint& point, const 
   }
   double other_pdf = context.options.technique == Technique::kBoth ? scattered.pdf : 0;
   if (scene.background().environment) {
-    other_pdf = either(other_pdf, scene.lights().environment_pdf(receiver, portal->direction));
+    other_pdf =
+        combined_pdf(other_pdf, scene.lights().environment_pdf(receiver, portal->direction));
   }
   return scattered.value * background *
          static_cast<float>(power_heuristic(portal->pdf, other_pdf) / portal->pdf) * passing;
