@@ -12,7 +12,7 @@
 #include "renderlib/base/mutex.h"
 #include "renderlib/guiding/guiding_field.h"
 #include "renderlib/guiding/photon_map.h"
-#include "renderlib/light/portals.h"
+#include "renderlib/guiding/portals.h"
 
 namespace bandsaw {
 

@@ -1,14 +1,14 @@
 #pragma once
 
-// Finds the openings through which the background lights a room (light/portals.h): the rectangles
+// Finds the openings through which the background lights a room (guiding/portals.h): the rectangles
 // through which the few rays pass that leave the scene.
 
 #include <vector>
 
 #include "absl/types/span.h"
 #include "renderlib/guiding/guiding_cache.h"
+#include "renderlib/guiding/portals.h"
 #include "renderlib/integrate/preparation.h"
-#include "renderlib/light/portals.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {

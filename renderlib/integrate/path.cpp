@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "renderlib/geometry/surface.h"
+#include "renderlib/guiding/portals.h"
 #include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/medium_traversal.h"
 #include "renderlib/integrate/mis.h"
@@ -21,7 +22,6 @@
 #include "renderlib/integrate/trace_photons.h"
 #include "renderlib/integrate/visibility.h"
 #include "renderlib/light/emission.h"
-#include "renderlib/light/portals.h"
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/bsdf.h"
 #include "renderlib/material/opacity.h"

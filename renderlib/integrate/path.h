@@ -18,7 +18,7 @@ namespace bandsaw {
 
 class CausticMaps;   // renderlib/integrate/caustics.h
 class GuidingField;  // renderlib/guiding/guiding_field.h
-class Portals;       // renderlib/light/portals.h
+class Portals;       // renderlib/guiding/portals.h
 
 /// Strategies used to find light. All have the same expected value; the second and third exist only
 /// so that tests can compare them with the first.

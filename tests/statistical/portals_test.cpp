@@ -1,7 +1,7 @@
 // Sampling the background through portals changes no expected value: a floor under the sky, whose
 // radiance is known, with portals that cover a part of the sky.
 
-#include "renderlib/light/portals.h"
+#include "renderlib/guiding/portals.h"
 
 #include <gtest/gtest.h>
 

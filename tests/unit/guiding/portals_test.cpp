@@ -1,6 +1,6 @@
 // Portals: rectangles through which the background is sampled, uniformly by solid angle.
 
-#include "renderlib/light/portals.h"
+#include "renderlib/guiding/portals.h"
 
 #include <gtest/gtest.h>
 

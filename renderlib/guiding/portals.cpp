@@ -1,4 +1,4 @@
-#include "renderlib/light/portals.h"
+#include "renderlib/guiding/portals.h"
 
 #include <algorithm>
 #include <cmath>
