@@ -43,6 +43,7 @@ constexpr double kSameDirection = 0.9995;
 /// A wall has at least this part of the rays, on surfaces whose offsets differ by at most this part
 /// of the scene's size from one to the next.
 constexpr double kMinPartOfWall = 0.005;
+constexpr std::size_t kMaxWalls = 8;  ///< in one direction
 constexpr double kThickness = 1e-4;
 /// Rays at a smaller cosine to the normal do not decide where the plane is.
 constexpr double kMinCosine = 0.1;
@@ -308,17 +309,23 @@ std::vector<double> offsets_of_walls(absl::Span<const ScatteredRay> rays, const 
     }
   }
   std::sort(offsets.begin(), offsets.end());
-  const auto frequent = static_cast<std::size_t>(kMinPartOfWall * static_cast<double>(rays.size()));
-  std::vector<double> walls;
+  std::vector<std::pair<std::size_t, double>> walls;  // number of rays, offset
   for (std::size_t first = 0, i = 1; i <= offsets.size(); ++i) {
     if (i == offsets.size() || offsets[i] - offsets[i - 1] > kThickness * size) {
-      if (i - first > frequent) {
-        walls.push_back(offsets[(first + i) / 2]);
-      }
+      walls.emplace_back(i - first, offsets[(first + i) / 2]);
       first = i;
     }
   }
-  return walls;
+  std::stable_sort(walls.begin(), walls.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  walls.resize(std::min(walls.size(), kMaxWalls));
+  std::vector<double> out;
+  for (const auto& [count, offset] : walls) {
+    if (count > kMinPartOfWall * static_cast<double>(rays.size())) {
+      out.push_back(offset);
+    }
+  }
+  return out;
 }
 
 /// A portal, and how many of the rays pass through it.
@@ -326,6 +333,7 @@ struct Found {
   Portal portal;
   std::size_t escaping = 0;
   double precision = 0;  ///< part of the rays towards it that escape
+  double score() const { return static_cast<double>(escaping) * precision; }
 };
 
 Found judge(const Portal& portal, absl::Span<const ScatteredRay> rays) {
@@ -378,12 +386,13 @@ Rays crossing_in_box(const Rays& rays, const Planes& planes, double offset, cons
 std::optional<Found> best_portal(const Rays& escaping, const Search& search) {
   std::optional<Found> best;
   const auto consider = [&](const Rays& rays, const Rectangle& rectangle, const Planes& planes) {
-    if (!(rectangle.area() > 0)) {
+    // No more than about these rays pass through it.
+    const bool may_be_best = !best || static_cast<double>(rays.size()) > 0.9 * best->score();
+    if (!may_be_best || !(rectangle.area() > 0)) {
       return;
     }
     const Found found = judge(portal_of(rays, rectangle, planes), search.rays);
-    if (!best || static_cast<double>(found.escaping) * found.precision >
-                     static_cast<double>(best->escaping) * best->precision) {
+    if (!best || found.score() > best->score()) {
       best = found;
     }
   };
