@@ -58,7 +58,11 @@ absl::Status add_item(absl::string_view item, std::vector<FrameNumber>& out) {
   if (!first || !last || !step || !rest.empty()) {
     return wrong("is neither a frame nor a range, as in 47, 1-30 or 1:240:2");
   }
-  if (std::max(std::abs(*first), std::abs(*last)) > kMaxFrameNumber) {
+  // Compared on both sides: the least number has no absolute value.
+  const auto is_beyond = [](FrameNumber number) {
+    return number > kMaxFrameNumber || number < -kMaxFrameNumber;
+  };
+  if (is_beyond(*first) || is_beyond(*last) || is_beyond(*step)) {
     return wrong(absl::StrCat("has a number beyond ", kMaxFrameNumber));
   }
   if (*last < *first) {

@@ -49,6 +49,8 @@ TEST(FrameNumbers, WrongOnesAreNamed) {
   EXPECT_THAT(wrong("1:40000,50001:90000"), HasSubstr("more than 50000 frames"));
   EXPECT_THAT(wrong("2000000000"), HasSubstr("beyond 1000000000"));
   EXPECT_THAT(wrong("99999999999999999999"), HasSubstr("neither"));
+  EXPECT_THAT(wrong("1-2x9223372036854775807"), HasSubstr("beyond 1000000000"));
+  EXPECT_THAT(wrong("-9223372036854775808:5"), HasSubstr("beyond 1000000000"));
 }
 
 TEST(FrameNumbers, RepeatedOnesAreReadUpToALimit) {
