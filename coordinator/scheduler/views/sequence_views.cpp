@@ -123,12 +123,14 @@ std::vector<std::string> frame_sentences(const Sequence& sequence) {
   add(FrameState::kExpected,
       "expected: their scenes have not arrived; if their submitter has ended, submit them again "
       "with --continue");
-  for (const FrameNumber number : sequence.numbers(FrameState::kFailed)) {
-    lines.push_back(absl::StrCat("frame ", number, " failed: ", sequence.frame(number)->reason));
-    if (lines.size() == 13) {  // 3 other states, and 10 failed frames
-      lines.emplace_back("and more frames failed");
-      break;
-    }
+  constexpr std::size_t kMaxReasons = 10;
+  const std::vector<FrameNumber> failed = sequence.numbers(FrameState::kFailed);
+  for (std::size_t i = 0; i < std::min(failed.size(), kMaxReasons); ++i) {
+    lines.push_back(
+        absl::StrCat("frame ", failed[i], " failed: ", sequence.frame(failed[i])->reason));
+  }
+  if (failed.size() > kMaxReasons) {
+    lines.emplace_back("and more frames failed");
   }
   return lines;
 }

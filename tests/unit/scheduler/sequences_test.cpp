@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "absl/strings/str_join.h"
 #include "coordinator/scheduler/api/frame_numbers.h"
 #include "farm_driver.h"
 #include "proto/wire/limits.h"
@@ -14,9 +15,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 SequenceSpec test_sequence(const std::string& frames, std::uint32_t height = 64) {
   SequenceSpec spec;
@@ -202,6 +205,25 @@ TEST(Sequences, AFrameThatFailsTwiceFailsTheJobOnceTheOthersAreDone) {
   EXPECT_EQ(farm.job(id).state, JobState::kDone);
   EXPECT_EQ(farm.send(input::RetryFrames{id, {}}).status.code(),
             absl::StatusCode::kFailedPrecondition);
+}
+
+TEST(Sequences, TheReasonsOfTenFailedFramesAreTold) {
+  const auto sentences = [](const std::string& frames) {
+    FrameFarm farm;
+    const JobId id = farm.submit_frames(test_sequence(frames));
+    farm.join(1);
+    do {
+      for (const FrameView& frame : farm.frames(id)) {
+        farm.fails.insert(frame.job);
+      }
+    } while (farm.work());
+    return absl::StrJoin(farm.scheduler.why(id, farm.now), "\n");
+  };
+  EXPECT_THAT(sentences("1-10"),
+              AllOf(HasSubstr("frame 10 failed: "), Not(HasSubstr("more frames failed"))));
+  EXPECT_THAT(sentences("1-11"),
+              AllOf(HasSubstr("frame 10 failed: "), Not(HasSubstr("frame 11 failed: ")),
+                    HasSubstr("and more frames failed")));
 }
 
 TEST(Sequences, NoiseDiffersFromFrameToFrameUnlessItIsFixed) {
