@@ -50,7 +50,7 @@ absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDispla
     missing[blob.digest] = blob.there;
   }
   std::erase_if(blobs, [&](const BlobRef& blob) { return !missing.contains(blob.digest); });
-  std::uint64_t all = package.manifest().size();
+  std::uint64_t all = missing.contains(manifest) ? package.manifest().size() : 0;
   for (const BlobRef& blob : blobs) {
     all += blob.size;
   }
