@@ -54,7 +54,7 @@ function sceneCard(first) {
     update(scene) {
       job = scene.job?.status ?? null;
       const is = job === null ? "" : stateOf(job);
-      face.setAttribute("aria-label", is === "" || is === "failed" ? `Render ${title}` : `Open ${title}`);
+      face.setAttribute("aria-label", ["", "failed", "cancelled"].includes(is) ? `Render ${title}` : `Open ${title}`);
       again.hidden = open.hidden = job === null || !isOver(job);
       bar.hidden = job === null || isOver(job);
       foot.hidden = job === null && !requested;
