@@ -5,8 +5,9 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 reference() {
-  # kind[d] and open[d]: the message, enum or oneof that is open at depth d. pending: the comment above the next field or message.
-  # about[name], rows[name, k], row_words[name, k]: what the reference says on a message and on its field k.
+  # kind[d]: message, enum or oneof, whichever is open at depth d; open[d]: its name. pending: the comment above the next field or message.
+  # about[name]: what the reference says on a message.
+  # rows[name, k], row_words[name, k]: its field k (of an enum: the start of a table row), and what the reference says on it.
   awk '
     function escaped(text) { gsub(/\|/, "\\|", text); return text }
     function joined(a, b) { return a == "" ? b : b == "" ? a : a " " b }

@@ -1,5 +1,5 @@
-// A sink of spdlog that keeps lines until they are sent. again() puts those back that were sent to
-// a coordinator that has been lost.
+// A sink of spdlog that keeps lines until they are sent. A coordinator that restarts may lose lines
+// that it has received; again() puts the last ones back into the queue.
 
 #include "worker/log_queue.h"
 

@@ -1,5 +1,6 @@
-// to_message() makes a message of a value; the functions that end in _of make a value of a message.
-// FrameState has the same numbers in both, so it is cast.
+// Converts the coordinator's values to messages of the protocol between farm and users, and back.
+// to_message() converts a value to a message; functions whose names end in _of convert a message to
+// a value. FrameState has the same numbers in both, so it is cast.
 
 #include "coordinator/convert/farm_messages.h"
 

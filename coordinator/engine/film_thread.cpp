@@ -220,10 +220,10 @@ FilmThread::Added FilmThread::added(const IncomingBand& incoming, const RowRange
           .digest = digest_of(incoming.pixels, rows)};
 }
 
-/// Builds a film of the bands up to a sample, read from the log, because nodes that were merged
-/// have become one sum from which no part can be removed. Bands that the log no longer holds are
-/// left out and reported. Fails if the film cannot be created, or the log cannot be read for a
-/// reason other than damage.
+/// Builds a film of the bands up to a sample, read from the log. No part can be removed from an
+/// existing film, because nodes of samples that were merged have become one sum. Bands that the log
+/// no longer holds are left out and reported. Fails if the film cannot be created, or the log
+/// cannot be read for a reason other than damage.
 absl::StatusOr<Film> FilmThread::film_until(JobId id, OneJob& job, std::uint64_t samples) {
   ASSIGN_OR_RETURN(Film film, new_film(id, job));
   std::vector<std::size_t> damaged;

@@ -46,8 +46,8 @@ class FilmThread {
   void request_image(JobId job, std::uint64_t samples);
   /// Retries the additions and images that failed.
   void retry();
-  /// Removes the bands of this worker process: builds the film again from the log of the others,
-  /// and reports its passes again as they become complete.
+  /// Removes the bands of this worker process: builds the film again from the other bands in the
+  /// job's log, and reports passes again as they become complete.
   void retract(JobId job, std::uint64_t process);
   /// Forgets the film of a job.
   void drop(JobId job);

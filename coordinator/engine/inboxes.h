@@ -26,7 +26,7 @@ class SchedulerInbox {
   virtual void result_written(JobId job, const absl::Status& status) = 0;
   /// The disk takes data again after StoreInbox::test_disk_until_writable.
   virtual void disk_is_back() = 0;
-  /// These jobs are final and exceed a limit of engine/collector.h.
+  /// These final jobs are to be forgotten, because a limit of engine/collector.h is exceeded.
   virtual void forget(std::vector<JobId> jobs) = 0;
   // Messages from the film.
   virtual void pass_merged(input::PassMerged merged) = 0;
@@ -54,7 +54,7 @@ class StoreInbox {
   virtual void drop_bands(JobId job) = 0;
   /// Removes all files of a forgotten job.
   virtual void drop_job(JobId job) = 0;
-  /// Removes blobs and folders that none of these jobs, which are all known ones, needs.
+  /// Removes the blobs and folders that no job needs. `jobs` are all known jobs.
   virtual void collect(std::vector<KeptJob> jobs) = 0;
   /// A write has failed: the store sends disk_is_back once the disk takes data again.
   virtual void test_disk_until_writable() = 0;

@@ -1,7 +1,8 @@
 #pragma once
 
-// Implements the inboxes of the engine's threads (inboxes.h): each message is posted to the mailbox
-// of its thread, which calls the method of the same name.
+// Implements the inboxes of the engine's threads (inboxes.h). Each message is posted to the mailbox
+// of the receiving thread. That thread then calls its method of the same name; for pass_merged() it
+// is observe().
 
 #include <utility>
 #include <vector>

@@ -33,7 +33,7 @@ class StoreThread {
   /// job are left out and counted as damaged.
   absl::StatusOr<BandLogReport> open_job(JobId job, const JobSpec& spec,
                                          absl::FunctionRef<void(BandRecord, std::uint64_t)> each);
-  /// Creates the folder of a new job. If this fails, its first band tries again.
+  /// Creates the folder of a new job. If this fails, it is tried again at the job's first band.
   absl::Status add_job(JobId job, const JobSpec& spec);
 
   /// Writes a band; it is answered at settle, after the log is synced.

@@ -1,6 +1,7 @@
 #pragma once
 
-// The last lines that each worker has sent of its log; limited per worker and in total.
+// The last lines of each worker's log, as the worker has sent them. Their number is limited per
+// worker, and their bytes in total.
 
 #include <cstddef>
 #include <deque>
@@ -19,11 +20,11 @@ class WorkerLogs {
   WorkerLogs(std::size_t max_lines, std::size_t max_bytes)
       : max_lines_(max_lines), max_bytes_(max_bytes) {}
 
-  /// Adds lines. Beyond `max_lines` the worker's oldest lines are dropped; beyond `max_bytes` the
-  /// logs that got no line for the longest time.
+  /// Adds lines. Beyond `max_lines`, drops the worker's oldest lines. Beyond `max_bytes`, drops
+  /// the whole logs of the workers that have sent nothing for the longest time.
   void add(const std::string& worker, std::vector<std::string> lines);
-  /// Returns the lines, oldest first. NOT_FOUND: no lines of such a worker; the message lists the
-  /// workers that have sent lines.
+  /// Returns the lines, oldest first. NOT_FOUND: there are no lines of a worker of this name; the
+  /// message lists the workers that have sent lines.
   absl::StatusOr<std::vector<std::string>> of(const std::string& worker) const;
 
  private:

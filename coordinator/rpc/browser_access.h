@@ -18,8 +18,8 @@ namespace bandsaw::coordinator {
 /// Thread-safe. A change of the link is on disk before it has an effect.
 class BrowserAccess {
  public:
-  /// Returns seconds since 1970, UTC. The link's end is a time of day, because it holds over
-  /// restarts.
+  /// Returns seconds since 1970, UTC. The end of a link is a time of this clock, because a link
+  /// stays valid when the coordinator restarts.
   using UnixSeconds = std::function<double()>;
 
   /// Duration of a link for which none is given, and the longest, in seconds.

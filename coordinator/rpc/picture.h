@@ -1,7 +1,7 @@
 #pragma once
 
-// The present picture of a job, for display: of Farm.Preview and Farm.GetResult, and of the
-// dashboard.
+// Returns the image of a job as it is now, for the calls Farm.Preview and Farm.GetResult and for
+// the dashboard.
 
 #include <cstdint>
 

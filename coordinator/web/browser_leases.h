@@ -22,12 +22,13 @@
 
 namespace bandsaw::coordinator {
 
-/// Thread-safe. A browser is known by the instance id of its Hello. It is remembered after its
-/// session has ended, because its bands may still arrive, until many others have come.
+/// Thread-safe. A browser is identified by the instance id of its Hello. It is remembered after its
+/// session has ended, because its bands may still arrive. It is forgotten when kBrowsers others
+/// have got leases after it.
 class BrowserLeases {
  public:
-  /// Number of browsers that are remembered, and of leases of each; more than can be in use at a
-  /// time.
+  /// Maximum numbers of remembered browsers and of remembered leases of each browser. Both are
+  /// greater than the numbers that can be in use at a time.
   static constexpr std::size_t kBrowsers = 1024;
   static constexpr std::size_t kLeasesOfOne = 2 * wire::kBandsPerWorker;
 

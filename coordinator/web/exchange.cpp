@@ -87,8 +87,8 @@ class Exchange {
   Exchange(Connection& connection, const std::vector<HttpField>& headers)
       : connection_(connection), stream_(connection), headers_(headers) {
     parser_.header_limit(kMaxHeadBytes);
-    // Handlers limit the size of bodies. (No limit, boost::none, is smaller than any in
-    // Boost 1.74.)
+    // Handlers limit the size of bodies. boost::none ("no limit") is not used, because Boost 1.74
+    // treats it as smaller than any number.
     parser_.body_limit(std::numeric_limits<std::uint64_t>::max());
   }
 
@@ -182,12 +182,14 @@ class Exchange {
     if (!reply.type.empty()) {
       response.set(http::field::content_type, reply.type);
     }
-    if (reply.status != 304) {  // RFC 9110, section 8.6: it would be the length of the response 200
+    // In a 304 response, Content-Length would mean the length of the 200 response (RFC 9110,
+    // section 8.6).
+    if (reply.status != 304) {
       response.content_length(reply.bytes.size());
     }
     response.body() = Bytes::value_type(reply.bytes.data(), reply.bytes.size());
     http::response_serializer<Bytes> serializer(response);
-    beast::error_code ignored;  // the client has disconnected
+    beast::error_code ignored;  // an error means that the client has disconnected
     connection_.begin_answer();
     http::write_header(stream_, serializer, ignored);
     if (!ignored && request.method != "HEAD") {

@@ -44,7 +44,7 @@ Gallery::Gallery(const std::string& folder) {
       scenes_.push_back({name, path.string(), leading_comment(path.string())});
     }
   }
-  // The scenes of subfolders come first.
+  // The scenes of subfolders come last.
   std::sort(scenes_.begin(), scenes_.end(), [](const GalleryScene& a, const GalleryScene& b) {
     const auto deep = [](const GalleryScene& s) { return absl::StrContains(s.name, "/"); };
     return deep(a) != deep(b) ? deep(b) : a.name < b.name;

@@ -1,4 +1,5 @@
-// Reads and checks the width, the stop rule and the texts of the request.
+// Reads and checks the parameters of an HTTP request that submits a scene: the width, the stop
+// rule, the title and the name of the scene file.
 
 #include "coordinator/web/scene_request.h"
 

@@ -18,8 +18,8 @@ namespace bandsaw {
 
 /// A split: items whose bin on `axis` is below `bin` go left.
 struct Split {
-  /// Sum over both sides of the area of the box times the number of packs. A pack is the content of
-  /// a leaf: up to eight primitives, which are tested together.
+  /// For each side, the area of its box is multiplied by its number of packs; the cost is the sum
+  /// of both products. A pack is the content of a leaf: up to eight primitives, tested together.
   double cost = std::numeric_limits<double>::infinity();
   std::size_t axis = 0;
   std::uint32_t bin = 0;

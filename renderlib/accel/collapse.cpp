@@ -20,9 +20,9 @@ constexpr float kNodeCost = 1.0f;
 constexpr float kPackCost = 1.5f;
 
 /// Minimum costs of a subtree of the binary tree. Element i is the cost if the subtree may fill at
-/// most i + 1 slots of the wide node above it, each with a part of the subtree. For element 0 it
-/// fills one slot, so it becomes a leaf or a wide node of its own. Element 7 is used as the cost of
-/// all children of that wide node.
+/// most i + 1 slots of the wide node above it, each with a part of the subtree. Element 0: the
+/// subtree fills one slot, so it becomes a leaf or a wide node of its own. Element 7 is the total
+/// cost of the children of this wide node of its own.
 struct Costs {
   std::array<float, kSlots> slots;
 };
@@ -98,8 +98,8 @@ void Collapse::set_costs(std::size_t index) {
 /// `slots` (>= 1) slots.
 void Collapse::choose(std::uint32_t index, std::size_t slots, Members& members) const {
   const BinaryNode& node = tree_.nodes[index];
-  // Takes fewer slots if the cost is the same. `slots` is kSlots only for the children of the
-  // node's own wide node, which MUST be divided.
+  // Takes fewer slots if the cost is the same. But not if `slots` is kSlots: then the subtree is
+  // divided into the children of its own wide node.
   while (slots > 1 && slots < kSlots && cost(index, slots) == cost(index, slots - 1)) {
     --slots;
   }

@@ -47,7 +47,7 @@ void FlatPacker::add(const Corners& corners, std::uint32_t primitive) {
   store(corners, lane, pack_.corner);
   pack_.primitive[lane] = primitive;
   pack_.lanes |= 1u << lane;
-  // The factor covers the rounding of the difference, u, with a reserve.
+  // The factor covers the rounding of an edge, which is at most u, with a reserve.
   pack_.size = std::max(pack_.size, longest(corners) * (1 + 0x1p-22f));
 }
 
@@ -60,8 +60,9 @@ void FlatPacker::add_moving(const Corners& at_open, const Corners& at_close,
                             std::uint32_t primitive, FlatPack::Corners& to) {
   store(at_close, count_, to);
   add(at_open, primitive);
-  // An edge is never longer than at one of both ends, except for the rounding of its corners, at
-  // most 2u of their largest component each.
+  // An edge changes linearly, so between the two ends it is never longer than at one of them. The
+  // second term covers the rounding of its two corners: for each at most 2u of the largest
+  // component.
   pack_.size = std::max(pack_.size, (std::max(longest(at_open), longest(at_close)) +
                                      std::max(reach_of(at_open), reach_of(at_close)) * 0x1p-21f) *
                                         (1 + 0x1p-20f));

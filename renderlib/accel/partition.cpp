@@ -11,8 +11,9 @@
 namespace bandsaw {
 namespace {
 
-/// A range that fits one pack (a leaf, which is tested at once) is split only if the parts' area is
-/// below this share of its area (README.md, "Traversal and leaves").
+/// A range that fits one pack (the primitives of a leaf, which are tested together) is split only
+/// if the sum of the parts' areas is below this share of its area (README.md, "Traversal and
+/// leaves").
 constexpr double kWorthSplitting = 0.7;
 
 bool one_kind(absl::Span<const TreeItem> items) {

@@ -51,8 +51,8 @@ struct Temporary {
   std::string path;
 };
 
-/// Creates a new file in the folder of `path`. (mkstemp is not used because its mode ignores the
-/// umask, which cannot be read without changing it.) `what`, here and below, begins error messages.
+/// Creates a new file in the folder of `path`. `what`, here and below, begins error messages.
+/// README.md explains why mkstemp is not used.
 absl::StatusOr<Temporary> make_temporary(const std::string& path, const std::string& what) {
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     std::string name = absl::StrCat(path, ".", ::getpid(), ".", attempt, ".part");

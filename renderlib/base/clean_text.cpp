@@ -1,4 +1,5 @@
-// Copies characters of well-formed UTF-8 and replaces all others, and control characters, by "?".
+// Copies the characters of well-formed UTF-8, except control characters. Each control character,
+// and each byte that is not well-formed, is replaced by "?".
 
 #include "renderlib/base/clean_text.h"
 

@@ -64,7 +64,8 @@ class Float8 {
     object = std::bit_cast<Object>(v_);
   }
   void store(float* to) const { std::copy(v_.begin(), v_.end(), to); }
-  /// Converts to int32, rounded towards zero; the result is unspecified if it is no int32 or NaN.
+  /// Converts to int32, rounded towards zero. The result is unspecified for NaN, and for numbers
+  /// whose absolute value is 2^31 or more.
   void store_truncated(std::int32_t* to) const {
     for (std::size_t i = 0; i < kLanes; ++i) {
       to[i] = std::abs(v_[i]) < 0x1p31f ? static_cast<std::int32_t>(v_[i]) : 0;
@@ -91,7 +92,7 @@ class Float8 {
     return lanes([&](std::size_t i) { return simd_plain::fused(a.v_[i], b.v_[i], -c.v_[i]); });
   }
   /// about_fused() returns a b + c and about_fused_minus() a b - c, rounded once or twice,
-  /// whichever is faster: only for numbers that change no bit of a result.
+  /// whichever is faster. Use them only where the rounding changes no bit of a result.
   friend Float8 about_fused(const Float8& a, const Float8& b, const Float8& c) {
     return fused(a, b, c);
   }

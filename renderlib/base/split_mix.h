@@ -1,8 +1,8 @@
 #pragma once
 
 // SplitMix64 (Steele, Lea and Flood 2014, "Fast Splittable Pseudorandom Number Generators",
-// section 3; constants of Stafford's variant 13). Its values are part of pixels and files, so they
-// MUST NOT change.
+// section 3; constants of Stafford's variant 13). The pixels of images and the contents of files
+// depend on its values, so they MUST NOT change.
 
 #include <cstdint>
 

@@ -19,8 +19,9 @@ struct Features {
   Plane points;
 };
 
-// Scales positive weights to sum to 1 and negative ones to -1, so that a feature's strength is in
-// units of contrast.
+// Scales the positive weights to the sum 1 and the negative ones to the sum -1, so that a feature's
+// strength is in units of contrast. `across` is the sum of the weights along the other axis; the
+// result is divided by it, because those weights are not normalised.
 FilterWeights balanced(FilterWeights kernel, double across) {
   double above = 0;
   double below = 0;

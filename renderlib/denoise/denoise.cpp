@@ -33,7 +33,7 @@ float channel(const Rgb& color, std::size_t c) {
   return c == 0 ? color.r : c == 1 ? color.g : color.b;
 }
 
-/// Sums over all channels of the pixels of a row whose values may be used.
+/// Sums over all channels and over the valid pixels of a row (FitInput::valid).
 struct RowSums {
   double value = 0;
   double raw = 0;       ///< estimated squared errors as rendered
@@ -280,8 +280,8 @@ int rows_of_strip(int width) {
 }  // namespace
 
 Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int strip_rows) {
-  // A result depends on rows up to these distances away: shares and errors are smoothed three
-  // times.
+  // A result depends on filtered values up to kFitted rows away, because values pass through at
+  // most three smoothings: of errors, of shares, and of the errors of the result.
   constexpr int kFitted = 3 * SurfaceSmoothing::kRadius;
   static_assert(kFitted + kFitReach + 5 <= kDenoiseReach && kDenoiseReach % 2 == 0);
   const int height = static_cast<int>(input.mean.height);

@@ -46,7 +46,8 @@ struct FitInput {
   SplitPlane valid;  ///< 1 for pixels whose values may be used, otherwise 0, as in the margin
 };
 
-/// Settings of one filter: pixels that differ from the centre by more than a reach count little.
+/// Settings of one filter. Each reach is a limit of a difference: pixels that differ more from the
+/// centre have little weight.
 struct FitSettings {
   float color_reach = 1;      ///< difference of patches, in standard deviations
   float albedo_reach = 2;     ///< difference of the albedo
@@ -67,10 +68,10 @@ struct FitOutput {
 };
 using FitOutputs = std::array<FitOutput, kFilters>;
 
-/// Returns the filtered halves of each filter. Half h depends linearly on half h and, through the
-/// weights, on the other. Values are >= 0. The result has the same bits for any number of threads,
-/// all kernels, and any other rows in the input. The first row of `input` MUST be an even one of
-/// the image.
+/// Returns the filtered halves of each filter. A filtered half depends linearly on the same half of
+/// the input; the other half of the input determines the weights. Values are >= 0. The result has
+/// the same bits for any number of threads and for all kernels. It does not depend on rows beyond
+/// kFitReach from the wanted ones. The first row of `input` MUST be an even row of the image.
 FitOutputs fit(const FitInput& input, const FilterSettings& settings, Pool& pool);
 
 /// A kernel's fit() (renderlib/README.md, "Kernels").

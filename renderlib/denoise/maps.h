@@ -28,9 +28,9 @@ struct MapSize {
 /// image.
 void smooth(Map& map, const MapSize& size, int radius, Pool& pool);
 
-/// Smooths maps of the rows FitInput::wanted within surfaces: each value becomes the mean of the
-/// pixels up to two away, with weights that fall with the distance and with the difference of the
-/// guides. Other rows count as outside of the image.
+/// Smooths maps that consist of the rows FitInput::wanted. Each value becomes the mean of the
+/// pixels up to two away. The weights fall with the distance and with the difference of the guides,
+/// so that surfaces are not mixed. Other rows count as outside of the image.
 class SurfaceSmoothing {
  public:
   static constexpr int kRadius = 2;

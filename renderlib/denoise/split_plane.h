@@ -11,8 +11,8 @@ namespace bandsaw {
 
 class SplitPlane {
  public:
-  /// Number of pixels around the image that can be read. To the right and below kBeyond further
-  /// pixels can be read, because tiles may reach beyond the image.
+  /// Number of pixels that can be read on each side of the image. At the right and at the bottom,
+  /// another kBeyond pixels can be read, because tiles may reach beyond the image.
   static constexpr int kMargin = 24;
   static constexpr int kBeyond = 64;
 

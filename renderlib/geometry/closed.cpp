@@ -1,4 +1,5 @@
-// Counts the edges of a mesh that are open, i.e. not passed equally often in both directions.
+// Counts the open edges of a mesh. An edge is open if its triangles, each traversed in the order of
+// its vertices, do not pass it equally often in both directions.
 // Vertices at the same position count as one.
 
 #include "renderlib/geometry/closed.h"

@@ -11,9 +11,9 @@
 
 namespace bandsaw {
 
-/// Returns the box in the world of a box in an instance's own space, enlarged by `trips` times the
-/// rounding error of a ray that is transformed to that space and back. `to_object` is the inverse
-/// of `to_world`.
+/// Returns bounds, in world space, of `box`, which is in an instance's own space. They are enlarged
+/// by `trips` times the rounding error of a ray that is transformed to that space and back.
+/// `to_object` is the inverse of `to_world`.
 Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to_object,
                   double trips = 1);
 

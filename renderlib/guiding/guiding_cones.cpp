@@ -11,8 +11,8 @@
 namespace bandsaw {
 namespace {
 
-/// Minimum of 1 - cos of a cone's half-angle, which is then a sixth of a degree. The rounding error
-/// of a cosine is far below it.
+/// Minimum of 1 - cos of a cone's half-angle: its value at about a sixth of a degree. The rounding
+/// error of a cosine is far below it.
 constexpr double kNarrowest = 4e-6;
 
 }  // namespace

@@ -16,14 +16,15 @@ namespace {
 // Radii are found in a tree of places: boxes of space that are divided while they have more than
 // kPhotonsOfLeaf photons.
 constexpr std::uint32_t kPhotonsOfLeaf = 8;
-/// The area of a photon is estimated from at least this many.
+/// The area of a photon is estimated from at least this many photons.
 constexpr std::uint32_t kEnough = 16;
 /// Bounds the recursion where many photons are at nearly the same point.
 constexpr int kMaxTreeDepth = 48;
-/// A place is divided at a random point of its longest side, between this part and 1 minus it.
+/// A place is divided at a random point of its longest side: between kFirstPart and 1 - kFirstPart
+/// of the length.
 constexpr double kFirstPart = 3.0 / 8;
-/// Even places (see below) of at most kMostOfEven photons have disks with the area of kPartOfEven
-/// of their photons.
+/// In even places (see below) of at most kMostOfEven photons, each disk has kPartOfEven of the area
+/// of its place.
 constexpr std::uint32_t kMostOfEven = 1024;
 constexpr double kPartOfEven = 1.0 / 4;
 // A place is even if its photons are as good as uniform on a flat surface: in it and in all places

@@ -38,15 +38,15 @@ class PhotonMap {
   PhotonMap() = default;
   /// Builds the map. `radius_factor` > 0 scales all radii. `seed` decides how space is divided into
   /// parts whose photons have disks of one radius. `share_on_surface` is called for each photon,
-  /// when its radius is known, on the threads of the pool; it returns the share of the photon's
-  /// power, in (0, 1], that falls on the surface and not beyond an edge, and the power is divided
-  /// by it. The map depends on its arguments and the order of the photons, not on the threads.
+  /// when its radius is known, on the threads of the pool. It returns the share of the photon's
+  /// power, in (0, 1], that falls on the surface and not beyond an edge. The power is divided by
+  /// this share. The map depends on its arguments and the order of the photons, not on the threads.
   PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, std::uint64_t seed,
             Pool& pool, absl::FunctionRef<double(const CausticPhoton&)> share_on_surface);
 
   /// Calls visit(photon, density) for each photon whose disk contains the point. `normal` is the
-  /// unit normal of the point's surface on the side whose irradiance is wanted: that is the sum of
-  /// power * density.
+  /// unit normal of the point's surface, on the side whose irradiance is wanted. The irradiance is
+  /// the sum of power * density.
   template <class Visit>
   void visit(const Vec3& position, const Vec3& normal, const Visit& visit) const;
 

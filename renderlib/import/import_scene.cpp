@@ -58,8 +58,9 @@ Camera framed(const ImportedScene& out) {
   return frame(geometry, geometry.instances, static_cast<double>(out.info.width) / out.info.height);
 }
 
-/// Returns the camera of a scene file that defines none or names a model's camera: a camera of a
-/// model, or one that frames the only model. It is an error if there are neither.
+/// Returns the camera for a scene file without a camera of its own: the model's camera that the
+/// file names, otherwise the first camera of a model, otherwise one that frames the only model.
+/// Returns an error if none of these exists.
 absl::StatusOr<MovingCamera> camera_of_a_model(const Field& root, const scene::Scene& from,
                                                const SceneDraft& draft) {
   if (from.has_camera()) {

@@ -19,8 +19,8 @@ SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
 
 /// Returns the next boundary of a nested glass that touches the boundary of `hit`, and advances
 /// `hit` to it. Two boundaries touch if a ray that leaves the first one starts beyond both.
-/// Distances above `max_t` do not touch. Returns std::nullopt if the next surface does not touch or
-/// is not a boundary of a nested glass.
+/// A boundary at a distance above `max_t` does not touch. Returns std::nullopt if the next surface
+/// does not touch or is not a boundary of a nested glass.
 std::optional<SurfacePoint> touching(const Scene& scene, const Ray& ray, double max_t, Hit& hit,
                                      std::uint64_t& rays) {
   ++rays;

@@ -21,8 +21,9 @@
 //
 // - Light sampling alone: delta lights.
 // - BSDF sampling alone: emission that is hit by camera rays, after specular directions, behind a
-//   hidden boundary of nested glass, or beyond a surface that the path passed. The exception are
-//   surfaces that sample lights on both of their sides (is_diffuse_behind).
+//   hidden boundary of nested glass, or beyond a surface that the path passed. The last of
+//   these has an exception: surfaces that sample lights on both of their sides
+//   (is_diffuse_behind).
 
 #include <cmath>
 
@@ -55,12 +56,13 @@ struct PreviousVertex {
   /// At a vertex in a medium: the pdf of its distance in light sampling over that in scattering
   /// (free flight). 1 on surfaces, where both strategies use the same point.
   double distance_pdf_ratio = 1;
-  /// True if the background was sampled through the portals for the side to which the path left.
+  /// True if the background was also sampled through the portals, and the path left on the side for
+  /// which it was sampled.
   bool portals = false;
 };
 
-/// Returns the MIS weight of emission that the path hit from `previous`, which is not `delta`, and
-/// whose direction light sampling samples with pdf `light_pdf`.
+/// Returns the MIS weight of emission that the path hit from `previous`. `light_pdf`: the pdf with
+/// which light sampling samples the same direction. `previous.delta` MUST be false.
 inline double bsdf_sampling_weight(const PreviousVertex& previous, double light_pdf) {
   return power_heuristic(previous.pdf, light_pdf * previous.distance_pdf_ratio);
 }

@@ -30,8 +30,8 @@ struct ReusePixel {
   CameraRay camera_ray;  ///< camera ray of this sample
   /// Result: radiance arriving along `camera_ray`; set by `radiance_with_reuse()`.
   Rgb radiance = {};
-  /// Result: `radiance_with_reuse()` adds the rays of this pixel's path and of all shadow rays to
-  /// its second vertex, from whichever pixel.
+  /// Result: `radiance_with_reuse()` adds the counts of this pixel's path, and one ray for each
+  /// shadow ray that any pixel traces to the second vertex of this path.
   PathCounts counts = {};
 };
 

@@ -1,5 +1,5 @@
-// Converts between directions and texels for both kinds of maps, and interpolates between four
-// texels.
+// Converts between directions and texels, for equirectangular maps and for cube maps, and
+// interpolates between four texels.
 
 #include "renderlib/light/environment.h"
 

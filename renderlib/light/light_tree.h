@@ -5,8 +5,9 @@
 //
 // The method is that of Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with
 // Adaptive Tree Splitting". The tree is built with the surface area orientation heuristic
-// (sections 4.3 and 4.4). The path from the root to a given light is known, so its probability can
-// be computed as the same product.
+// (sections 4.3 and 4.4). The probability of a light is the product of the probabilities of the
+// children on the path from the root to it. This path is known for each light, so the probability
+// can also be computed for a light that was not selected.
 
 #include <cstdint>
 #include <optional>

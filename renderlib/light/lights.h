@@ -63,9 +63,9 @@ class Lights {
   /// Returns true if `sample()` may find light for the receiver and `pdf()` may be greater than 0.
   bool any_for(const Receiver& receiver) const { return choice_.any_for(receiver); }
 
-  /// Samples a light and a point on it. `choice` is in [0, 1), with the resolution of a double if
-  /// there are many lights; u, v in [0, 1). Returns std::nullopt if this sample carries no light to
-  /// the receiver.
+  /// Samples a light and a point on it. `choice`, u and v are in [0, 1). If there are many lights,
+  /// `choice` needs the resolution of a double. Returns std::nullopt if this sample carries no
+  /// light to the receiver.
   std::optional<LightSample> sample(const Receiver& receiver, double choice, double u,
                                     double v) const;
 

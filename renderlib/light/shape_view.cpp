@@ -1,6 +1,6 @@
-// Implements shape_view(), moving_ball() and material_of() of shape_light.h: transforms a primitive
-// to world space at a time, and bounds it while it moves. A sphere whose axes are no longer equal
-// becomes an ellipsoid.
+// Implements three functions of shape_light.h. shape_view() transforms a primitive to world space
+// as it is at a given time; a sphere whose axes are no longer equal becomes an ellipsoid.
+// moving_ball() bounds a primitive while it moves. material_of() returns its material.
 
 #include <array>
 #include <cmath>

@@ -4,10 +4,11 @@
 
 namespace bandsaw {
 
-/// The directions within an angle below 90 degrees of an axis, e.g. those from a point to a lens.
+/// The directions whose angle to an axis is at most a given one, which is less than 90 degrees. For
+/// example, the directions from a point to a lens.
 struct Cone {
   Vec3 axis;       ///< unit
-  double sin = 0;  ///< sine of the angle
+  double sin = 0;  ///< sine of the given angle
   double cos = 1;
 
   /// Returns true if `direction`, of any length except 0, lies within the cone.

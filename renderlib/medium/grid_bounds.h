@@ -23,9 +23,9 @@ class GridBounds {
   /// `grid` MUST be valid.
   explicit GridBounds(const VolumeGrid& grid);
 
-  /// Returns bounds of the values in the box from `low` to `high` of cell space (low <= high). They
-  /// are as tight as possible if the box is one brick, or the part of a brick that is in the grid's
-  /// box; otherwise they are those of all bricks that the box touches.
+  /// Returns bounds of the values in the box from `low` to `high` of cell space (low <= high):
+  /// those of all bricks that the box touches. They are as tight as possible if the box is exactly
+  /// one brick, or exactly the part of a brick that is in the grid's box.
   ValueBounds over(const Vec3& low, const Vec3& high) const;
 
  private:

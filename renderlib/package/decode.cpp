@@ -297,7 +297,7 @@ class Decoder {
     return absl::OkStatus();
   }
 
-  // Returns true for a mesh of another package, which was validated with that.
+  // Returns true if the mesh belongs to another package, with which it was validated.
   bool is_shared(const Mesh& mesh) const { return shared_.find(&mesh) != shared_.end(); }
 
   absl::StatusOr<Mesh> mesh(const package::Mesh& from, const std::string& field) {

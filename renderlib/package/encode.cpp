@@ -1,4 +1,5 @@
-// Encoder writes each list of the scene as a blob and its reference into the manifest.
+// Encodes a scene. The class Encoder stores each list of numbers as a blob (bytes that are named by
+// their digest), and writes the blob's size and digest into the manifest.
 
 #include "renderlib/package/package.h"
 

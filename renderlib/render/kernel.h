@@ -30,15 +30,16 @@ struct Kernel {
                                             const Band& band, Pool& pool,
                                             const std::atomic<bool>& stop, const RowsDone& progress,
                                             const TileSamples& tiles);
-  /// fit() of the denoiser.
+  /// The denoiser's fit() (denoise/fit.h).
   FitFunction fit;
-  /// Adds values of all functions of renderlib/math/elementary.h to the hash.
+  /// Adds values of all functions of renderlib/math/elementary.h to the hash, by which kernels and
+  /// machines are compared.
   void (*add_elementary_functions)(Hash64& hash);
 
   /// Compiled like the rest of the program: runs on every machine that the program runs on.
   static const Kernel kBase;
-  /// Compiled for x86-64-v3. Exists only in programs for every x86-64 processor; its definition is
-  /// the one symbol that merge_kernel.sh leaves visible.
+  /// Compiled for x86-64-v3. It exists only in programs that must run on every x86-64 processor.
+  /// merge_kernel.sh hides all symbols of this kernel except this one.
   static const Kernel kAvx2;
 };
 

@@ -27,8 +27,8 @@ void keep_busy(const FarmProcesses& farm) {
   BANDSAW_CHECK(finished.code == 0, finished.err.c_str());
 }
 
-/// Starts a worker and calls `lose`, which kills, freezes or disconnects it, when it has stored a
-/// band. Returns the seconds from then to the coordinator's report.
+/// Starts a worker and waits until one of its bands is stored. Then calls `lose`, which kills,
+/// freezes or disconnects the worker. Returns the seconds from then to the coordinator's report.
 double seen_after(FarmProcesses& farm, const std::string& worker,
                   const std::function<void()>& lose) {
   farm.add_worker(worker, 1);
@@ -43,7 +43,8 @@ double seen_after(FarmProcesses& farm, const std::string& worker,
   return seconds_since(begin);
 }
 
-/// Measures workers that get the signal `number`: so many `times`, each another worker.
+/// Measures the loss of a worker that gets the signal `number`. Measures it `times` times, each
+/// time with a new worker.
 Figure signalled(const std::string& name, const std::string& aim, int number, int times) {
   Figure figure{name, aim, " s", {}, ""};
   FarmProcesses farm;

@@ -36,7 +36,7 @@ struct PhoneStudyOptions {
   int runs = 10;                       ///< runs of each image on each machine
   std::optional<std::uint32_t> width;  ///< pixels; std::nullopt: the study's own
   int threads = 0;                     ///< threads of "all"; 0: one for each CPU
-  FarmOption farm;                     ///< the farm to use; it need not exist if none is named
+  FarmOption farm;                     ///< empty: the default farm, if there is one
   Verbosity verbosity;
 };
 

@@ -107,7 +107,7 @@ def light(kind, place, energy, target=(0, 0, 0), **fields):
     thing.location = place
     thing.rotation_euler = (Vector(target) - Vector(place)).to_track_quat("-Z", "Y").to_euler()
     thing.data.energy = energy
-    thing.visible_camera = False  # as Blender's own command that adds a light
+    thing.visible_camera = False  # as Blender's own command "Add Light" sets it
     for key, value in fields.items():
         setattr(thing.data, key, value)
     return thing
@@ -308,7 +308,7 @@ def lights():
     light("AREA", (0, 2, 3), 60, target=(0, 0, 0.5), shape="RECTANGLE", size=1, size_y=0.5)
     light("AREA", (-3, -2, 2), 20, target=(-2, 0, 0), shape="DISK", size=0.8)
     light("SUN", (0, 0, 5), 0.3, target=(1, 2, 0), angle=math.radians(5))
-    # A portal of Cycles emits nothing, whatever its power is.
+    # A light that Cycles uses as a portal emits nothing, whatever its power is.
     light("AREA", (3, -3, 3), 500, size=2).data.cycles.is_portal = True
 
 

@@ -1,5 +1,6 @@
-// Scenes of pbrt and Mitsuba. A farm that loses a worker gives the bytes of `render`, and so does
-// the scene file that `import` writes. The scenes are made here and have many features each.
+// Scenes of pbrt and Mitsuba. The image of a farm that loses a worker has the same bytes as that of
+// `bandsaw render`. So has the image of the scene file that `bandsaw import` writes. The scenes are
+// defined here, and each has many features.
 
 #include <gtest/gtest.h>
 

@@ -20,7 +20,8 @@ constexpr char kSshd[] = "/usr/sbin/sshd";
 
 void write_text(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
-// An `ssh` on PATH with its own configuration; the account behind it has the test's HOME.
+// Makes a program `ssh` with its own configuration. The account that it logs in to has a folder of
+// the test as HOME. Returns the PATH=... on which this `ssh` is found.
 std::string make_account(const TempDir& folder) {
   for (const char* key : {"key", "host"}) {
     run({"/usr/bin/ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / key});

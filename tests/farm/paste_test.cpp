@@ -47,7 +47,7 @@ TEST(Paste, TheLineInstallsAndStartsAWorker) {
   EXPECT_EQ(worker.wait(), 0) << worker.err();
 }
 
-TEST(Paste, AnotherKeyOrAnotherProgramIsNotStarted) {
+TEST(Paste, ItStartsNoWorkerIfTheKeyOrTheProgramDiffers) {
   const auto hosts = Hosts::create({"coordinator"});
   if (!hosts.ok()) {
     GTEST_SKIP() << hosts.status().message();

@@ -35,8 +35,8 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
     bytes.push_back(static_cast<std::byte>(byte));
   }
   read_all(bytes);
-  // No mutation guesses the hash at the end, so the code behind the check is reached with the
-  // correct hash.
+  // A random mutation practically never has the correct hash at its end, so the input is read again
+  // with the correct hash. Then the code after the check of the hash is tested too.
   if (bytes.size() > sizeof(std::uint64_t)) {
     const std::size_t body = bytes.size() - sizeof(std::uint64_t);
     Hash64 hash;

@@ -1,6 +1,6 @@
-// Fuzz target (fuzz.h): the messages of a worker to the coordinator, each after two bytes with its
-// length, little-endian. They are checked as the coordinator does and then given to a scheduler
-// with a job, whose invariants must hold.
+// Fuzz target (fuzz.h): the messages of a worker to the coordinator. Two bytes before each message
+// are its length, little-endian. The messages are checked as the coordinator checks them, then
+// given to a scheduler that has a job. The scheduler's invariants must hold.
 
 #include "coordinator/rpc/checked_messages.h"
 #include "coordinator/scheduler/scheduler.h"

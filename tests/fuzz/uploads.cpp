@@ -1,7 +1,7 @@
 // Fuzz target (fuzz.h): the chunks in which a blob, the bytes that belong to a digest, is uploaded
-// to the coordinator. First the whole input is parsed as one chunk. Then each three bytes
-// of the input select what happens next: a sender begins, continues, skips bytes, sends wrong bytes
-// or is interrupted, or the disk is damaged. A blob that is stored must have its digest after every
+// to the coordinator. First the whole input is parsed as one chunk. Then each group of three bytes
+// selects what happens next: a sender begins, continues, skips bytes, sends wrong bytes or is
+// interrupted, or the disk is damaged. A blob that is stored must have its digest after every
 // step.
 
 #include <algorithm>
@@ -81,8 +81,9 @@ class Sender {
     BANDSAW_CHECK(status.ok() || store_->partial(digest_) == 0, "wrong bytes are not kept");
   }
 
-  /// The high bits of `what` select: from the beginning or from the stored bytes on, correct or
-  /// damaged bytes, at the right offset or beside it.
+  /// Sends a chunk. Three bits of `what` select its kind. 32: a bit of the data is wrong. 64: a new
+  /// upload continues after the stored bytes; otherwise it begins at 16 * `number`. 128: the offset
+  /// in the chunk is too large by `number`.
   void send(std::uint8_t what, std::uint32_t number) {
     farm::BlobChunk chunk;
     std::uint64_t offset = intake_.received();

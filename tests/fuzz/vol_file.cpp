@@ -14,8 +14,8 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
     return;
   }
   const absl::StatusOr<float> checked = check_grid(read->grid);
-  // The box of the file may be too flat for the map to have an inverse; the scene file's reader
-  // checks that.
+  // The file's box may be so flat that `to_medium` has no inverse. The reader of scene files checks
+  // that later.
   BANDSAW_CHECK(checked.ok() || !inverse(read->grid.to_medium),
                 checked.status().ToString().c_str());
 }

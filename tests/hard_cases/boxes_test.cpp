@@ -20,7 +20,8 @@ using test::Wide;
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// Tests the box by the test of a BVH's node, as child 5 of a node whose other children are empty.
+/// Returns true if the ray meets the box according to the renderer. The box is child 5 of a BVH
+/// node whose other children are empty.
 bool meets(const FloatBox& box, const Ray& ray) {
   WideNode node;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -1,7 +1,7 @@
 // The pixels' sums of twelve gallery scenes have the hashes of same_bits.txt, in any build by any
-// compiler. These are the cases C5, R6, R10, B12 and Y3 of cases.txt. The table changes only when
-// kPixelVersion is raised, a number that says that pixels are others; the failing test prints the
-// new table.
+// compiler. These are the cases C5, R6, R10, B12 and Y3 of cases.txt. The table changes only
+// together with kPixelVersion, which is incremented with every change that alters pixels. The test
+// prints the new table if it fails.
 
 #include <gtest/gtest.h>
 

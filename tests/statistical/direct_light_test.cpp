@@ -1,7 +1,8 @@
-// Irradiance under single lights against closed forms, within 4 standard errors; the standard error
-// is at most 1e-3 of the value. With 4 standard errors of 32 seeds, a correct change of the
-// sampling fails a test with a probability of about 1 / 2 700. An id such as L4 in a test's name is
-// that of a case in tests/hard_cases/cases.txt.
+// Compares the irradiance under lights with closed forms. A measured value may differ by 4 standard
+// errors, and the standard error may be 1e-3 of the value. The standard error is that of the mean
+// over 32 seeds. So each comparison of a correct renderer fails with a probability of about
+// 1 / 2 700 when the random numbers change. An id such as L4 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -61,8 +61,8 @@ TEST(Media, V6AbsorptionIsExponential) {
   test::report_hard_case("V6", "T within 4 SE");
 }
 
-/// The camera is in the middle of a ball of smoke; the light is inside of the ball, on its boundary
-/// or outside. Then the camera is in endless fog.
+/// First the camera is in the middle of a ball of smoke, and the light is inside of the ball, on
+/// its boundary or outside. Then both are in endless fog.
 TEST(Media, V7AroundTheCameraAttenuateALight) {
   const Ray ray{.origin = {0, 0, 0}, .direction = {0, 0, -1}};
   for (const double distance : {0.5, 2.0, 3.0}) {
@@ -82,9 +82,9 @@ TEST(Media, V7AroundTheCameraAttenuateALight) {
   test::report_hard_case("V7", "within 4 SE");
 }
 
-/// A light that the camera ray hits is added to every path, attenuated by the media in front of it,
-/// and not only to the paths that are not scattered there. So the pixel has no noise, although
-/// about half of these paths are scattered before they reach the light.
+/// The camera ray hits a light behind media. Every path gets the light of this hit, attenuated by
+/// the media, even if the path is scattered in front of the light (about half of the paths are). So
+/// the pixel has no noise.
 TEST(Media, InFrontOfALightAttenuateEverySampleEqually) {
   SceneMaker maker;
   maker.sphere({10, 0, 0}, 1e-3, maker.lamp(5));

@@ -26,8 +26,8 @@ Instance of_group(std::uint32_t group, const Transform& to_world) {
   return instance;
 }
 
-/// Adds a small white patch at the origin with the normal +y, and expects this irradiance of it,
-/// averaged over the time in which the shutter is open.
+/// Adds a small white patch at the origin with the normal +y, and expects that its irradiance is
+/// `expected`, averaged over the time in which the shutter is open.
 void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples = 1024,
                        Technique technique = Technique::kBoth) {
   maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
@@ -91,7 +91,8 @@ TEST(PlacedLight, X9_EmitsAccordingToItsSizeInTheWorld) {
   test::report_hard_case("X9", "within 4 SE");
 }
 
-// An ellipsoid over a point: light sampling and BSDF sampling agree. A flat one is nearly a disk.
+// Light sampling and BSDF sampling agree for an ellipsoid over a point. A flat ellipsoid gives
+// nearly the irradiance of a disk.
 TEST(PlacedLight, AllTechniquesAgreeForAnEllipsoid) {
   SceneMaker maker;
   maker.scene.geometry.groups.resize(1);
@@ -145,7 +146,7 @@ TEST(MovingLight, EmitsFromItsPositionAtTheTime) {
   // A disk that rotates about its middle; it emits from both sides, so one is always visible.
   Shapes disk;
   disk.disks.push_back({{0, 0, 0}, {0, 1, 0}, 0.05, MaterialId{0}});
-  // E = A |cos| / d^2 for a small one; the mean of |cos| over half a turn is 2 / pi.
+  // The irradiance of a small disk is A |cos| / d^2; the mean of |cos| over half a turn is 2 / pi.
   const double closed_form = kPi * 0.0025 / 100 * 2 / kPi;
   SceneMaker turning = moving_lamp(disk, Key(0, translation({0, 10, 0})),
                                    Key(1, translation({0, 10, 0}) * rotation({1, 0, 0}, 90)));
@@ -201,7 +202,8 @@ TEST(MotionBlur, C9_AMovingEdgeIsALinearRamp) {
       pixels[x].add(band->sums[3 * x + 1] / kSamples);
     }
   }
-  // The share of the time in which the edge, at 5 + 10 t, is beyond a point of the pixel.
+  // A point of a pixel is bright while the edge, at x = 5 + 10 t, is to the right of it. The
+  // expected value of a pixel is the share of the time in which its points are bright, as a mean.
   const auto integral = [](double x) {  // integral of clamp(x, 0, 10) / 10
     return x < 0 ? 0 : x < 10 ? x * x / 20 : x - 5;
   };

@@ -14,9 +14,10 @@
 namespace bandsaw::test {
 namespace {
 
-/// The closest hit so far of one ray. `instance` in its functions is that of PrimitiveId: 0 for
-/// shapes that are in no instance, otherwise the index of the instance plus 1. `ray_.from` is the
-/// primitive on which the ray begins: a flat one cannot be hit again, a sphere can.
+/// The closest hit so far of one ray. The parameter `instance` has the values of
+/// PrimitiveId::instance: 0 for shapes that are in no instance, otherwise the index of the instance
+/// plus 1. `ray_.from` is the primitive on which the ray begins: a flat one cannot be hit again, a
+/// sphere can.
 class Search {
  public:
   explicit Search(const Ray& ray) : ray_(ray) { best_.t = ray.t_max; }

@@ -52,7 +52,8 @@ bool may_meet(const Box& box, const TracedRay& ray, double bound) {
   return enter <= leave * (1 + 0x1p-30);
 }
 
-/// Keeps the closer hit; of two at the same distance that with the lower id, as Accel does.
+/// Keeps the closer hit. If both are at the same distance, keeps the one with the lower id, as
+/// Accel does.
 void keep_lower(const PrimitiveId& id, const Crossing& crossing, Hit& best) {
   if (crossing.t < best.t || (crossing.t == best.t && id < best.id)) {
     best = {crossing.t, id, crossing.u, crossing.v};

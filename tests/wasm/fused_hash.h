@@ -1,7 +1,7 @@
 #pragma once
 
-// Hash of results of renderlib/math/fused.h (a b + c, rounded once). It is computed by the native
-// program and as WebAssembly, which has no such instruction and emulates it, and must be equal.
+// Hash of results of renderlib/math/fused.h (a b + c, rounded once). It must be equal in the native
+// program and in WebAssembly, which has no instruction for it and emulates it.
 
 #include <bit>
 #include <cmath>
@@ -13,8 +13,8 @@
 
 namespace bandsaw::test {
 
-/// Adds results for numbers of any bits, for numbers of similar sizes with few bits, and for sums
-/// that cancel.
+/// Returns the hash for numbers of any bits, for numbers of similar sizes, some with few bits, for
+/// sums that cancel, and for very small results.
 inline std::uint64_t fused_hash() {
   Hash64 hash;
   std::uint64_t state = 0;

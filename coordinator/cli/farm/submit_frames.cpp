@@ -103,7 +103,8 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
 }
 
 /// Prints why the sender has ended, and the frames whose scenes were not sent; returns the exit
-/// code. An error that is not the import's is one of the farm.
+/// code. Errors of the import and of the farm have the same type: the codes for which
+/// import_exit_code() has no exit code of its own (kWrong) are treated as errors of the farm.
 ExitCode not_sent(const absl::Status& status, JobId job, const FrameSender& sender,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)

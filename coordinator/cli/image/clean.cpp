@@ -28,9 +28,9 @@ std::string raw_name(const std::string& output) {
   return path.replace_extension(".raw" + suffix).string();
 }
 
-/// Returns the normals in the camera's view as unit vectors, or zeros where no surface was hit. A
-/// pixel of `shape` has (x + 1) / 2 and (y + 1) / 2 of the normal as red and green, and as blue the
-/// distance of the surface, 0 where none was hit. z follows from the length 1.
+/// Returns the normals in the camera's view as unit vectors, or zeros where no surface was hit. In
+/// `shape`, red is (x + 1) / 2 and green is (y + 1) / 2 of the normal (x, y, z). Blue is the
+/// distance of the surface, or 0 where no surface was hit. z is computed from the length, 1.
 Image normals_of(const Image& shape) {
   Image normals{shape.width, shape.height, {}};
   for (const Rgb& guide : shape.pixels) {

@@ -53,13 +53,13 @@ absl::StatusOr<Denoised> make_clean(ToClean input, const JobRenderer& render, De
 Report::Clean clean_report(const Denoised& clean, Denoiser denoiser,
                            const std::vector<std::string>& outputs);
 
-/// Checks before an image is rendered if its noise can be removed; OK for kNone.
+/// Checks whether the noise of an image can be removed, before it is rendered. OK for kNone.
 /// FAILED_PRECONDITION: as check_cleanable (scheduler/api/clean_jobs.h). UNAVAILABLE:
 /// OpenImageDenoise is wanted and not installed.
 absl::Status check_denoise(Denoiser denoiser, const RenderSettings& settings, const StopRule& stop);
 
-/// Returns the files for the image as rendered beside these outputs, which get the clean image:
-/// picture.raw.png beside picture.png. An EXR file has both images, so it needs no other file.
+/// Returns the files that get the image as rendered: picture.raw.png beside the output picture.png,
+/// which gets the clean image. An EXR file has both images, so it needs no other file.
 std::vector<std::string> raw_outputs(const std::vector<std::string>& outputs);
 
 /// Checks before an image is rendered that its files can be written: `outputs`, and raw_outputs()

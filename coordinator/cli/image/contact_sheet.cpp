@@ -51,7 +51,7 @@ ContactSheet::ContactSheet(const std::vector<std::int64_t>& numbers, std::uint32
   for (const std::int64_t number : spread(numbers, kMaxSheetFrames)) {
     cells_[number] = {};
   }
-  // With c columns of n frames the sheet has the shape c * aspect : n / c, which is to be 16:10.
+  // With n frames in c columns, the sheet has the shape c * aspect : n / c, which is to be 16:10.
   const double aspect = static_cast<double>(width) / height;
   const double columns = std::ceil(std::sqrt(static_cast<double>(cells_.size()) * 1.6 / aspect));
   columns_ =
@@ -70,7 +70,8 @@ void ContactSheet::add(std::int64_t number, const Image& image, const Display& d
   for (Rgb& pixel : bright.pixels) {
     pixel = shown(pixel, display);
   }
-  // Reduces by a whole factor as means of pixels, and then to the exact size by the nearest pixel.
+  // First reduces the image by an integer factor: each pixel is the mean of a block of pixels. Then
+  // takes the nearest pixel, to get the exact size.
   const std::uint32_t factor = std::max<std::uint32_t>(1, image.width / cell_width_);
   const Image near = shrunk(bright, factor, factor);
   Image& small = cell->second;

@@ -19,10 +19,10 @@ namespace bandsaw::coordinator {
 absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& given,
                                                       const std::vector<std::string>& outputs);
 
-/// Checks if an image of `scene` may be written to the default file `output`. A picture with the
-/// name of a model may be its texture. So an existing file is replaced only if a report is beside
-/// it, or if the scene is a scene file, which has no texture of its own name. INVALID_ARGUMENT: the
-/// file exists and may not be replaced.
+/// Checks if an image of `scene` may be written to the default file `output`. An existing file
+/// with the name of a model may be the model's texture, so it may be replaced only if a report is
+/// beside it. For a scene file it may always be replaced: a scene file has no texture of its own
+/// name. INVALID_ARGUMENT: the file exists and may not be replaced.
 absl::Status check_default_output(const std::string& scene, const std::string& output);
 
 /// Checks that `outputs` can be written. If the user named none (`given` is empty), also calls

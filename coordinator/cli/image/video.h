@@ -1,7 +1,7 @@
 #pragma once
 
-// Makes a video of the frames of a sequence by ffmpeg, a child process, for --video of `submit` and
-// `watch`.
+// Makes a video of the frames of a sequence with ffmpeg, which runs as a child process. For --video
+// of `submit` and `watch`.
 
 #include <optional>
 #include <string>
@@ -20,7 +20,7 @@ class Video {
   static absl::Status check(const std::string& path);
 
   /// `path`: a file whose name ends in .mp4, .mov, .mkv or .webm. REQUIRES: check() was OK, and
-  /// SIGPIPE is ignored (outlive_reader), so that an end of ffmpeg is an error of add().
+  /// SIGPIPE is ignored (outlive_reader), so that add() returns an error if ffmpeg has ended.
   Video(std::string path, double frames_per_second)
       : path_(std::move(path)), frames_per_second_(frames_per_second) {}
   /// If finish() was not called or failed, ends ffmpeg and removes the incomplete file.
@@ -28,8 +28,8 @@ class Video {
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
 
-  /// Appends a frame with the brightness that an 8-bit file of it has. The first one starts ffmpeg.
-  /// All MUST have the same size. ABORTED: ffmpeg failed.
+  /// Appends a frame, as bright as in an 8-bit image file: `display` is applied. The first frame
+  /// starts ffmpeg. All frames MUST have the same size. ABORTED: ffmpeg failed.
   absl::Status add(const Image& image, const Display& display);
   /// Ends the video and gives it its name. FAILED_PRECONDITION: there is no frame. ABORTED: ffmpeg
   /// failed.

@@ -15,8 +15,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Returns true if `count` records of `size` bytes from `offset` on are within the file. The
-/// numbers may be any: nothing overflows.
+/// Returns true if `count` records of `size` bytes from `offset` on are within the file. Does not
+/// overflow, whatever the numbers are.
 bool holds(absl::string_view file, std::uint64_t offset, std::uint64_t size, std::uint64_t count) {
   return offset <= file.size() && (count == 0 || size <= (file.size() - offset) / count);
 }

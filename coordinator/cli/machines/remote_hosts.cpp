@@ -1,6 +1,6 @@
 // Runs ssh for each host. ssh's standard input is a file in memory with the script and the script's
-// own input. The other machine's shell reads the script from it and evaluates it, so no other shell
-// on the way parses it.
+// own input. A shell on the host reads the script from it and evaluates it. The script is in no
+// command line, so the user's login shell on the host does not parse it.
 
 #include "coordinator/cli/machines/remote_hosts.h"
 
@@ -73,7 +73,7 @@ bool read_result(const std::string& output, RemoteOutcome& outcome) {
   return false;
 }
 
-/// Returns the outcome for a host from the end and the output of ssh.
+/// Returns the outcome for a host. It follows from how ssh ended and from what it printed.
 RemoteOutcome judge(const std::string& host, const absl::StatusOr<ChildOutcome>& child,
                     double seconds) {
   RemoteOutcome outcome;

@@ -83,7 +83,7 @@ struct ServeOptions {
   /// HOST:PORT of the dashboard, or "none"; empty: 127.0.0.1:8787, or a free port if that is taken.
   std::string web;
   bool insecure = false;             ///< connections are not encrypted
-  bool reflection = false;           ///< gRPC server reflection lists the calls to any client
+  bool reflection = false;           ///< any client may list the calls (gRPC server reflection)
   double keep_days = 30;             ///< maximum age of jobs that are over
   double keep_gb = 100;              ///< maximum size of results and scenes
   std::uint64_t keep_jobs = 10'000;  ///< maximum number of jobs that are over
@@ -119,8 +119,8 @@ struct SubmitOptions {
   std::int32_t priority = 0;        ///< [-kMaxPriority, kMaxPriority]
   std::vector<LayerKind> layers;    ///< layers of EXR files
   std::vector<FrameNumber> frames;  ///< ascending; empty: a single image
-  /// Sequence (job of many frames) for which the scenes that the farm lacks are sent; 0: a new job
-  /// is started.
+  /// A sequence (job of many frames) whose submission is continued: the scenes that the farm still
+  /// lacks are sent. 0: a new job is started.
   JobId continued = 0;
   AfterOptions after;
   Denoiser denoise = Denoiser::kNone;

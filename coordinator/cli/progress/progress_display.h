@@ -42,8 +42,9 @@ class ProgressDisplay {
   /// With --json it is a "note" event.
   void note(const std::string& text) EXCLUDES(mutex_);
 
-  /// Shows the progress of a step before the render, for example "sending the scene". Does nothing
-  /// if it is called too soon after the last output, or after the first call.
+  /// Shows the progress of a step before the render, for example "sending the scene". Shows nothing
+  /// if the last output is too recent. The first call counts as an output, although it shows
+  /// nothing.
   void preparing(const std::string& what, std::uint64_t bytes_done, std::uint64_t bytes_in_all,
                  double now) EXCLUDES(mutex_);
 
@@ -51,9 +52,9 @@ class ProgressDisplay {
   void frame_written(JobId sequence, FrameNumber frame, const std::vector<std::string>& outputs,
                      const std::vector<std::string>& reports) EXCLUDES(mutex_);
 
-  /// Ends the display of a render that has its image. Prints the warnings, the cost and a final
-  /// line with the files in `outputs` (empty: with the job's number) and `reports`. With --quiet
-  /// prints the warnings and the final line.
+  /// Ends the display of a render that has its image. Prints the warnings, the cost (not with
+  /// --quiet) and a final line with the files in `outputs` and `reports`. If `outputs` is empty,
+  /// the final line has the job's number instead of files.
   void done(const Progress& progress, const std::vector<std::string>& outputs,
             const std::vector<std::string>& reports = {}) EXCLUDES(mutex_);
 

@@ -41,7 +41,8 @@ absl::StatusOr<std::optional<Image>> CleanPreview::of(const Film& film, std::uin
                      .first_share = {},
                      .albedo = guides_->albedo,
                      .shape = guides_->shape};
-  // A reduced pixel takes the share of the first of its pixels, because their shares differ little.
+  // The share is the part of a pixel's samples that is in `first`. It differs little among the
+  // pixels that become one, so the value of the first of them is used.
   for (std::uint32_t y = 0; y < input.mean.height; ++y) {
     for (std::uint32_t x = 0; x < input.mean.width; ++x) {
       input.first_share.push_back(first->share[std::size_t{y} * step * film.width() + x * step]);

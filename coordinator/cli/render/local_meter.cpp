@@ -51,8 +51,9 @@ double LocalMeter::fraction_of(const JobView& job, const ErrorCurve& curve) cons
   }
   const auto& rule = std::get<StopAtError>(spec_.stop);
   const auto end = expected_end(curve, rule.relative_rmse, planned_, rule.max_samples);
-  // In an adaptive render a pass does not have all pixels, so `done`, a mean, would be too small.
-  // Then the end of the last complete pass is used.
+  // In an adaptive render, a pass (a range of samples) omits the pixels that need no more samples.
+  // So `done`, the mean over all pixels, is too small. The number of samples at the last point of
+  // the curve is used instead.
   const double so_far = rule.adaptive && end ? static_cast<double>(curve.back().samples) : done;
   return end ? so_far / static_cast<double>(*end) : 0;
 }

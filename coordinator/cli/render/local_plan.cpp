@@ -1,7 +1,7 @@
 // next() plans all passes up to the next checkpoint (a number of samples per pixel) at once, and
-// checks the stop rule when they are done. An adaptive render first goes to an error that is larger
-// than its target. There wants_tiles() is true, and plan() sets, once, how many samples each half
-// tile takes.
+// checks the stop rule when they are done. An adaptive render first renders until its error has
+// fallen to a limit that is larger than its target. Then wants_tiles() is true, and plan() is
+// called once. It sets how many samples each half tile takes.
 
 #include "coordinator/cli/render/local_plan.h"
 

@@ -38,7 +38,7 @@ fs::path output_of(const ImportOptions& options) {
 
 /// Returns the files to write beside the scene file. Files in the folder of the converted scene are
 /// copied, unless the scene file is written to that folder. PERMISSION_DENIED: a file is not in
-/// that folder, as where a symbolic link leads outside.
+/// that folder, for example because a symbolic link leads out of it.
 absl::StatusOr<std::vector<Output>> outputs_of(const SceneFiles& files, const std::string& scene,
                                                const fs::path& target_folder) {
   std::error_code error;

@@ -26,8 +26,8 @@ struct CleanPoint {
 
   /// Returns the relMSE of the image as rendered divided by that of the clean one; 0: unknown.
   double gain() const { return clean_mse > 0 ? raw_mse / clean_mse : 0; }
-  /// Returns the same ratio for an image that was rendered in the time of the clean one. Its
-  /// squared error is computed from that of the image as rendered, because it falls as 1 / time.
+  /// Returns the same ratio, if the noisy image also had the CPU time of the clean one. The relMSE
+  /// of that image is not measured: it is `raw_mse` scaled by 1 / time.
   double gain_in_equal_time() const {
     return clean_cpu_s > 0 ? gain() * raw_cpu_s / clean_cpu_s : 0;
   }

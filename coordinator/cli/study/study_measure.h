@@ -104,9 +104,9 @@ absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& s
 std::optional<double> slope_of(const StudyLine& line);
 
 /// Returns the CPU seconds until the relative RMSE is 1 %, computed as for reports (cpu_s_until in
-/// scheduler/api/error_curve.h, which extrapolates). Returns std::nullopt if it cannot be computed,
-/// and for kPixelStops and kClean, whose errors have a bias that more samples do not reduce in the
-/// same way.
+/// scheduler/api/error_curve.h, which extrapolates). Returns std::nullopt if it cannot be computed.
+/// Also returns std::nullopt for kPixelStops and kClean: they are biased, and their bias does not
+/// fall with the samples as noise does.
 std::optional<double> cpu_s_to_1_percent(const StudyLine& line);
 
 }  // namespace bandsaw::coordinator

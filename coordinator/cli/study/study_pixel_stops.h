@@ -50,7 +50,8 @@ inline constexpr std::array<double, 4> kTolerances = {0.4, 0.2, 0.1, 0.05};
 struct StoppedImages {
   std::array<Image, kTolerances.size()> images;
   std::array<double, kTolerances.size()> samples = {};  ///< per pixel, on average
-  /// Number of rays of all samples that were rendered: as if every pixel took `most` samples.
+  /// Number of rays of all samples. Every pixel is rendered with `most` samples, also after it has
+  /// stopped.
   double rays = 0;
 };
 

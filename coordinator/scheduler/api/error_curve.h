@@ -26,14 +26,14 @@ using ErrorCurve = std::vector<ErrorPoint>;
 
 /// Adds a point with at least as many samples as the last one. A point with as many replaces the
 /// last one's estimate and keeps its times, because it is a second measurement of the same image.
-/// If the last two points are less than an eighth apart, the new point replaces the last one, so a
-/// curve has at most about 160 points.
+/// The new point replaces the last one if that one has less than 1/8 more samples than the point
+/// before it. So a curve has at most about 160 points.
 void add_point(ErrorCurve& curve, const ErrorPoint& point);
 
 /// Returns the exponent p of "error falls as samples^-p" over the last octave (the last doubling of
-/// the samples): the mean over the points of this octave, each compared with half its samples,
-/// clamped to [0.5, 0.75]. 0.5, the exponent of random samples, if the curve does not span an
-/// octave.
+/// the samples). It is the mean over the points of this octave, each compared with half its
+/// samples, clamped to [0.5, 0.75]. If the curve does not span an octave, it is 0.5, the exponent
+/// of random samples.
 double fall_of(const ErrorCurve& curve);
 
 /// Returns the relative RMSE plus its margin (ErrorEstimate::at_most) at this many samples per

@@ -86,7 +86,7 @@ absl::StatusOr<std::vector<FrameNumber>> parse_frames(absl::string_view text) {
   std::vector<FrameNumber> numbers;
   for (const absl::string_view item : absl::StrSplit(text, ',')) {
     RETURN_IF_ERROR(add_item(absl::StripAsciiWhitespace(item), numbers));
-    // Bounds the memory and the time. Not at kMaxFrames, because items may overlap.
+    // Bounds the memory and the time. The bound is above kMaxFrames, because items may overlap.
     if (numbers.size() > 2 * kMaxFrames) {
       return absl::InvalidArgumentError(
           absl::StrCat("'", text.substr(0, 40), "' lists more than ", 2 * kMaxFrames,

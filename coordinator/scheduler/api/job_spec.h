@@ -26,7 +26,8 @@ struct StopAtError {
   bool adaptive = false;
   friend bool operator==(const StopAtError&, const StopAtError&) = default;
 };
-/// The job ends at the last complete pass before this much time has passed since its first lease.
+/// Once this much time has passed since the job's first lease, the job ends with the passes that
+/// are complete then, but not before the first pass is complete.
 struct StopAtTime {
   double seconds = 0;  ///< > 0
   std::uint64_t max_samples = kMaxSamples;
@@ -50,7 +51,7 @@ struct JobSpec {
   JobId sequence = 0;     ///< the sequence of a frame job (sequence_spec.h); 0: none
   FrameNumber frame = 0;  ///< its number in the sequence
   /// Bytes of the package, the manifest included; it follows from the manifest, so it is not
-  /// compared. 0: unknown, as of jobs that an earlier version has journalled.
+  /// compared. 0: unknown, because an earlier version journalled the job.
   std::uint64_t package_bytes = 0;
   /// Returns true if a band (rows and samples that a worker rendered) which is labelled with the
   /// hash `work` can belong to this job (renderlib/render/work_hash.h). The job id alone is not

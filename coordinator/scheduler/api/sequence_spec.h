@@ -63,7 +63,7 @@ struct FrameView {
   FrameNumber number = 0;
   FrameState state = FrameState::kExpected;
   JobId job = 0;              ///< its frame job; 0: none
-  std::string reason;         ///< why it failed, also of a failure after which it is tried again
+  std::string reason;         ///< why it failed last, also if it is tried again
   std::uint64_t changed = 0;  ///< grows with each change of a frame of the sequence, in one epoch
 };
 

@@ -3,8 +3,9 @@
 // Reconnect barrier: after a restart of the coordinator, or after all workers were lost at once,
 // nothing is leased until the former workers have reconnected or a grace time is over.
 //
-// The workers reconnect one by one. To the scheduler, the rows that they hold are free until then.
-// Without the barrier, the first worker would be given rows that another one has rendered already.
+// The workers reconnect one by one. Until a worker has reconnected, its rows are free in the
+// scheduler's data. Without the barrier, the first worker would get rows that another one has
+// already rendered.
 
 #include <cstddef>
 #include <set>
@@ -20,13 +21,14 @@ class ReconnectBarrier {
 
   /// Begins the grace time for all instances that were connected when the coordinator stopped.
   void begin_after_restart();
-  /// MUST be called after a worker was disconnected. If none is left, the coordinator's own network
-  /// failed rather than that of each worker; those that fell silent together are noted.
+  /// MUST be called after a worker was disconnected. If no worker is left, probably the
+  /// coordinator's own network failed. Then the workers that fell silent together are noted.
   void worker_lost();
   /// MUST be called when a worker connects. The first of workers that were lost together shows that
   /// the network is back, and begins the grace time for the others.
   void worker_connected(const Worker& worker);
-  /// Ends a grace time that is over: journals that the missing workers have left.
+  /// If the grace time is over, stops waiting, and writes to the journal that the missing workers
+  /// have left.
   void expire();
 
   /// Returns true while nothing may be leased.

@@ -48,8 +48,8 @@ struct Worker {
   std::set<LeaseId> revoked;
   MeanRate speed;  ///< pixel samples per second, for display
 
-  /// Statistics of one job that is not final. Those of a sequence hold the work rate only, with
-  /// which its next frame job begins.
+  /// Statistics of one job that is not final. For a sequence (a job of many frames), only
+  /// `work_rate` is set: it is the first estimate for the sequence's next frame job.
   struct OnJob {
     MeanRate speed;              ///< pixel samples per second, for display
     MeanRate work_rate;          ///< work per second (model/row_costs.h), by which bands are sized
@@ -87,7 +87,7 @@ class Workers {
   /// Returns the number of connected browsers. Searches all workers: only for rare events.
   std::size_t connected_browsers() const;
   void connect(Worker& worker, SessionId session);
-  /// Keeps the worker among those that have left; forgets the oldest of more than kMaxGone.
+  /// Keeps the worker as one that has left. If more than kMaxGone have left, forgets the oldest.
   void disconnect(Worker& worker);
 
   std::map<WorkerId, Worker>& all() { return all_; }

@@ -1,6 +1,7 @@
 // A worker may render a job if the job's package fits into its memory and it has not failed too
-// often at the job. A band (a range of rows and samples) at which it has failed, or its machine was
-// lost, is left to other workers as long as there are any.
+// often at the job. It leaves a band (a range of rows and samples) to other workers, as long as
+// there are any, if it has failed at the band, or if its machine was lost while it rendered the
+// band.
 
 #include "coordinator/scheduler/dispatch/eligibility.h"
 

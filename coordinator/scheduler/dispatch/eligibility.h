@@ -1,8 +1,8 @@
 #pragma once
 
-// Decides whether a worker may render a job, and a band (a range of rows and samples) of it. Bands
-// that it failed, and bands at which its machine was lost, are left to other workers as long as
-// there are any.
+// Decides whether a worker may render a job, and a band (a range of rows and samples) of it. A
+// worker leaves two kinds of bands to other workers, while there are any that can render them:
+// bands that it failed, and bands during which its machine was lost.
 
 #include <cstdint>
 #include <vector>
@@ -13,7 +13,7 @@ namespace bandsaw::coordinator {
 
 class Eligibility {
  public:
-  /// A worker that failed this many bands of a job in a row gets no more of it.
+  /// A worker that failed this many bands of a job in a row gets no more bands of this job.
   static constexpr std::uint32_t kMaxFailuresPerWorker = 3;
   /// Bytes of memory that a loaded scene takes, per byte of its package, at most. For a mesh: its
   /// package has 18 bytes per triangle (12 of indices, 6 of vertices), and its acceleration
@@ -29,27 +29,29 @@ class Eligibility {
   /// Returns true if the worker may also render bands for the image. For browsers, this also
   /// depends on SchedulerOptions::browsers and on audits_lag().
   bool may_render(const Worker& worker, const Job& job) const;
-  /// Returns true if so many bands wait for their audits that browsers get no more of the job until
-  /// native workers have rendered some of them. Otherwise bands would be stored without the audit
-  /// for which they are selected (Job::kMaxAudits).
+  /// Returns true if many bands of the job wait for an audit (a second render, to compare). Then
+  /// browsers get no more bands of the job until native workers have done some of these audits.
+  /// Without this limit, bands would be stored without the audit for which they are selected
+  /// (Job::kMaxAudits).
   bool audits_lag(const Job& job) const;
   /// Returns true if the scene of the job fits into the worker's memory.
   static bool fits(const Worker& worker, const Job& job);
   /// Returns true if the worker failed kMaxFailuresPerWorker bands of the job in a row.
   static bool failed_too_often(const Worker& worker, const Job& job);
-  /// Returns true if some connected native worker (one that is no browser) failed too often at the
-  /// job.
+  /// Returns true if failed_too_often() is true for a connected native worker (one that is no
+  /// browser).
   bool native_gave_up(const Job& job) const;
   /// Returns true if some eligible worker may render the job.
   bool someone_may_render(const Job& job) const;
   /// Returns true if some eligible worker may render the job and has not failed the band.
   bool someone_else(const Job& job, const Band& band) const;
   /// Returns true if some eligible worker may render the job, has not failed the band, and runs on
-  /// a machine that was not lost at the band.
+  /// a machine that was not lost while it had the band.
   bool another_machine(const Job& job, const Band& band) const;
 
-  /// Returns the bands of the job that this worker must leave to others: those that it failed or at
-  /// which its machine was lost, if there is another worker for them.
+  /// Returns the bands of the job that this worker must leave to others: those that it failed, if
+  /// someone_else() may render them, and those during which its machine was lost, if
+  /// another_machine() may render them.
   std::vector<Band> left_to_others(const Job& job, const Worker& worker) const;
   /// Returns true if `band` overlaps a band that this worker must leave to others.
   bool left_to_others(const Job& job, const Worker& worker, const Band& band) const;

@@ -113,8 +113,8 @@ void LeaseLedger::note_progress(const Worker& worker, std::size_t from) {
   }
 }
 
-/// When an original has ended, each of its backup tasks takes over its own rows, or is revoked if
-/// they are stored or leased.
+/// The lease `ended` has ended. Each of its backup tasks becomes the owner of the rows of the
+/// backup's band. It is revoked instead if all of them are stored, or another lease owns one.
 void LeaseLedger::promote_backups(Job& job, LeaseId ended) {
   const std::set<LeaseId> backups = job.backups;
   for (const LeaseId id : backups) {

@@ -27,9 +27,9 @@ class LeaseLedger {
   /// Frees the lease's rows, or passes them on to its backup tasks. kYes: also revokes the lease at
   /// its worker.
   void end(LeaseId id, Revoke revoke);
-  /// Ends a lease whose result has arrived. The lease is also revoked if the worker named it in its
-  /// Hello. The reply to the Hello names the lease again, and may reach the worker after it has
-  /// dropped the band.
+  /// Ends a lease whose result has arrived. Also revokes it if the worker named it in the Hello of
+  /// a reconnect: the coordinator's reply grants the lease again, and the worker may read this
+  /// reply after it has sent the result and dropped the band.
   void end_rendered(LeaseId id);
   /// Calls end_rendered() for the worker's lease of exactly this band, if it has one.
   void end_rendered(const Worker& worker, JobId job, const Band& band);

@@ -21,8 +21,9 @@ class JobLifecycle {
       : context_(context), ledger_(ledger), planner_(planner), audits_(audits) {}
 
   /// Evaluates a pending error checkpoint or the time limit of a running job. Requests its image
-  /// once all passes are complete and no audit (second rendering of stored rows, to compare)
-  /// blocks. MUST be called after each change of the stored rows or of the audits.
+  /// once all passes are complete and it need not wait for an audit (a second rendering of stored
+  /// rows, which is compared with the first). MUST be called after each change of the stored rows
+  /// or of the audits.
   void advance(Job& job);
   /// Notes the error that the film measured after a pass, and evaluates it if this is a checkpoint.
   void pass_merged(const input::PassMerged& in);
@@ -37,11 +38,12 @@ class JobLifecycle {
   void storage_back();
   /// Makes a paused job run again.
   void resume(Job& job);
-  /// Revokes leases of jobs that a user paused a second ago or earlier, except of bands that are
-  /// rendered and being uploaded.
+  /// Revokes the leases of jobs that a user paused at least a second ago. Keeps the leases whose
+  /// bands are rendered and only have to be uploaded.
   void revoke_from_held_jobs();
-  /// Journals the elapsed time at intervals, so that a crash loses at most a second of it, or a
-  /// fiftieth. A long job has at most a few hundred such records.
+  /// Writes the elapsed time to the journal at intervals. A crash loses at most one second or one
+  /// fiftieth of the time, whichever is longer. Even a long job has only a few hundred such
+  /// records.
   void note_time(const Job& job);
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
 // Requests of users about jobs: submit, cancel, pause, resume, priority, forget. A request that
-// cannot be granted sets the status of the step, which is its answer.
+// fails is answered with a status (Context::answer). These statuses are the errors named below.
 
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/dispatch/lease_ledger.h"
@@ -19,18 +19,19 @@ class JobRequests {
   /// ALREADY_EXISTS: the request id is of a job with another spec. INVALID_ARGUMENT: the stop rule,
   /// image size or priority is out of range. RESOURCE_EXHAUSTED: too many jobs.
   void submit(const input::Submit& in);
-  /// Errors of cancel, pause, resume and set_priority: NOT_FOUND: no such job. FAILED_PRECONDITION:
-  /// the job is final; cancel() then has no effect and returns no error.
+  /// Errors of cancel, pause, resume and set_priority: NOT_FOUND: no such job.
+  /// FAILED_PRECONDITION (not of cancel()): the job is final. Cancelling it then has no effect.
   void cancel(const input::Cancel& in);
   /// Further error: FAILED_PRECONDITION if the job is finishing.
   void pause(const input::Pause& in);
   void resume(const input::Resume& in);
   /// Further error: INVALID_ARGUMENT if the priority is out of range.
   void set_priority(const input::SetPriority& in);
-  /// Removes final jobs. Skips frame jobs of a known sequence, which are forgotten with it.
+  /// Removes final jobs. Skips the frame jobs of a sequence that is known: they are removed
+  /// together with the sequence.
   void forget(const input::Forget& in);
 
-  // Used for sequences as well (sequences.h).
+  // sequences.h uses the following functions for sequences as well.
   static absl::Status check_priority(std::int32_t priority);
   /// Returns OK if `more` further jobs with this stop rule, image size and priority can be taken,
   /// otherwise the reason. RESOURCE_EXHAUSTED: too many jobs. INVALID_ARGUMENT: out of range.

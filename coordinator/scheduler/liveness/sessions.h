@@ -41,8 +41,8 @@ class Sessions {
   void disconnect(Worker& worker, const std::string& reason);
   /// Disconnects workers that have been silent for the heartbeat timeout.
   void check_silence();
-  /// Forgets refusals of workers that have not tried again for three times the time that they were
-  /// told to wait.
+  /// Forgets old refusals of workers that have not tried again. A refusal is kept for three times
+  /// the time that the worker was told to wait.
   void forget_refusals();
   /// Returns the newest kMaxRefusals refusals, the oldest first.
   const std::deque<Refusal>& refusals() const { return refusals_; }

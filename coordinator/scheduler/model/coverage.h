@@ -1,13 +1,14 @@
 #pragma once
 
-// The owner of each sample of each row of one pass: a lease, or it is free, or stored. A pass is a
-// range of samples of the whole image.
+// Records for each sample of each row of one pass whether it is leased (and by which lease), stored
+// or free. A pass is a range of samples of the whole image.
 //
 // The rows are cut into strips, and the pass's samples in each strip into cells. Each cell has one
 // owner, and is a node of the summation tree (renderlib/render/band.h): an aligned power-of-two
-// number of blocks of 8 samples, whose sum is added to the film as a whole. Strips and cells
-// partition the pass at all times, so no sample can be forgotten and none can have two owners. Most
-// strips have one cell; a row that is more work than a band should be has several.
+// number of blocks of 8 samples, whose sum is added to the film (the sums of all pixels) as a
+// whole. Strips and cells partition the pass at all times, so no sample can be forgotten and none
+// can have two owners. Most strips have one cell; a row that is more work than a band should be has
+// several.
 
 #include <cstdint>
 #include <map>
@@ -37,8 +38,8 @@ class Coverage {
     std::vector<LeaseId> overtaken;  ///< leases that lost cells
   };
 
-  /// Gives the band's rows to `owner`. Rows in which some of these samples are stored already keep
-  /// what they have, because the film cannot take a part of a node. A lease that loses a part of
+  /// Gives the band's samples to `owner`. A row in which some of these samples are stored already
+  /// stays as it is, because the film cannot take a part of a node. A lease that loses a part of
   /// its samples in a row loses the whole row: the rest becomes free.
   Change assign(const Band& band, Owner owner);
 

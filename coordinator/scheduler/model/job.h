@@ -34,8 +34,8 @@ struct FailedAttempt {
   std::string reason;
 };
 
-/// A band that a worker held when it was lost. The band may have crashed the worker; the suspicion
-/// ends when the worker reconnects, and for rows that are stored.
+/// A band that a worker held when it was lost, so the band may have crashed the worker. The
+/// suspicion ends when the worker reconnects. It also ends for rows that are stored since then.
 struct Suspicion {
   Band band;                     ///< without the rows that were stored since
   std::uint32_t piece_rows = 0;  ///< rows of each piece in which it is retried
@@ -50,8 +50,8 @@ class Job {
  public:
   Job(JobId id, JobSpec spec, std::uint32_t pixel_version);
 
-  /// Returns the pass in which the band's samples are a node; nullptr: there is none, or the rows
-  /// are not in the image.
+  /// Returns the pass that contains the band's samples. nullptr: there is none, the samples are not
+  /// a node of the summation tree (renderlib/render/band.h), or the rows are not in the image.
   Pass* pass_of(const Band& band);
   const Pass* pass_of(const Band& band) const;
 

@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 /// Exponentially weighted mean of measured rates. 0: nothing has been measured.
 class MeanRate {
  public:
-  /// So the last four measurements have 87 % of the weight.
+  /// With this weight, the last four measurements have 87 % of the total weight.
   static constexpr double kDefaultWeight = 0.4;
   /// `weight`: the weight of this measurement, (0, 1].
   void measure(double per_second, double weight = kDefaultWeight) {

@@ -1,7 +1,7 @@
 #pragma once
 
 // One sequence (a job of many frames): its frames and their states. Each frame is rendered by a job
-// of its own, its frame job.
+// of its own, its frame job. An epoch is one run of the coordinator.
 
 #include <cstddef>
 #include <cstdint>
@@ -52,7 +52,7 @@ class Sequence {
   std::uint64_t changes() const { return changes_; }
   /// Returns the specification of the job of a frame that has a manifest.
   JobSpec job_spec(const Frame& frame) const;
-  /// Returns the time in seconds that it has been worked on, in all epochs.
+  /// Returns the seconds for which the sequence has been worked on, in all epochs.
   double elapsed(Time now) const;
 
   // Only Context::apply calls these three. They do nothing if there is no such frame.
@@ -71,7 +71,7 @@ class Sequence {
   std::int32_t priority = 0;
   bool held = false;                   ///< paused by a user
   std::string reason;                  ///< why the sequence is in its state
-  double elapsed_noted = 0;            ///< seconds in all epochs, as journalled last
+  double elapsed_noted = 0;            ///< seconds: the last elapsed() in the journal
   double elapsed_before = 0;           ///< seconds, in earlier epochs
   std::optional<Time> first_lease_at;  ///< in this epoch
   std::size_t done_before = 0;         ///< frames that were done when this epoch began

@@ -29,7 +29,8 @@ class Restart {
         comparison_(comparison),
         sequences_(sequences) {}
 
-  /// Counts a band that was found on disk as stored, unless its worker process is quarantined.
+  /// Adds a band that was found on disk: its rows become stored, unless the worker process that
+  /// rendered them is quarantined.
   void add_band(const input::BandStored& band);
   /// Notes for users that this many bytes of the job's band log are damaged.
   void note_damage(JobId id, std::uint64_t bytes);
@@ -50,8 +51,8 @@ class Restart {
   ResultComparison& comparison_;
   Sequences& sequences_;
   /// Bands with rows that an earlier band of the replay stored already. They are compared once all
-  /// bands are replayed, because a comparison can retract rows, and the film must have all bands by
-  /// then.
+  /// bands are replayed, because a comparison can retract rows, and by then the film (the sums of
+  /// all stored bands) must be complete.
   std::vector<input::BandStored> duplicates_;
 };
 

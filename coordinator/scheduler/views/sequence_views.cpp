@@ -12,9 +12,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kMaxNumbers = 200;  ///< bytes of the numbers in a sentence
+constexpr std::size_t kMaxNumbers = 200;  ///< maximum bytes of the frame numbers in a sentence
 
-/// Returns the sum of the parts that are done of the frames being rendered, each in [0, 1].
+/// Returns the sum over the frames being rendered; each adds the part that is done, in [0, 1].
 double rendered_parts(const Context& context, const Sequence& sequence, Time now) {
   double parts = 0;
   for (const JobId id : sequence.open_jobs()) {

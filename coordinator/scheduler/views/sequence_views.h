@@ -9,16 +9,16 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the view of a sequence as that of a job: sums over its frames, and the workers of all
-/// frames that are rendered. The error is the worst of the frames that are done.
+/// Returns the view of a sequence, in the form of a job's view. It has the sums over all frames,
+/// the workers that are rendering a frame, and the largest error of the frames that are done.
 JobView sequence_view(const Context& context, const Sequence& sequence, Time now);
 
-/// Returns the frames that changed after `after` (FrameView::changed), ascending by number; 0: all
-/// frames.
+/// Returns the frames whose FrameView::changed is greater than `after`, or all frames if `after` is
+/// 0. They ascend by number.
 std::vector<FrameView> frame_views(const Sequence& sequence, std::uint64_t after);
 
-/// Returns sentences about the frames that are rendered, wait, are expected, or failed, for
-/// `bandsaw why`.
+/// Returns sentences for `bandsaw why`: which frames are being rendered, which wait, which are
+/// expected, and which failed.
 std::vector<std::string> frame_sentences(const Sequence& sequence);
 
 }  // namespace bandsaw::coordinator

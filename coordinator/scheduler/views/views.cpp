@@ -1,5 +1,5 @@
-// The first half builds the views of jobs and workers. The second half, from idle_reason() on,
-// explains why a job or a worker waits: each function returns the sentence for one cause.
+// Builds the views of jobs and workers, and the sentences that explain why a job or a worker waits.
+// These sentences are made by idle_reason() and the functions after it.
 
 #include "coordinator/scheduler/views/views.h"
 
@@ -180,8 +180,8 @@ std::vector<WorkerView> Views::workers(Time now) const {
   return views;
 }
 
-/// Returns why an idle worker gets no band of the first job that has some; "" if no rule keeps it
-/// from any.
+/// Returns why an idle worker may not render the first job that has bands to give. Returns "" if it
+/// may render one of the jobs that have bands to give, or if it is not eligible or not idle.
 std::string Views::idle_reason(const Worker& worker) const {
   if (!worker.eligible() || !worker.leases.empty()) {
     return "";

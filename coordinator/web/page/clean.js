@@ -1,5 +1,5 @@
-// A finished job's picture: the switch between as rendered, clean (denoised by the coordinator), and both
-// side by side.
+// The switch on the page of a finished job. It selects what is shown: the picture as rendered, the clean
+// picture (denoised by the coordinator), or both side by side.
 
 import {get, post} from "./api.js";
 import {el, percent, stateOf, text} from "./dom.js";

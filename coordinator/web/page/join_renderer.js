@@ -2,7 +2,7 @@
 // has loaded. A scene is identified by the digest of its manifest; its data come as blobs.
 
 const SCENES = 2;  // at most; in a sequence they are those of the present frame and of the next one
-const AHEAD = 4;   // blobs that are fetched while earlier ones are copied
+const AHEAD = 4;   // number of blobs that are fetched in advance, while the worker copies earlier ones
 export const SCENE_PER_BYTE = 4;  // a scene is assumed to take so many times the bytes of its blobs (coordinator/scheduler/README.md)
 
 /// The renderer has ended; another one can be started in its place. `sceneBytes`: the bytes of the blobs of the only scene that
@@ -24,9 +24,9 @@ export class Renderer {
     this.loading = 0;         // bytes of the blobs of a scene that is being loaded, as far as they are known
     this.asked = new Map();   // requests without an answer, id: {done, failed}
     this.lastId = 0;
-    this.busy = false;        // set by join_session.js while it has given work
-    this.leaving = false;     // set by join_session.js: to be ended when it is not busy
-    this.step = () => {};     // called after each step of what is prepared before the first row
+    this.busy = false;        // set by join_session.js: true while this renderer has work
+    this.leaving = false;     // set by join_session.js: true if this renderer is to be ended once it is not busy
+    this.step = () => {};     // called after each step of the preparation before the first row
     this.worker = new Worker("/join_render.js", {type: "module"});
     this.worker.onmessage = ({data}) => this.answer(data);
     this.worker.onerror = (event) => {

@@ -173,7 +173,7 @@ class Moved:
             found["camera"] = camera.matrix_world.copy()
         frame_set(math.floor(frame), frame - math.floor(frame))
 
-    # Returns a key by which an instance is found again at another time.
+    # Returns a key that is the same for an instance at every time.
     @staticmethod
     def key(instance):
         parent = instance.parent.name_full if instance.parent is not None else ""
@@ -286,7 +286,7 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
     corners = [2 * x0 / width - 1, 2 * x1 / width - 1, 2 * y0 / height - 1, 2 * y1 / height - 1]
     flat = data.type == "ORTHO"
     message = view(camera.matrix_world)
-    # Where the edges of the image lie: at distance 1 for a perspective camera.
+    # The edges of the image, in the camera's axes. For a perspective camera they are measured at distance 1.
     axes = (0, 0, 1, 1)
     offset = 3 if flat else 2
     sign = -1 if flat else 1
@@ -363,7 +363,7 @@ def parts_of(out, thing, mesh, matrix, ends):
     return parts
 
 
-# Returns the name of the first uv map that the materials name, in a list; an empty list: they name none.
+# Returns a list with the first name of a uv map that the materials contain; it is empty if they contain none.
 def uv_names(materials):
     found = []
     for material in materials:

@@ -60,7 +60,7 @@ struct SceneDraft {
   std::map<std::tuple<std::string, bool, AnimationChoice>, std::shared_ptr<const Model>> models;
   /// Cameras of the models. If a model is placed several times, its first placement counts.
   std::vector<FoundCamera> cameras;
-  Shutter shutter;            ///< in the scene's time: at the frame that is imported
+  Shutter shutter;            ///< of the frame that is imported, in the scene's time
   AnimationChoice animation;  ///< animation of models whose entry names none
 
   Contents world;

@@ -37,7 +37,7 @@ class ZipArchive {
   const std::vector<Entry>& entries() const { return entries_; }
 
   /// Returns the bytes of an entry. The error is INVALID_ARGUMENT if they are damaged, or if their
-  /// size or checksum is not that of the directory.
+  /// size or checksum differs from the one in the archive's directory.
   absl::StatusOr<std::string> read(const Entry& entry) const;
 
  private:
@@ -46,9 +46,9 @@ class ZipArchive {
   std::vector<Entry> entries_;
 };
 
-/// Returns true if a file of this name, joined to a folder, lies below the folder: not empty,
-/// relative, without empty parts, ".", "..", backslashes and control characters, at most 1,000
-/// bytes and 255 in each part.
+/// Returns true if a file of this name, joined to a folder, lies below the folder. Such a name is
+/// relative and not empty. It has no empty parts, no parts "." or "..", no backslashes and no
+/// control characters. It has at most 1,000 bytes, each part at most 255.
 bool is_safe_name(absl::string_view name);
 
 }  // namespace bandsaw

@@ -50,8 +50,9 @@ absl::Status check_elements(const MeshoptView& view, std::size_t bytes) {
   return absl::OkStatus();
 }
 
-/// The first byte of a stream of the extension's version. Newer versions of the library decode
-/// others too; the set of accepted streams must not depend on the library.
+/// Returns the first byte that the extension requires of a stream. It is checked here because newer
+/// versions of the library decode other streams too, and the set of accepted streams must not
+/// depend on the version of the library.
 unsigned char header_of(Mode mode) {
   return mode == Mode::kAttributes ? 0xa0 : mode == Mode::kTriangles ? 0xe1 : 0xd1;
 }

@@ -140,7 +140,7 @@ absl::Status projector(const Parameters& from, scene::Scene& scene, Conversion& 
   return absl::OkStatus();
 }
 
-/// Appends the rotation of an orthonormal, proper transform, unless there is none.
+/// Appends the rotation of a transform that only rotates. Appends nothing if the angle is 0.
 void add_rotation(const Transform& turn, google::protobuf::RepeatedPtrField<scene::Rotation>* to) {
   const Vec3 twice_sine_axis{turn.m[2][1] - turn.m[1][2], turn.m[0][2] - turn.m[2][0],
                              turn.m[1][0] - turn.m[0][1]};
@@ -228,7 +228,8 @@ absl::Status environment(const Parameters& from, scene::Scene& scene, Conversion
   if (frame.skewed) {
     to.warn(from.place(), "an environment with unequal scale or shear is shown without them");
   }
-  // The centre of the image is in direction z, its right half in direction -x (ours: x and z).
+  // In Mitsuba, the centre of the image is in direction z, and its right half in direction -x. In
+  // Bandsaw, the centre is in direction x, and the right half in direction z.
   scene::Rotation& ours = *map.add_rotate();
   set({0, 1, 0}, ours.mutable_axis());
   ours.set_degrees(-90);

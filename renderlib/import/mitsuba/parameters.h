@@ -36,7 +36,8 @@ class Parameters {
   /// Returns the parameters that are objects of this tag, whatever their names, in their order.
   std::vector<const Property*> objects(const std::string& tag) const;
 
-  /// Marks parameters as read that do not change the picture here.
+  /// Marks these parameters as read without reading them. Used for parameters that have no effect
+  /// on Bandsaw's picture.
   void ignore(std::initializer_list<const char*> names) const;
   /// Returns the parameters that were not read.
   std::vector<const Property*> unused() const;

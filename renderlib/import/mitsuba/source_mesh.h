@@ -41,7 +41,7 @@ void add_smooth_normals(PlyMesh& mesh);
 void orient_by_normals(PlyMesh& mesh);
 /// Turns all triangles and normals to the other side.
 void turn_over(PlyMesh& mesh);
-/// Returns true if u, v and the normals are a left-handed system on more of the surface than not.
+/// Returns true if u, v and the normal are a left-handed system on more than half of the surface.
 bool has_left_handed_uvs(const PlyMesh& mesh);
 
 }  // namespace bandsaw::mitsuba

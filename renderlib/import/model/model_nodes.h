@@ -11,8 +11,9 @@ namespace bandsaw {
 
 Transform transform_of(const aiMatrix4x4& m);
 
-/// Flattens the tree of nodes: one instance for each mesh of each node, with its transform
-/// multiplied in double; a skinned mesh once, at its bones. Cameras have the names of their nodes;
+/// Flattens the tree of nodes. Each mesh of each node becomes an instance; the transforms from the
+/// root to the node are multiplied in double. A skinned mesh becomes one instance without a
+/// transform, because its bones have placed its vertices. Cameras have the names of their nodes;
 /// lights are placed at their nodes. A node whose transform is singular is omitted with a warning.
 /// Returns RESOURCE_EXHAUSTED for more than a million placements.
 absl::StatusOr<Model> read_nodes(ModelFile& file, const ModelMeshes& meshes);

@@ -60,7 +60,7 @@ struct Builder {
   std::map<std::string, std::shared_ptr<const Surface>> materials;
   std::map<std::string, MediumSource> media;
   std::map<std::string, std::string> made_media;  ///< serialised medium -> name in our scene
-  /// Media on either side of a surface that is not closed, with the place of the first one.
+  /// Media that an open surface bounds, on either side -> place of the first such surface.
   std::map<std::string, Place> open_media;
   std::set<std::string> taken_media;  ///< names of media in use
   bool needs_vacuum = false;

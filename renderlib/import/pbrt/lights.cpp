@@ -93,8 +93,8 @@ absl::Status distant(const LightSource& from) {
   return absl::OkStatus();
 }
 
-/// Adds a point light. `mean_of_image`: factor of its intensity, for a goniometric light.
-/// `own_power`: the power that it has with luminance 1.
+/// Adds a point light. Its intensity is multiplied by `mean_of_image`, the mean of a goniometric
+/// light's image (1 for other lights). `own_power`: the power that it has with luminance 1.
 absl::Status point_light(const LightSource& from, double mean_of_image, double own_power) {
   ASSIGN_OR_RETURN(const Vec3 position, point(from, "from", {0, 0, 0}));
   ASSIGN_OR_RETURN(const double factor, from.factor_for("power", own_power));
@@ -120,7 +120,8 @@ absl::Status spot(const LightSource& from) {
   const double inner = std::clamp(cone - delta, 0.0, cone);
   const double cos_inner = sincos_degrees(inner).cos;
   const double cos_outer = sincos_degrees(cone).cos;
-  // The power for intensity 1, which falls from 1 to 0, on average 1/2, between the two cones.
+  // The power for intensity 1 within the inner cone. Between the two cones the intensity falls to
+  // 0; its mean there is 1/2.
   const double own = 2 * kPi * ((1 - cos_inner) + (cos_inner - cos_outer) / 2);
   ASSIGN_OR_RETURN(const double factor, from.factor_for("power", own));
   ASSIGN_OR_RETURN(const Rgb3 intensity, from.light("I", factor));

@@ -26,8 +26,8 @@ Rgb3 times(const Rgb3& rgb, double factor) {
   return {rgb[0] * factor, rgb[1] * factor, rgb[2] * factor};
 }
 
-/// Sets absorption, scattering, phase function and emission, which all media have. The arguments
-/// are pbrt's default coefficients.
+/// Sets absorption, scattering, phase function and emission, which all media have. `absorption` and
+/// `scattering` are pbrt's defaults of these coefficients.
 absl::Status read_common(const MediumParts& from, const Rgb3& absorption, const Rgb3& scattering,
                          scene::Medium& to) {
   const Parameters& in = from.parameters();
@@ -45,7 +45,7 @@ absl::Status read_common(const MediumParts& from, const Rgb3& absorption, const 
     ASSIGN_OR_RETURN(const Rgb3 le,
                      color_of(*emitted, ColorUse::kLight, from.state.color_space, from.builder));
     ASSIGN_OR_RETURN(const double le_scale, in.number("Lescale", 1));
-    // pbrt's emission is multiplied by the absorption.
+    // pbrt multiplies "Le" by the absorption when it renders; Bandsaw's emission is the product.
     Rgb3 emission = {};
     for (std::size_t c = 0; c < 3; ++c) {
       emission[c] = le[c] * le_scale * sigma_a[c] * scale * from.builder.light_factor;

@@ -70,7 +70,8 @@ TEST(DisableCulling, HitsAreTheSameToTheBit) {
   EXPECT_GT(hits, 1'000);
 }
 
-// Two spheres far apart: a ray past both enters neither of their boxes, and both without culling.
+// A ray passes two boxes without a hit. The traversal enters neither of them with culling, and both
+// without culling.
 TEST(DisableCulling, EveryBoxIsEntered) {
   WideTree tree;
   WideNode node;

@@ -68,7 +68,7 @@ Lanes in_bytes(const Float& x) {
   return lanes;
 }
 
-/// Values whose conversion to int32 is defined.
+/// Returns the values as int32; 0 in lanes whose conversion is not defined.
 template <class Float>
 std::array<std::int32_t, 8> truncated(const Float& x) {
   const Lanes all = stored(x);

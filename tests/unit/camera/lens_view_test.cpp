@@ -1,5 +1,5 @@
-// A point of the scene, seen through the lens: the directions that reach the lens, and their
-// density. It is used to sample lights that are out of focus.
+// LensView: the directions of the rays from the lens through one point in focus, and their density.
+// It is used to sample lights that are out of focus.
 
 #include "renderlib/camera/lens_view.h"
 

@@ -23,7 +23,7 @@ TEST(LocalPlan, CoversTheSamplesOnceInOrder) {
   }
 }
 
-// An error of 10 % at 32 samples, which falls as that of random samples, is 1 % at 3,200.
+// The error is 10 % at 32 samples. It falls as that of random samples, so it is 1 % at 3,200.
 TEST(LocalPlan, AnErrorRuleEndsWhereTheErrorIsReached) {
   LocalPlan plan(StopAtError{.relative_rmse = 0.01});
   std::uint64_t done = 0;

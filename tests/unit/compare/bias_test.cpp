@@ -89,7 +89,7 @@ TEST(Bias, GroupsThatShareTheirNoiseAreNotBias) {
   EXPECT_LE(alarms, 12);  // as above
 }
 
-// The last column is a thirty-third of the light.
+// One of 33 columns is too bright by half. It is alone in the last column of blocks.
 TEST(Bias, EveryPixelCountsAlike) {
   Image image = uniform(33, 32, 1);
   for (std::uint32_t y = 0; y < 32; ++y) {

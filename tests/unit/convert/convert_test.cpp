@@ -109,8 +109,8 @@ JobView full_job() {
   return job;
 }
 
-// Converts the converted message back and compares it with the first message. This finds a field
-// that either direction forgets, unless both do.
+// Converts a job to a message, back to a job, and to a message again. The two messages differ if
+// job_view_of() forgets a field. The next test finds the fields that to_message() forgets.
 TEST(Convert, JobsRoundTrip) {
   const JobView job = full_job();
   const farm::JobStatus message = to_message(job);

@@ -241,8 +241,8 @@ TEST(Denoise, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-// No seams: a pixel depends on no row farther away than the rows around its strip, and on nothing
-// that differs between strips.
+// The image is denoised in strips of rows. There are no seams between them: a pixel depends only on
+// its strip and the margin of rows around it, and not on where the strips begin.
 TEST(Denoise, SameBitsForAnyHeightOfTheStrips) {
   const DenoiseInput input = noisy(
       [](std::uint32_t x, std::uint32_t y) { return gray(x / 13 % 2 == y / 9 % 2 ? 0.2f : 0.8f); },

@@ -33,8 +33,9 @@ Image filtered(const Image& image, float bias) {
   return out;
 }
 
-// The noise of the mean has the deviation 0.1, that of three of them 0.1 / sqrt(3); 3 x 16,384
-// values, so the root of the mean square is known to 0.5 %; the tolerance is ten times that.
+// The noise of a pixel has the deviation 0.1, that of the mean of three pixels 0.1 / sqrt(3). The
+// image has 3 x 16,384 values, so their root mean square is known to 0.5 %. The tolerance is ten
+// times that.
 TEST(Halves, TellErrorAndBiasOfALinearFilter) {
   test::Random random(3);
   const float share = 0.25f;

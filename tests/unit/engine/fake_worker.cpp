@@ -54,7 +54,8 @@ class FakeWorker::Link : public WorkerLink {
     leases_.pop_front();
     return true;
   }
-  /// Pauses shortly before a band is sent again. Returns false if the worker was stopped.
+  /// Waits for a short time, after which a band is sent again. Returns false if the worker was
+  /// stopped.
   bool rest() {
     MutexLock lock(mutex_);
     if (!stopped_) {

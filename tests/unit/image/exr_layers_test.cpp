@@ -61,7 +61,7 @@ TEST(ExrLayers, StandBesideTheImageUnderTheirNames) {
   EXPECT_THAT(channels.at("depth.Z").values, ElementsAre(1e6f, 3));
 }
 
-TEST(ExrLayers, OfNumbersStayFloatsInAFileOfHalves) {
+TEST(ExrLayers, LayersOfNumbersStayFloatInAHalfFloatFile) {
   const auto channels = channels_of(encode_exr(kImage, true, kLayers).value());
   EXPECT_EQ(channels.at("R").type_in_file, TINYEXR_PIXELTYPE_HALF);
   EXPECT_EQ(channels.at("albedo.B").type_in_file, TINYEXR_PIXELTYPE_HALF);
@@ -69,7 +69,7 @@ TEST(ExrLayers, OfNumbersStayFloatsInAFileOfHalves) {
   EXPECT_THAT(channels.at("depth.Z").values, ElementsAre(1e6f, 3));
 }
 
-TEST(ExrLayers, OfAnotherSizeAreRefused) {
+TEST(ExrLayers, LayersOfAnotherSizeAreRefused) {
   const Layers wrong = {{"albedo", {1, 1, {gray(1)}}, false}};
   EXPECT_EQ(encode_exr(kImage, false, wrong).status().code(), absl::StatusCode::kInvalidArgument);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 // A small glTF file that tests write as text: one triangle, to which they add materials, textures
-// and further members. gltf_writer.h has a writer for meshes of numbers.
+// and further members. GltfWriter (gltf_writer.h) makes files from vectors of numbers.
 
 #include <cstring>
 #include <string>
@@ -19,8 +19,9 @@ inline std::string floats(const std::vector<float>& values) {
   return bytes;
 }
 
-/// One triangle (0,0,0), (1,0,0), (0,1,0) with two sets of uvs, its vertex colours red, green and
-/// blue at a half, material 0. Buffer views 0 to 3: positions, uvs, second uvs, colours.
+/// One triangle (0,0,0), (1,0,0), (0,1,0) with two sets of uvs and material 0. Its vertex colours
+/// are (0.5,0,0), (0,0.5,0), (0,0,0.5), if `colors` is set. Buffer views 0 to 3: positions, uvs,
+/// second uvs, colours.
 struct GltfTriangle {
   std::string materials = "{}";  ///< contents of the list
   std::string textures;          ///< contents of the list

@@ -80,8 +80,8 @@ TEST(GltfVolume, AClosedMeshIsGlassThatAbsorbs) {
   EXPECT_EQ(imported.scene.media.boundaries.instances.size(), 1u);
 }
 
-// Glass of index 1 and depth 2, which turns white into its colour over a length of 2, shows that
-// colour through its middle, both as a file alone and placed by a scene.
+// A scene places the cube, whose depth is 2. White light that passes through it gets the colour
+// that the file gives for a length of 2.
 TEST(GltfVolume, WhiteLightHasTheColourAfterTheDistance) {
   const TempDir folder;
   cube().write(folder, "m.gltf");

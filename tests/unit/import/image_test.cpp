@@ -133,7 +133,7 @@ TEST(DecodePicture, GivesBackAPfmBitForBit) {
   EXPECT_FALSE(decode_picture("PF\n4294967295 4294967295\n-1\n").ok());
 }
 
-TEST(DecodePicture, GivesBackAPngToHalfACode) {
+TEST(DecodePicture, GivesBackAPngToHalfAStepOfEightBits) {
   const Image image = ramp(8, 8);
   const auto read = decode_picture(text_of(encode_image(image, ImageFormat::kPng).value()));
   ASSERT_TRUE(read.ok()) << read.status();
@@ -160,14 +160,15 @@ Image varied(std::uint32_t width, std::uint32_t height) {
   return image;
 }
 
-TEST(DecodePicture, GivesBackAnHdrWithinHalfAMantissa) {
+TEST(DecodePicture, GivesBackAnHdrToHalfAUnitOfTheMantissa) {
   for (const auto& [width, height] : {std::pair(3u, 5u), {8u, 4u}, {300u, 7u}}) {
     const Image image = varied(width, height);
     const auto read = decode_picture(text_of(encode_image(image, ImageFormat::kHdr).value()));
     ASSERT_TRUE(read.ok()) << read.status();
     ASSERT_EQ(read->pixels.size(), image.pixels.size());
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-      // Half a unit of 8 bits, because the largest channel has a mantissa of at least 128.
+      // The channels of a pixel share an exponent. The largest mantissa is at least 128, so half a
+      // unit of a mantissa is at most 1/256 of the largest channel.
       const float bound = max_component(image.pixels[i]) / 255.0f;
       EXPECT_NEAR(read->pixels[i].r, image.pixels[i].r, bound) << i;
       EXPECT_NEAR(read->pixels[i].g, image.pixels[i].g, bound) << i;

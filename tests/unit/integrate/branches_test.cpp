@@ -85,6 +85,8 @@ TEST(Branches, ATruncatedPathCountsOnce) {
   EXPECT_EQ(counts.truncated, 1u);
 }
 
+// Paths in a scene with lights are not split. In other scenes they have two branches, or four if
+// there are meshes, which can occlude the sky at their own surface (integrate/README.md).
 TEST(Branches, OnlyInScenesWithoutLightSampling) {
   SceneMaker shapes = corner(false);
   EXPECT_EQ(branches_for(*shapes.build()), 2u);

@@ -102,7 +102,8 @@ TEST(Sheet, LightFromBehindIsFoundByAllTechniques) {
   maker.sphere({0.5, 0, -2}, 0.3, maker.lamp(40));
   maker.sphere({-1, 0.5, 3}, 0.3, maker.lamp(20));
   expect_techniques_agree(maker, kAhead, 0.1);
-  // Half of the light of a small lamp: E / (2 pi).
+  // The sheet transmits half of the light of a small lamp. With the irradiance E, its radiance is
+  // E / (2 pi).
   SceneMaker behind = with_sky(0);
   const MaterialId paper = add(behind, DiffuseTransmission{TextureId{0}, TextureId{0}});
   behind.quad({-kFar, -kFar, 0}, {2 * kFar, 0, 0}, {0, 2 * kFar, 0}, paper);
@@ -138,8 +139,8 @@ TextureId coordinate(SceneMaker& maker, RampTexture::Over over) {
   return maker.texture(ramp);
 }
 
-// The height rises by 0.5 over the 2 units of the wall: a slope of 1/4, or twice that with a scale
-// of 2, by uvs and by positions.
+// The height is the coordinate u or x times the scale. The wall is 2 units wide: u rises by 1 over
+// these, a slope of 1/2, and x by 2, a slope of 1.
 TEST(HeightMap, TiltsTheNormalByItsSlope) {
   for (const double scale : {0.5, 1.0, -1.0}) {
     for (const bool in_space : {false, true}) {
@@ -158,8 +159,8 @@ TEST(HeightMap, TiltsTheNormalByItsSlope) {
   }
 }
 
-// On a ball of radius 2 the height v rises by 1 along half of a great circle, on a disk of radius 2
-// by 1 across it.
+// On a ball of radius 2, v rises by 1 along half of a great circle. On a disk of radius 2, u rises
+// by 1 over the diameter. The height is 3 times the coordinate.
 TEST(HeightMap, KnowsTheLengthsOfUvsOnBallsAndDisks) {
   SceneMaker ball = with_sky(1);
   Material bumped = Diffuse{TextureId{0}};

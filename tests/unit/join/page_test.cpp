@@ -44,7 +44,7 @@ TEST_F(JoinPageTest, ItHasNoInlineScriptOrStyle) {
   EXPECT_THAT(page, Not(testing::ContainsRegex(" on[a-z]+=")));
 }
 
-TEST_F(JoinPageTest, TheRendererIsCompressedForThoseThatCanReadIt) {
+TEST_F(JoinPageTest, TheRendererIsCompressedForClientsThatAcceptBrotli) {
   const auto plain = get("/join/bandsaw.wasm");
   ASSERT_TRUE(plain);
   EXPECT_EQ(plain->header("Content-Type"), "application/wasm");
@@ -71,7 +71,7 @@ TEST_F(JoinPageTest, TheRendererIsFetchedOnceAndThenRevalidated) {
   EXPECT_EQ(get("/join/bandsaw.wasm")->status, 200);
 }
 
-TEST_F(JoinPageTest, AMissingRendererIsNamedWithItsCure) {
+TEST_F(JoinPageTest, AMissingRendererIsReportedWithItsRemedy) {
   EXPECT_TRUE(message<web::JoinAbout>(join_get("/join/about")).renderer());
   options_.browser_program = {};
   start_dashboard();
@@ -122,7 +122,7 @@ TEST_F(JoinPageTest, UsersOfTheDashboardMakeShowAndRevokeTheLink) {
   EXPECT_EQ(code->body, qr_svg(*qr_code(made.url())));
 }
 
-TEST(Qr, ACodeHasTheThreeMarksOfItsCorners) {
+TEST(Qr, ACodeHasAMarkInThreeOfItsCorners) {
   const auto code = qr_code("https://192.168.1.5:8787/join#0123456789abcdefghijkl");
   ASSERT_TRUE(code.ok());
   EXPECT_EQ((code->side - 17) % 4, 0) << "a version of the standard";

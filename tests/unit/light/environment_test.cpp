@@ -61,8 +61,8 @@ std::vector<Sky> skies() {
   all.push_back(equirectangular("noise", 17, 9, [](auto x, auto y) { return noise(x, y, 1); }));
   all.push_back(equirectangular("one row", 6, 1, [](auto x, auto y) { return noise(x, y, 2); }));
   all.push_back(equirectangular("one column", 1, 7, [](auto x, auto y) { return noise(x, y, 3); }));
-  // The rectangle of one texel, across the seam. At a pole, where one texel would be too narrow to
-  // integrate over the test's cells, a whole row.
+  // One bright texel, whose light reaches across the seam. At a pole a whole row is bright, because
+  // one texel would be too narrow there to integrate over the test's cells.
   all.push_back(equirectangular("L8 one texel", 20, 10,
                                 [&](auto x, auto y) { return x == 19 && y == 3 ? 7.0f : 0; }));
   all.push_back(
@@ -173,11 +173,11 @@ TEST(EnvironmentLight, SamplesHaveThePdfOfTheirDirection) {
   }
 }
 
-/// Returns the integral of f over the directions around texel (x, y), by the midpoint rule between
-/// knots.
+/// Returns the integral of f over the directions around a texel, by the midpoint rule. Interpolated
+/// radiance has kinks at the centres of texels, so these are borders of the rule's cells.
 double around_texel(const Sky& sky, std::uint32_t column, std::uint32_t row,
                     absl::FunctionRef<double(const Vec3&)> f) {
-  constexpr int kFine = 400;  // along a column; along a row everything is linear between knots
+  constexpr int kFine = 400;  // along a column; along a row everything is linear between centres
   constexpr int kCoarse = 4;
   const auto& image = std::get<ImageTexture>(sky.textures[0]);
   double sum = 0;

@@ -96,8 +96,8 @@ TEST_F(ConnectTest, RefusesAnotherCertificateBeforeAnyCall) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("another certificate"));
 }
 
-// The last address of every join string is loopback, where another farm may run; the right farm may
-// only be unreachable.
+// The last address of every join string is loopback, where another farm may run. The right farm may
+// still exist and be unreachable at the moment.
 TEST_F(ConnectTest, AnotherFarmAtOneAddressDoesNotHideAnUnreachableOne) {
   const EchoServer server(tls(identity_));
   JoinString join = join_to(server.port, wire::sha256("another"));

@@ -116,8 +116,8 @@ TEST(MetallicRoughness, SamplesWeighValueOverPdf) {
   }
 }
 
-// Under light of radiance 1 from all directions no more may be scattered on. Rough glass, with the
-// compression of radiance divided out, scatters nearly all of it.
+// Under light of radiance 1 from all directions, a surface may scatter a radiance of at most 1. The
+// compression of radiance in glass is divided out. White plastic scatters nearly all of the light.
 TEST(MetallicRoughness, ReflectanceIsAtMostOne) {
   constexpr int kSide = 48;
   for (const double roughness : {0.0, 0.1, 0.3, 0.6, 1.0}) {
@@ -258,7 +258,8 @@ TEST(ShadingNormal, AFlatTexelChangesNothingAndATiltedOneTiltsAlongTheUvs) {
   EXPECT_NEAR(mapped_normal(mirrored, {0.5f, 0.75f, 0.933f}, 1).y, -0.5, 2e-2);
 }
 
-// A map turned by a quarter shows its own right upwards; one mirrored in u tilts the other way.
+// The texel tilts the normal to the right in the map. If the map is turned by a quarter, that is
+// upwards on the surface; if it is mirrored in u, that is to the left.
 TEST(ShadingNormal, ATransformedMapTiltsAlongItsOwnAxes) {
   const SurfacePoint p = point({0, 0, 1});
   const Rgb tilted{1, 0.5f, 0.5f};

@@ -32,8 +32,8 @@ struct Case {
   bool logarithmic;
 };
 
-/// x = quarters / 4 + rest: the reference's argument stays small, where its own range reduction is
-/// exact.
+/// x turns are a number of quarter turns and a rest in [-1/8, 1/8]. Only the rest is passed to the
+/// reference function, because its own range reduction is exact for small arguments.
 Quad rest_of_turn(Quad x) {
   return x - static_cast<Quad>(std::nearbyint(4 * static_cast<double>(x))) / 4;
 }

@@ -89,7 +89,8 @@ TEST(BrickBuilder, StoresEqualBricksOnceAndHalvesWhereTheyAreExact) {
   EXPECT_EQ(GridReader(layers(0.25f)).cell(63, 63, 63), 1.75f);
 }
 
-/// Returns the number of a cell as the border says.
+/// Returns the number of a cell. For a cell outside of the grid, the border decides: kZero gives 0,
+/// kClamp the number of the nearest cell.
 double number_at(const VolumeGrid& grid, std::int64_t x, std::int64_t y, std::int64_t z) {
   const std::array<std::int64_t, 3> at = {x, y, z};
   std::array<std::uint32_t, 3> in{};

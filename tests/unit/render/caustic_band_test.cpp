@@ -90,8 +90,8 @@ TEST(CausticBand, HalfTilesHaveTheSameBitsInAnyPass) {
   }
 }
 
-// The band needs more maps than are held at once. Zeros are the steps of the training and of the
-// maps, which come before the rows that use them.
+// The band needs more maps than are held at once. Each step of the training and of the maps is also
+// reported, as 0 rows. These steps come before the rows that use them.
 TEST(CausticBand, ProgressCountsEachRowOnce) {
   Pool pool(1);
   std::vector<std::uint32_t> rows;

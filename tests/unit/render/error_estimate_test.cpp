@@ -47,13 +47,13 @@ double square_at_most(const ErrorEstimate& error) {
   return over * over;
 }
 
-// If n = `decide` groups have all of the error, their sum of squares has a standard deviation of
-// sqrt(1.5 n) times one group's part, and the square of the upper bound adds three of these. The
-// bound is the same whether one pixel of a group has the error or all eight.
+// Only n = `decide` groups have an error, and each has the same squared error e. The margin assumes
+// that their sum, n e, is off by a standard deviation of sqrt(1.5 n) e, and adds three of these to
+// it. The bound is the same whether one pixel of a group has the error or all eight.
 TEST(ErrorEstimate, TheMarginGrowsWithFewerGroups) {
   for (const int decide : {3, 150}) {
-    Pixels one_pixel;  // one pixel in each of so many groups,
-    Pixels all;        // or all eight pixels, which may have the same error
+    Pixels one_pixel;  // one pixel of each noisy group has an error
+    Pixels all;        // all eight pixels of each noisy group have the same error
     for (int i = 0; i < 2400; ++i) {
       const bool noisy = i / 8 < decide;
       one_pixel.add(1, noisy && i % 8 == 4 ? 0.1 : 0);

@@ -59,7 +59,7 @@ class ChunksTest : public FarmTest {
     return chunks;
   }
 
-  /// Uploads so many chunks, then disconnects.
+  /// Uploads the first `count` chunks, then disconnects.
   void cut_after(const std::string& bytes, std::size_t count) {
     const auto call = context(link::Role::kFarm);
     farm::PutBlobReply reply;

@@ -1,4 +1,5 @@
-// Access control: calls every RPC with each role's secret, with a wrong secret and without one.
+// Access control: makes each call in the list calls() with the secret of each role, with a wrong
+// secret, and without one.
 
 #include <gmock/gmock.h>
 
@@ -129,8 +130,8 @@ class GateTest : public FarmTest {
     };
   }
 
-  /// Returns true if access was refused. Any other error, here mostly of an empty request, shows
-  /// that access was granted.
+  /// Returns true if access was refused. Any other error shows that access was granted; most calls
+  /// here fail because their request is empty.
   static bool refused(const grpc::Status& status) {
     return status.error_code() == grpc::StatusCode::UNAUTHENTICATED ||
            status.error_code() == grpc::StatusCode::PERMISSION_DENIED;

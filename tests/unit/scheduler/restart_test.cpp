@@ -6,8 +6,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A job of eight rows of which worker a holds leases, and a restart of its scheduler. `band` is
-/// the result of the first lease, which may be on disk at the restart.
+/// A farm before its restart: worker "a" holds leases of a job with eight rows. `band` is the
+/// result of the first lease; it may be on disk at the restart.
 struct Before {
   FarmDriver farm;
   std::vector<action::Lease> leases;
@@ -22,7 +22,7 @@ struct Before {
     band.row_digests = honest_digests(band.band);
   }
 
-  /// Returns the restarted scheduler before its `replayed` is called.
+  /// Returns the restarted scheduler. The caller MUST call `replayed`, which ends the replay.
   FarmDriver restart(bool with_band = true) const {
     SchedulerOptions options = slow();
     options.epoch = "two";

@@ -116,8 +116,8 @@ TEST_F(SqliteJournalTest, AnOldSchemaIsReadAndUpgraded) {
   }
 }
 
-// Up to version 8 there were no sequences: their journals are read, and a sequence that is added
-// raises the version.
+// Journals up to version 8 have no sequences. They can be read, and appending a sequence raises
+// their version.
 TEST_F(SqliteJournalTest, AJournalOfVersion8TakesSequences) {
   std::vector<Record> records = sample_records();
   std::vector<Record> old(records.begin(), records.end() - 3);

@@ -34,7 +34,7 @@ class BlobCacheTest : public ::testing::Test {
     ASSERT_TRUE((*download)->append(bytes).ok());
     ASSERT_TRUE((*download)->commit().ok());
   }
-  /// Sets the time of the last use to so many seconds ago, so that no test waits.
+  /// Sets the time of the last use to `seconds` ago, so that no test waits.
   void set_age(const wire::Digest& digest, int seconds) {
     timespec times[2];
     clock_gettime(CLOCK_REALTIME, &times[0]);
@@ -122,7 +122,7 @@ TEST_F(BlobCacheTest, RemovesTheLeastRecentlyUsed) {
   EXPECT_TRUE(cache->has(wire::sha256(bytes_of('d'))));
 }
 
-TEST_F(BlobCacheTest, KeepsABlobThatIsLargerThanItself) {
+TEST_F(BlobCacheTest, KeepsANewBlobThatIsLargerThanTheLimit) {
   const auto cache = open(500);
   put(*cache, bytes_of('a'));
   EXPECT_TRUE(cache->get(wire::sha256(bytes_of('a'))).ok()) << "it is needed now";
