@@ -47,6 +47,11 @@ struct SurfacePoint {
   double time = 0;  ///< time of the ray that hit it; rays from here have the same time
 };
 
+/// Returns the geometric normal on the side to which `wo` points.
+inline Vec3 facing_normal(const SurfacePoint& point, const Vec3& wo) {
+  return dot(wo, point.geometric_normal) >= 0 ? point.geometric_normal : -point.geometric_normal;
+}
+
 /// Precomputes the normals of loose quads and triangles (24 bytes each), which surface_at() would
 /// otherwise compute at each hit. The surfaces are the same to the bit. Quads and triangles MUST
 /// NOT be added, removed or changed afterwards.

@@ -59,8 +59,7 @@ const PhotonMap& CausticMaps::of_sample(std::uint64_t sample) const {
 
 Rgb caustic_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf& bsdf,
                      const Vec3& wo, std::uint32_t longest) {
-  const Vec3 normal =
-      dot(wo, point.geometric_normal) >= 0 ? point.geometric_normal : -point.geometric_normal;
+  const Vec3 normal = facing_normal(point, wo);
   Rgb sum;
   const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
   if (diffuse != nullptr && diffuse->normal.shading == diffuse->normal.geometric) {

@@ -26,8 +26,7 @@ inline GuidingCones cones_at(const PathContext& context, const SurfacePoint& poi
   if (field == nullptr || !can_be_guided(bsdf)) {
     return {};
   }
-  const Vec3 normal =
-      dot(wo, point.geometric_normal) >= 0 ? point.geometric_normal : -point.geometric_normal;
+  const Vec3 normal = facing_normal(point, wo);
   return GuidingCones(field->find(point.position, normal), point.position, normal);
 }
 

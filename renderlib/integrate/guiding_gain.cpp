@@ -71,9 +71,7 @@ void follow(const PathContext& context, const GuidingField& field, const Ray& ca
       return;
     }
     if (can_be_guided(*bsdf)) {
-      const Vec3 normal = dot(path.ray.direction, hit->geometric_normal) <= 0
-                              ? hit->geometric_normal
-                              : -hit->geometric_normal;
+      const Vec3 normal = facing_normal(*hit, -path.ray.direction);
       const Scene& scene = context.scene;
       const Rgb albedo = albedo_at(scene.material(hit->material), scene.textures(), *hit);
       add_cells(field.find(hit->position, normal), luminance(path.throughput * albedo) * kInvPi,

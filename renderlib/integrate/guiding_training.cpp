@@ -33,19 +33,14 @@ constexpr std::uint64_t kPilotPixels = 1 << 13;
 /// the field to all records. Returns false if stopped.
 template <class OfChunk>
 bool add_round(std::uint32_t round, std::uint64_t count, const Preparation& preparation,
-               std::vector<GuidingRecord>& records, TrainedGuiding& trained,
-               const OfChunk& of_chunk) {
-  std::vector<TrainingRecords> chunks(kChunks);
-  if (!preparation.run(kChunks, [&](std::uint32_t chunk) {
-        chunks[chunk] = of_chunk(TrainingChunk{round, chunk, count / kChunks});
+               TrainingRecords& records, TrainedGuiding& trained, const OfChunk& of_chunk) {
+  if (!append_chunks(0, kChunks, preparation, records, [&](std::uint32_t chunk) {
+        return of_chunk(TrainingChunk{round, chunk, count / kChunks});
       })) {
     return false;
   }
-  for (const TrainingRecords& chunk : chunks) {
-    records.insert(records.end(), chunk.records.begin(), chunk.records.end());
-    trained.rays += chunk.rays;
-  }
-  trained.field = GuidingField(records, preparation.pool);
+  trained.rays = records.rays;
+  trained.field = GuidingField(records.items, preparation.pool);
   return !preparation.stopped();
 }
 
@@ -56,7 +51,7 @@ std::optional<TrainedGuiding> train(const Scene& scene, const GuidingKey& key, s
                                     const Casters* casters, const PathOptions& options,
                                     const Preparation& preparation) {
   TrainedGuiding trained;
-  std::vector<GuidingRecord> records;
+  TrainingRecords records;
   if (casters != nullptr && !casters->empty() && scene.features().lights) {
     trained.photons = 2 * pixels / kChunks * kChunks;
     const auto photons = [&](const TrainingChunk& chunk) {

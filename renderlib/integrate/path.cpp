@@ -31,8 +31,7 @@ namespace {
 
 /// Returns the point as the receiver of light on the side towards `wo`.
 Receiver receiver_of(const SurfacePoint& point, const Vec3& wo) {
-  const bool outside = dot(wo, point.geometric_normal) >= 0;
-  return {point.position, outside ? point.geometric_normal : -point.geometric_normal, point.time};
+  return {point.position, facing_normal(point, wo), point.time};
 }
 
 /// Returns the MIS weight of the emission at `light`, which the path hit from `previous`.
@@ -71,9 +70,9 @@ Rgb weighted_background(const Scene& scene, const Portals* portals, const Previo
   return background * static_cast<float>(bsdf_sampling_weight(previous, light_pdf));
 }
 
-/// Describes BSDF sampling at the surface at which a light is sampled: the inputs of the MIS weight
-/// of light sampling.
-struct CompetingBsdfSampling {
+/// Describes the other strategies at the surface at which a light is sampled: the inputs of the MIS
+/// weight of light sampling.
+struct CompetingStrategies {
   Technique technique = Technique::kBoth;
   /// Local shading: sampled directions contribute only the environment.
   bool reaches_distant_only = false;
@@ -107,21 +106,23 @@ bool is_found_by_photons(const PathContext& context, const PathState& path,
 }
 
 /// Returns true if BSDF sampling alone accounts for the light on the far side of the surface.
-bool is_left_to_bsdf_sampling(const LightSample& light, const CompetingBsdfSampling& bsdf) {
-  return bsdf.beyond_surface && !light.delta && (!bsdf.reaches_distant_only || light.distant);
+bool is_left_to_bsdf_sampling(const LightSample& light, const CompetingStrategies& competing) {
+  return competing.beyond_surface && !light.delta &&
+         (!competing.reaches_distant_only || light.distant);
 }
 
 /// Returns true if BSDF sampling samples the light as well, on the near side of the surface.
-bool is_also_sampled_by_bsdf(const LightSample& light, const CompetingBsdfSampling& bsdf) {
-  return !light.delta && !bsdf.beyond_surface &&
-         (bsdf.technique == Technique::kBoth || (bsdf.reaches_distant_only && light.distant));
+bool is_also_sampled_by_bsdf(const LightSample& light, const CompetingStrategies& competing) {
+  return !light.delta && !competing.beyond_surface &&
+         (competing.technique == Technique::kBoth ||
+          (competing.reaches_distant_only && light.distant));
 }
 
 /// Returns the light-sampling estimate of the radiance scattered at the point: samples one light,
 /// traces a shadow ray to it, through media with the numbers `media`, and applies the MIS weight.
 Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& receiver,
                  const Bsdf& bsdf, const GuidingCones& cones, const Sample4& numbers,
-                 const CompetingBsdfSampling& competing, NumberStream media, std::uint64_t& rays) {
+                 const CompetingStrategies& competing, NumberStream media, std::uint64_t& rays) {
   // The fourth number refines the selection among many lights.
   const double choice = numbers[0] + numbers[3] * 0x1p-32;
   const std::optional<LightSample> light =
@@ -328,8 +329,8 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   // some lights, on the far side.
   if (context.samples_lights() && has_pdf(bsdf)) {
     const Sample4 numbers = context.numbers(group_light(depth));
-    CompetingBsdfSampling competing = is_last ? CompetingBsdfSampling{Technique::kLightsOnly, true}
-                                              : CompetingBsdfSampling{options.technique, false};
+    CompetingStrategies competing = is_last ? CompetingStrategies{Technique::kLightsOnly, true}
+                                            : CompetingStrategies{options.technique, false};
     competing.portals = portals;
     competing.without_surfaces =
         role == CausticRole::kCaster && is_left_to_photons(context, path.chain);

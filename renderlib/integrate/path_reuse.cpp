@@ -31,12 +31,6 @@ struct SharedVertex {
   Rgb radiance;  ///< radiance that leaves the vertex, the same in all directions
 };
 
-/// Returns the geometric normal on the side from which the ray arrives.
-Vec3 facing(const SurfacePoint& point, const Ray& ray) {
-  return dot(point.geometric_normal, ray.direction) <= 0 ? point.geometric_normal
-                                                         : -point.geometric_normal;
-}
-
 /// Returns true if the radiance that leaves the material is the same in all directions of one side,
 /// and all of it is scattered light.
 bool is_only_diffuse(const Material& material) {
@@ -65,7 +59,7 @@ void trace_own_path(const PathContext& context, PathState& path, GuidingCones& c
     cones = cones_at(context, *first, *bsdf, -camera_ray.direction);
   }
   if (has_pdf(*bsdf)) {
-    primary = PrimaryVertex{*first, facing(*first, camera_ray), *bsdf, &cones};
+    primary = PrimaryVertex{*first, facing_normal(*first, -camera_ray.direction), *bsdf, &cones};
   }
   if (!scatter(context, *first, *bsdf, cones, 0, path)) {
     return;
@@ -81,7 +75,7 @@ void trace_own_path(const PathContext& context, PathState& path, GuidingCones& c
                          dot(path.ray.direction, primary->normal) > 0 &&
                          is_only_diffuse(context.scene.material(second->material));
   if (is_shared) {
-    shared = SharedVertex{*second, facing(*second, path.ray), {}};
+    shared = SharedVertex{*second, facing_normal(*second, -path.ray.direction), {}};
     path.radiance = {};
     path.throughput = gray(1);
   }

@@ -24,8 +24,7 @@ Rgb as_color(const Vec3& n) {
 /// Returns 1 if a cosine-weighted direction on the viewer's side hits nothing within the occlusion
 /// distance, otherwise 0.
 float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, double u, double v) {
-  const bool outside = dot(wo, point.geometric_normal) >= 0;
-  const Vec3 normal = outside ? point.geometric_normal : -point.geometric_normal;
+  const Vec3 normal = facing_normal(point, wo);
   const Vec3 direction = orthonormal_basis(normal).to_world(sample_cosine_hemisphere(u, v));
   if (!(dot(direction, normal) > 0)) {
     return 0;

@@ -111,13 +111,11 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
         caustic_role(casters, hit->material,
                      bsdf_at(scene.material(hit->material), scene.textures(), *hit, from));
     if (role == CausticRole::kReceiver) {
-      const bool outside = dot(from, hit->geometric_normal) >= 0;
-      out.photons.push_back(
-          {.position = float3(hit->position),
-           .normal = float3(outside ? hit->geometric_normal : -hit->geometric_normal),
-           .chain = chain,
-           .from = float3(from),
-           .power = photon.power});
+      out.photons.push_back({.position = float3(hit->position),
+                             .normal = float3(facing_normal(*hit, from)),
+                             .chain = chain,
+                             .from = float3(from),
+                             .power = photon.power});
       out.power += luminance(photon.power);
       out.power_by_angle += luminance(photon.power) * photon.angle;
       return;

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <optional>
 
-#include "renderlib/camera/camera.h"
 #include "renderlib/integrate/path_steps.h"
 #include "renderlib/integrate/through_media.h"
 #include "renderlib/material/opacity.h"
@@ -66,8 +65,7 @@ bool scatter_and_remember(const PathContext& context, const SurfacePoint& point,
   }
   Vertex vertex;
   vertex.position = point.position;
-  vertex.normal =
-      dot(wo, point.geometric_normal) >= 0 ? point.geometric_normal : -point.geometric_normal;
+  vertex.normal = facing_normal(point, wo);
   if (goes_on) {
     vertex.direction = state.ray.direction;
     vertex.radiance = state.radiance;
@@ -152,6 +150,13 @@ PixelSampler training_sampler(const TrainingChunk& chunk) {
   return {kSeed, kBeyondImages + chunk.number, kBeyondImages + chunk.round};
 }
 
+Ray training_ray(const Scene& scene, const RayGenerator& camera, const GuidingKey& key,
+                 const PixelSampler& sampler, std::uint64_t sample) {
+  const Sample4 at = sampler.group(sample, kGroupCamera);
+  const double when = scene.features().motion ? sampler.group(sample, kGroupTime)[0] : 0;
+  return camera.ray(at[0] * key.width, at[1] * key.height, at[2], at[3], when);
+}
+
 TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
                                const TrainingChunk& chunk, const PathOptions& options) {
   const RayGenerator camera(scene.camera(), static_cast<int>(key.width),
@@ -160,14 +165,12 @@ TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
   TrainingRecords out;
   std::vector<Vertex> vertices;
   for (std::uint64_t sample = 0; sample < chunk.count; ++sample) {
-    const Sample4 at = sampler.group(sample, kGroupCamera);
-    const double when = scene.features().motion ? sampler.group(sample, kGroupTime)[0] : 0;
     const PathContext context{scene, sampler, sample, options, out.rays};
-    const Ray ray = camera.ray(at[0] * key.width, at[1] * key.height, at[2], at[3], when);
+    const Ray ray = training_ray(scene, camera, key, sampler, sample);
     TrainingPath path(ray, vertices);
     trace_and_remember(context, path);
     if (!vertices.empty()) {
-      add_records(path, length(vertices[0].position - ray.origin), out.records);
+      add_records(path, length(vertices[0].position - ray.origin), out.items);
     }
   }
   return out;

@@ -86,13 +86,11 @@ void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sampl
       return;
     }
     if (can_be_guided(bsdf)) {
-      const Vec3 normal =
-          dot(wo, hit->geometric_normal) >= 0 ? hit->geometric_normal : -hit->geometric_normal;
-      out.records.push_back({.position = float3(hit->position),
-                             .normal = float3(normal),
-                             .source = float3(photon.from.position),
-                             .weight = static_cast<float>(photon.power / photons),
-                             .kind = GuidingRecord::Kind::kPhoton});
+      out.items.push_back({.position = float3(hit->position),
+                           .normal = float3(facing_normal(*hit, wo)),
+                           .source = float3(photon.from.position),
+                           .weight = static_cast<float>(photon.power / photons),
+                           .kind = GuidingRecord::Kind::kPhoton});
       return;
     }
     if (!scatter_photon(scene, *hit, wo, sampler.group(sample, group_bsdf(depth)), photon)) {

@@ -22,6 +22,12 @@ struct Background {
   std::optional<Environment> environment = std::nullopt;
 };
 
+/// Returns true if the background is black for certain: it has no environment map and its colours
+/// are black.
+inline bool is_black(const Background& background) {
+  return !background.environment && is_black(background.bottom) && is_black(background.top);
+}
+
 /// Returns the background radiance in a unit direction. `textures` are the scene's textures.
 Rgb radiance(const Background& background, absl::Span<const Texture> textures,
              const Vec3& unit_direction);

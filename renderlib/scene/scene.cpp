@@ -176,9 +176,7 @@ bool all_of_shapes(const Shapes& shapes, const OfMaterial& test) {
 /// rays alike. `features` are those that the scene uses.
 bool can_reuse_paths(const SceneDescription& scene, const Lights& lights,
                      const SceneFeatures& features) {
-  const Background& background = scene.background;
-  if (lights.empty() || background.environment || !is_black(background.bottom) ||
-      !is_black(background.top) || features.media || features.motion) {
+  if (lights.empty() || !is_black(scene.background) || features.media || features.motion) {
     return false;
   }
   const Geometry& geometry = scene.geometry;

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <vector>
 
+#include "renderlib/integrate/fit_portals.h"
 #include "renderlib/render/render_band.h"
 #include "renderlib/sampling/basis.h"
 #include "renderlib/sampling/warp.h"
