@@ -14,7 +14,7 @@
 
 namespace bandsaw {
 
-/// What an instance places: the BVH of a mesh or of a group. Exactly one of the pointers is not
+/// The BVH of a mesh or of a group, which instances place. Exactly one of the pointers is not
 /// null.
 struct Prototype {
   const MeshTree* mesh = nullptr;       ///< a mesh that does not deform

@@ -35,7 +35,7 @@ inline unsigned enter_children(const WideNode& node, const FloatRay& ray, float 
   return (first <= last).bits();
 }
 
-/// Of the eight children of a node, one is visited next and at most seven are pushed.
+/// A node has eight children: one is visited next, and at most seven are pushed.
 inline constexpr std::size_t kStackSize = 7 * kMaxTreeDepth + 1;
 
 /// Traversal stack. The high half of an entry is the distance at which the ray enters the child's

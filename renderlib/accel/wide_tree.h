@@ -11,7 +11,7 @@
 
 namespace bandsaw {
 
-/// What a leaf contains. All its contents are of one kind. Flats are triangles and quads.
+/// The kind of the contents of a leaf, which are all of one kind. Flats are triangles and quads.
 enum class LeafKind : std::uint32_t { kFlats, kSpheres, kInstance, kDisks };
 
 /// Reference from a node: to another node or to a leaf, i.e. one pack of primitives or one

@@ -48,7 +48,7 @@ class Pool {
 
  private:
   struct Range;
-  /// What each thread does until the pool is destroyed.
+  /// Runs in each thread until the pool is destroyed.
   void run() EXCLUDES(mutex_);
 
   Mutex mutex_;

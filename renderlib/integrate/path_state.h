@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kMaxUncounted = 1000;
 /// Value of PathState::chain of a path that is in no chain of casters.
 inline constexpr std::uint32_t kNoChain = 0xffffffffu;
 
-/// What changes along a path.
+/// The state that changes along a path.
 struct PathState {
   /// Starts a path with this ray. (As an aggregate, all of it would be zeroed first, including the
   /// large `NestedDielectrics`.)
@@ -41,7 +41,7 @@ struct PathState {
   NestedDielectrics nesting = {};  ///< glasses that contain the path
 };
 
-/// What stays the same along a path. The objects MUST outlive it.
+/// The data that stay the same along a path. The objects MUST outlive it.
 struct PathContext {
   const Scene& scene;
   const PixelSampler& sampler;

@@ -82,8 +82,8 @@ struct Counters {
   std::uint64_t truncated_paths = 0;
   /// Scene::dropped_primitives; the same in all bands of a scene.
   std::uint64_t dropped_primitives = 0;
-  /// What path tracing used besides light and BSDF sampling: a sum of the flags below. The same
-  /// in all bands of an image.
+  /// The techniques that path tracing used besides light and BSDF sampling: a sum of the flags
+  /// below. The same in all bands of an image.
   std::uint32_t techniques = 0;
   static constexpr std::uint32_t kPathGuiding = 1;
   static constexpr std::uint32_t kPhotonMaps = 2;

@@ -20,8 +20,8 @@ namespace {
 
 using bandsaw::Scene;
 
-/// What the calls have left: blobs for the next scene, the scene, the last pixels, the last error,
-/// and the bytes for the next call.
+/// The state between two calls: blobs for the next scene, the scene, the last pixels, the last
+/// error, and the bytes for the next call.
 struct State {
   std::unique_ptr<bandsaw::BlobMap> blobs = std::make_unique<bandsaw::BlobMap>();
   std::shared_ptr<const Scene> scene;

@@ -25,7 +25,7 @@ struct Wanted {
   Denoiser denoise = Denoiser::kNone;  ///< kNone: the noise is not removed
 };
 
-/// What is written for a finished job.
+/// The images and figures of a finished job, which are written to files.
 struct JobPictures {
   Progress job;  ///< last status of the job
   FarmImage result;

@@ -14,7 +14,7 @@
 
 namespace bandsaw::coordinator {
 
-/// What report_text() needs.
+/// The input of report_text().
 struct Report {
   Progress progress;                 ///< status of the finished job, or of a render on this machine
   std::string pixels_sha256;         ///< digest of the image; empty: the image is incomplete

@@ -135,7 +135,7 @@ absl::StatusOr<link::JoinString> workers_join(const InviteOptions& options) {
   return join;
 }
 
-/// What is done for one host; it ends soon after `stop` is set.
+/// The work for one host. It ends soon after `stop` is set.
 using HostWork =
     std::function<RemoteOutcome(const std::string& host, const std::atomic<bool>& stop)>;
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a user chooses about a scene on the command line; the importer (cli/scene/import_process.h)
-// applies it.
+// The choices about a scene that the command line offers; the importer (cli/scene/import_process.h)
+// applies them.
 
 #include <cstdint>
 #include <optional>

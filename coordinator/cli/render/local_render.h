@@ -18,7 +18,7 @@ namespace bandsaw::coordinator {
 /// Returns the current clocks of this process.
 LocalMeter::Clocks clocks();
 
-/// What is rendered, and by what. The references MUST outlive the render.
+/// A scene, its settings, and the threads that render it. The references MUST outlive the render.
 struct LocalJob {
   const Scene& scene;
   const RenderSettings& settings;

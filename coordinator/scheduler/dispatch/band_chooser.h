@@ -17,7 +17,7 @@
 
 namespace bandsaw::coordinator {
 
-/// What the size of a band depends on.
+/// The data on which the size of a band depends.
 struct Sizing {
   Band free;                ///< the free piece; the band is cut from its first row
   std::uint32_t width = 0;  ///< pixels

@@ -132,7 +132,7 @@ class Job {
   std::optional<input::PassMerged> pending_checkpoint;
 
   std::set<LeaseId> leases;
-  /// Those of `leases` that are backup tasks (second leases of late bands).
+  /// The subset of `leases` that are backup tasks (second leases of late bands).
   std::set<LeaseId> backups;
   std::uint64_t backups_granted = 0;   ///< in this epoch
   std::deque<FailedAttempt> failures;  ///< the newest kMaxFailures

@@ -236,7 +236,7 @@ absl::StatusOr<ZipArchive> ZipArchive::open(absl::string_view bytes) {
 
 absl::StatusOr<std::string> ZipArchive::read(const Entry& entry) const {
   Reader in(bytes_, entry.header_at);
-  // Of the local header only its last two values are used: the lengths of the name and the extra
+  // Only the last two values of the local header are used: the lengths of the name and the extra
   // field there may differ from those of the directory.
   const bool has_header = in.u32() == kLocalHeader;
   in.text(kLocalHeaderBytes - 4 - 2 - 2);

@@ -1,4 +1,4 @@
-// What is imported from a glTF file: materials with their extensions, texture transforms, sets of
+// The import of glTF files: materials with their extensions, texture transforms, sets of
 // uvs, vertex colours, and the rest pose of skins and morph targets.
 
 #include <gmock/gmock.h>

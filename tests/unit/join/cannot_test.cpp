@@ -1,4 +1,4 @@
-// What somebody who has the link for browsers cannot do. The name of each test completes the
+// The limits of somebody who has the link for browsers. The name of each test completes the
 // sentence "the holder of the link cannot …", and there is one test for each line of the table in
 // coordinator/web/README.md.
 

@@ -161,7 +161,7 @@ Pixel bernoulli(double p, double base = 0) {
 
 constexpr int kRuns = 512;
 
-/// Of several renders with different seeds.
+/// The results of several renders with different seeds.
 struct Result {
   Moments mean;     ///< moments of Rendered::mean
   int planned = 0;  ///< number of renders with Rendered::planned

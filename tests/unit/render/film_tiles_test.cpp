@@ -13,7 +13,7 @@
 namespace bandsaw {
 namespace {
 
-/// What each half tile takes, where the uniform image would take `samples`.
+/// The samples that each half tile takes, where the uniform image would take `samples`.
 struct Pass {
   SampleRange samples;
   TileSamples tiles;
