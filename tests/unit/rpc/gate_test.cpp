@@ -12,7 +12,7 @@ using Call = std::function<grpc::Status(grpc::ClientContext&)>;
 
 struct NamedCall {
   std::string name;
-  link::Role role;  ///< the role whose secret is required
+  std::optional<link::Role> role;  ///< the role whose secret is required; std::nullopt: either
   Call call;
 };
 
@@ -47,6 +47,26 @@ class GateTest : public FarmTest {
          [this](auto& c) {
            farm::SubmitReply reply;
            return people()->Submit(&c, {}, &reply);
+         }},
+        {"SubmitSequence", farm_role,
+         [this](auto& c) {
+           farm::SubmitReply reply;
+           return people()->SubmitSequence(&c, {}, &reply);
+         }},
+        {"AddFrames", farm_role,
+         [this](auto& c) {
+           farm::JobStatus reply;
+           return people()->AddFrames(&c, {}, &reply);
+         }},
+        {"RetryFrames", farm_role,
+         [this](auto& c) {
+           farm::JobStatus reply;
+           return people()->RetryFrames(&c, {}, &reply);
+         }},
+        {"ListFrames", farm_role,
+         [this](auto& c) {
+           farm::ListFramesReply reply;
+           return people()->ListFrames(&c, {}, &reply);
          }},
         {"Watch", farm_role,
          [this](auto& c) {
@@ -103,10 +123,25 @@ class GateTest : public FarmTest {
            farm::LogsReply reply;
            return people()->Logs(&c, {}, &reply);
          }},
+        {"Quarantine", farm_role,
+         [this](auto& c) {
+           farm::QuarantineReply reply;
+           return people()->Quarantine(&c, {}, &reply);
+         }},
+        {"About", std::nullopt,
+         [this](auto& c) {
+           farm::AboutReply reply;
+           return people()->About(&c, {}, &reply);
+         }},
         {"RotateSecret", farm_role,
          [this](auto& c) {
            farm::RotateSecretReply reply;
            return people()->RotateSecret(&c, {}, &reply);
+         }},
+        {"BrowserLink", farm_role,
+         [this](auto& c) {
+           farm::BrowserLinkReply reply;
+           return people()->BrowserLink(&c, {}, &reply);
          }},
         {"Session", work_role,
          [this](auto& c) {
@@ -138,16 +173,38 @@ class GateTest : public FarmTest {
   }
 };
 
+TEST_F(GateTest, HasEachCallOfTheProtocol) {
+  std::vector<std::string> tested;
+  for (const NamedCall& named : calls()) {
+    tested.push_back(named.name);
+  }
+  std::vector<std::string> declared;
+  const google::protobuf::FileDescriptor* const file = farm::SubmitRequest::descriptor()->file();
+  for (int i = 0; i < file->service_count(); ++i) {
+    for (int j = 0; j < file->service(i)->method_count(); ++j) {
+      declared.emplace_back(file->service(i)->method(j)->name());
+    }
+  }
+  EXPECT_THAT(tested, ::testing::UnorderedElementsAreArray(declared));
+}
+
 TEST_F(GateTest, AdmitsTheRoleOfEachCall) {
   for (const NamedCall& named : calls()) {
-    const grpc::Status status = named.call(*context(named.role));
-    EXPECT_FALSE(refused(status)) << named.name << ": " << status.error_message();
+    for (const link::Role role : {link::Role::kFarm, link::Role::kWorker}) {
+      if (named.role.value_or(role) == role) {
+        const grpc::Status status = named.call(*context(role));
+        EXPECT_FALSE(refused(status)) << named.name << ": " << status.error_message();
+      }
+    }
   }
 }
 
 TEST_F(GateTest, RefusesTheOtherRole) {
   for (const NamedCall& named : calls()) {
-    const auto other = named.role == link::Role::kFarm ? link::Role::kWorker : link::Role::kFarm;
+    if (!named.role) {
+      continue;
+    }
+    const auto other = *named.role == link::Role::kFarm ? link::Role::kWorker : link::Role::kFarm;
     const grpc::Status status = named.call(*context(other));
     EXPECT_EQ(status.error_code(), grpc::StatusCode::PERMISSION_DENIED) << named.name;
     EXPECT_THAT(status.error_message(), ::testing::HasSubstr("join string")) << named.name;
