@@ -24,12 +24,12 @@ Figures measured_apart(const std::function<Figures()>& work) {
     const Figures figures = work();
     _exit(write(ends[1], &figures, sizeof figures) == sizeof figures ? 0 : 1);
   }
+  close(ends[1]);  // otherwise read() would wait forever if the child dies
   Figures figures;
   int status = 0;
   rusage used{};
   const bool received = child > 0 && read(ends[0], &figures, sizeof figures) == sizeof figures;
   close(ends[0]);
-  close(ends[1]);
   if (!received || wait4(child, &status, 0, &used) != child || status != 0) {
     std::fprintf(stderr, "a measurement failed: no memory?\n");
     std::exit(1);

@@ -37,7 +37,11 @@ std::string write_list(const std::vector<std::string>& files) {
   }
   const bool good = ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
   close(file);
-  return good ? path : "";
+  if (!good) {
+    std::remove(path.c_str());
+    return "";
+  }
+  return path;
 }
 
 }  // namespace
