@@ -72,9 +72,13 @@ part_blender() {
 
 part_asan-ubsan() { preset asan-ubsan all && tests build/asan-ubsan --label-regex '^default$'; }
 
+# The system's libraries are not built for ThreadSanitizer, so it does not see their locks. Therefore it ignores their accesses to memory.
+# Two groups of tests are left out: one reads JSON into protobuf's Struct, whose layout in the library differs from that in a program
+# built for ThreadSanitizer; one starts a worker without these options and compares its last message.
 part_tsan() {
-  export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt"
-  preset tsan unit_scheduler unit_store unit_engine unit_worker farm && tests build/tsan --label-regex '^(tsan|farm)$'
+  export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt:ignore_noninstrumented_modules=1"
+  preset tsan unit_scheduler unit_store unit_engine unit_worker farm &&
+    tests build/tsan --label-regex '^(tsan|farm)$' --exclude-regex '^(ReportOf.*|Invite\.ReportsWhyAWorkerCannotJoin)$'
 }
 
 part_clang() {
