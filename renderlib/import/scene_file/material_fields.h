@@ -7,6 +7,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
 #include "proto/scene.pb.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/draft/color_limits.h"

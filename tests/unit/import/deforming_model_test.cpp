@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "absl/strings/str_cat.h"
 #include "renderlib/import/import.h"
 #include "renderlib/math/elementary.h"
 #include "renderlib/render/render_band.h"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "absl/strings/str_cat.h"
 #include "farm_driver.h"
 
 namespace bandsaw::coordinator::sim {

@@ -9,6 +9,7 @@
 
 #include <optional>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "farm_driver.h"
 #include "seeds.h"

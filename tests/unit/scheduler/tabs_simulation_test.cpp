@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
 #include "farm_driver.h"
 #include "seeds.h"
 #include "simulated_farm.h"
