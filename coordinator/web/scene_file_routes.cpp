@@ -9,11 +9,11 @@
 #include <memory>
 #include <utility>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "coordinator/store/scratch_folder.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
 #include "coordinator/web/scene_request.h"
@@ -215,17 +215,9 @@ absl::StatusOr<web::Submitted> submit_files(Engine& engine, Scenes& scenes,
     return absl::InvalidArgumentError(
         absl::StrCat("scene: must be one of the files, at most ", kMaxFiles));
   }
-  std::error_code error;
-  std::string folder = (fs::temp_directory_path(error) / "bandsaw-files-XXXXXX").string();
-  if (error || mkdtemp(folder.data()) == nullptr) {
-    return errno_status(error ? error.value() : errno, "cannot make a temporary folder");
-  }
-  const absl::Cleanup remove = [&folder] {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-  };
-  RETURN_IF_ERROR(lay_out(engine, files, folder));
-  return scenes.submit((fs::path(folder) / files.scene()).string(), wanted);
+  ASSIGN_OR_RETURN(const auto folder, ScratchFolder::make("files"));
+  RETURN_IF_ERROR(lay_out(engine, files, folder->path()));
+  return scenes.submit((fs::path(folder->path()) / files.scene()).string(), wanted);
 }
 
 }  // namespace

@@ -2,13 +2,13 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "coordinator/store/scratch_folder.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
 #include "coordinator/web/scene_request.h"
@@ -18,8 +18,6 @@
 
 namespace bandsaw::coordinator {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxPackageBytes = 2048ull << 20;  // of the file that is dropped
 
@@ -31,22 +29,13 @@ class Upload {
     if (file_ != nullptr) {
       std::fclose(file_);
     }
-    std::error_code ignored;
-    if (!folder_.empty()) {
-      fs::remove_all(folder_, ignored);
-    }
   }
   Upload(const Upload&) = delete;
   Upload& operator=(const Upload&) = delete;
 
   absl::Status open(const std::string& name) {
-    std::error_code error;
-    std::string pattern = (fs::temp_directory_path(error) / "bandsaw-drop-XXXXXX").string();
-    if (error || mkdtemp(pattern.data()) == nullptr) {
-      return errno_status(error ? error.value() : errno, "cannot make a temporary folder");
-    }
-    folder_ = pattern;
-    path_ = folder_ + "/" + name;
+    ASSIGN_OR_RETURN(folder_, ScratchFolder::make("drop"));
+    path_ = folder_->path() + "/" + name;
     file_ = std::fopen(path_.c_str(), "wb");
     return file_ != nullptr ? absl::OkStatus() : errno_status(errno, "cannot keep the scene");
   }
@@ -80,7 +69,7 @@ class Upload {
     }
   }
 
-  std::string folder_;
+  std::unique_ptr<const ScratchFolder> folder_;
   std::string path_;
   std::FILE* file_ = nullptr;
 };

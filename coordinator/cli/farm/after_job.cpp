@@ -1,20 +1,21 @@
 // run_after() runs the command of --then by a shell, once the job is over. The job's number, state
-// and files are in the command's environment; the list of all files is in a temporary file.
+// and files are in the command's environment; the list of all files is a file in a temporary
+// folder.
 
 #include "coordinator/cli/farm/after_job.h"
 
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
+#include <cstddef>
+#include <memory>
+#include <span>
 
-#include "absl/cleanup/cleanup.h"
+#include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "coordinator/cli/base/child_process.h"
 #include "coordinator/scheduler/api/job_spec.h"
+#include "coordinator/store/scratch_folder.h"
 #include "renderlib/base/atomic_file.h"
 
 namespace bandsaw::coordinator {
@@ -22,26 +23,16 @@ namespace {
 
 constexpr double kNoLimit_s = 1e7;  // about 116 days
 
-/// Returns the name of a new temporary file with these lines; empty: it could not be written.
-std::string write_list(const std::vector<std::string>& files) {
-  std::error_code error;
-  std::string path =
-      (std::filesystem::temp_directory_path(error) / "bandsaw-files-XXXXXX").string();
-  const int file = error ? -1 : mkstemp(path.data());
-  if (file < 0) {
+/// Writes these lines to a new file in the folder and returns its name; empty: there is no folder,
+/// or the file could not be written.
+std::string write_list(const absl::StatusOr<std::unique_ptr<const ScratchFolder>>& folder,
+                       const std::vector<std::string>& files) {
+  if (!folder.ok()) {
     return "";
   }
-  std::string text;
-  for (const std::string& name : files) {
-    absl::StrAppend(&text, name, "\n");
-  }
-  const bool good = ::write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  close(file);
-  if (!good) {
-    std::remove(path.c_str());
-    return "";
-  }
-  return path;
+  const std::string path = absl::StrCat((*folder)->path(), "/files");
+  const std::string text = files.empty() ? "" : absl::StrCat(absl::StrJoin(files, "\n"), "\n");
+  return write_file_atomically(path, std::as_bytes(std::span(text))).ok() ? path : "";
 }
 
 }  // namespace
@@ -56,8 +47,8 @@ ExitCode run_after(const std::string& command, FarmClient& client, JobId job,
   if (!last.ok() || !is_final(last->job.state)) {
     return code;
   }
-  const std::string list = write_list(files);
-  const absl::Cleanup remove_list = [&list] { std::remove(list.c_str()); };
+  const auto folder = ScratchFolder::make("then");
+  const std::string list = write_list(folder, files);
   const auto ran = run_child({"env", absl::StrCat("BANDSAW_JOB=", job),
                               absl::StrCat("BANDSAW_STATE=", state_name(last->job.state)),
                               absl::StrCat("BANDSAW_FILES=", absl::StrJoin(outputs, "\n")),

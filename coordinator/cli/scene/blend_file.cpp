@@ -68,13 +68,9 @@ absl::StatusOr<std::unique_ptr<BlendScene>> empty_scene(const std::string& path)
   if (!fs::is_regular_file(path, error)) {
     return absl::NotFoundError(absl::StrCat(path, ": there is no such file"));
   }
-  std::string folder = (fs::temp_directory_path(error) / "bandsaw-blend-XXXXXX").string();
-  if (error || mkdtemp(folder.data()) == nullptr) {
-    return errno_status(error ? error.value() : errno, "cannot make a temporary folder");
-  }
-  auto made = std::make_unique<BlendScene>(
-      folder, absl::StrCat(folder, "/", fs::path(path).stem().string(), ".json"));
-  RETURN_IF_ERROR(write_addon(absl::StrCat(folder, "/", kAddon)));
+  ASSIGN_OR_RETURN(auto folder, ScratchFolder::make("blend"));
+  auto made = std::make_unique<BlendScene>(std::move(folder), fs::path(path).stem().string());
+  RETURN_IF_ERROR(write_addon(absl::StrCat(made->folder(), "/", kAddon)));
   return made;
 }
 
@@ -146,11 +142,6 @@ absl::Status read_result(const std::string& path, const std::string& output, Ble
 }  // namespace
 
 bool is_blend_file(const std::string& path) { return absl::EndsWithIgnoreCase(path, ".blend"); }
-
-BlendScene::~BlendScene() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
-}
 
 absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(const std::string& path,
                                                                 const std::atomic<bool>& stop,

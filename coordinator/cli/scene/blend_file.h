@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "coordinator/store/scratch_folder.h"
 
 namespace bandsaw::coordinator {
 
@@ -24,20 +25,18 @@ bool is_blend_file(const std::string& path);
 /// A scene that Blender has written, in a temporary folder that is removed with this object.
 class BlendScene {
  public:
-  BlendScene(std::string folder, std::string scene_path)
-      : scene(std::move(scene_path)), folder_(std::move(folder)) {}
-  ~BlendScene();
-  BlendScene(const BlendScene&) = delete;
-  BlendScene& operator=(const BlendScene&) = delete;
+  /// `name`: that of the scene, without a suffix.
+  BlendScene(std::unique_ptr<const ScratchFolder> folder, const std::string& name)
+      : scene(folder->path() + "/" + name + ".json"), folder_(std::move(folder)) {}
 
   std::string scene;                  ///< the path of the scene file in the folder
   std::vector<std::string> warnings;  ///< sentences about what looks different in Blender
 
   /// Returns the path of the temporary folder.
-  const std::string& folder() const { return folder_; }
+  const std::string& folder() const { return folder_->path(); }
 
  private:
-  std::string folder_;
+  std::unique_ptr<const ScratchFolder> folder_;
 };
 
 /// Runs Blender on the file at `path`, at the frame `frame` or, without it, at the frame that is

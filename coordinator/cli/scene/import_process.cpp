@@ -25,6 +25,7 @@
 #include "coordinator/cli/base/child_process.h"
 #include "coordinator/cli/base/coprocess.h"
 #include "coordinator/cli/base/program_folder.h"
+#include "coordinator/store/scratch_folder.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
@@ -32,21 +33,6 @@
 
 namespace bandsaw::coordinator {
 namespace fs = std::filesystem;
-
-class ScratchFolder {
- public:
-  explicit ScratchFolder(std::string path) : path_(std::move(path)) {}
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 absl::StatusOr<std::string> import_program(const ImportLimits& limits) {
   const std::string program =
@@ -60,18 +46,6 @@ absl::StatusOr<std::string> import_program(const ImportLimits& limits) {
 }
 
 namespace {
-
-// Makes a temporary folder in `wanted`, or in the system's default if that is empty.
-absl::StatusOr<std::unique_ptr<ScratchFolder>> make_scratch(const std::string& wanted) {
-  std::error_code error;
-  const fs::path parent = wanted.empty() ? fs::temp_directory_path(error) : fs::path(wanted);
-  std::string pattern = (parent / "bandsaw-import-XXXXXX").string();
-  if (error || mkdtemp(pattern.data()) == nullptr) {
-    return errno_status(error ? error.value() : errno,
-                        absl::StrCat("cannot make a temporary folder in ", parent.string()));
-  }
-  return std::make_unique<ScratchFolder>(pattern);
-}
 
 // Parses an error in the form "NOT_FOUND: message", which the importer prints. Returns OK for any
 // other text. The codes of absl::StatusCode are 1 to 16.
@@ -160,12 +134,12 @@ std::vector<std::string> importer_arguments(const std::string& program, const ch
 }
 
 // Runs the importer on `file`, with `what` as above. Returns the folder with its output.
-absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
-                                                            const std::string& file,
-                                                            const ImportLimits& limits,
-                                                            const SceneChoices& choices = {}) {
+absl::StatusOr<std::unique_ptr<const ScratchFolder>> run_importer(
+    const char* what, const std::string& file, const ImportLimits& limits,
+    const SceneChoices& choices = {}) {
   ASSIGN_OR_RETURN(const std::string program, import_program(limits));
-  ASSIGN_OR_RETURN(std::unique_ptr<ScratchFolder> folder, make_scratch(limits.scratch));
+  ASSIGN_OR_RETURN(std::unique_ptr<const ScratchFolder> folder,
+                   ScratchFolder::make("import", limits.scratch));
   const auto cpu_seconds = static_cast<std::uint64_t>(std::ceil(std::max(limits.seconds, 1.0)));
   ASSIGN_OR_RETURN(const ChildOutcome outcome,
                    run_child(importer_arguments(program, what, file, folder->path(), cpu_seconds,
@@ -315,7 +289,7 @@ absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits,
                                                   const SceneChoices& choices) {
   if (is_zip(scene_path)) {
-    ASSIGN_OR_RETURN(const auto unpacked, make_scratch(limits.scratch));
+    ASSIGN_OR_RETURN(const auto unpacked, ScratchFolder::make("import", limits.scratch));
     ASSIGN_OR_RETURN(const std::string inside,
                      unpack_scene(scene_path, choices.inside, unpacked->path(), limits));
     return import_in_process(inside, limits, choices);
@@ -330,11 +304,12 @@ absl::StatusOr<std::unique_ptr<ImportSession>> ImportSession::start(const std::s
   std::string scene = scene_path;
   std::shared_ptr<const ScratchFolder> unpacked;
   if (is_zip(scene_path)) {
-    ASSIGN_OR_RETURN(unpacked, make_scratch(limits.scratch));
+    ASSIGN_OR_RETURN(unpacked, ScratchFolder::make("import", limits.scratch));
     ASSIGN_OR_RETURN(scene, unpack_scene(scene_path, choices.inside, unpacked->path(), limits));
   }
   ASSIGN_OR_RETURN(const std::string program, import_program(limits));
-  ASSIGN_OR_RETURN(std::shared_ptr<const ScratchFolder> folder, make_scratch(limits.scratch));
+  ASSIGN_OR_RETURN(std::shared_ptr<const ScratchFolder> folder,
+                   ScratchFolder::make("import", limits.scratch));
   choices.frame = 0;
   // This process limits the time of each frame. The importer's own limit is for all frames, of
   // which it does not know how many come, so it is set to more than any needs.

@@ -33,8 +33,7 @@ struct ImportLimits {
 
 class Coprocess;
 
-/// A temporary folder that is removed with its contents by the destructor.
-class ScratchFolder;
+class ScratchFolder;  // coordinator/store/scratch_folder.h
 
 /// An imported scene. Its blobs are in a temporary folder that is removed with this object.
 class ImportedPackage {
