@@ -60,7 +60,8 @@ struct Planes {
 
 using Rays = std::vector<const ScatteredRay*>;
 
-struct Interval {
+/// A closed interval of coordinates.
+struct Bounds {
   double low = 0;
   double high = 0;
   double size() const { return high - low; }
@@ -70,8 +71,8 @@ struct Interval {
 /// A rectangle in one of the planes.
 struct Rectangle {
   double offset = 0;  ///< of the plane: dot(point, normal)
-  Interval u;
-  Interval v;
+  Bounds u;
+  Bounds v;
   double area() const { return u.size() * v.size(); }
 };
 
@@ -86,7 +87,7 @@ double crossing(const ScatteredRay& ray, const Planes& planes, double offset, co
 }
 
 /// Returns the interval of the values without a part on each side. Reorders the values.
-Interval trimmed(std::vector<double>& values, double part) {
+Bounds trimmed(std::vector<double>& values, double part) {
   const auto skip = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size()));
   std::nth_element(values.begin(), values.begin() + skip, values.end());
   const double low = values[static_cast<std::size_t>(skip)];
@@ -118,7 +119,7 @@ Rectangle smallest_rectangle(const Rays& rays, const Planes& planes) {
   for (const ScatteredRay* ray : rays) {
     starts.push_back(dot(ray->origin, planes.normal));
   }
-  const Interval all = trimmed(starts, 0);
+  const Bounds all = trimmed(starts, 0);
   // The rays start before the opening, except those that start beyond it, outside the room.
   double low = all.low;
   double high = all.high + all.size();
@@ -239,13 +240,13 @@ Planes planes_of(const Vec3& normal, const std::vector<Vec3>& normals) {
 /// is farther outside than any of the few rays. Light beside a portal would be found by BSDF
 /// sampling alone, which shows as bright dots.
 Portal portal_of(const Rays& rays, const Rectangle& rectangle, const Planes& planes) {
-  const auto widened = [](const Interval& of, double by) {
-    return Interval{of.low - by * of.size(), of.high + by * of.size()};
+  const auto widened = [](const Bounds& of, double by) {
+    return Bounds{of.low - by * of.size(), of.high + by * of.size()};
   };
-  const Interval near_u = widened(rectangle.u, kBeside);
-  const Interval near_v = widened(rectangle.v, kBeside);
-  Interval u = rectangle.u;
-  Interval v = rectangle.v;
+  const Bounds near_u = widened(rectangle.u, kBeside);
+  const Bounds near_v = widened(rectangle.v, kBeside);
+  Bounds u = rectangle.u;
+  Bounds v = rectangle.v;
   for (const ScatteredRay* ray : rays) {
     const double at_u = crossing(*ray, planes, rectangle.offset, planes.u);
     const double at_v = crossing(*ray, planes, rectangle.offset, planes.v);
@@ -397,7 +398,6 @@ std::optional<Found> best_portal(const Rays& escaping, const Search& search) {
 
 }  // namespace
 
-/// Returns the part of the rays that escape; 0 without rays.
 double escaping_part(absl::Span<const ScatteredRay> rays) {
   const auto count =
       std::count_if(rays.begin(), rays.end(), [](const ScatteredRay& ray) { return ray.escapes; });

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <optional>
+
 #include "tests/unit/rpc/farm.h"
 
 namespace bandsaw::coordinator {
