@@ -3,6 +3,7 @@
 
 #include "renderlib/import/model/model.h"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -203,6 +204,12 @@ absl::Status choose_animation(const AnimationChoice& choice, const std::string& 
   return absl::OkStatus();
 }
 
+/// Deletes the files that Assimp reads from. SetIOHandler(nullptr) would not delete them in Assimp
+/// 5.2 (Assimp's pull request 5926), but setting another handler does in all versions.
+void forget_files(Assimp::Importer& importer) {
+  importer.SetIOHandler(std::make_unique<Assimp::DefaultIOSystem>().release());
+}
+
 /// Reads the file with Assimp; nullptr on failure. For glTF, Assimp reads only the plain document,
 /// whose buffer is freed afterwards.
 const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& folder,
@@ -213,13 +220,13 @@ const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& fold
   if (!plain || plain->is_first_version) {
     importer.SetIOHandler(std::make_unique<AssimpFiles>(folder, source, refused).release());
     const aiScene* scene = importer.ReadFile(source.path, kFlags);
-    importer.SetIOHandler(nullptr);
+    forget_files(importer);
     return scene;
   }
   const std::string json = plain->root.dump();
   importer.SetIOHandler(std::make_unique<PlainGltfFiles>(json, plain->buffer).release());
   const aiScene* scene = importer.ReadFile(PlainGltfFiles::kDocument, kFlags);
-  importer.SetIOHandler(nullptr);
+  forget_files(importer);
   plain->buffer = {};
   return scene;
 }
