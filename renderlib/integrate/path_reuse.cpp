@@ -91,7 +91,9 @@ void trace_own_path(const PathContext& context, PathState& path, GuidingCones& c
 using PrimaryVertices = std::array<std::optional<PrimaryVertex>, kMaxReusePixels>;
 
 /// The connection of a primary vertex to a shared vertex: BSDF value and pdf by solid angle, and
-/// the factor to area measure. All zero if one vertex is behind the other one's surface.
+/// the factor to area measure. All zero if one vertex is behind the other one's surface, or if the
+/// BSDF scatters no light there: a path ends where its throughput is black, so the primary vertex
+/// never produces this shared vertex, whatever its pdf.
 struct Connection {
   BsdfValue scattered;
   double solid_angle_per_area = 0;
@@ -105,8 +107,9 @@ Connection connect(const PrimaryVertex& primary, const SharedVertex& shared) {
   }
   const double distance2 = length_squared(to_shared);
   const double distance = std::sqrt(distance2);
-  return {evaluate(primary.bsdf, *primary.cones, to_shared / distance),
-          cosine / (distance2 * distance)};
+  const BsdfValue scattered = evaluate(primary.bsdf, *primary.cones, to_shared / distance);
+  return is_black(scattered.value) ? Connection{}
+                                   : Connection{scattered, cosine / (distance2 * distance)};
 }
 
 /// Adds the light of the shared vertex of pixel `owner` to all pixels whose primary vertex sees it,
