@@ -90,18 +90,19 @@ inline Rgb emitted(const Material& material, absl::Span<const Texture> textures,
 }
 
 /// Returns the expected value of the radiance emitted by material `id`, for light sampling. The
-/// material may be a mixture, and its opacity is included. A hidden lamp (material/opacity.h),
-/// which rays do not see, emits with opacity 1.
+/// material may be a mixture, and its opacity is included. A hidden lamp (material/opacity.h)
+/// emits with opacity 1, but not towards the camera.
 inline Rgb emitted_if_present(absl::Span<const Material> materials, MaterialId id,
                               absl::Span<const Texture> textures, const SurfacePoint& point,
-                              const Vec3& direction) {
+                              const Vec3& direction, bool to_camera) {
   const Material& material = materials[index_of(id)];
   if (const auto* mix = std::get_if<Mix>(&material.kind)) {
-    return lerp(emitted_if_present(materials, mix->a, textures, point, direction),
-                emitted_if_present(materials, mix->b, textures, point, direction),
+    return lerp(emitted_if_present(materials, mix->a, textures, point, direction, to_camera),
+                emitted_if_present(materials, mix->b, textures, point, direction, to_camera),
                 static_cast<float>(amount_at(*mix, textures, point)));
   }
-  const double shown = is_hidden_lamp(material) ? 1 : opacity(material, textures, point);
+  const double shown =
+      is_hidden_lamp(material) ? (to_camera ? 0 : 1) : opacity(material, textures, point);
   return emitted(material, textures, point, direction) * static_cast<float>(shown);
 }
 

@@ -225,8 +225,9 @@ std::optional<LightSample> Lights::sample_surface(PrimitiveId id, const Receiver
   LightSample sample;
   sample.direction = normalize(to_light);
   sample.target = on_light->position + (facing < 0 ? -point.away : point.away);
-  sample.radiance =
-      emitted_if_present(*materials_, point.material, *textures_, point, -sample.direction);
+  const bool to_camera = receiver.within != nullptr;
+  sample.radiance = emitted_if_present(*materials_, point.material, *textures_, point,
+                                       -sample.direction, to_camera);
   sample.pdf = on_light->pdf;
   return sample;
 }

@@ -137,6 +137,14 @@ TEST(Lens, LightSamplingAndCameraRaysHaveTheSameMeanInFogAndUnderASky) {
   expect_the_same(maker, camera(0.4), 512);
 }
 
+TEST(Lens, HiddenLampsBeyondTheFocusAreNotSeen) {
+  SceneMaker maker;
+  const MaterialId lamp = maker.lamp(7);
+  std::get<Emissive>(maker.scene.materials[index_of(lamp)].kind).hidden = true;
+  maker.sphere({0, 0, -10}, 0.1, lamp);
+  EXPECT_EQ(seen(maker, camera(0.4), 10, 10, Technique::kLightSampling, 256).mean(), 0);
+}
+
 /// A closed room, in which pixels reuse paths.
 SceneMaker room() {
   SceneMaker maker;
