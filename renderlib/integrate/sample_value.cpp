@@ -6,6 +6,7 @@
 #include "renderlib/geometry/surface.h"
 #include "renderlib/integrate/guide.h"
 #include "renderlib/integrate/intersect_visible.h"
+#include "renderlib/integrate/visibility.h"
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/look_up.h"
 #include "renderlib/material/shading_normal.h"
@@ -21,16 +22,17 @@ Rgb as_color(const Vec3& n) {
   return {channel(n.x), channel(n.y), channel(n.z)};
 }
 
-/// Returns 1 if a cosine-weighted direction on the viewer's side hits nothing within the occlusion
-/// distance, otherwise 0.
-float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, double u, double v) {
+/// Returns the visibility, in [0, 1], along a cosine-weighted direction on the viewer's side as far
+/// as the occlusion distance. Adds the number of rays traced to `rays`.
+float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, double u, double v,
+               std::uint64_t& rays) {
   const Vec3 normal = facing_normal(point, wo);
   const Vec3 direction = orthonormal_basis(normal).to_world(sample_cosine_hemisphere(u, v));
   if (!(dot(direction, normal) > 0)) {
     return 0;
   }
   const double distance = scene.local_shading().occlusion_distance;
-  return scene.accel().occluded(spawn_ray(point, normalize(direction), distance)) ? 0.0f : 1.0f;
+  return visibility(scene, spawn_ray(point, normalize(direction), distance), rays);
 }
 
 /// Returns the value of an integrator that shows only the first surface. Where the ray leaves the
@@ -52,9 +54,8 @@ Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const Pi
   if (integrator == Integrator::kAlbedo) {
     return albedo_at(scene.material(point.material), scene.textures(), point);
   }
-  ++rays;
   const Sample4 numbers = sampler.group(sample, group_bsdf(0));
-  return gray(openness(scene, point, -ray.direction, numbers[0], numbers[1]));
+  return gray(openness(scene, point, -ray.direction, numbers[0], numbers[1], rays));
 }
 
 }  // namespace

@@ -164,6 +164,19 @@ TEST(SampleValue, ABallAboveOccludesItsViewFactor) {
   EXPECT_EQ(mean(maker, Integrator::kAmbientOcclusion, below, 1), 1);
 }
 
+TEST(SampleValue, AmbientOcclusionSkipsHolesAndHiddenLamps) {
+  SceneMaker maker;
+  wall(maker, maker.diffuse(0.5f));
+  Material hole = MetallicRoughness{};
+  hole.alpha = {AlphaMode::kMask, {TextureId{0}, 0}};
+  maker.scene.materials.push_back(hole);
+  wall(maker, MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)}, 2);
+  const MaterialId lamp = maker.lamp(1);
+  std::get<Emissive>(maker.scene.materials[index_of(lamp)].kind).hidden = true;
+  wall(maker, lamp, 3);
+  EXPECT_EQ(mean(maker, Integrator::kAmbientOcclusion, kAhead, 1), 1);
+}
+
 TEST(SampleValue, DirectIsIrradianceAndAmbientTerm) {
   SceneMaker maker;
   wall(maker, maker.diffuse(0.5f));
