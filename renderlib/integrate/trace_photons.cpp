@@ -7,10 +7,12 @@
 #include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/intersect_visible.h"
 #include "renderlib/integrate/medium_traversal.h"
+#include "renderlib/integrate/scatter_photon.h"
 #include "renderlib/integrate/visibility.h"
+#include "renderlib/light/shape_light.h"
 #include "renderlib/material/bsdf.h"
+#include "renderlib/material/mixture.h"
 #include "renderlib/material/opacity.h"
-#include "renderlib/material/shading_normal.h"
 #include "renderlib/math/elementary.h"
 #include "renderlib/sampling/basis.h"
 
@@ -33,31 +35,51 @@ struct Numbers {
   }
 };
 
-/// Scatters the photon, which comes from direction `in`, at the caster. The direction is sampled
-/// from the BSDF, but the power changes by the BSDF of the opposite way, in which paths travel:
-/// neither refraction nor shading normals are symmetric (Veach 1997, section 5.3). Returns false if
-/// the photon is absorbed.
-bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& in,
-                    const Sample4& numbers, Photon& photon) {
-  const Material& material = scene.material(point.material);
-  const Bsdf bsdf = bsdf_at(material, scene.textures(), point, in);
-  const std::optional<BsdfSample> next = sample(bsdf, numbers[0], numbers[1], numbers[2]);
+/// Scatters the photon, which comes from direction `in`, at the caster. Returns false if it is
+/// absorbed.
+bool scatter(const Scene& scene, const SurfacePoint& point, const Vec3& in, const Sample4& numbers,
+             Photon& photon) {
+  const std::optional<PhotonScattering> next = scatter_photon(scene, point, in, numbers);
   if (!next) {
     return false;
   }
-  const Vec3& out = next->wi;
-  double factor = std::abs(dot(out, point.geometric_normal) / dot(in, point.geometric_normal));
-  Rgb scattered = next->weight;
-  if (next->delta) {
-    const Vec3 normal = bent_normal(material.relief, scene.textures(), point);
-    factor *= std::abs(dot(in, normal) / dot(out, normal)) / next->compression;
-  } else {
-    scattered = evaluate(bsdf_at(material, scene.textures(), point, out), in).value;
-    factor /= next->pdf;
-  }
-  photon.power = photon.power * scattered * static_cast<float>(factor);
-  photon.ray = spawn_ray(point, out);
+  photon.power = photon.power * next->factor;
+  photon.ray = spawn_ray(point, next->out);
   return max_component(photon.power) > 0 && is_finite(photon.power);
+}
+
+/// Returns the probability that a hit at the point of a surface of material `id` counts as one at a
+/// receiver of caustics: its opacity, and for a mixture the sum over the parts that receive.
+double receiving_part(const Scene& scene, const Casters& casters, MaterialId id,
+                      const SurfacePoint& point, const Vec3& from) {
+  const Material& material = scene.material(id);
+  if (const auto* mix = std::get_if<Mix>(&material.kind)) {
+    const double amount = amount_at(*mix, scene.textures(), point);
+    return (1 - amount) * receiving_part(scene, casters, mix->a, point, from) +
+           amount * receiving_part(scene, casters, mix->b, point, from);
+  }
+  const Bsdf bsdf = bsdf_at(material, scene.textures(), point, from);
+  return caustic_role(casters, id, bsdf) == CausticRole::kReceiver
+             ? opacity(material, scene.textures(), point)
+             : 0;
+}
+
+/// Adds the photon, which arrived from direction `from`, to `out`. Paths look up photons only where
+/// the receiver is present, so the photon's power is that which arrives whether or not it is.
+void store(const Scene& scene, const Casters& casters, const SurfacePoint& hit, const Vec3& from,
+           std::uint32_t chain, const Photon& photon, TracedPhotons& out) {
+  Rgb power = photon.power;
+  if (scene.features().alpha || scene.features().mixtures) {
+    const MaterialId whole = material_of(scene.geometry(), hit.id);
+    power = power * static_cast<float>(1 / receiving_part(scene, casters, whole, hit, from));
+  }
+  out.photons.push_back({.position = float3(hit.position),
+                         .normal = float3(facing_normal(hit, from)),
+                         .chain = chain,
+                         .from = float3(from),
+                         .power = power});
+  out.power += luminance(power);
+  out.power_by_angle += luminance(power) * photon.angle;
 }
 
 /// Returns the photon that leaves a random point of a caster; std::nullopt if no emissive surface
@@ -85,7 +107,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Nu
                 .power = light.radiance * passing * static_cast<float>(weight),
                 .angle = 1 / light.pdf};
   if (!(max_component(photon.power) > 0) ||
-      !scatter_photon(scene, point, light.direction, numbers.group(group_bsdf(0)), photon)) {
+      !scatter(scene, point, light.direction, numbers.group(group_bsdf(0)), photon)) {
     return std::nullopt;
   }
   return photon;
@@ -111,32 +133,28 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
         caustic_role(casters, hit->material,
                      bsdf_at(scene.material(hit->material), scene.textures(), *hit, from));
     if (role == CausticRole::kReceiver) {
-      out.photons.push_back({.position = float3(hit->position),
-                             .normal = float3(facing_normal(*hit, from)),
-                             .chain = chain,
-                             .from = float3(from),
-                             .power = photon.power});
-      out.power += luminance(photon.power);
-      out.power_by_angle += luminance(photon.power) * photon.angle;
+      store(scene, casters, *hit, from, chain, photon, out);
       return;
     }
     if (role != CausticRole::kCaster ||
-        !scatter_photon(scene, *hit, from, numbers.group(group_bsdf(chain)), photon)) {
+        !scatter(scene, *hit, from, numbers.group(group_bsdf(chain)), photon)) {
       return;
     }
   }
 }
 
 /// Returns true if there is a surface close to the point `to` of the photon's disk, and nothing
-/// stands between it and the photon. Close means at most a quarter of the radius below the disk's
-/// plane: lower surfaces do not get the photon's light (density_at() in guiding/photon_map.h).
+/// opaque stands between it and the photon. Close means at most a quarter of the radius below the
+/// disk's plane: lower surfaces do not get the photon's light (density_at() in
+/// guiding/photon_map.h).
 bool is_on_surface(const Scene& scene, const CausticPhoton& photon, const Vec3& to) {
   const Vec3 lift = vec3(photon.normal) * (photon.radius / 8.0);
   const Vec3 start = vec3(photon.position) + lift;
   const double time = middle_of(shutter_of(scene.camera()));
   const Ray along{.origin = start, .direction = to + lift - start, .t_max = 1, .time = time};
   const Ray down{.origin = to + lift, .direction = lift * -3, .t_max = 1, .time = time};
-  return !scene.accel().occluded(along) && scene.accel().occluded(down);
+  std::uint64_t rays = 0;
+  return visibility(scene, along, rays) > 0 && visibility(scene, down, rays) < 1;
 }
 
 }  // namespace

@@ -123,6 +123,42 @@ TEST(Caustics, TheWallsReceiveThePowerOfTheLampInGlass) {
   EXPECT_LT(power.standard_error(), 0.01 * expected);
 }
 
+// Paths look up the photons of a surface only where the surface is present. So a map holds the
+// light that arrives there, whether the walls are opaque, half transparent, or a mixture with a
+// part that receives no caustics.
+TEST(Caustics, APartlyTransparentWallReceivesThePowerOfAnOpaqueOne) {
+  for (const bool mixture : {false, true}) {
+    SCOPED_TRACE(mixture);
+    SceneMaker maker = lamp_in_glass(1.5, 0.02);
+    const MaterialId wall = std::as_const(maker.scene.geometry).quads.front().material;
+    Material half = Diffuse{maker.texture(ConstantTexture{gray(0.5f)})};
+    half.alpha = {AlphaMode::kBlend, {maker.texture(ConstantTexture{gray(1)}), 0.4}};
+    const MaterialId other = mixture ? maker.metal(0.9f, 0.9) : wall;
+    maker.scene.materials.push_back(half);
+    MaterialId of_walls{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+    if (mixture) {
+      maker.scene.materials.push_back(
+          Mix{other, of_walls, maker.texture(ConstantTexture{gray(0.7f)})});
+      of_walls = MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+    }
+    for (Quad& quad : maker.scene.geometry.quads) {
+      quad.material = of_walls;
+    }
+    const auto scene = maker.build();
+    const Casters casters(*scene);
+    test::Moments power;
+    constexpr std::uint64_t kPhotons = 1 << 12;
+    for (std::uint32_t i = 0; i < 64; ++i) {
+      power.add(trace_photons(*scene, casters,
+                              {.seed = 1, .map = i, .photons = kPhotons, .last = kPhotons})
+                    .power);
+    }
+    const double expected = 0.96 * 10 * kPi * 4 * kPi * 0.02 * 0.02;
+    EXPECT_LE(std::abs(power.z(expected)), 4) << power.mean() << " and " << expected;
+    EXPECT_LT(power.standard_error(), 0.02 * expected);
+  }
+}
+
 // The disks of all photons together have the power of the photons, up to the edges of the room.
 TEST(Caustics, NoPowerIsLostAtEdges) {
   const auto scene = lamp_in_glass(1.5, 0.02).build();
@@ -169,6 +205,19 @@ TEST(Caustics, TheShareOnTheSurfaceKnowsEdges) {
   EXPECT_NEAR(share_on_surface(*scene, photon), 0.5, 0.1);
   photon.position = {3.999f, 0.001f, 0};
   EXPECT_NEAR(share_on_surface(*scene, photon), 0.25, 0.1);
+}
+
+TEST(Caustics, TheShareOnTheSurfaceIgnoresTransparentSurfaces) {
+  SceneMaker maker;
+  maker.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, maker.diffuse(0.5f));
+  Material hole = MetallicRoughness{};
+  hole.alpha = {AlphaMode::kMask, {TextureId{0}, 0}};
+  maker.scene.materials.push_back(hole);
+  const MaterialId card{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+  maker.quad({1.9, 0, -1}, {0, 4, 0}, {0, 0, 4}, card);
+  maker.camera({3, 3, 3}, {0, 0, 0}, 60);
+  const CausticPhoton photon{.position = {2, 2, 0}, .radius = 0.5f, .normal = {0, 0, 1}};
+  EXPECT_EQ(share_on_surface(*maker.build(), photon), 1);
 }
 
 // With an empty map, paths bring just the light that is not left to the photons: none in a room

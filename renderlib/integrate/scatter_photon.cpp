@@ -1,0 +1,164 @@
+#include "renderlib/integrate/scatter_photon.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/base/check.h"
+#include "renderlib/material/bsdf.h"
+#include "renderlib/material/fresnel.h"
+#include "renderlib/material/shading_normal.h"
+
+namespace bandsaw {
+namespace {
+
+/// Part of the photons that try the geometric normal where the shading normal is another.
+constexpr double kGeometricPart = 0.125;
+/// Squared distances between unit vectors: normals that differ by less are one normal, and
+/// directions that differ by less agree up to rounding.
+constexpr double kSameNormal = 1e-16;
+constexpr double kSameDirection = 1e-20;
+
+/// The two normals about which mirrors, fuzzy metal and smooth glass can scatter, unit vectors on
+/// the side of the photon. They use the shading normal, except where that would lead to the wrong
+/// side of the surface. Which normal a path uses depends on the direction from which it comes
+/// (for_mirror() and for_glass() in material/bsdf.cpp), and that is the photon's result. So a
+/// photon tries one of the normals at random.
+struct PhotonNormals {
+  Vec3 geometric;
+  Vec3 shading;
+  bool same;  ///< both are one normal
+};
+
+PhotonNormals normals_at(const Scene& scene, const SurfacePoint& point, const Vec3& in) {
+  const Vec3 shading = bent_normal(scene.material(point.material).relief, scene.textures(), point);
+  const bool same = length_squared(shading - point.geometric_normal) < kSameNormal;
+  return dot(in, point.geometric_normal) < 0
+             ? PhotonNormals{-point.geometric_normal, -shading, same}
+             : PhotonNormals{point.geometric_normal, shading, same};
+}
+
+/// Returns true if the BSDF, of a path that leaves along `out`, scatters it to `in` about the
+/// normal.
+bool is_path(const Bsdf& bsdf, const Vec3& in, const Vec3& normal) {
+  if (const auto* mirror = std::get_if<MirrorBsdf>(&bsdf)) {
+    return length_squared(mirror->mirror - in) < kSameDirection;
+  }
+  const auto* glass = std::get_if<DielectricBsdf>(&bsdf);
+  return glass != nullptr &&
+         std::min(length_squared(glass->normal.shading - normal),
+                  length_squared(glass->normal.shading + normal)) < kSameDirection;
+}
+
+/// Returns the scattering to `out`, which was sampled with this pdf, by the BSDF of paths.
+PhotonScattering path_value(const Scene& scene, const SurfacePoint& point, const Vec3& in,
+                            const Vec3& out, double pdf) {
+  const Bsdf of_path = bsdf_at(scene.material(point.material), scene.textures(), point, out);
+  const double cosines = dot(out, point.geometric_normal) / dot(in, point.geometric_normal);
+  return {out, evaluate(of_path, in).value * static_cast<float>(std::abs(cosines) / pdf)};
+}
+
+/// Scatters at a mirror or at smooth glass, whose BSDF seen from `in` is `bsdf`. The photon is
+/// absorbed if a path would use the other normal.
+std::optional<PhotonScattering> scatter_specular(const Scene& scene, const SurfacePoint& point,
+                                                 const Bsdf& bsdf, const Vec3& in,
+                                                 const Sample4& numbers) {
+  const PhotonNormals normals = normals_at(scene, point, in);
+  const bool is_geometric = normals.same || numbers[3] < kGeometricPart;
+  const Vec3& normal = is_geometric ? normals.geometric : normals.shading;
+  const double cos_in = std::min(1.0, dot(in, normal));
+  if (!(cos_in > 0)) {
+    return std::nullopt;
+  }
+  Vec3 out = normalize(mirrored(in, normal));
+  bool is_refracted = false;
+  if (const auto* glass = std::get_if<DielectricBsdf>(&bsdf);
+      glass != nullptr && numbers[2] >= fresnel(cos_in, glass->eta)) {
+    const std::optional<double> cos_out = refracted_cos(cos_in, glass->eta);
+    if (!cos_out) {
+      return std::nullopt;
+    }
+    out = normalize(refracted(in, normal, *cos_out, glass->eta));
+    is_refracted = true;
+  }
+  const double out_geometric = dot(out, normals.geometric);
+  if ((out_geometric < 0) != is_refracted) {
+    return std::nullopt;
+  }
+  double factor = std::abs(out_geometric) / dot(in, normals.geometric);
+  if (is_refracted) {
+    factor *= cos_in / std::abs(dot(out, normal));
+  }
+  Bsdf of_path = bsdf;
+  if (!normals.same) {
+    of_path = bsdf_at(scene.material(point.material), scene.textures(), point, out);
+    if (!is_path(of_path, in, normal)) {
+      return std::nullopt;
+    }
+    factor /= is_geometric ? kGeometricPart : 1 - kGeometricPart;
+  }
+  const auto* mirror = std::get_if<MirrorBsdf>(&of_path);
+  const Rgb reflectance = mirror != nullptr ? mirror->reflectance : gray(1);
+  return PhotonScattering{out, reflectance * static_cast<float>(factor)};
+}
+
+/// Samples a direction from one of two BSDFs seen from `in`, with the pdf of both together. Both
+/// are needed where the two normals differ: a BSDF bends or replaces its shading normal by the
+/// direction from which it is seen, so one of them would not reach all directions of paths.
+std::optional<PhotonScattering> scatter_by_both(const Scene& scene, const SurfacePoint& point,
+                                                const Bsdf& about_shading,
+                                                const Bsdf& about_geometric, const Vec3& in,
+                                                const Sample4& numbers) {
+  const Bsdf& chosen = numbers[3] < kGeometricPart ? about_geometric : about_shading;
+  const auto next = sample(chosen, numbers[0], numbers[1], numbers[2]);
+  if (!next) {
+    return std::nullopt;
+  }
+  const double pdf = kGeometricPart * evaluate(about_geometric, next->wi).pdf +
+                     (1 - kGeometricPart) * evaluate(about_shading, next->wi).pdf;
+  return path_value(scene, point, in, next->wi, pdf);
+}
+
+/// Returns the lobe of fuzzy metal about a normal, whether or not a path would use that.
+Bsdf fuzzy_lobe(const FuzzyMetalBsdf& metal, const Vec3& normal, const PhotonNormals& normals,
+                const Vec3& in) {
+  return FuzzyMetalBsdf{{normals.geometric, normals.geometric},
+                        metal.reflectance,
+                        normalize(mirrored(in, normal)),
+                        metal.fuzz};
+}
+
+/// Returns the BSDF seen from `in`, with the geometric normal as shading normal.
+Bsdf without_shading_normal(const Scene& scene, const SurfacePoint& point, const Vec3& in) {
+  Material flat = scene.material(point.material);
+  flat.relief = {};
+  SurfacePoint at = point;
+  at.shading_normal = point.geometric_normal;
+  return bsdf_at(flat, scene.textures(), at, in);
+}
+
+}  // namespace
+
+std::optional<PhotonScattering> scatter_photon(const Scene& scene, const SurfacePoint& point,
+                                               const Vec3& in, const Sample4& numbers) {
+  const Material& material = scene.material(point.material);
+  const Bsdf bsdf = bsdf_at(material, scene.textures(), point, in);
+  if (std::holds_alternative<MirrorBsdf>(bsdf) || std::holds_alternative<DielectricBsdf>(bsdf)) {
+    return scatter_specular(scene, point, bsdf, in, numbers);
+  }
+  if (const PhotonNormals normals = normals_at(scene, point, in); !normals.same) {
+    const auto* metal = std::get_if<FuzzyMetalBsdf>(&bsdf);
+    return metal == nullptr
+               ? scatter_by_both(scene, point, bsdf, without_shading_normal(scene, point, in), in,
+                                 numbers)
+               : scatter_by_both(scene, point, fuzzy_lobe(*metal, normals.shading, normals, in),
+                                 fuzzy_lobe(*metal, normals.geometric, normals, in), in, numbers);
+  }
+  const std::optional<BsdfSample> next = sample(bsdf, numbers[0], numbers[1], numbers[2]);
+  if (!next) {
+    return std::nullopt;
+  }
+  BANDSAW_CHECK(!next->delta, "a caster with delta directions that is no mirror and no glass");
+  return path_value(scene, point, in, next->wi, next->pdf);
+}
+
+}  // namespace bandsaw

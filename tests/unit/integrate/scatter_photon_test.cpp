@@ -1,0 +1,116 @@
+// At a caster, photons carry the light that paths find there: for both, the integral over both
+// directions of the light that passes is the same, whatever part of the directions is counted.
+
+#include "renderlib/integrate/scatter_photon.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "renderlib/material/bsdf.h"
+#include "renderlib/math/constants.h"
+#include "renderlib/sampling/warp.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::SceneMaker;
+
+/// Parts of the pairs of directions: all, those whose light comes from +x, those whose light goes
+/// to +x, and those of refractions to +x.
+constexpr std::size_t kParts = 4;
+using Parts = std::array<test::Moments, kParts>;
+
+void add(const Vec3& in, const Vec3& out, double amount, Parts& parts) {
+  const bool refracted = in.z * out.z < 0;
+  const std::array<bool, kParts> counted = {true, in.x > 0, out.x > 0, refracted && out.x > 0};
+  for (std::size_t i = 0; i < kParts; ++i) {
+    parts[i].add(counted[i] ? amount : 0);
+  }
+}
+
+/// Returns a direction on either side of z = 0, with the pdf |cos| / (2 pi).
+Vec3 direction(test::Random& random) {
+  const Vec3 up = sample_cosine_hemisphere(random.uniform(), random.uniform());
+  return random.uniform() < 0.5 ? up : -up;
+}
+
+/// Compares photons and paths at a point whose shading normal is tilted by 30 degrees. Each of the
+/// four comparisons fails by chance with a probability of 6e-5.
+void expect_the_light_of_paths(const SceneMaker& maker, MaterialId material) {
+  const auto scene = maker.build();
+  SurfacePoint point;
+  point.geometric_normal = {0, 0, 1};
+  point.shading_normal = {0.5, 0, std::sqrt(0.75)};
+  point.material = material;
+  const Material& of = scene->material(material);
+  test::Random random(17);
+  Parts of_photons;
+  Parts of_paths;
+  for (int i = 0; i < 200'000; ++i) {
+    const Vec3 in = direction(random);
+    const Sample4 numbers{random.uniform(), random.uniform(), random.uniform(), random.uniform()};
+    const auto photon = scatter_photon(*scene, point, in, numbers);
+    add(in, photon ? photon->out : Vec3{}, photon ? 2 * kPi * photon->factor.g : 0, of_photons);
+    const Vec3 out = direction(random);
+    const auto path = sample(bsdf_at(of, scene->textures(), point, out), random.uniform(),
+                             random.uniform(), random.uniform());
+    add(path ? path->wi : Vec3{}, out, path ? 2 * kPi * path->weight.g : 0, of_paths);
+  }
+  for (std::size_t i = 0; i < kParts; ++i) {
+    EXPECT_LE(std::abs(of_photons[i].mean() - of_paths[i].mean()),
+              4 * std::hypot(of_photons[i].standard_error(), of_paths[i].standard_error()))
+        << i << ": " << of_photons[i].mean() << " and " << of_paths[i].mean();
+  }
+  EXPECT_GT(of_paths[0].mean(), 1);
+}
+
+/// Adds something that can be seen, which a scene needs.
+SceneMaker maker_with_floor() {
+  SceneMaker maker;
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.diffuse(0.5f));
+  return maker;
+}
+
+TEST(ScatterPhoton, CarriesTheLightOfPathsAtATiltedMirror) {
+  SceneMaker maker = maker_with_floor();
+  const MaterialId mirror = maker.metal(0.8f, 0);
+  expect_the_light_of_paths(maker, mirror);
+}
+
+TEST(ScatterPhoton, CarriesTheLightOfPathsAtTiltedGlass) {
+  SceneMaker maker = maker_with_floor();
+  const MaterialId glass = maker.glass(1.5);
+  expect_the_light_of_paths(maker, glass);
+}
+
+TEST(ScatterPhoton, CarriesTheLightOfPathsAtTiltedRoughGlass) {
+  SceneMaker maker = maker_with_floor();
+  maker.scene.materials.push_back(
+      Material{Dielectric{.index_of_refraction = 1.5, .roughness = 0.5}});
+  const MaterialId glass{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+  expect_the_light_of_paths(maker, glass);
+}
+
+TEST(ScatterPhoton, CarriesTheLightOfPathsAtATiltedGltfMetal) {
+  SceneMaker maker = maker_with_floor();
+  MetallicRoughness metal;
+  metal.metallic.factor = 1;
+  metal.roughness.factor = 0.5;
+  maker.scene.materials.push_back(Material{metal});
+  expect_the_light_of_paths(
+      maker, MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)});
+}
+
+TEST(ScatterPhoton, CarriesTheLightOfPathsAtTiltedFuzzyMetal) {
+  SceneMaker maker = maker_with_floor();
+  const MaterialId metal = maker.metal(0.8f, 0.3);
+  expect_the_light_of_paths(maker, metal);
+}
+
+}  // namespace
+}  // namespace bandsaw
