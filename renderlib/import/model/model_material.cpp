@@ -33,16 +33,20 @@ void name_unused_textures(MaterialReader& reader) {
 }
 
 // A surface with KHR_materials_unlit is shown in its base colour under any light. Bandsaw has no
-// such material; the surface becomes a diffuse one of that colour.
+// such material; the surface becomes a diffuse one of that colour, with the material's alpha.
 absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
   reader.unsupported("is unlit, which is taken as a diffuse surface");
   const Rgb base = reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1});
+  Diffuse surface;
   if (!reader.has({aiTextureType_BASE_COLOR})) {
-    return reader.add(Diffuse{reader.draft().textures.constant(base)});
+    surface.reflectance = reader.draft().textures.constant(base);
+  } else {
+    ASSIGN_OR_RETURN(surface.reflectance,
+                     reader.map({aiTextureType_BASE_COLOR}, MaterialReader::As::kColor, base));
   }
-  ASSIGN_OR_RETURN(const TextureId texture,
-                   reader.map({aiTextureType_BASE_COLOR}, MaterialReader::As::kColor, base));
-  return reader.add(Diffuse{texture});
+  Material to = surface;
+  RETURN_IF_ERROR(read_alpha(reader, to.alpha));
+  return reader.add(to);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "renderlib/base/ids.h"
 #include "renderlib/math/rgb.h"
@@ -12,6 +13,7 @@ namespace bandsaw {
 
 struct ModelFile;
 class MaterialReader;
+struct Alpha;
 
 inline constexpr unsigned kNoUvSet = ~0u;
 
@@ -38,5 +40,8 @@ absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned inde
 /// These functions implement read_model_material() for the two kinds.
 absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader);
 absl::StatusOr<ModelMaterial> read_classic(MaterialReader& reader);
+
+/// Sets the alpha of a metallic-roughness or unlit material. Fails as read_model_material() does.
+absl::Status read_alpha(MaterialReader& reader, Alpha& to);
 
 }  // namespace bandsaw

@@ -78,32 +78,6 @@ absl::Status read_normals(MaterialReader& reader, Relief& relief, MetallicRoughn
   return absl::OkStatus();
 }
 
-absl::Status read_alpha(MaterialReader& reader, Alpha& to) {
-  ASSIGN_OR_RETURN(to.value.texture, reader.white());
-  const Slot opacity{aiTextureType_OPACITY};
-  if (reader.kind() != ModelKind::kGltf) {
-    to.value.factor = reader.number("$mat.opacity", 0, 1).value_or(1);
-    if (reader.has(opacity)) {
-      ASSIGN_OR_RETURN(to.value.texture, reader.opacity_map(opacity));
-    }
-    const bool whole = to.value.factor == 1 && !reader.has(opacity);
-    to.mode = whole ? AlphaMode::kOpaque : AlphaMode::kBlend;
-    return absl::OkStatus();
-  }
-  aiString mode;
-  reader.material().Get(AI_MATKEY_GLTF_ALPHAMODE, mode);
-  const absl::string_view name = mode.C_Str();
-  if (name != "MASK" && name != "BLEND") {
-    return absl::OkStatus();
-  }
-  to.mode = name == "MASK" ? AlphaMode::kMask : AlphaMode::kBlend;
-  to.cutoff = reader.number("$mat.gltf.alphaCutoff", 0, 1e30).value_or(0.5);
-  to.value.factor = reader.alpha_of("$clr.base");
-  const Slot base = either(reader, {aiTextureType_BASE_COLOR}, {aiTextureType_DIFFUSE});
-  ASSIGN_OR_RETURN(to.value.texture, reader.map(base, As::kAlpha));
-  return absl::OkStatus();
-}
-
 // Sets the index whose F0 is the material's F0 times its factor and the luminance of its colour. At
 // grazing angles all light is still reflected, unless F0 is 0.
 void read_specular(const GltfSpecular& from, MaterialReader& reader, MetallicRoughness& to) {
@@ -165,6 +139,32 @@ void from_glossiness(MaterialReader& reader, double glossiness, MetallicRoughnes
 }
 
 }  // namespace
+
+absl::Status read_alpha(MaterialReader& reader, Alpha& to) {
+  ASSIGN_OR_RETURN(to.value.texture, reader.white());
+  const Slot opacity{aiTextureType_OPACITY};
+  if (reader.kind() != ModelKind::kGltf) {
+    to.value.factor = reader.number("$mat.opacity", 0, 1).value_or(1);
+    if (reader.has(opacity)) {
+      ASSIGN_OR_RETURN(to.value.texture, reader.opacity_map(opacity));
+    }
+    const bool whole = to.value.factor == 1 && !reader.has(opacity);
+    to.mode = whole ? AlphaMode::kOpaque : AlphaMode::kBlend;
+    return absl::OkStatus();
+  }
+  aiString mode;
+  reader.material().Get(AI_MATKEY_GLTF_ALPHAMODE, mode);
+  const absl::string_view name = mode.C_Str();
+  if (name != "MASK" && name != "BLEND") {
+    return absl::OkStatus();
+  }
+  to.mode = name == "MASK" ? AlphaMode::kMask : AlphaMode::kBlend;
+  to.cutoff = reader.number("$mat.gltf.alphaCutoff", 0, 1e30).value_or(0.5);
+  to.value.factor = reader.alpha_of("$clr.base");
+  const Slot base = either(reader, {aiTextureType_BASE_COLOR}, {aiTextureType_DIFFUSE});
+  ASSIGN_OR_RETURN(to.value.texture, reader.map(base, As::kAlpha));
+  return absl::OkStatus();
+}
 
 absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader) {
   MetallicRoughness layers;

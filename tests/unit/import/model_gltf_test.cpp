@@ -239,6 +239,24 @@ TEST_F(Gltf, AnUnlitMaterialIsDiffuseAndNamed) {
   EXPECT_TRUE(std::holds_alternative<Diffuse>(imported.scene.materials.at(0).kind));
 }
 
+TEST_F(Gltf, AnUnlitMaterialKeepsItsAlpha) {
+  GltfTriangle file;
+  file.more = R"("extensionsUsed": ["KHR_materials_unlit"],)";
+  file.materials = R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 0.75]},
+    "alphaMode": "MASK", "alphaCutoff": 0.25, "extensions": {"KHR_materials_unlit": {}}})";
+  const Material masked = read(file).scene.materials.at(0);
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(masked.kind));
+  EXPECT_EQ(masked.alpha.mode, AlphaMode::kMask);
+  EXPECT_EQ(masked.alpha.cutoff, 0.25);
+  EXPECT_EQ(masked.alpha.value.factor, 0.75);
+  file.textures = R"({"source": 0})";
+  file.images = R"({"uri": "a.ppm"})";
+  file.materials = R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+    "alphaMode": "BLEND", "extensions": {"KHR_materials_unlit": {}}})";
+  const ImportedScene blended = read(file);
+  EXPECT_EQ(blended.scene.materials.at(0).alpha.mode, AlphaMode::kBlend);
+}
+
 TEST_F(Gltf, APrimitiveWithoutAMaterialGetsTheDefault) {
   GltfTriangle file;
   file.materials = R"({"extensions": {"KHR_materials_unlit": {}}})";
