@@ -177,6 +177,7 @@ GltfMaterial material_of(const Json& from) {
   read_textures_of(from, to);
   if (const Json* base = object(from, "pbrMetallicRoughness"); base != nullptr) {
     read_textures_of(*base, to);
+    to.has_metallic_roughness = !base->empty();
   }
   for (const char* name : {"KHR_materials_clearcoat", "KHR_materials_transmission",
                            "KHR_materials_pbrSpecularGlossiness"}) {

@@ -51,6 +51,7 @@ struct GltfMaterial {
   std::optional<GltfSpecular> specular;
   double coat_normal_scale = 1;  ///< KHR_materials_clearcoat: scale of clearcoatNormalTexture
   bool unlit = false;            ///< KHR_materials_unlit
+  bool has_metallic_roughness = false;  ///< pbrMetallicRoughness, with a member at least
 };
 
 struct GltfExtensions {

@@ -25,8 +25,20 @@ Slot either(const MaterialReader& reader, Slot first, Slot second) {
   return reader.has(first) ? first : second;
 }
 
+/// Returns true if a glTF material is described by pbrMetallicRoughness. It may then describe
+/// itself by KHR_materials_pbrSpecularGlossiness too, whose values Assimp stores as the diffuse
+/// ones.
+bool has_own_base(const MaterialReader& reader) {
+  return reader.gltf() != nullptr && reader.gltf()->has_metallic_roughness;
+}
+
+Slot base_slot(const MaterialReader& reader) {
+  const Slot base{aiTextureType_BASE_COLOR};
+  return has_own_base(reader) ? base : either(reader, base, {aiTextureType_DIFFUSE});
+}
+
 absl::Status read_base(MaterialReader& reader, MetallicRoughness& to) {
-  const Slot slot = either(reader, {aiTextureType_BASE_COLOR}, {aiTextureType_DIFFUSE});
+  const Slot slot = base_slot(reader);
   ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
   const auto base = reader.color("$clr.base", 1);
   to.base_color.factor = base ? *base : reader.color("$clr.diffuse", 1).value_or(Rgb{1, 1, 1});
@@ -160,9 +172,8 @@ absl::Status read_alpha(MaterialReader& reader, Alpha& to) {
   }
   to.mode = name == "MASK" ? AlphaMode::kMask : AlphaMode::kBlend;
   to.cutoff = reader.number("$mat.gltf.alphaCutoff", 0, 1e30).value_or(0.5);
-  to.value.factor = reader.alpha_of("$clr.base");
-  const Slot base = either(reader, {aiTextureType_BASE_COLOR}, {aiTextureType_DIFFUSE});
-  ASSIGN_OR_RETURN(to.value.texture, reader.map(base, As::kAlpha));
+  to.value.factor = reader.alpha_of(has_own_base(reader) ? "$clr.base" : "$clr.diffuse");
+  ASSIGN_OR_RETURN(to.value.texture, reader.map(base_slot(reader), As::kAlpha));
   return absl::OkStatus();
 }
 
@@ -175,7 +186,7 @@ absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader) {
   RETURN_IF_ERROR(read_alpha(reader, to.alpha));
   RETURN_IF_ERROR(read_layers(reader, layers));
   if (const auto glossiness = reader.number("$mat.glossinessFactor", 0, 1);
-      glossiness && reader.kind() == ModelKind::kGltf) {
+      glossiness && reader.kind() == ModelKind::kGltf && !has_own_base(reader)) {
     from_glossiness(reader, *glossiness, layers);
   }
   to.kind = layers;

@@ -257,6 +257,39 @@ TEST_F(Gltf, AnUnlitMaterialKeepsItsAlpha) {
   EXPECT_EQ(blended.scene.materials.at(0).alpha.mode, AlphaMode::kBlend);
 }
 
+TEST_F(Gltf, AGlossinessMaterialKeepsItsAlpha) {
+  GltfTriangle file;
+  file.more = R"("extensionsUsed": ["KHR_materials_pbrSpecularGlossiness"],)";
+  file.materials = R"({"alphaMode": "BLEND", "extensions":
+    {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [1, 0.5, 0.25, 0.75],
+      "specularFactor": [0, 0, 0]}}})";
+  const ImportedScene imported = read(file);
+  EXPECT_EQ(layers(imported).base_color.factor, (Rgb{1, 0.5f, 0.25f}));
+  EXPECT_EQ(imported.scene.materials.at(0).alpha.mode, AlphaMode::kBlend);
+  EXPECT_EQ(imported.scene.materials.at(0).alpha.value.factor, 0.75);
+}
+
+// The diffuse texture and all factors are those of the extension, which are not used.
+TEST_F(Gltf, AMaterialOfTwoDescriptionsIsReadByItsMetallicRoughness) {
+  GltfTriangle file;
+  file.textures = R"({"source": 0})";
+  file.images = R"({"uri": "a.ppm"})";
+  file.more = R"("extensionsUsed": ["KHR_materials_pbrSpecularGlossiness"],)";
+  file.materials = R"({"alphaMode": "BLEND",
+    "pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 0.75], "roughnessFactor": 0.5},
+    "extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0, 0, 0, 0.125],
+      "diffuseTexture": {"index": 0}, "specularFactor": [1, 1, 1], "glossinessFactor": 0.25}}})";
+  const ImportedScene imported = read(file);
+  EXPECT_THAT(imported.info.warnings, IsEmpty());
+  const MetallicRoughness& m = layers(imported);
+  EXPECT_EQ(m.base_color.factor, (Rgb{1, 0.5f, 0.25f}));
+  const Texture& base = imported.scene.textures.at(index_of(m.base_color.texture));
+  EXPECT_FALSE(std::holds_alternative<ImageTexture>(base));
+  EXPECT_EQ(m.metallic.factor, 1);
+  EXPECT_EQ(m.roughness.factor, 0.5);
+  EXPECT_EQ(imported.scene.materials.at(0).alpha.value.factor, 0.75);
+}
+
 TEST_F(Gltf, APrimitiveWithoutAMaterialGetsTheDefault) {
   GltfTriangle file;
   file.materials = R"({"extensions": {"KHR_materials_unlit": {}}})";
