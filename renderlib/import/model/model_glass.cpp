@@ -4,6 +4,7 @@
 #include "renderlib/import/model/model_glass.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -39,9 +40,14 @@ bool has_more_than_glass(const MaterialReader& reader, const Material& material)
          !is_black(material.emission.radiance.factor);
 }
 
+bool has_effect(const GltfSpecular& specular) {
+  return specular.factor != 1 || specular.color != std::array<double, 3>{1, 1, 1};
+}
+
 }  // namespace
 
-std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Material& material) {
+std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Material& material,
+                                             double index_of_refraction) {
   const auto& layers = std::get<MetallicRoughness>(material.kind);
   const GltfMaterial* gltf = reader.gltf();
   if (gltf == nullptr || !gltf->volume || !(gltf->volume->thickness > 0) ||
@@ -58,8 +64,11 @@ std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Mater
     reader.unsupported(
         "is solid glass: its base colour, its maps, its clear coat and its emission are left out");
   }
+  if (gltf->specular && has_effect(*gltf->specular)) {
+    reader.unsupported("is solid glass: its specular factor and colour are left out");
+  }
   Dielectric glass;
-  glass.index_of_refraction = layers.index_of_refraction;
+  glass.index_of_refraction = index_of_refraction;
   glass.roughness = layers.roughness.factor;
   return ModelMaterial::Glass{reader.add(glass).id, absorption_of(*gltf->volume)};
 }

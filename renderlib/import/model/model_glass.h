@@ -14,9 +14,11 @@
 namespace bandsaw {
 
 /// Returns the glass of a material (MetallicRoughness) that bounds a volume: smooth or rough, with
-/// its absorption. Returns std::nullopt if the material has no volume or is not fully transmissive;
-/// the latter adds a warning.
-std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Material& material);
+/// its absorption. `index_of_refraction` is the one that refracts: that of the material also has
+/// the effect of KHR_materials_specular, which changes the reflection only. Returns std::nullopt if
+/// the material has no volume or is not fully transmissive; the latter adds a warning.
+std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Material& material,
+                                             double index_of_refraction);
 
 /// Gives the closed meshes of `model` the glass of their material, with a medium inside if the
 /// glass absorbs light. Open meshes stay thin panes, with a warning. `materials` have Assimp's

@@ -108,13 +108,18 @@ void read_specular(const GltfSpecular& from, MaterialReader& reader, MetallicRou
   to.index_of_refraction = std::clamp((1 + f) / (1 - f), 1.0, 5.0);
 }
 
-absl::Status read_layers(MaterialReader& reader, MetallicRoughness& to) {
-  to.index_of_refraction = reader.number("$mat.refracti", 1, 5).value_or(1.5);
+/// Returns the index of refraction without the effect of KHR_materials_specular.
+double index_of_refraction(const MaterialReader& reader) {
   if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->index_of_refraction) {
     const double index = *gltf->index_of_refraction;
     // KHR_materials_ior: 0 means a reflection that does not depend on the angle.
-    to.index_of_refraction = index >= 1 && index <= 5 ? index : 1.5;
+    return index >= 1 && index <= 5 ? index : 1.5;
   }
+  return reader.number("$mat.refracti", 1, 5).value_or(1.5);
+}
+
+absl::Status read_layers(MaterialReader& reader, MetallicRoughness& to) {
+  to.index_of_refraction = index_of_refraction(reader);
   if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->specular) {
     read_specular(*gltf->specular, reader, to);
   }
@@ -191,7 +196,7 @@ absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader) {
   }
   to.kind = layers;
   ModelMaterial added = reader.add(to);
-  added.glass = glass_of(reader, to);
+  added.glass = glass_of(reader, to, index_of_refraction(reader));
   return added;
 }
 

@@ -116,6 +116,22 @@ TEST(GltfVolume, OpenOrPartlyOpaqueMeshesStayThinPanes) {
   EXPECT_TRUE(is_thin(clouded));
 }
 
+TEST(GltfVolume, SpecularDoesNotChangeTheRefraction) {
+  const TempDir folder;
+  GltfWriter file = cube();
+  file.root["extensionsUsed"].push_back("KHR_materials_specular");
+  Json& extensions = file.root["materials"][0]["extensions"];
+  extensions["KHR_materials_ior"]["ior"] = 1.25;
+  extensions["KHR_materials_specular"] = {{"specularFactor", 0}};
+  const ImportedScene imported = read(file, folder);
+  EXPECT_THAT(imported.info.warnings, ElementsAre(HasSubstr("its specular factor and colour")));
+  const MaterialId id = imported.scene.geometry.instances.at(0).material;
+  const auto& glass = std::get<Dielectric>(imported.scene.materials.at(index_of(id)).kind);
+  EXPECT_EQ(glass.index_of_refraction, 1.25);
+  extensions["KHR_materials_specular"] = {{"specularFactor", 1}};
+  EXPECT_THAT(read(file, folder).info.warnings, IsEmpty());
+}
+
 TEST(GltfVolume, WithoutAThicknessItIsAThinPane) {
   const TempDir folder;
   GltfWriter thin = cube();
