@@ -19,6 +19,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
+#include "absl/strings/strip.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/image.h"
 #include "renderlib/image/srgb.h"
@@ -41,10 +42,15 @@ absl::string_view take_word(absl::string_view& rest) {
   return word;
 }
 
-float float_at(absl::string_view bytes, std::size_t index, bool big_endian) {
+/// Returns the number in the first four of `bytes`, which MUST be that many.
+std::uint32_t first_number(absl::string_view bytes, bool big_endian) {
   std::uint32_t bits = 0;
-  std::memcpy(&bits, bytes.data() + index * sizeof(bits), sizeof(bits));
-  return std::bit_cast<float>(big_endian ? __builtin_bswap32(bits) : bits);
+  std::memcpy(&bits, bytes.data(), sizeof(bits));
+  return big_endian ? __builtin_bswap32(bits) : bits;
+}
+
+float float_at(absl::string_view bytes, std::size_t index, bool big_endian) {
+  return std::bit_cast<float>(first_number(bytes.substr(index * sizeof(float)), big_endian));
 }
 
 bool is_pfm(absl::string_view bytes) {
@@ -115,6 +121,25 @@ const stbi_uc* data_of(absl::string_view bytes) {
   return reinterpret_cast<const stbi_uc*>(bytes.data());
 }
 
+/// Returns true for a PNG file with a tRNS chunk, which gives texels an alpha. stb_image returns
+/// this alpha, but its header function does not count it as a channel.
+bool is_png_with_trns(absl::string_view bytes) {
+  constexpr absl::string_view kSignature = "\x89PNG\r\n\x1a\n";
+  if (!absl::ConsumePrefix(&bytes, kSignature)) {
+    return false;
+  }
+  constexpr std::size_t kAround = 12;  // bytes of a chunk's length, type and checksum
+  while (bytes.size() >= kAround) {
+    const absl::string_view type = bytes.substr(4, 4);
+    if (type == "tRNS" || type == "IDAT") {
+      return type == "tRNS";
+    }
+    const std::size_t length = first_number(bytes, true);
+    bytes.remove_prefix(std::min(bytes.size(), kAround + length));
+  }
+  return false;
+}
+
 absl::StatusOr<Shape> shape_of(absl::string_view bytes) {
   Shape shape;
   if (is_webp(bytes)) {
@@ -123,6 +148,8 @@ absl::StatusOr<Shape> shape_of(absl::string_view bytes) {
   } else if (stbi_info_from_memory(data_of(bytes), static_cast<int>(bytes.size()), &shape.width,
                                    &shape.height, &shape.channels) == 0) {
     return failure();
+  } else if (shape.channels % 2 == 1 && is_png_with_trns(bytes)) {
+    ++shape.channels;
   }
   const int most = static_cast<int>(kMaxTextureSide);
   if (shape.width < 1 || shape.height < 1 || shape.width > most || shape.height > most) {

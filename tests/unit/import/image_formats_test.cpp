@@ -99,5 +99,35 @@ TEST(ImageFormats, AlphaIsReadOfATga) {
   EXPECT_FALSE(image_has_alpha("P5 1 1 255\n7"));
 }
 
+// PNG: the chunk tRNS names the one colour whose alpha is 0. The pixels are a stored block of zlib;
+// the last four bytes of each chunk are its checksum.
+TEST(ImageFormats, AlphaOfAPngMayBeOneColour) {
+  const std::string signature = "\x89PNG\r\n\x1a\n";
+  const std::string end = bytes({0, 0, 0, 0}) + "IEND" + bytes({0xae, 0x42, 0x60, 0x82});
+  const std::string rgb_header = signature + bytes({0, 0, 0, 13}) + "IHDR" +
+                                 bytes({0, 0, 0, 2, 0, 0, 0, 1, 8, 2, 0, 0, 0}) +
+                                 bytes({0x7b, 0x40, 0xe8, 0xdd});
+  const std::string green_is_clear =
+      bytes({0, 0, 0, 6}) + "tRNS" + bytes({0, 0, 0, 255, 0, 0, 0xd0, 0x3e, 0x33, 0x7c});
+  const std::string rgb_pixels = bytes({0, 0, 0, 18}) + "IDAT" +
+                                 bytes({0x78, 0x01, 0x01, 0x07, 0x00, 0xf8, 0xff, 0, kRed, 0, 0, 0,
+                                        255, 0, 0x07, 0xe1, 0x01, 0xfa}) +
+                                 bytes({0x45, 0xf5, 0x53, 0xdb}) + end;
+  const std::string rgb = rgb_header + green_is_clear + rgb_pixels;
+  EXPECT_TRUE(image_has_alpha(rgb));
+  EXPECT_THAT(codes(decode_alpha(rgb).value()), ElementsAre(255, 0));
+  EXPECT_FALSE(image_has_alpha(rgb_header + rgb_pixels));
+  EXPECT_THAT(codes(decoded(rgb_header + rgb_pixels)), ElementsAre(kRed, 0, 0, 0, 255, 0));
+  const std::string grey =
+      signature + bytes({0, 0, 0, 13}) + "IHDR" +
+      bytes({0, 0, 0, 2, 0, 0, 0, 1, 8, 0, 0, 0, 0, 0xd1, 0x49, 0x20, 0x56}) + bytes({0, 0, 0, 2}) +
+      "tRNS" + bytes({0, 200, 0xe3, 0x2c, 0x87, 0xba}) + bytes({0, 0, 0, 14}) + "IDAT" +
+      bytes({0x78, 0x01, 0x01, 0x03, 0x00, 0xfc, 0xff, 0, 7, 200, 0x00, 0xd9, 0x00, 0xd0}) +
+      bytes({0x1f, 0xad, 0x24, 0xf8}) + end;
+  EXPECT_TRUE(image_has_alpha(grey));
+  EXPECT_THAT(codes(decode_alpha(grey).value()), ElementsAre(255, 0));
+  EXPECT_FALSE(image_has_alpha(rgb_header)) << "cut off";
+}
+
 }  // namespace
 }  // namespace bandsaw
