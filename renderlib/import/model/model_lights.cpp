@@ -7,8 +7,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "renderlib/import/draft/color_limits.h"
 #include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
@@ -33,8 +36,9 @@ Rgb brightness_of(const aiLight& from) {
 /// the same intensity at distance 1.
 Rgb intensity_of(const aiLight& from, ModelFile& file) {
   const float square = from.mAttenuationQuadratic;
-  const bool is_square =
-      square > 0 && from.mAttenuationConstant == 0 && from.mAttenuationLinear == 0;
+  // It is infinite for FBX lights whose decay starts at 0.
+  const bool is_square = square > 0 && std::isfinite(square) && from.mAttenuationConstant == 0 &&
+                         from.mAttenuationLinear == 0;
   if (is_square) {
     return brightness_of(from) * (1 / square);
   }
@@ -60,10 +64,20 @@ std::size_t directional_lights(const Model& model) {
 /// Returns true if the scene's validation accepts the position (light/check_lights.cpp).
 bool is_place(const Vec3& p) { return is_finite(p) && max_abs(p) <= 1e30; }
 
+/// Returns true for formats that give a spot light the angles across its whole cones. Others, such
+/// as glTF, give those from the axis to the edge. Assimp passes both on as they are.
+bool has_whole_angles(const ModelFile& file) {
+  constexpr absl::string_view kSuffixes[] = {".fbx", ".dae", ".3ds", ".ase", ".blend"};
+  return std::any_of(std::begin(kSuffixes), std::end(kSuffixes), [&](absl::string_view suffix) {
+    return absl::EndsWithIgnoreCase(file.path, suffix);
+  });
+}
+
 SpotLight spot_of(const aiLight& from, const Vec3& position, const Vec3& direction,
-                  const Rgb& intensity) {
-  const auto cosine = [](double angle) {
-    return sincos_turns(std::clamp(angle, 0.0, kPi / 2) / (2 * kPi)).cos;
+                  const Rgb& intensity, const ModelFile& file) {
+  const double share = has_whole_angles(file) ? 0.5 : 1;
+  const auto cosine = [&](double angle) {
+    return sincos_turns(std::clamp(share * angle, 0.0, kPi / 2) / (2 * kPi)).cos;
   };
   SpotLight spot{position, direction, intensity};
   spot.cos_outer = std::max(0.0, cosine(from.mAngleOuterCone));
@@ -97,7 +111,8 @@ void add_model_light(const aiLight& from, const Transform& node, ModelFile& file
       if (from.mType == aiLightSource_POINT) {
         model.lights.emplace_back(PointLight{position, intensity_of(from, file)});
       } else if (direction) {
-        model.lights.emplace_back(spot_of(from, position, *direction, intensity_of(from, file)));
+        model.lights.emplace_back(
+            spot_of(from, position, *direction, intensity_of(from, file), file));
       } else {
         leave_out("it has no direction");
       }

@@ -252,5 +252,93 @@ TEST(Fbx, UpAxisIsConverted) {
   EXPECT_NEAR(lowest, 0, 1e-6);
 }
 
+/// Returns an ASCII FBX file of a square on y = 0 and a light above it, of brightness 4, with the
+/// given properties.
+std::string fbx_light(const std::string& properties) {
+  return R"(; FBX 7.4.0 project file
+FBXHeaderExtension:  {
+	FBXHeaderVersion: 1003
+	FBXVersion: 7400
+}
+GlobalSettings:  {
+	Version: 1000
+	Properties70:  {
+		P: "UpAxis", "int", "Integer", "",1
+		P: "UpAxisSign", "int", "Integer", "",1
+		P: "FrontAxis", "int", "Integer", "",2
+		P: "FrontAxisSign", "int", "Integer", "",1
+		P: "CoordAxis", "int", "Integer", "",0
+		P: "CoordAxisSign", "int", "Integer", "",1
+		P: "UnitScaleFactor", "double", "Number", "",1
+	}
+}
+Objects:  {
+	Geometry: 100, "Geometry::plane", "Mesh" {
+		Vertices: *12 {
+			a: -4,0,4,4,0,4,4,0,-4,-4,0,-4
+		}
+		PolygonVertexIndex: *4 {
+			a: 0,1,2,-4
+		}
+		GeometryVersion: 124
+	}
+	Model: 101, "Model::plane", "Mesh" {
+		Version: 232
+		Properties70:  {
+		}
+	}
+	NodeAttribute: 200, "NodeAttribute::lamp", "Light" {
+		Properties70:  {
+			P: "Color", "Color", "", "A",1,1,1
+			P: "Intensity", "Number", "", "A",400
+)" + properties +
+         R"(		}
+		TypeFlags: "Light"
+	}
+	Model: 201, "Model::lamp", "Light" {
+		Version: 232
+		Properties70:  {
+			P: "Lcl Translation", "Lcl Translation", "", "A",0,2,0
+		}
+	}
+}
+Connections:  {
+	C: "OO",101,0
+	C: "OO",100,101
+	C: "OO",201,0
+	C: "OO",200,201
+}
+)";
+}
+
+// FBX states the angles across the whole cones.
+TEST(Fbx, TheConesOfASpotLightAreHalfItsAngles) {
+  const TempDir folder;
+  const auto imported = import_scene(write_text(folder, "l.fbx", fbx_light(R"(
+			P: "LightType", "enum", "", "",2
+			P: "InnerAngle", "Number", "", "A",60
+			P: "OuterAngle", "Number", "", "A",90
+)")));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const auto& spot = std::get<SpotLight>(imported->scene.lights.at(0));
+  EXPECT_NEAR(length(spot.position - Vec3{0, 2, 0}), 0, 1e-6);
+  EXPECT_NEAR(length(spot.direction - Vec3{0, -1, 0}), 0, 1e-6);
+  EXPECT_NEAR(spot.cos_inner, std::sqrt(0.75), 1e-6);
+  EXPECT_NEAR(spot.cos_outer, std::sqrt(0.5), 1e-6);
+}
+
+// Assimp makes the falloff of such a light infinite.
+TEST(Fbx, AQuadraticDecayThatStartsAtZeroIsNotBlack) {
+  const TempDir folder;
+  const auto imported = import_scene(write_text(folder, "l.fbx", fbx_light(R"(
+			P: "LightType", "enum", "", "",0
+			P: "DecayType", "enum", "", "",2
+			P: "DecayStart", "Number", "", "A",0
+)")));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_EQ(std::get<PointLight>(imported->scene.lights.at(0)).intensity, (Rgb{4, 4, 4}));
+  EXPECT_THAT(imported->info.warnings, Contains(HasSubstr("the light \"lamp\" falls off")));
+}
+
 }  // namespace
 }  // namespace bandsaw
