@@ -180,6 +180,18 @@ absl::StatusOr<std::optional<ImageWindow>> read_window(const Field& in, const Nu
 
 }  // namespace
 
+absl::Status set_window(const Field& in, const scene::Camera& from, Camera& camera) {
+  ASSIGN_OR_RETURN(const auto window, read_window(in, from.window()));
+  std::visit(
+      [&](auto& c) {
+        c.window = window;
+        c.mirrored = c.mirrored != from.mirrored();
+      },
+      camera);
+  const absl::Status valid = validate(camera);
+  return valid.ok() ? valid : in.error(valid.message());
+}
+
 absl::StatusOr<double> read_fps(const Field& root, const scene::Scene& from) {
   constexpr double kDefault = 24;
   const double fps = from.has_fps() ? from.fps() : kDefault;
@@ -210,17 +222,8 @@ absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from,
   ASSIGN_OR_RETURN(Camera camera, from.camera().has_orthographic()
                                       ? read_orthographic(in, from.camera(), view)
                                       : read_perspective(in, from.camera(), view));
-  ASSIGN_OR_RETURN(const auto window, read_window(in, from.camera().window()));
-  std::visit(
-      [&](auto& c) {
-        c.shutter = shutter;
-        c.window = window;
-        c.mirrored = c.mirrored != from.camera().mirrored();
-      },
-      camera);
-  if (const absl::Status valid = validate(camera); !valid.ok()) {
-    return in.error(valid.message());
-  }
+  std::visit([&](auto& c) { c.shutter = shutter; }, camera);
+  RETURN_IF_ERROR(set_window(in, from.camera(), camera));
   return camera;
 }
 

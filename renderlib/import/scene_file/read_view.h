@@ -15,6 +15,9 @@ namespace bandsaw {
 /// Reads the camera; the scene MUST have one. The camera gets `shutter`.
 absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from,
                                    const Shutter& shutter);
+/// Sets the window of a camera, and exchanges its left and right if `from` is mirrored. `in` is the
+/// field of `from`. Returns INVALID_ARGUMENT if the window or the resulting camera is invalid.
+absl::Status set_window(const Field& in, const scene::Camera& from, Camera& camera);
 /// Returns the shutter interval of the frame at `time`, in seconds of the scene's time. The scene
 /// file gives it relative to the frame's time; by default it is that time alone.
 absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from, double time);

@@ -10,6 +10,7 @@
 #include "absl/strings/str_join.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/scene_file/numbers.h"
+#include "renderlib/import/scene_file/read_view.h"
 #include "renderlib/package/limits.h"
 
 namespace bandsaw {
@@ -143,6 +144,10 @@ absl::StatusOr<MovingCamera> use_camera(const Field& root, const scene::Scene& f
     }
   } else if (written.has_aperture() || written.has_focus_distance()) {
     return in.error("aperture", "is of a perspective camera; this one is orthographic");
+  }
+  RETURN_IF_ERROR(set_window(in, written, camera.at_open));
+  if (camera.at_close) {
+    RETURN_IF_ERROR(set_window(in, written, *camera.at_close));
   }
   return camera;
 }

@@ -107,6 +107,25 @@ model { file: "n.gltf" translate: [100, 0, 0] })");
               HasSubstr("several cameras are called \"left\"; there are \"m.gltf/left\""));
 }
 
+TEST_F(ModelCameraNames, ASceneFileSetsItsWindowAndMirrorsIt) {
+  const auto used = [&](const std::string& fields) {
+    return import_scene(
+        write_text(folder_, "s.textproto",
+                   "camera { use: \"left\" " + fields + " } model { file: \"m.gltf\" }"));
+  };
+  const auto plain = used("");
+  ASSERT_TRUE(plain.ok()) << plain.status();
+  EXPECT_FALSE(window_of(plain->scene.camera).has_value());
+  EXPECT_FALSE(is_mirrored(plain->scene.camera));
+  const auto shown = used("window: [0, 1, -0.5, 0.25] mirrored: true");
+  ASSERT_TRUE(shown.ok()) << shown.status();
+  EXPECT_EQ(seen(*shown), (Seen{{-1, 0, 3}, 60}));
+  EXPECT_EQ(window_of(shown->scene.camera), (ImageWindow{0, 1, -0.5, 0.25}));
+  EXPECT_TRUE(is_mirrored(shown->scene.camera));
+  EXPECT_THAT(std::string(used("window: [0, 1]").status().message()),
+              HasSubstr("camera.window: must be 4 numbers"));
+}
+
 TEST_F(ModelCameraNames, AModelInAGroupHasNoCameras) {
   write_text(folder_, "s.textproto", R"(camera { position: [0, 0, 8] look_at: [0, 0, 0] }
 group { name: "g" model { file: "m.gltf" } } instance { of: "g" })");

@@ -289,6 +289,26 @@ TEST_F(Sequence, ACameraAtAMovingNodeMovesWithIt) {
   expect_near(view_of(*imported.scene.camera_at_close).position, {1.5, 0, 5});
 }
 
+TEST_F(Sequence, AWindowHoldsWhileAUsedCameraMoves) {
+  GltfWriter file = two_nodes();
+  file.root["cameras"] =
+      Json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 1}}])");
+  file.root["nodes"][1]["camera"] = 0;
+  file.root["nodes"][1]["name"] = "eye";
+  Json walk = empty_animation("walk");
+  add_channel(file, walk, 0, "translation", {0, 1}, {0, 0, 5, 4, 0, 5}, 3);
+  file.root["animations"] = Json::array({walk});
+  file.write(folder_, "m.gltf");
+  const ImportedScene imported = read_text(
+      R"(camera { use: "eye" window: [0, 1, 0, 1] mirrored: true } model { file: "m.gltf" })",
+      frame(1, 4, 0.5));
+  ASSERT_TRUE(imported.scene.camera_at_close.has_value());
+  for (const Camera& camera : {imported.scene.camera, *imported.scene.camera_at_close}) {
+    EXPECT_EQ(window_of(camera), (ImageWindow{0, 1, 0, 1}));
+    EXPECT_TRUE(is_mirrored(camera));
+  }
+}
+
 // The camera that frames a model does not follow its animation.
 TEST_F(Sequence, TheFramingCameraRests) {
   GltfWriter file = two_nodes();
