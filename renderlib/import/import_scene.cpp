@@ -60,7 +60,7 @@ Camera framed(const ImportedScene& out) {
 
 /// Returns the camera for a scene file without a camera of its own: the model's camera that the
 /// file names, otherwise the first camera of a model, otherwise one that frames the only model.
-/// Returns an error if none of these exists.
+/// Returns an error if none of these exists. The model may be hidden by its animation.
 absl::StatusOr<MovingCamera> camera_of_a_model(const Field& root, const scene::Scene& from,
                                                const SceneDraft& draft) {
   if (from.has_camera()) {
@@ -69,7 +69,8 @@ absl::StatusOr<MovingCamera> camera_of_a_model(const Field& root, const scene::S
   if (!draft.cameras.empty()) {
     return with_shutter(draft.cameras.front(), draft.shutter);
   }
-  if (from.model_size() != 1 || draft.out.scene.geometry.instances.empty()) {
+  const bool is_empty = draft.out.scene.geometry.instances.empty();
+  if (from.model_size() != 1 || (is_empty && from.model(0).boundary_only())) {
     return root.error("camera",
                       "is required, for example camera { position: [0, 1, 5] look_at: [0, 0, 0] }");
   }
@@ -247,19 +248,24 @@ absl::Status read_converted(const std::shared_ptr<const ConvertedScene>& convert
 }
 
 /// Returns the model's first camera, or one that frames the model. The latter frames an animated
-/// model as it is at time 0, so that the camera rests in a sequence.
+/// model as it is at time 0, or in its rest pose if the animation hides it then, so that the camera
+/// rests in a sequence.
 absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
                                               const AnimationChoice& animation,
                                               const SceneDraft& draft) {
   if (!draft.cameras.empty()) {
     return with_shutter(draft.cameras.front(), draft.shutter);
   }
-  if (draft.shutter == Shutter{}) {
+  if (draft.shutter == Shutter{} && !draft.out.scene.geometry.instances.empty()) {
     return MovingCamera{framed(draft.out)};
   }
   // A draft has a shutter interval at time 0 until one is set.
   SceneDraft at_zero(draft.folder, draft.file, draft.memory);
-  ASSIGN_OR_RETURN(const Model model, read_model(real, false, at_zero, animation));
+  ASSIGN_OR_RETURN(Model model, read_model(real, false, at_zero, animation));
+  if (model.instances.empty()) {
+    // The rest pose is an error if it hides the model too; then the camera is the default one.
+    model = read_model(real, false, at_zero).value_or(Model{});
+  }
   at_zero.out.scene.geometry.instances = model.instances;
   Camera camera = framed(at_zero.out);
   std::visit([&](auto& c) { c.shutter = draft.shutter; }, camera);

@@ -54,6 +54,9 @@ struct Fit {
 
 PerspectiveCamera frame(const Geometry& geometry, const std::vector<Instance>& instances,
                         double aspect_ratio) {
+  if (instances.empty()) {
+    return {};
+  }
   const Vec3 back = normalize(kToCamera);
   const Vec3 right = normalize(cross(Vec3{0, 1, 0}, back));
   const Vec3 up = cross(back, right);

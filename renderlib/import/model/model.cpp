@@ -273,6 +273,11 @@ absl::StatusOr<std::shared_ptr<LoadedModel>> loaded_model(const ModelSource& sou
   return known;
 }
 
+bool has_triangles(const ModelMeshes& meshes) {
+  return std::any_of(meshes.begin(), meshes.end(),
+                     [](const std::optional<ModelMesh>& mesh) { return mesh.has_value(); });
+}
+
 absl::StatusOr<Model> read_source(const ModelSource& source, const AnimationChoice& animation,
                                   bool with_materials, SceneDraft& draft) {
   const std::string& path = source.path;
@@ -304,7 +309,9 @@ absl::StatusOr<Model> read_source(const ModelSource& source, const AnimationChoi
   }
   ASSIGN_OR_RETURN(const ModelMeshes meshes, add_meshes(file, materials, with_materials));
   ASSIGN_OR_RETURN(Model model, read_nodes(file, meshes));
-  if (model.instances.empty()) {
+  // An animation may hide all meshes for a time, by a scale of 0.
+  const bool may_be_empty = file.animation && has_triangles(meshes);
+  if (model.instances.empty() && !may_be_empty) {
     const auto& warnings = draft.out.info.warnings;
     return absl::InvalidArgumentError(
         absl::StrCat(name, ": holds no triangle that can be rendered",

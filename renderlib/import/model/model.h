@@ -48,7 +48,7 @@ bool is_model_file(const std::string& path);
 /// and PERMISSION_DENIED for a file outside of the scene's folder. `animation` chooses one of its
 /// animations, which is evaluated over the draft's shutter interval: nodes move during the
 /// interval, and vertices of skins and morph targets have one position at its begin and one at its
-/// end.
+/// end. With an animation the model may have no placements: a scale of 0 hides a node.
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft,
                                  const AnimationChoice& animation = {});
 

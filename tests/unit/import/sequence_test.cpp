@@ -320,6 +320,41 @@ TEST_F(Sequence, TheFramingCameraRests) {
               view_of(read(path, frame(20)).scene.camera).position);
 }
 
+/// Two nodes, of which the one with the mesh has a scale of 0 until `shown`, in seconds.
+GltfWriter hidden_until(float shown) {
+  GltfWriter file = two_nodes();
+  Json pop = empty_animation("pop");
+  add_channel(file, pop, 1, "scale", {0, shown}, {0, 0, 0, 1, 1, 1}, 3, "STEP");
+  file.root["animations"] = Json::array({pop});
+  return file;
+}
+
+TEST_F(Sequence, AnAnimationMayHideAllMeshes) {
+  const std::string path = hidden_until(1).write(folder_, "m.gltf");
+  const ImportedScene hidden = read(path, frame(0));
+  EXPECT_THAT(hidden.scene.geometry.instances, IsEmpty());
+  EXPECT_THAT(hidden.info.warnings, ElementsAre(HasSubstr("1 placements are left out")));
+  const ImportedScene shown = read(path, frame(24));
+  EXPECT_THAT(shown.scene.geometry.instances, SizeIs(1));
+  // The camera frames the rest pose, at z = 7, in both.
+  const Vec3 eye = view_of(shown.scene.camera).position;
+  expect_near(view_of(hidden.scene.camera).position, eye);
+  EXPECT_GT(eye.z, 7);
+  // Beside other objects, and alone in a scene file without a camera.
+  const ImportedScene both =
+      read_text(std::string(kScene) + R"(model { file: "m.gltf" })", frame(0));
+  EXPECT_THAT(both.scene.geometry.instances, IsEmpty());
+  EXPECT_THAT(read_text(R"(model { file: "m.gltf" })", frame(0)).scene.geometry.instances,
+              IsEmpty());
+}
+
+TEST_F(Sequence, AModelWithoutAnAnimationMustHaveAPlacement) {
+  GltfWriter file = two_nodes();
+  file.root["nodes"][1]["scale"] = {0, 0, 0};
+  EXPECT_THAT(std::string(import_scene(file.write(folder_, "m.gltf")).status().message()),
+              HasSubstr("holds no triangle that can be rendered"));
+}
+
 TEST_F(Sequence, DamagedAnimationsAreErrors) {
   const auto with = [&](const std::vector<float>& times, const std::vector<float>& values,
                         const char* interpolation) {
