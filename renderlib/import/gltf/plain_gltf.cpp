@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -41,6 +43,12 @@ absl::Status check_required(const Json& root) {
   return absl::OkStatus();
 }
 
+bool has_targets(const Json& mesh) {
+  const Json& primitives = items(mesh, "primitives");
+  return std::any_of(primitives.begin(), primitives.end(),
+                     [](const Json& primitive) { return !items(primitive, "targets").empty(); });
+}
+
 class Rewriter {
  public:
   Rewriter(const GltfFile& file, Buffers& buffers)
@@ -64,6 +72,7 @@ class Rewriter {
       RETURN_IF_ERROR(rewrite_skin(i));
     }
     RETURN_IF_ERROR(check_joints());
+    separate_poses();
     RETURN_IF_ERROR(rewrite_textures());
     plain_.buffer = out_.finish(kPlainBuffer, plain_.root);
     return std::move(plain_);
@@ -108,6 +117,46 @@ class Rewriter {
       }
     }
     return absl::OkStatus();
+  }
+
+  /// Returns what distinguishes the pose of a node's mesh from those at other nodes: its skin, and
+  /// the weights of its morph targets, which belong to the node alone if it animates them.
+  Json pose_at(std::size_t node, const Json& mesh) const {
+    const Json& from = from_["nodes"][node];
+    const Json* skin = find(from, "skin");
+    Json pose = {{"skin", skin == nullptr ? Json() : *skin}};
+    if (has_targets(mesh)) {
+      const Json* own = list(from, "weights");
+      pose["weights"] = own == nullptr ? items(mesh, "weights") : *own;
+      const bool is_animated = plain_.animation && plain_.animation->weights.count(node) > 0;
+      pose["animated"] = is_animated ? Json(node) : Json();
+    }
+    return pose;
+  }
+
+  /// Gives each pose of a mesh a mesh of its own, which shares the accessors.
+  void separate_poses() {
+    std::map<std::pair<std::size_t, Json>, std::size_t> posed;
+    std::set<std::size_t> used;
+    for (std::size_t n = 0; n < items(from_, "nodes").size(); ++n) {
+      const auto number_in_file = number(from_["nodes"][n], "mesh");
+      if (!number_in_file) {
+        continue;
+      }
+      const auto index = static_cast<std::size_t>(*number_in_file);
+      const Json& mesh = from_["meshes"][index];
+      const Json pose = pose_at(n, mesh);
+      Json& meshes = plain_.root["meshes"];
+      const auto [found, is_new] = posed.emplace(std::pair(index, pose), index);
+      if (is_new && !used.insert(index).second) {
+        found->second = meshes.size();
+        meshes.push_back(Json(meshes[index]));
+      }
+      if (is_new && has_targets(mesh)) {
+        meshes[found->second]["weights"] = pose["weights"];
+      }
+      plain_.root["nodes"][n]["mesh"] = found->second;
+    }
   }
 
   /// Makes the WebP image of a texture its only image, and rewrites the images that are used.

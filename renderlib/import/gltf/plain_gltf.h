@@ -30,11 +30,13 @@ inline constexpr char kPlainBuffer[] = "plain.bin";
 
 /// Reads the model at `path` (real, below `scene`) and the buffers to which it refers. Images in
 /// files stay there; all others are moved to the buffer. Animations other than the chosen one,
-/// tangents and attributes that glTF does not define are omitted. Everything else keeps its place
-/// and number. Returns NOT_FOUND if there is no such animation, INVALID_ARGUMENT if the file is
-/// damaged or requires an extension that replaces vertices or images by unreadable bytes, NOT_FOUND
-/// or PERMISSION_DENIED for a buffer's file, and RESOURCE_EXHAUSTED for more than 8 GiB of
-/// vertices.
+/// tangents and attributes that glTF does not define are omitted. A mesh that several nodes pose
+/// differently, by skins or weights of morph targets, is copied to the end of the list for each
+/// pose but the first, and a node's weights become those of its mesh: a mesh has one pose.
+/// Everything else keeps its place and number. Returns NOT_FOUND if there is no such animation,
+/// INVALID_ARGUMENT if the file is damaged or requires an extension that replaces vertices or
+/// images by unreadable bytes, NOT_FOUND or PERMISSION_DENIED for a buffer's file, and
+/// RESOURCE_EXHAUSTED for more than 8 GiB of vertices.
 absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene,
                                           const AnimationChoice& choice = {});
 

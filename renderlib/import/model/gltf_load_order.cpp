@@ -41,7 +41,7 @@ class Walk {
         const Json* mesh = item_of(root_, "meshes", *node, "mesh");
         add_mesh(mesh);
         if (const Json* skin = item_of(root_, "skins", *node, "skin"); skin && mesh) {
-          skins_[mesh] = skin;  // Assimp uses the last skin
+          skins_[mesh] = skin;  // a plain document has one for each mesh
         }
         add(item_of(root_, "cameras", *node, "camera"), numbers_[node], cameras_, order.cameras);
         if (const Json* light = extension(*node, kLights);

@@ -138,6 +138,29 @@ TEST_F(DeformingModel, HasItsVerticesAtBothEndsOfTheExposure) {
   expect_turned(mesh.positions_at_close, mesh.normals_at_close, 45, 4);
 }
 
+// Three nodes of one mesh: the weights of the first and the last are animated.
+TEST_F(DeformingModel, EachNodeOfAMeshHasItsOwnWeights) {
+  GltfWriter file = quad(0, 1, 0, 1);
+  file.primitive()["targets"] =
+      Json::array({{{"POSITION", file.add<float>({0, 0, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 3)}}});
+  file.root["nodes"] = Json::parse(R"([{"mesh": 0}, {"mesh": 0}, {"mesh": 0}])");
+  file.root["scenes"][0]["nodes"] = {0, 1, 2};
+  animate(file, 0, "weights", {0, 1}, {0, 1}, 1);
+  animate(file, 2, "weights", {0, 1}, {1, 0}, 1);
+  const ImportedScene imported = read(file, exposure(1, 4, 1));
+  const Geometry& geometry = imported.scene.geometry;
+  ASSERT_THAT(geometry.instances, SizeIs(3));
+  const auto mesh = [&](std::size_t i) {
+    return geometry.meshes[index_of(geometry.instances[i].mesh)];
+  };
+  EXPECT_NEAR(mesh(0).positions[0][2], 2, 1e-6);
+  EXPECT_NEAR(mesh(0).positions_at_close.at(0)[2], 4, 1e-6);
+  EXPECT_EQ(mesh(1).positions[0][2], 0);
+  EXPECT_THAT(mesh(1).positions_at_close, IsEmpty());
+  EXPECT_NEAR(mesh(2).positions[0][2], 6, 1e-6);
+  EXPECT_NEAR(mesh(2).positions_at_close.at(0)[2], 4, 1e-6);
+}
+
 TEST_F(DeformingModel, AMeshWhosePoseRestsDoesNotDeform) {
   GltfWriter file = swinging_quad(90, 0, 1, 0, 1);
   const ImportedScene instant = read(file, exposure(1, 4, 0));

@@ -6,12 +6,15 @@
 
 #include "renderlib/import/import.h"
 #include "tests/unit/import/gltf_file.h"
+#include "tests/unit/import/gltf_writer.h"
 
 namespace bandsaw {
 namespace {
 
 using test::floats;
 using test::GltfTriangle;
+using test::GltfWriter;
+using test::Json;
 using test::TempDir;
 using test::write_text;
 using ::testing::Contains;
@@ -381,6 +384,57 @@ TEST_F(Gltf, BonesOfOneNameAreDistinguished) {
   ASSERT_EQ(meshes.size(), 2u);
   EXPECT_THAT(meshes[0].positions[0], ElementsAre(0, 2, 0));
   EXPECT_THAT(meshes[1].positions[0], ElementsAre(0, 0, 7));
+}
+
+// Nodes of one mesh: two with a skin each, one without a skin, and one with the first skin, which
+// would place the same triangle again.
+TEST_F(Gltf, EachSkinPosesTheMeshThatItShares) {
+  GltfWriter file;
+  file.attributes() = {
+      {"POSITION", file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)},
+      {"JOINTS_0", file.add<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4)},
+      {"WEIGHTS_0", file.add<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, 4)}};
+  file.root["nodes"] = Json::parse(R"([{"mesh": 0, "skin": 0}, {"mesh": 0, "skin": 1},
+    {"mesh": 0, "translation": [5, 0, 0]}, {"mesh": 0, "skin": 0},
+    {"translation": [0, 2, 0]}, {"translation": [0, 0, 7]}])");
+  file.root["scenes"][0]["nodes"] = {0, 1, 2, 3, 4, 5};
+  file.root["skins"] = Json::parse(R"([{"joints": [4]}, {"joints": [5]}])");
+  const auto imported = file.import(folder_);
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_THAT(imported->info.warnings, IsEmpty());
+  const Geometry& geometry = imported->scene.geometry;
+  ASSERT_EQ(geometry.instances.size(), 3u);
+  const auto first_vertex = [&](std::size_t i) {
+    const Instance& instance = geometry.instances[i];
+    const auto& p = geometry.meshes[index_of(instance.mesh)].positions[0];
+    return instance.to_world.point({p[0], p[1], p[2]});
+  };
+  EXPECT_EQ(first_vertex(0), (Vec3{0, 2, 0}));
+  EXPECT_EQ(first_vertex(1), (Vec3{0, 0, 7}));
+  EXPECT_EQ(first_vertex(2), (Vec3{5, 0, 0}));
+}
+
+// Weights of a node replace those of its mesh. Nodes of equal weights share the mesh.
+TEST_F(Gltf, MorphTargetsHaveTheWeightsOfTheNode) {
+  GltfWriter file;
+  file.attributes()["POSITION"] = file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+  file.primitive()["targets"] =
+      Json::array({{{"POSITION", file.add<float>({0, 0, 0, 0, 0, 4, 0, 0, 0}, 3)}}});
+  file.root["meshes"][0]["weights"] = {0.25};
+  file.root["nodes"] =
+      Json::parse(R"([{"mesh": 0, "weights": [0.5]}, {"mesh": 0}, {"mesh": 0, "weights": [0.5]}])");
+  file.root["scenes"][0]["nodes"] = {0, 1, 2};
+  const auto imported = file.import(folder_);
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const Geometry& geometry = imported->scene.geometry;
+  ASSERT_EQ(geometry.instances.size(), 3u);
+  const auto height = [&](std::size_t i) {
+    return geometry.meshes[index_of(geometry.instances[i].mesh)].positions[1][2];
+  };
+  EXPECT_EQ(height(0), 2);
+  EXPECT_EQ(height(1), 1);
+  EXPECT_EQ(height(2), 2);
+  EXPECT_EQ(geometry.meshes.size(), 2u);
 }
 
 }  // namespace
