@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
@@ -37,6 +38,7 @@ class Interpreter {
     RETURN_IF_ERROR(tokens_.include(builder_.from.name, {builder_.from.name, 0}));
     while (true) {
       ASSIGN_OR_RETURN(std::optional<Token> token, tokens_.next());
+      end_imports();
       if (!token) {
         break;
       }
@@ -96,7 +98,7 @@ class Interpreter {
         {"ColorSpace", &Interpreter::color_space},
         {"Option", &Interpreter::option},
         {"Include", &Interpreter::include},
-        {"Import", &Interpreter::include}};
+        {"Import", &Interpreter::import}};
     for (const auto& [name, action] : kActions) {
       if (token.text == name) {
         return (this->*action)(token.place);
@@ -217,6 +219,32 @@ class Interpreter {
   absl::Status include(const Place& place) {
     ASSIGN_OR_RETURN(const std::string name, read_quoted(tokens_, place, "a file"));
     return tokens_.include(name, place);
+  }
+
+  /// Includes a file whose changes of the graphics state end with it.
+  absl::Status import(const Place& place) {
+    ASSIGN_OR_RETURN(const std::string name, read_quoted(tokens_, place, "a file"));
+    RETURN_IF_ERROR(tokens_.include(name, place));
+    graphics_.begin_import();
+    imports_.push_back({name, tokens_.depth()});
+    return absl::OkStatus();
+  }
+
+  /// Restores the graphics state for each imported file that lies before the last token.
+  void end_imports() {
+    while (!imports_.empty() && tokens_.depth() < imports_.back().depth) {
+      warn_of_missing_ends(imports_.back().name);
+      graphics_.end_import();
+      imports_.pop_back();
+    }
+  }
+
+  /// Warns of states that the file `name` has saved and not restored.
+  void warn_of_missing_ends(const std::string& name) {
+    if (graphics_.depth() > 0) {
+      builder_.warnings.push_back(
+          absl::StrCat(name, ": ", graphics_.depth(), " AttributeEnd are missing at the end"));
+    }
   }
 
   // Materials, textures, media.
@@ -418,10 +446,7 @@ class Interpreter {
       return absl::InvalidArgumentError(
           absl::StrCat(builder_.from.name, ": has no WorldBegin; it is no pbrt-v4 scene"));
     }
-    if (graphics_.depth() > 0) {
-      builder_.warnings.push_back(absl::StrCat(builder_.from.name, ": ", graphics_.depth(),
-                                               " AttributeEnd are missing at the end"));
-    }
+    warn_of_missing_ends(builder_.from.name);
     if (!view_.medium.empty()) {
       ASSIGN_OR_RETURN(const std::string fog,
                        medium_name(view_.medium, view_.medium_place, {}, builder_));
@@ -439,9 +464,16 @@ class Interpreter {
                           std::move(builder_.warnings)};
   }
 
+  /// A file of the directive Import.
+  struct ImportedFile {
+    std::string name;
+    std::size_t depth;  ///< number of open files while its tokens are read
+  };
+
   Builder builder_;
   Tokens tokens_;
   GraphicsState graphics_;
+  std::vector<ImportedFile> imports_;   ///< those that are open, one within the other
   std::map<std::string, int> objects_;  ///< number of things in each
   std::string object_;                  ///< between ObjectBegin and ObjectEnd
   ViewSource view_;

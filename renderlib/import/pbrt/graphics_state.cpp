@@ -1,5 +1,5 @@
 // Holds the graphics state of a pbrt scene as a stack of states: AttributeBegin and TransformBegin
-// push a copy, their ends restore it.
+// push a copy, their ends restore it. An imported file has a stack of its own.
 
 #include "renderlib/import/pbrt/graphics_state.h"
 
@@ -89,6 +89,14 @@ absl::Status GraphicsState::restore_transforms(const Place& place) {
             std::begin(current_.is_active));
   saved_.pop_back();
   return absl::OkStatus();
+}
+
+void GraphicsState::begin_import() { importing_.push_back({current_, std::exchange(saved_, {})}); }
+
+void GraphicsState::end_import() {
+  current_ = std::move(importing_.back().current);
+  saved_ = std::move(importing_.back().saved);
+  importing_.pop_back();
 }
 
 absl::Status GraphicsState::add_defaults(const Place& place, const std::string& target,

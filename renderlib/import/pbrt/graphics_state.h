@@ -32,7 +32,12 @@ class GraphicsState {
   /// INVALID_ARGUMENT if none is saved.
   absl::Status restore(const Place& place);
   absl::Status restore_transforms(const Place& place);
-  /// Returns the number of states that are saved.
+  /// Begins a file of the directive Import. The states that are saved outside of it cannot be
+  /// restored inside of it.
+  void begin_import();
+  /// Ends that file: the state is again that of begin_import(), which MUST have been called.
+  void end_import();
+  /// Returns the number of states that are saved; inside of an imported file, by that file.
   std::size_t depth() const { return saved_.size(); }
 
   /// Adds parameters that Attribute sets for all following directives of a kind ("shape").
@@ -43,8 +48,15 @@ class GraphicsState {
  private:
   absl::Status set(const Place& place, std::size_t k, const Transform& to);
 
+  /// What end_import() brings back.
+  struct Importing {
+    State current;
+    std::vector<State> saved;
+  };
+
   State current_;
   std::vector<State> saved_;
+  std::vector<Importing> importing_;  ///< one for each imported file that is open
   std::map<std::string, Transforms> systems_;
 };
 

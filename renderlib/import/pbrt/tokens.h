@@ -41,6 +41,9 @@ class Tokens {
   /// Returns the next word; std::nullopt after the last one. The error is INVALID_ARGUMENT for a
   /// string without end.
   absl::StatusOr<std::optional<Token>> next();
+  /// Returns the number of open files: that of the token that next() returned last, and those
+  /// around it. It is 0 after the last token.
+  std::size_t depth() const { return open_.size(); }
   /// Makes next() return this token again.
   void put_back(Token token) { back_ = std::move(token); }
 

@@ -86,6 +86,29 @@ TEST(Pbrt, TransformsAreSavedAndRestored) {
   EXPECT_THAT(scene.shape(1).sphere().center(), ElementsAre(1, 0, 0));
 }
 
+TEST(Pbrt, AnImportedFileChangesNothingAfterIt) {
+  const TempDir dir;
+  write_text(dir, "part.pbrt",
+             "Translate 100 0 0\nMaterial \"diffuse\" \"rgb reflectance\" [1 0 0]\n"
+             "MakeNamedMaterial \"glass\" \"string type\" \"dielectric\"\n"
+             "AttributeBegin\nTranslate 1 0 0\nShape \"sphere\" \"float radius\" 2");
+  const auto converted = convert(dir,
+                                 "WorldBegin\nTranslate 0 3 0\nImport \"part.pbrt\"\n"
+                                 "Shape \"sphere\"\nNamedMaterial \"glass\"\nShape \"sphere\"");
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  ASSERT_EQ(converted->scene.shape_size(), 3);
+  EXPECT_THAT(converted->scene.shape(0).sphere().center(), ElementsAre(101, 3, 0));
+  EXPECT_THAT(converted->scene.shape(1).sphere().center(), ElementsAre(0, 3, 0));
+  EXPECT_EQ(converted->scene.shape(1).material(), "default");
+  EXPECT_EQ(converted->scene.shape(2).material(), "glass");
+  EXPECT_THAT(converted->warnings, ElementsAre("part.pbrt: 1 AttributeEnd are missing at the end"));
+  write_text(dir, "part.pbrt", "AttributeEnd");
+  EXPECT_THAT(
+      std::string(
+          convert(dir, "WorldBegin\nAttributeBegin\nImport \"part.pbrt\"").status().message()),
+      HasSubstr("part.pbrt:1: AttributeEnd without AttributeBegin"));
+}
+
 TEST(Pbrt, IsoScalesAllLight) {
   const auto scene = scene_of(
       "Film \"rgb\" \"float iso\" 200\nWorldBegin\nLightSource \"point\" \"rgb I\" [1 2 3]\n"
