@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::pbrt {
@@ -50,6 +51,19 @@ Rgb3 reflectance_of(const spectrum::Metal& metal, double outside) {
   return out;
 }
 
+/// Returns the roughness of a glTF material, whose square is alpha. Warns of a texture: 0.5 stands
+/// for its alpha. `what` is the surface that has the roughness.
+double gltf_roughness(const MaterialSource& from, const Roughness& roughness,
+                      absl::string_view what) {
+  if (roughness.texture) {
+    from.builder.warn(from.place(), absl::StrCat("the texture of the ", what,
+                                                 "'s roughness is left out; an alpha of 0.5 "
+                                                 "stands for it"));
+    return std::sqrt(0.5);
+  }
+  return std::sqrt(roughness.mean());
+}
+
 }  // namespace
 
 absl::Status conductor(const MaterialSource& from, Surface& to) {
@@ -92,25 +106,22 @@ absl::Status coated_conductor(const MaterialSource& from, Surface& to) {
   ASSIGN_OR_RETURN(const Roughness coat, read_roughness(from, "interface.", 0));
   ASSIGN_OR_RETURN(const Roughness metal, read_roughness(from, "conductor.", 0));
   ASSIGN_OR_RETURN(const double index, read_index(from, "interface.eta", 1.5));
-  Rgb3 color = {0.5, 0.5, 0.5};
+  scene::Gltf& gltf = *to.material.mutable_gltf();
   if (from.parameters.find("reflectance") != nullptr) {
-    ASSIGN_OR_RETURN(const scene::Texture reflectance, from.reflectance("reflectance", 0.5));
+    ASSIGN_OR_RETURN(scene::Texture reflectance, from.reflectance("reflectance", 0.5));
     if (reflectance.has_color()) {
-      for (int c = 0; c < 3; ++c) {
-        color[static_cast<std::size_t>(c)] = reflectance.color().rgb(c);
-      }
+      *gltf.mutable_base_color() = std::move(*reflectance.mutable_color());
+    } else {
+      *gltf.mutable_base_color_texture() = std::move(reflectance);
     }
   } else {
     ASSIGN_OR_RETURN(const spectrum::Metal measured, read_metal(from, "conductor."));
-    color = reflectance_of(measured, index);
+    set_rgb(reflectance_of(measured, index), gltf.mutable_base_color());
   }
-  scene::Gltf& gltf = *to.material.mutable_gltf();
-  set_rgb(color, gltf.mutable_base_color());
   gltf.set_metallic(1);
-  // The square of glTF's roughness is alpha.
-  gltf.set_roughness(std::sqrt(metal.mean()));
+  gltf.set_roughness(gltf_roughness(from, metal, "metal"));
   gltf.set_clearcoat(1);
-  gltf.set_clearcoat_roughness(std::sqrt(coat.mean()));
+  gltf.set_clearcoat_roughness(gltf_roughness(from, coat, "coat"));
   from.builder.warn_once(from.place(),
                          "coatedconductor is shown as a metal with a clear coat of index 1.5, "
                          "without light that is reflected between the two");

@@ -11,6 +11,7 @@
 namespace bandsaw {
 namespace {
 
+using test::small_ppm;
 using test::TempDir;
 using test::write_text;
 using ::testing::ElementsAre;
@@ -138,6 +139,28 @@ TEST(Pbrt, RoughnessIsRemappedToAlpha) {
   };
   EXPECT_NEAR(alpha("\"float roughness\" 0.09"), 0.3, 1e-12);
   EXPECT_NEAR(alpha("\"float roughness\" 0.09 \"bool remaproughness\" false"), 0.09, 1e-12);
+}
+
+TEST(Pbrt, ACoatedConductorKeepsItsTexture) {
+  const TempDir dir;
+  write_text(dir, "p.ppm", small_ppm());
+  const auto converted =
+      convert(dir,
+              "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"p.ppm\"\n"
+              "Texture \"r\" \"float\" \"imagemap\" \"string filename\" \"p.ppm\"\n"
+              "Material \"coatedconductor\" \"texture reflectance\" \"t\" \"bool remaproughness\" "
+              "false \"texture conductor.roughness\" \"r\" \"float interface.roughness\" 0.25\n"
+              "Shape \"sphere\"");
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  ASSERT_EQ(converted->scene.material_size(), 1);
+  const scene::Gltf& gltf = converted->scene.material(0).gltf();
+  EXPECT_EQ(gltf.base_color_texture().use(), "t");
+  EXPECT_FALSE(gltf.has_base_color());
+  EXPECT_NEAR(gltf.roughness() * gltf.roughness(), 0.5, 1e-12);
+  EXPECT_EQ(gltf.clearcoat_roughness(), 0.5);
+  ASSERT_EQ(converted->warnings.size(), 2u);
+  EXPECT_THAT(converted->warnings[0],
+              HasSubstr("s.pbrt:4: the texture of the metal's roughness is left out"));
 }
 
 TEST(Pbrt, ObjectsAreGroups) {
