@@ -1,5 +1,6 @@
-// Converts pbrt's shapes: whole spheres and disks become shapes of our scene, others become meshes
-// in made files. Each is placed with its material, emission, opacity and the medium inside.
+// Converts pbrt's shapes: whole spheres and disks whose uvs do not matter become shapes of our
+// scene, others become meshes in made files. Each is placed with its material, emission, opacity
+// and the medium inside.
 
 #include <algorithm>
 #include <cmath>
@@ -31,10 +32,12 @@ std::optional<double> uniform_scale(const Transform& t) {
 
 bool is_moving(const State& state) { return !(state.transforms[0] == state.transforms[1]); }
 
-bool has_uv_texture(const Surface& surface) {
-  // Textures of a sphere or disk are placed by pbrt's own uvs, which only our meshes can have.
-  return surface.material.ShortDebugString().find("use:") != std::string::npos ||
-         surface.material.has_mix();
+/// Returns true if the material looks different with other uvs.
+bool depends_on_uvs(const scene::Material& material) {
+  return material.ShortDebugString().find("use:") != std::string::npos || material.has_mix() ||
+         material.has_normal_texture() || material.gltf().has_normal_texture() ||
+         material.conductor().surface().has_alpha_v() ||
+         material.dielectric().surface().has_alpha_v();
 }
 
 /// A Shape directive, and what its emission and alpha add to the material.
@@ -279,6 +282,23 @@ absl::Status add_mesh(Shape& shape, Sides sides) {
   return add_model(shape, shape.builder.made.add("mesh", ".ply", write_ply(*mesh)), closed, sides);
 }
 
+/// Returns true if the shape looks different with other uvs: by its surface, by its alpha, or by
+/// the image of its light. The uvs of a sphere or disk of ours are not those of pbrt; only our
+/// meshes can have these.
+absl::StatusOr<bool> depends_on_uvs(const Shape& shape) {
+  if (depends_on_uvs(shape.state.surface->material) ||
+      (shape.look.opacity && !constant_of(*shape.look.opacity))) {
+    return true;
+  }
+  if (shape.state.area_light == nullptr) {
+    return false;
+  }
+  ASSIGN_OR_RETURN(const std::string image,
+                   shape.state.area_light->parameters.text("filename", ""));
+  ASSIGN_OR_RETURN(const std::string own, shape.parameters.text("emissionfilename", ""));
+  return !image.empty() || !own.empty();
+}
+
 /// Adds a quadric as a shape of ours if it is whole; false: it must be a mesh.
 absl::StatusOr<bool> add_whole_quadric(Shape& shape, Sides sides) {
   const Parameters& in = shape.parameters;
@@ -301,8 +321,8 @@ absl::StatusOr<bool> add_whole_quadric(Shape& shape, Sides sides) {
       phi >= 360 &&
       (is_sphere ? std::min(zmin, zmax) <= -r && std::max(zmin, zmax) >= r : inner <= 0);
   const bool emits = shape.state.area_light != nullptr;
-  if (!is_whole || has_uv_texture(*shape.state.surface) ||
-      (is_sphere && emits && shape.state.reverse_orientation)) {
+  ASSIGN_OR_RETURN(const bool needs_uvs, depends_on_uvs(shape));
+  if (!is_whole || needs_uvs || (is_sphere && emits && shape.state.reverse_orientation)) {
     return false;
   }
   if (emits) {

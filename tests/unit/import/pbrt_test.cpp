@@ -238,6 +238,37 @@ TEST(Pbrt, MicrofacetsHideEachOtherByTheirHeight) {
   EXPECT_NEAR(surface.alpha_v(), 0.3, 1e-12);
 }
 
+TEST(Pbrt, SpheresWhoseUvsMatterAreMeshes) {
+  const TempDir dir;
+  write_text(dir, "p.ppm", small_ppm());
+  const auto shapes_and_models = [&](const std::string& text) {
+    const auto converted = convert(
+        dir,
+        "WorldBegin\nTexture \"t\" \"float\" \"imagemap\" \"string filename\" \"p.ppm\"\n" + text);
+    EXPECT_TRUE(converted.ok()) << converted.status();
+    return converted.ok() ? std::pair(converted->scene.shape_size(), converted->scene.model_size())
+                          : std::pair(-1, -1);
+  };
+  for (const char* text :
+       {"Shape \"sphere\" \"texture alpha\" \"t\"", "Shape \"disk\" \"texture alpha\" \"t\"",
+        "AreaLightSource \"diffuse\" \"string filename\" \"p.ppm\" Shape \"sphere\"",
+        "AreaLightSource \"diffuse\" Shape \"sphere\" \"string emissionfilename\" \"p.ppm\"",
+        "Material \"diffuse\" \"string normalmap\" \"p.ppm\" Shape \"sphere\"",
+        "Material \"coatedconductor\" \"string normalmap\" \"p.ppm\" Shape \"sphere\"",
+        "Material \"diffuse\" \"texture displacement\" \"t\" Shape \"sphere\"",
+        "Material \"conductor\" \"float uroughness\" 0.5 \"float vroughness\" 0.1 "
+        "Shape \"sphere\"",
+        "Material \"dielectric\" \"float uroughness\" 0.5 \"float vroughness\" 0.1 "
+        "Shape \"sphere\""}) {
+    EXPECT_EQ(shapes_and_models(text), std::pair(0, 1)) << text;
+  }
+  for (const char* text :
+       {"Shape \"sphere\" \"float alpha\" 0.5", "AreaLightSource \"diffuse\" Shape \"sphere\"",
+        "Material \"conductor\" \"float roughness\" 0.5 Shape \"sphere\""}) {
+    EXPECT_EQ(shapes_and_models(text), std::pair(1, 0)) << text;
+  }
+}
+
 TEST(Pbrt, WhatHasNoCounterpartIsNamed) {
   for (const char* type : {"nanovdb", "cloud", "rgbgrid"}) {
     const std::string text = "MakeNamedMedium \"m\" \"string type\" \"" + std::string(type) +
