@@ -199,8 +199,10 @@ absl::Status projection(const LightSource& from) {
   const Transform& to_world = from.to_world();
   set_vec3(to_world.point({0, 0, 0}), light->mutable_position());
   set_vec3(to_world.point({0, 0, 1}), light->mutable_look_at());
-  set_vec3(to_world.direction({0, -1, 0}), light->mutable_up());
-  light->set_mirrored(determinant(to_world) < 0);
+  // The image's top is towards +y of the light, its right towards +x. Without a mirror its right
+  // would be cross(z, y) = -x.
+  set_vec3(to_world.direction({0, 1, 0}), light->mutable_up());
+  light->set_mirrored(determinant(to_world) > 0);
   light->set_vertical_fov(2 * atan2(half_height, 1) * 180 / kPi);
   set_rgb(intensity, light->mutable_intensity());
   auto* texture = light->mutable_image()->mutable_image();

@@ -122,6 +122,26 @@ TEST(Pbrt, IsoScalesAllLight) {
   EXPECT_TRUE(scene.material(0).emissive().one_sided());
 }
 
+TEST(Pbrt, AProjectedImageStandsUpright) {
+  const TempDir dir;
+  write_text(dir, "p.ppm", small_ppm());
+  const auto projector = [&](const std::string& transform) {
+    const auto converted =
+        convert(dir, "WorldBegin\n" + transform +
+                         "\nLightSource \"projection\" \"string filename\" \"p.ppm\"");
+    EXPECT_TRUE(converted.ok()) << converted.status();
+    return converted.ok() ? converted->scene.light(0).projector() : scene::ProjectorLight();
+  };
+  const auto plain = projector("");
+  EXPECT_THAT(plain.look_at(), ElementsAre(0, 0, 1));
+  EXPECT_THAT(plain.up(), ElementsAre(0, 1, 0));
+  EXPECT_TRUE(plain.mirrored()) << "its right is +x; cross(z, y) is -x";
+  EXPECT_FALSE(projector("Scale -1 1 1").mirrored());
+  const auto turned = projector("Scale 1 -1 1");
+  EXPECT_THAT(turned.up(), ElementsAre(0, -1, 0));
+  EXPECT_FALSE(turned.mirrored());
+}
+
 TEST(Pbrt, ABlackBodyHasLuminanceOne) {
   const auto scene = scene_of("WorldBegin\nLightSource \"point\" \"blackbody I\" 3000");
   const auto& rgb = scene.light(0).point().intensity().rgb();
