@@ -168,11 +168,9 @@ absl::Status BsdfReader::thin_dielectric(const Parameters& from, Draft& draft) {
 }
 
 absl::Status BsdfReader::set_metal(const Parameters& from, scene::Conductor& to) {
-  ASSIGN_OR_RETURN(const std::string name, from.text("material", from.has("eta") ? "" : "Cu"));
-  if (name == "none") {
-    return absl::OkStatus();
-  }
-  if (!name.empty()) {
+  const bool is_copper = to_.is_old && !from.has("eta");
+  ASSIGN_OR_RETURN(const std::string name, from.text("material", is_copper ? "Cu" : "none"));
+  if (name != "none") {
     auto metal = metal_of(name);
     if (!metal.ok()) {
       to_.warn(from.place(),
@@ -183,10 +181,15 @@ absl::Status BsdfReader::set_metal(const Parameters& from, scene::Conductor& to)
     set_color(metal->k, to.mutable_k());
     return absl::OkStatus();
   }
+  if (!from.has("eta")) {
+    from.ignore({"k"});  // eta is 0: a mirror, whatever k is
+    return absl::OkStatus();
+  }
+  set_color(gray(1), to.mutable_k());
   for (const bool real : {true, false}) {
     const Property* property = from.find(real ? "eta" : "k");
     if (property == nullptr) {
-      return error_at(from.place(), "a conductor needs both \"eta\" and \"k\"");
+      continue;
     }
     ASSIGN_OR_RETURN(const std::optional<Rgb> color, constant_color(*property, ColorOf::kSurface));
     if (!color) {

@@ -49,6 +49,8 @@ class BsdfReader {
   /// Warns of colours of glass, which our glass does not have.
   absl::Status warn_of_tints(const Parameters& from);
   absl::Status thin_dielectric(const Parameters& from, Draft& draft);
+  /// Sets eta and k by the name of a metal or by their colours. Without both, the conductor is a
+  /// mirror, or copper in a scene of version 0.x. k is 1 if eta alone is given.
   absl::Status set_metal(const Parameters& from, scene::Conductor& to);
   absl::Status conductor(const Parameters& from, Draft& draft);
   absl::Status plastic(const Parameters& from, Draft& draft);

@@ -20,6 +20,8 @@ struct Conversion {
   /// The integrator is "volpath" or "volpathmis", which do not count the passage through a thin
   /// pane towards max_depth. "path" does.
   bool passages_are_free = false;
+  /// The scene is of version 0.x, some of whose defaults are not those of versions 2 and 3.
+  bool is_old = false;
 
   /// Adds "scene.xml:12: <what>", unless it is there already.
   void warn(const Place& place, const std::string& what);

@@ -67,6 +67,7 @@ absl::StatusOr<ConvertedScene> convert_mitsuba(const ForeignScene& from) {
   out.warnings = std::move(tree.warnings);
   MadeFiles made(from.name);
   mitsuba::Conversion to{files, made, out.warnings};
+  to.is_old = tree.is_old;
   RETURN_IF_ERROR(mitsuba::convert(*tree.root, out.scene, to));
   out.made_files = made.take();
   return out;

@@ -140,6 +140,7 @@ class Reader {
       return error_at(source.at(root),
                       absl::StrCat("the root element must be <scene>, is <", root.name(), ">"));
     }
+    tree_.is_old = root.attribute("version").as_double(3) < 2;
     ASSIGN_OR_RETURN(tree_.root, read_object(root, source));
     return resolve_references();
   }

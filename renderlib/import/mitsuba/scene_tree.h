@@ -76,6 +76,7 @@ struct Object {
 
 struct SceneTree {
   const Object* root = nullptr;
+  bool is_old = false;                              ///< its version is 0.x, not 2 or 3
   std::deque<Object> objects;                       ///< owns them
   std::vector<std::unique_ptr<std::string>> files;  ///< names, for places
   std::vector<std::string> warnings;                ///< warnings about elements that are not known

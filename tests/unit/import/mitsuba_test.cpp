@@ -271,6 +271,31 @@ TEST_F(MitsubaScene, MaterialsHaveTheirFields) {
   EXPECT_THAT(blend.mix().amount().color().rgb(), ElementsAre(0.75, 0.75, 0.75));
 }
 
+TEST_F(MitsubaScene, AConductorWithoutAMetalIsAMirror) {
+  const auto metal = [&](const std::string& version, const std::string& parameters) {
+    const auto converted =
+        convert_file("<scene version=\"" + version + "\">" + kSensor +
+                     rectangle("<bsdf type=\"conductor\">" + parameters + "</bsdf>") + "</scene>");
+    EXPECT_TRUE(converted.ok()) << converted.status();
+    if (!converted.ok()) {
+      return scene::Conductor();
+    }
+    EXPECT_THAT(converted->warnings, IsEmpty());
+    return converted->scene.material(0).conductor();
+  };
+  for (const char* version : {"2.1.0", "3.0.0"}) {
+    EXPECT_FALSE(metal(version, "").has_eta()) << version;
+    EXPECT_FALSE(metal(version, "").has_k()) << version;
+  }
+  EXPECT_FALSE(metal("3.0.0", "<rgb name=\"k\" value=\"2 2 2\"/>").has_eta()) << "eta is 0";
+  const auto glossy = metal("3.0.0", "<rgb name=\"eta\" value=\"0.5 1 2\"/>");
+  EXPECT_THAT(glossy.eta().rgb(), ElementsAre(0.5, 1, 2));
+  EXPECT_THAT(glossy.k().rgb(), ElementsAre(1, 1, 1));
+  const auto copper = metal("3.0.0", "<string name=\"material\" value=\"Cu\"/>");
+  EXPECT_TRUE(copper.has_eta());
+  EXPECT_EQ(metal("0.6.0", "").eta().rgb(0), copper.eta().rgb(0)) << "the default of version 0.6";
+}
+
 /// The linear RGB of the same tables under equal energy, as the renderer Tungsten lists it.
 TEST(MitsubaMetals, HaveTheirPublishedColours) {
   struct Published {
