@@ -22,22 +22,6 @@ Rgb rounded(const spectrum::Rgb3& c) {
   return {channel(c[0]), channel(c[1]), channel(c[2])};
 }
 
-/// Returns the spectrum with 0 outside of its wavelengths, as Mitsuba integrates it.
-spectrum::Sampled zero_outside(const Spectrum& from) {
-  constexpr double kStep = 1e-6;  // nm
-  spectrum::Sampled to;
-  const auto add = [&](double nanometres, double value) {
-    to.wavelengths.push_back(nanometres);
-    to.values.push_back(value);
-  };
-  add(from.samples.front().nanometres - kStep, 0);
-  for (const Spectrum::Sample& sample : from.samples) {
-    add(sample.nanometres, sample.value);
-  }
-  add(from.samples.back().nanometres + kStep, 0);
-  return to;
-}
-
 /// Wavelengths of the tables of metals.
 const std::vector<double>& metal_wavelengths() {
   static const std::vector<double> all = {380, 410, 440, 470, 500, 530, 560,
@@ -113,7 +97,12 @@ Rgb rgb_of(const Spectrum& spectrum, ColorOf of) {
   if (spectrum.samples.empty()) {
     return gray(static_cast<float>(spectrum.constant));
   }
-  const spectrum::Sampled sampled = zero_outside(spectrum);
+  spectrum::Sampled known;
+  for (const Spectrum::Sample& sample : spectrum.samples) {
+    known.wavelengths.push_back(sample.nanometres);
+    known.values.push_back(sample.value);
+  }
+  const spectrum::Sampled sampled = spectrum::zero_outside(known);
   return rounded(of == ColorOf::kLight ? spectrum::light_rgb(sampled)
                                        : spectrum::factor_rgb(sampled));
 }

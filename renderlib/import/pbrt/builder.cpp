@@ -164,7 +164,7 @@ absl::StatusOr<std::optional<spectrum::Sampled>> spectrum_of(const Parameter& pa
   if (const auto known = spectrum::named(name)) {
     return known;
   }
-  spectrum::Sampled flat{{500}, {1}};  // 1 at all wavelengths
+  spectrum::Sampled flat{{1, 1e5}, {1, 1}};  // 1 at all wavelengths
   if (absl::StartsWith(name, "metal-") || absl::StartsWith(name, "glass-") ||
       absl::StartsWith(name, "stdillum-") || absl::StartsWith(name, "illum-")) {
     builder.warn(parameter.place,
@@ -205,7 +205,9 @@ absl::StatusOr<Rgb3> color_of(const Parameter& parameter, ColorUse use,
     return error_at(parameter.place, absl::StrCat("\"", parameter.type, " ", parameter.name,
                                                   "\" must be rgb, spectrum or blackbody"));
   }
-  return clamped(of_spectrum(*sampled, use), use, parameter, builder);
+  const bool is_named = parameter.texts.size() == 1 && spectrum::named(parameter.texts[0]);
+  return clamped(of_spectrum(is_named ? *sampled : spectrum::zero_outside(*sampled), use), use,
+                 parameter, builder);
 }
 
 absl::StatusOr<Rgb3> color(const Parameters& parameters, const std::string& name, ColorUse use,

@@ -103,6 +103,16 @@ absl::StatusOr<Sampled> parse_spd(absl::string_view text) {
   return from_pairs(numbers);
 }
 
+Sampled zero_outside(const Sampled& from) {
+  constexpr double kStep = 1e-6;  // nm
+  Sampled to = from;
+  to.wavelengths.insert(to.wavelengths.begin(), from.wavelengths.front() - kStep);
+  to.values.insert(to.values.begin(), 0);
+  to.wavelengths.push_back(from.wavelengths.back() + kStep);
+  to.values.push_back(0);
+  return to;
+}
+
 Sampled blackbody(double kelvin) {
   // Planck's law, with hc / k_B in nm K; relative to Wien's peak.
   constexpr double kSecond = 1.438776877e7;

@@ -34,6 +34,10 @@ absl::StatusOr<Sampled> from_pairs(const std::vector<double>& numbers);
 /// Parses a file of pairs, a pair a line (*.spd); # begins a comment.
 absl::StatusOr<Sampled> parse_spd(absl::string_view text);
 
+/// Returns the spectrum with 0 outside of its wavelengths, as pbrt and Mitsuba integrate those that
+/// a scene defines.
+Sampled zero_outside(const Sampled& from);
+
 /// Returns the visible radiation of a black body, relative to its maximum over all wavelengths,
 /// which may be invisible. `kelvin` > 0.
 Sampled blackbody(double kelvin);

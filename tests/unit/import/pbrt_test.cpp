@@ -149,6 +149,28 @@ TEST(Pbrt, ABlackBodyHasLuminanceOne) {
   EXPECT_GT(rgb[0], 2 * rgb[2]);
 }
 
+TEST(Pbrt, ASpectrumIsBlackOutsideOfItsWavelengths) {
+  const TempDir dir;
+  write_text(dir, "line.spd", "600 1\n610 1\n");
+  const auto intensity = [&](const std::string& spectrum) {
+    const auto converted =
+        convert(dir, "WorldBegin\nLightSource \"point\" \"spectrum I\" " + spectrum);
+    EXPECT_TRUE(converted.ok()) << converted.status();
+    return converted.ok() ? converted->scene.light(0).point().intensity() : scene::Color();
+  };
+  for (const char* spectrum : {"[600 1 610 1]", "\"line.spd\""}) {
+    const scene::Color color = intensity(spectrum);
+    ASSERT_EQ(color.rgb_size(), 3) << spectrum;
+    EXPECT_GT(color.rgb(0), 4) << spectrum;  // orange light of luminance 1
+    EXPECT_LT(color.rgb(1), 0.2) << spectrum;
+    EXPECT_EQ(color.rgb(2), 0) << spectrum;
+  }
+  // A file that is missing is white at all wavelengths.
+  const scene::Color white = intensity("\"no.spd\"");
+  ASSERT_EQ(white.rgb_size(), 3);
+  EXPECT_NEAR(white.rgb(1), 0.95, 0.05);
+}
+
 TEST(Pbrt, RoughnessIsRemappedToAlpha) {
   const auto alpha = [](const std::string& parameters) {
     return scene_of("WorldBegin\nMaterial \"conductor\" " + parameters + "\nShape \"sphere\"")
