@@ -9,7 +9,10 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/image/write_image.h"
+#include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/pbrt/builder.h"
+#include "renderlib/texture/image_texture.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -80,6 +83,39 @@ absl::StatusOr<bool> is_linear(const TextureSource& from, const std::string& fil
   return encoding == "linear";
 }
 
+/// Returns the file that a texture of numbers shows. pbrt takes the alpha of an image that has
+/// colours and an alpha below 1 somewhere; then it is a made file whose grey is that alpha. The
+/// encoding of the texture holds for alpha too. The file is `file` itself if its `bytes` hold no
+/// such image.
+std::string file_of_numbers(const std::string& file, const std::string& bytes, Builder& builder) {
+  if (!image_has_alpha(bytes)) {
+    return file;
+  }
+  std::vector<std::string> unused;
+  const auto colors = decode_image(bytes, unused, Gray::kKept);
+  auto alpha = decode_alpha(bytes);
+  if (!colors.ok() || !alpha.ok() || colors->channels == 1) {
+    return file;
+  }
+  // PNG encodes linear values as sRGB, so its bytes are those of alpha.
+  alpha->format = ImageTexture::Format::kSrgb8;
+  Image image{alpha->width, alpha->height, {}};
+  image.pixels.reserve(std::size_t{image.width} * image.height);
+  bool is_opaque = true;
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      image.pixels.push_back(texel(*alpha, x, y));
+      is_opaque = is_opaque && image.pixels.back().r == 1;
+    }
+  }
+  const auto png = encode_image(image, ImageFormat::kPng);
+  if (is_opaque || !png.ok()) {
+    return file;
+  }
+  return builder.made.add("alpha", ".png",
+                          std::string(reinterpret_cast<const char*>(png->data()), png->size()));
+}
+
 absl::StatusOr<scene::Texture> image_map(const TextureSource& from) {
   const Parameters& in = from.parameters;
   ASSIGN_OR_RETURN(const std::string file, in.text("filename", ""));
@@ -100,7 +136,7 @@ absl::StatusOr<scene::Texture> image_map(const TextureSource& from) {
   }
   scene::Texture out;
   scene::ImageTexture& image = *out.mutable_image();
-  image.set_file(file);
+  image.set_file(from.is_color ? file : file_of_numbers(file, *bytes, from.builder));
   image.set_wrap(wrap_of(wrap));
   image.set_filter(filter == "point" ? scene::ImageTexture::FILTER_NEAREST
                                      : scene::ImageTexture::FILTER_BILINEAR);

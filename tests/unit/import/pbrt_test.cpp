@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/import.h"
 #include "renderlib/import/pbrt/convert_pbrt.h"
 #include "tests/unit/import/files.h"
@@ -309,6 +310,36 @@ TEST(Pbrt, SpheresWhoseUvsMatterAreMeshes) {
         "Material \"conductor\" \"float roughness\" 0.5 Shape \"sphere\""}) {
     EXPECT_EQ(shapes_and_models(text), std::pair(1, 0)) << text;
   }
+}
+
+TEST(Pbrt, ANumberOfAnImageWithAlphaIsItsAlpha) {
+  const TempDir dir;
+  // A TGA of 2 x 1 texels, blue, green, red, alpha: white with alpha 0 and with alpha 128.
+  const auto tga = [](const std::string& alphas) {
+    std::string file("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\x20\x28", 18);
+    for (const char alpha : alphas) {
+      file += std::string("\xff\xff\xff") + alpha;
+    }
+    return file;
+  };
+  write_text(dir, "leaf.tga", tga(std::string("\0\x80", 2)));
+  write_text(dir, "opaque.tga", tga("\xff\xff"));
+  const auto converted =
+      convert(dir,
+              "WorldBegin\nTexture \"a\" \"float\" \"imagemap\" \"string filename\" \"leaf.tga\"\n"
+              "Texture \"b\" \"float\" \"imagemap\" \"string filename\" \"opaque.tga\"\n"
+              "Texture \"c\" \"spectrum\" \"imagemap\" \"string filename\" \"leaf.tga\"");
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  ASSERT_EQ(converted->scene.texture_size(), 3);
+  EXPECT_EQ(converted->scene.texture(0).image().file(), "s_files/alpha_1.png");
+  EXPECT_EQ(converted->scene.texture(1).image().file(), "opaque.tga");
+  EXPECT_EQ(converted->scene.texture(2).image().file(), "leaf.tga");
+  std::vector<std::string> unused;
+  const auto alpha = decode_image(converted->made_files.at("s_files/alpha_1.png"), unused);
+  ASSERT_TRUE(alpha.ok()) << alpha.status();
+  ASSERT_EQ(alpha->width, 2u);
+  EXPECT_EQ(std::to_integer<int>(alpha->texels[0]), 0);
+  EXPECT_EQ(std::to_integer<int>(alpha->texels[3]), 128);
 }
 
 TEST(Pbrt, WhatHasNoCounterpartIsNamed) {
