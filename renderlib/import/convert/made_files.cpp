@@ -29,4 +29,9 @@ std::string MadeFiles::add(absl::string_view what, absl::string_view suffix, std
   return name;
 }
 
+const std::string* MadeFiles::find(const std::string& name) const {
+  const auto found = files_.find(name);
+  return found == files_.end() ? nullptr : &found->second;
+}
+
 }  // namespace bandsaw

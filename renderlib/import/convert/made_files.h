@@ -21,6 +21,9 @@ class MadeFiles {
   /// are stored once. `what` ("mesh") begins the name, `suffix` (".ply") ends it.
   std::string add(absl::string_view what, absl::string_view suffix, std::string bytes);
 
+  /// Returns the bytes of a file by the name that add() returned; nullptr for other names.
+  const std::string* find(const std::string& name) const;
+
   /// Returns all files, keyed by name, and leaves this object empty.
   std::map<std::string, std::string> take() { return std::move(files_); }
 

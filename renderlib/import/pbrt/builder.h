@@ -64,12 +64,15 @@ struct Builder {
   std::map<std::string, Place> open_media;
   std::set<std::string> taken_media;  ///< names of media in use
   bool needs_vacuum = false;
-  std::map<std::string, std::string> material_names;  ///< serialised material -> name
-  std::set<std::string> taken_names;                  ///< names of materials in use
-  std::map<std::string, int> name_counts;             ///< names made from a label
-  std::set<std::string> taken_textures;               ///< names of textures in use
-  std::map<std::string, int> texture_counts;          ///< names made from a texture's name
-  scene::Group* group = nullptr;                      ///< between ObjectBegin and ObjectEnd
+  std::map<std::string, std::string> material_names;       ///< serialised material -> name
+  std::set<std::string> taken_names;                       ///< names of materials in use
+  std::map<std::string, int> name_counts;                  ///< names made from a label
+  std::set<std::string> taken_textures;                    ///< names of textures in use
+  std::map<std::string, int> texture_counts;               ///< names made from a texture's name
+  std::map<std::string, double> largest_of_texture;        ///< by the texture's name in our scene
+  std::map<std::string, double> largest_of_image;          ///< by file, for images of floats
+  std::map<std::string, scene::Texture> limited_textures;  ///< by the name of the texture above 1
+  scene::Group* group = nullptr;                           ///< between ObjectBegin and ObjectEnd
   int helper_groups = 0;  ///< number of groups that add_helper_group() made
 
   void warn(const Place& place, absl::string_view what);
@@ -135,6 +138,17 @@ absl::StatusOr<scene::Texture> color_texture(const Parameters& parameters, const
 absl::StatusOr<std::optional<scene::Texture>> float_texture(const Parameters& parameters,
                                                             const std::string& name,
                                                             Builder& builder);
+/// Adds the texture to our scene under a name that begins with `name`, and returns a reference to
+/// it. Returns a constant texture itself.
+scene::Texture named_texture(const std::string& name, scene::Texture texture, Builder& builder);
+/// Returns a bound of the values of a texture; `texture` and the textures in it are references to
+/// named ones, or have no name yet.
+double largest_value(const scene::Texture& texture, const Builder& builder);
+/// Returns a texture with 1 in place of the values above 1 of `texture`, which color_texture() or
+/// float_texture() returned. Where the parts of a texture cannot be clamped, it is scaled to at
+/// most 1 after a warning at `place`. The error is INVALID_ARGUMENT if an image cannot be decoded.
+absl::StatusOr<scene::Texture> limited(scene::Texture texture, const Place& place,
+                                       Builder& builder);
 /// Returns the number of a constant texture; std::nullopt for another.
 std::optional<double> constant_of(const scene::Texture& texture);
 

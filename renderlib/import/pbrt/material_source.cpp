@@ -31,7 +31,7 @@ absl::StatusOr<Roughness> read_roughness(const MaterialSource& from, const std::
     const std::optional<scene::Texture>& texture = own ? own : both;
     const auto value = texture ? constant_of(*texture) : std::optional(otherwise);
     if (!value) {
-      out.texture = texture;
+      ASSIGN_OR_RETURN(out.texture, limited(*texture, from.place(), from.builder));
       continue;
     }
     out.alpha[k] = std::clamp(remap ? std::sqrt(std::max(*value, 0.0)) : *value, 0.0, 1.0);

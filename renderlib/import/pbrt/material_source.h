@@ -4,7 +4,9 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "renderlib/base/status_macros.h"
 #include "renderlib/import/pbrt/builder.h"
 
 namespace bandsaw::pbrt {
@@ -16,9 +18,12 @@ struct MaterialSource {
   Builder& builder;
 
   const Place& place() const { return parameters.place; }
+  /// Returns the reflectance of a parameter, at most 1; the constant `otherwise` if it is absent.
   absl::StatusOr<scene::Texture> reflectance(const std::string& name, double otherwise) const {
-    return color_texture(parameters, name, ColorUse::kReflectance,
-                         {otherwise, otherwise, otherwise}, state, builder);
+    ASSIGN_OR_RETURN(scene::Texture texture,
+                     color_texture(parameters, name, ColorUse::kReflectance,
+                                   {otherwise, otherwise, otherwise}, state, builder));
+    return limited(std::move(texture), place(), builder);
   }
 };
 

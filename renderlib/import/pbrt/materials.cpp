@@ -163,7 +163,8 @@ absl::Status mix(const MaterialSource& from, Surface& to) {
   out.set_a(parts[0]);
   out.set_b(parts[1]);
   if (amount) {
-    *out.mutable_amount() = *std::move(amount);
+    ASSIGN_OR_RETURN(*out.mutable_amount(),
+                     limited(*std::move(amount), from.place(), from.builder));
   }
   return absl::OkStatus();
 }

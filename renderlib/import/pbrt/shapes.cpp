@@ -354,6 +354,9 @@ absl::Status add_shape(const std::string& type, const Parameters& parameters, co
     return absl::OkStatus();
   }
   ASSIGN_OR_RETURN(auto alpha, float_texture(parameters, "alpha", builder));
+  if (alpha) {
+    ASSIGN_OR_RETURN(alpha, limited(*std::move(alpha), parameters.place, builder));
+  }
   if (alpha && constant_of(*alpha) != 1.0) {
     shape.look.opacity = std::move(alpha);
   }

@@ -116,6 +116,16 @@ std::string file_of_numbers(const std::string& file, const std::string& bytes, B
                           std::string(reinterpret_cast<const char*>(png->data()), png->size()));
 }
 
+/// Remembers the largest value of an image of floats. Those of other formats have 1.
+void note_largest_value(const std::string& file, const std::string& bytes, Builder& builder) {
+  if (!absl::EndsWithIgnoreCase(file, ".exr") && !absl::EndsWithIgnoreCase(file, ".hdr")) {
+    return;
+  }
+  std::vector<std::string> unused;
+  const auto image = decode_image(bytes, unused);
+  builder.largest_of_image[file] = image.ok() ? max_value(*image) : 1;
+}
+
 absl::StatusOr<scene::Texture> image_map(const TextureSource& from) {
   const Parameters& in = from.parameters;
   ASSIGN_OR_RETURN(const std::string file, in.text("filename", ""));
@@ -134,6 +144,7 @@ absl::StatusOr<scene::Texture> image_map(const TextureSource& from) {
   if (!bytes) {
     return gray(0.5);
   }
+  note_largest_value(file, *bytes, from.builder);
   scene::Texture out;
   scene::ImageTexture& image = *out.mutable_image();
   image.set_file(from.is_color ? file : file_of_numbers(file, *bytes, from.builder));
@@ -316,10 +327,20 @@ std::string unique_name(const std::string& name, Builder& builder) {
   return candidate;
 }
 
-/// Returns true if the texture is long enough to be named instead of repeated.
-bool is_worth_a_name(const scene::Texture& texture) { return !texture.has_color(); }
-
 }  // namespace
+
+scene::Texture named_texture(const std::string& name, scene::Texture texture, Builder& builder) {
+  if (texture.has_color()) {
+    return texture;
+  }
+  const std::string unique = unique_name(name.empty() ? "texture" : name, builder);
+  builder.largest_of_texture[unique] = largest_value(texture, builder);
+  texture.set_name(unique);
+  *builder.out.add_texture() = std::move(texture);
+  scene::Texture reference;
+  reference.set_use(unique);
+  return reference;
+}
 
 std::optional<double> constant_of(const scene::Texture& texture) {
   if (!texture.has_color()) {
@@ -388,14 +409,7 @@ absl::Status add_texture(const std::string& name, const std::string& type, const
   }
   ASSIGN_OR_RETURN(scene::Texture texture, read_kind({parameters, state, is_color, builder}, kind));
   builder.warn_of_unused(parameters);
-  if (is_worth_a_name(texture)) {
-    const std::string unique = unique_name(name.empty() ? "texture" : name, builder);
-    texture.set_name(unique);
-    *builder.out.add_texture() = std::move(texture);
-    texture.Clear();
-    texture.set_use(unique);
-  }
-  textures.emplace(name, std::move(texture));
+  textures.emplace(name, named_texture(name, std::move(texture), builder));
   return absl::OkStatus();
 }
 

@@ -312,6 +312,71 @@ TEST(Pbrt, SpheresWhoseUvsMatterAreMeshes) {
   }
 }
 
+// As in pbrt. Such scenes could not be rendered: a reflectance must lie in [0, 1].
+TEST(Pbrt, TexturesAboveOneAreClamped) {
+  const std::string image = "\"imagemap\" \"string filename\" \"p.ppm\"";
+  const std::string shape = "\nShape \"bilinearmesh\" \"point3 P\" [0 0 5 1 0 5 0 1 5 1 1 5]";
+  for (const std::string& text :
+       {"Texture \"a\" \"spectrum\" " + image + " \"float scale\" 2\n" +
+            "Material \"diffuse\" \"texture reflectance\" \"a\"" + shape,
+        "Texture \"a\" \"spectrum\" \"constant\" \"rgb value\" [2 2 2]\n" +
+            ("Material \"diffuse\" \"texture reflectance\" \"a\"" + shape),
+        "Texture \"a\" \"float\" " + image + " \"float scale\" 2\n" +
+            "Material \"conductor\" \"texture roughness\" \"a\"" + shape,
+        "Texture \"a\" \"spectrum\" " + image + "\n" +
+            "Texture \"b\" \"spectrum\" \"scale\" \"texture tex\" \"a\" \"float scale\" 2\n" +
+            "Material \"coateddiffuse\" \"texture reflectance\" \"b\"" + shape,
+        "Texture \"a\" \"float\" " + image + " \"float scale\" 3\n" +
+            "MakeNamedMaterial \"x\" \"string type\" \"diffuse\"\n" +
+            "MakeNamedMaterial \"y\" \"string type\" \"conductor\"\n" +
+            "Material \"mix\" \"string materials\" [\"x\" \"y\"] \"texture amount\" \"a\"" + shape,
+        "Texture \"a\" \"float\" " + image + " \"float scale\" 3" + shape +
+            " \"texture alpha\" \"a\"",
+        "Texture \"a\" \"spectrum\" " + image + "\n" +
+            "Texture \"b\" \"spectrum\" \"mix\" \"texture tex1\" \"a\" \"rgb tex2\" [3 3 3]\n" +
+            "Material \"diffuse\" \"texture reflectance\" \"b\"" + shape}) {
+    const TempDir dir;
+    write_text(dir, "p.ppm", small_ppm());
+    const auto imported =
+        import_scene(write_text(dir, "s.pbrt", "WorldBegin\nLightSource \"point\"\n" + text));
+    EXPECT_TRUE(imported.ok()) << text << "\n" << imported.status();
+  }
+}
+
+TEST(Pbrt, AClampedImageKeepsItsDarkParts) {
+  const TempDir dir;
+  // 55 and 188 are 0.0382 and 0.5029 in linear values.
+  write_text(dir, "p.ppm", "P6 2 1 255\n\x37\x37\x37\xbc\xbc\xbc");
+  const auto converted =
+      convert(dir,
+              "WorldBegin\nTexture \"a\" \"spectrum\" \"imagemap\" \"string filename\" \"p.ppm\" "
+              "\"float scale\" 2\nMaterial \"diffuse\" \"texture reflectance\" \"a\"\n"
+              "Shape \"sphere\"\nMaterial \"coateddiffuse\" \"texture reflectance\" \"a\"\n"
+              "Shape \"sphere\"");
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  EXPECT_THAT(converted->warnings, ElementsAre());
+  ASSERT_EQ(converted->scene.texture_size(), 2) << "the second is used twice";
+  EXPECT_EQ(converted->scene.texture(1).image().file(), "s_files/limited_1.exr");
+  ASSERT_EQ(converted->scene.material_size(), 2);
+  const std::string& name = converted->scene.texture(1).name();
+  EXPECT_EQ(converted->scene.material(0).diffuse().texture().use(), name);
+  EXPECT_EQ(converted->scene.material(1).plastic().texture().use(), name);
+  const auto limited = decode_picture(converted->made_files.at("s_files/limited_1.exr"));
+  ASSERT_TRUE(limited.ok()) << limited.status();
+  EXPECT_NEAR(limited->at(0, 0).g, 0.0764, 1e-3);
+  EXPECT_EQ(limited->at(1, 0).g, 1);
+}
+
+TEST(Pbrt, ATextureThatCannotBeClampedIsScaledWithAWarning) {
+  const std::string text =
+      "WorldBegin\nTexture \"a\" \"spectrum\" \"mix\" \"rgb tex1\" [0 0 0] \"rgb tex2\" [4 4 "
+      "4]\nMaterial \"diffuse\" \"texture reflectance\" \"a\"\nShape \"sphere\"";
+  EXPECT_THAT(warnings_of(text), ElementsAre(HasSubstr("s.pbrt:3: a texture reaches 4;")));
+  const auto scene = scene_of(text);
+  ASSERT_EQ(scene.texture_size(), 2);
+  EXPECT_NEAR(scene.texture(1).product().b().color().rgb(0), 0.25, 1e-6);
+}
+
 TEST(Pbrt, ANumberOfAnImageWithAlphaIsItsAlpha) {
   const TempDir dir;
   // A TGA of 2 x 1 texels, blue, green, red, alpha: white with alpha 0 and with alpha 128.
