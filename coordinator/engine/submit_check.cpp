@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "proto/wire/digest.h"
 #include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/package/package.h"
 
@@ -57,6 +58,13 @@ absl::Status check_words(const std::string& request_id, const std::string& name)
   if (name.size() > wire::kJobNameBytes) {
     return absl::InvalidArgumentError(absl::StrCat("name must have at most ", wire::kJobNameBytes,
                                                    " bytes, found ", name.size()));
+  }
+  // A message with a name that is not UTF-8 cannot be parsed, and terminals obey control
+  // characters.
+  if (clean_text(name, wire::kJobNameBytes) != name) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("name must be UTF-8 without control characters; this is such a name: \"",
+                     clean_text(name, wire::kJobNameBytes), "\""));
   }
   return absl::OkStatus();
 }

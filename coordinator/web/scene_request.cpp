@@ -4,14 +4,15 @@
 #include "coordinator/web/scene_request.h"
 
 #include "absl/strings/numbers.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
 
 namespace bandsaw::coordinator {
 
 absl::StatusOr<SceneRequest> scene_request(const HttpRequest& request) {
-  constexpr std::size_t kMaxTitle = 200;
   SceneRequest wanted;
   wanted.inside = request.parameter("scene");
-  wanted.title = request.parameter("title").substr(0, kMaxTitle);
+  wanted.title = clean_text(request.parameter("title"), wire::kJobNameBytes);
   const std::string width = request.parameter("width");
   if (!width.empty() && (!absl::SimpleAtoi(width, &wanted.width) || wanted.width > kMaxSide)) {
     return absl::InvalidArgumentError("width: must be a number of pixels");

@@ -8,8 +8,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Reads `width` (pixels), `title` (the job's name), `scene` (the scene file in a zip), and one of
-/// `samples` (a pixel), `error` (0.02: two percent), `time` (seconds); none of these: 64 samples.
+/// Reads `width` (pixels), `title` (the job's name, cleaned and cut as by clean_text), `scene` (the
+/// scene file in a zip), and one of `samples` (a pixel), `error` (0.02: two percent), `time`
+/// (seconds); none of these: 64 samples.
 /// INVALID_ARGUMENT: a parameter is out of range; the message names it.
 absl::StatusOr<SceneRequest> scene_request(const HttpRequest& request);
 

@@ -119,6 +119,18 @@ TEST_F(EngineTest, SettingsOutOfRangeAreRefused) {
   EXPECT_EQ(farm_.submit(bad).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
+TEST_F(EngineTest, ANameThatIsNotCleanIsRefused) {
+  JobSpec spec = farm_.spec(StopAtSamples{.samples = 8});
+  for (const std::string name : {"two\nlines", "\x1b[31mred", "half of an \xc3"}) {
+    spec.name = name;
+    const absl::Status status = farm_.submit(spec).status();
+    EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << name;
+    EXPECT_THAT(std::string(status.message()), HasSubstr("UTF-8 without control characters"));
+  }
+  spec.name = "Größe 世界";
+  EXPECT_TRUE(farm_.submit(spec).ok());
+}
+
 TEST_F(EngineTest, ABrowserSendsNoBandOfAWorkerThatIsNoBrowser) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 8}});

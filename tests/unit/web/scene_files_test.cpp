@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "tests/unit/web/web_farm.h"
@@ -65,6 +66,20 @@ TEST_F(SceneFilesTest, ASceneOfSentFilesBecomesAJob) {
   EXPECT_EQ(job.name(), "walk 1");
   EXPECT_EQ(job.settings().width(), 48u);
   EXPECT_EQ(job.stop().samples(), 32u);
+}
+
+// A client cannot parse a list of jobs with a name that is not UTF-8.
+TEST_F(SceneFilesTest, ATitleIsCleanedAndCutBetweenCharacters) {
+  const std::string box = "a box";
+  ASSERT_EQ(post("/api/files", sent(box))->status, 200);
+  const std::string body = scene("box.json", hex_of(box));
+  const std::string most(199, 'x');
+  post("/api/scenes/files?title=" + most + "%C3%A9", body);  // 201 bytes, the last two are an é
+  post("/api/scenes/files?title=ok%0A%1B%5B31m%FF", body);
+  for (const auto& [job, name] : {std::pair(1, most), std::pair(2, std::string("ok??[31m?"))}) {
+    const std::string path = absl::StrCat("/api/jobs/", job);
+    EXPECT_EQ(message<web::JobPage>(get(path)).job().status().name(), name);
+  }
 }
 
 TEST_F(SceneFilesTest, ASceneMayEndAfterATime) {
