@@ -44,11 +44,12 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
   MutexLock lock(making_);
   const Key key{id, most_side, format};
   const auto found = made_.find(key);
+  const bool done = job.state == JobState::kDone;  // then only the finished image will do
   if (found != made_.end()) {
     Made& old = found->second;
     old.used = ++calls_;
-    const bool unchanged = old.samples == job.samples_done && job.state != JobState::kDone;
-    if (old.whole || unchanged || steady_seconds() - old.at < kFresh_s) {
+    const bool new_enough = old.samples == job.samples_done || steady_seconds() - old.at < kFresh_s;
+    if (old.whole || (!done && new_enough)) {
       return old.file;
     }
   }
@@ -57,11 +58,11 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
       picture.ok() ? encoded(*std::move(picture), format) : picture.status();
   if (!file.ok()) {
     // Between the last band and the result on disk there is no newer image than the last one.
-    return found != made_.end() ? absl::StatusOr<Bytes>(found->second.file) : file;
+    return found != made_.end() && !done ? absl::StatusOr<Bytes>(found->second.file) : file;
   }
   keep(key, {.file = *file,
              .samples = job.samples_done,
-             .whole = job.state == JobState::kDone,
+             .whole = done,
              .at = steady_seconds(),
              .used = ++calls_});
   return file;

@@ -27,9 +27,10 @@ class Pictures {
 
   explicit Pictures(Engine& engine) : engine_(engine) {}
 
-  /// Returns a file of the job's present image, at most a second old, or of its finished image,
-  /// with at most about `most_side` pixels per side. NOT_FOUND: no such job, or none of its bands
-  /// is there. Here and below, RESOURCE_EXHAUSTED as picture_of (coordinator/rpc/picture.h).
+  /// Returns a file of the job's present image, at most a second old, or, if the job is done, of
+  /// its finished image, with at most about `most_side` pixels per side. NOT_FOUND: no such job, or
+  /// none of its bands is there. Here and below, RESOURCE_EXHAUSTED as picture_of
+  /// (coordinator/rpc/picture.h).
   absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side, ImageFormat format)
       EXCLUDES(making_);
   /// Returns the finished image. Errors as Engine::result.

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
 #include "coordinator/web/metrics.h"
 #include "tests/unit/web/web_farm.h"
 
@@ -176,6 +177,26 @@ TEST_F(RoutesTest, AnImageThatFindsNoMemoryIsRefused) {
   EXPECT_EQ(preview->status, 200);
   EXPECT_EQ(engine_->images().left(), all - static_cast<std::int64_t>(preview->body.size()))
       << "it is kept for the next who asks";
+}
+
+TEST_F(RoutesTest, ADoneJobHasNoOlderPicture) {
+  const std::uint64_t job = submit_box();
+  const std::string path = absl::StrCat("/api/jobs/", job, "/preview.png?side=");
+  put(job, 24, 16, 0, 0.1);
+  const auto early = get(path + "64");
+  ASSERT_TRUE(early);
+  ASSERT_EQ(early->status, 200);
+  finish(job, 24, 16, 64, 8);
+  {
+    const std::int64_t left = engine_->images().left();
+    const auto others = engine_->images().take(static_cast<std::uint64_t>(left));
+    ASSERT_TRUE(others);
+    EXPECT_EQ(get(path + "64")->status, 429) << "a picture of a part is no answer";
+  }
+  const auto done = get(path + "64");
+  EXPECT_EQ(done->status, 200);
+  EXPECT_NE(done->body, early->body);
+  EXPECT_EQ(done->body, get(path + "500")->body) << "which is not kept yet";
 }
 
 TEST_F(RoutesTest, TheGalleryRendersItsScenes) {

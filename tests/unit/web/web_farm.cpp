@@ -112,18 +112,22 @@ std::uint64_t WebTest::submit_box() {
   return message<web::Submitted>(post("/api/scenes?name=box.textproto&width=24", "a box")).job();
 }
 
+void WebTest::put(std::uint64_t job, std::uint32_t width, std::uint32_t height, std::uint64_t first,
+                  double value) {
+  const BandPixels pixels{.band = {.samples = {first, first + 8}, .rows = {0, height}},
+                          .width = width,
+                          .sums = std::vector<double>(std::size_t{width} * height * 3, 8 * value),
+                          .counters = {}};
+  using Put = absl::StatusOr<BandOutcome>;
+  const Put outcome = blocking_call<Put>(
+      [&](auto answer) { engine_->put_band(job, 0, std::string(32, 'a'), pixels, 0, 0, answer); });
+  ASSERT_TRUE(outcome.ok()) << outcome.status();
+}
+
 void WebTest::finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
-                     std::uint64_t samples) {
-  for (std::uint64_t sample = 0; sample < samples; sample += 8) {
-    const BandPixels pixels{.band = {.samples = {sample, sample + 8}, .rows = {0, height}},
-                            .width = width,
-                            .sums = std::vector<double>(std::size_t{width} * height * 3, 4.0),
-                            .counters = {}};
-    using Put = absl::StatusOr<BandOutcome>;
-    const Put put = blocking_call<Put>([&](auto answer) {
-      engine_->put_band(job, 0, std::string(32, 'a'), pixels, 0, 0, answer);
-    });
-    ASSERT_TRUE(put.ok()) << put.status();
+                     std::uint64_t samples, std::uint64_t first) {
+  for (std::uint64_t sample = first; sample < samples; sample += 8) {
+    ASSERT_NO_FATAL_FAILURE(put(job, width, height, sample, 0.5));
   }
   const auto done = std::make_shared<std::promise<void>>();
   engine_->watch(job, [done](const absl::StatusOr<JobView>& view) {

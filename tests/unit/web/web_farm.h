@@ -38,10 +38,14 @@ class WebTest : public ::testing::Test {
   /// Submits a job of 24 x 16 pixels, which no worker renders; returns its id. log_in() MUST have
   /// been called.
   std::uint64_t submit_box();
-  /// Uploads all samples of a job, whose number is a multiple of 8, and waits until the job is
-  /// done. Each pixel's value is 0.5.
+  /// Uploads a band of 8 samples of a job, from `first` on, with all rows. Each pixel's value is
+  /// `value`.
+  void put(std::uint64_t job, std::uint32_t width, std::uint32_t height, std::uint64_t first,
+           double value);
+  /// Uploads all samples of a job, whose number is a multiple of 8, from `first` on, and waits
+  /// until the job is done. Each pixel's value is 0.5.
   void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
-              std::uint64_t samples = 64);
+              std::uint64_t samples = 64, std::uint64_t first = 0);
   /// Parses the body as a message; fails the test if it is not one.
   template <class Message>
   Message message(const Answer& result) {
