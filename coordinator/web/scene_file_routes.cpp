@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -19,6 +19,7 @@
 #include "coordinator/web/scene_request.h"
 #include "proto/web.pb.h"
 #include "renderlib/base/atomic_file.h"
+#include "renderlib/base/clean_text.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -144,21 +145,17 @@ absl::StatusOr<web::FileDigests> take_files(Engine& engine, const HttpBody& body
   }
 }
 
-/// Returns true for a relative path whose parts have only safe characters and do not begin with a
-/// dot.
+constexpr std::size_t kMaxName = 500;
+
+/// Returns true for a relative path that stays within its folder: it has no parts "", "." or "..",
+/// and neither backslashes nor control characters. It has at most kMaxName bytes.
 bool is_safe(const std::string& name) {
-  constexpr std::size_t kMaxName = 500;
-  const auto safe = [](char c) {
-    return absl::ascii_isalnum(c) || c == '.' || c == '-' || c == '_' || c == ' ' || c == '+' ||
-           c == '(' || c == ')' || c == ',' || c == '@' || c == '#' || c == '~' ||
-           (static_cast<unsigned char>(c) >= 0x80);
-  };
-  if (name.empty() || name.size() > kMaxName) {
+  if (clean_text(name, kMaxName) != name || absl::StrContains(name, '\\')) {
     return false;
   }
   const std::vector<std::string> parts = absl::StrSplit(name, '/');
-  return std::all_of(parts.begin(), parts.end(), [&](const std::string& part) {
-    return !part.empty() && part.front() != '.' && std::all_of(part.begin(), part.end(), safe);
+  return std::none_of(parts.begin(), parts.end(), [](const std::string& part) {
+    return part.empty() || part == "." || part == "..";
   });
 }
 
@@ -181,7 +178,10 @@ absl::Status lay_out(Engine& engine, const web::SceneFiles& files, const fs::pat
   std::uint64_t left = kMaxSceneBytes;
   for (const web::SceneFiles::File& file : files.file()) {
     if (!is_safe(file.name())) {
-      return absl::InvalidArgumentError(absl::StrCat("'", file.name(), "' is not a file name"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          "'", clean_text(file.name(), kMaxName), "' is not a file name: it must be a path within ",
+          "the scene's folder, without backslashes and control characters, of at most ", kMaxName,
+          " bytes"));
     }
     ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_hex(file.sha256()));
     if (!engine.has_blob(digest)) {

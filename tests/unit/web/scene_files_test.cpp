@@ -102,6 +102,17 @@ TEST_F(SceneFilesTest, WrongFilesAreRefused) {
               ElementsAre(hex_of(box), hex_of("another")));
 }
 
+TEST_F(SceneFilesTest, AFileMayHaveEveryNameThatStaysWithinTheFolder) {
+  const std::string box = "a box";
+  ASSERT_EQ(post("/api/files", sent(box))->status, 200);
+  for (const std::string name : {"Karl's box [1] & more!.json", "{a};b=$c%20^`.json", ".a/.b.json",
+                                 "..a/b...json", "Größe 世界.json"}) {
+    const auto submitted = post("/api/scenes/files", scene(name, hex_of(box)));
+    ASSERT_TRUE(submitted);
+    EXPECT_EQ(submitted->status, 200) << name << ": " << submitted->body;
+  }
+}
+
 TEST_F(SceneFilesTest, WrongScenesAreRefused) {
   const std::string box = "a box";
   const auto absent = post("/api/scenes/files", scene("box.json", hex_of(box)));
@@ -109,7 +120,9 @@ TEST_F(SceneFilesTest, WrongScenesAreRefused) {
   EXPECT_EQ(absent->status, 409);
   EXPECT_THAT(error_of(absent), HasSubstr("send it again"));
   ASSERT_EQ(post("/api/files", sent(box) + sent("broken"))->status, 200);
-  for (const std::string name : {"../box.json", "/etc/box.json", "a/../b", ".hidden", "a//b", ""}) {
+  // The last three have a backslash and the control characters 1 and 0x9b.
+  for (const std::string name : {"../box.json", "/etc/box.json", "a/../b", "..", "./b", "a//b", "",
+                                 R"(a\\b)", R"(a\u0001b)", R"(a\u009bb)"}) {
     EXPECT_THAT(error_of(post("/api/scenes/files", scene(name, hex_of(box)))),
                 HasSubstr("is not a file name"))
         << name;
