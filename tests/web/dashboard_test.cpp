@@ -224,6 +224,19 @@ TEST_F(DashboardTest, ABrokenSceneGivesOneErrorSentence) {
   browser.screenshot(shot("notice"));
 }
 
+TEST_F(DashboardTest, AMendedFileMayBeChosenAgain) {
+  const std::string scene = folder_ / "scene.textproto";
+  std::ofstream(scene) << "camera {";
+  Browser browser;
+  enter(browser);
+  browser.run("document.querySelector('input[type=file]').hidden = false");
+  browser.type("input[type=file]", scene);
+  ASSERT_TRUE(browser.wait("document.querySelector('#notice.bad')"));
+  std::ofstream(scene) << cornell();
+  browser.type("input[type=file]", scene);
+  EXPECT_TRUE(browser.wait("location.hash === '#/jobs/1'"));
+}
+
 TEST_F(DashboardTest, AJobIsPausedResumedAndCancelled) {
   Browser browser({.dark = true});
   enter(browser);

@@ -17,7 +17,11 @@ async function render(file) {
 /// Returns an element with a button that opens a file, and the choice of the quality of its image.
 export function chooser() {
   const input = el("input", {type: "file", accept: ".zip,.glb,.textproto,.pbrt,.xml", hidden: true, "aria-label": "Scene file"});
-  input.addEventListener("change", () => { if (input.files.length > 0) render(input.files[0]); });
+  input.addEventListener("change", () => {
+    const [file] = input.files;
+    input.value = "";  // otherwise there is no event if the same file is chosen again
+    if (file) render(file);
+  });
   const select = el("select", {"aria-label": "How well"},
     el("option", {value: "samples=16"}, "16 samples, a draft"),
     el("option", {value: "samples=64"}, "64 samples"),
