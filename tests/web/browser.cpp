@@ -83,10 +83,9 @@ Browser::Browser(const BrowserOptions& options) : driver_(start_driver()) {
                R"("--force-device-scale-factor=)", options.pixel_ratio, R"(", "--window-size=)",
                options.width, ",", options.height, R"("])", phone, "}}}}")));
   session_ = absl::StrCat("/session/", field(made, "sessionId").string_value());
-  post(session_ + "/goog/cdp/execute",
-       object(absl::StrCat(R"({"cmd": "Emulation.setEmulatedMedia", "params": {"features": [)",
-                           R"({"name": "prefers-color-scheme", "value": ")",
-                           options.dark ? "dark" : "light", R"("}]}})")));
+  call("Emulation.setEmulatedMedia",
+       absl::StrCat(R"({"features": [{"name": "prefers-color-scheme", "value": ")",
+                    options.dark ? "dark" : "light", R"("}]})"));
 }
 
 Browser::~Browser() { http_call(port_, {.method = "DELETE", .target = session_}); }
@@ -107,6 +106,11 @@ Value Browser::post(const std::string& path, const Struct& body) {
   EXPECT_TRUE(status.ok()) << result->body.substr(0, 1000);
   EXPECT_EQ(result->status, 200) << path << " " << json << "\n" << result->body.substr(0, 1000);
   return answer.fields().contains("value") ? answer.fields().at("value") : Value();
+}
+
+void Browser::call(const std::string& method, const std::string& parameters) {
+  post(session_ + "/goog/cdp/execute",
+       object(absl::StrCat(R"({"cmd": ")", method, R"(", "params": )", parameters, "}")));
 }
 
 void Browser::go(const std::string& url) { post(session_ + "/url", object("url", url)); }
@@ -148,6 +152,12 @@ void Browser::click(const std::string& selector) {
 
 void Browser::type(const std::string& selector, const std::string& keys) {
   post(absl::StrCat(session_, "/element/", element(selector), "/value"), object("text", keys));
+}
+
+void Browser::block(const std::string& pattern) {
+  call("Network.enable", "{}");
+  call("Network.setBlockedURLs",
+       pattern.empty() ? R"({"urls": []})" : absl::StrCat(R"({"urls": [")", pattern, R"("]})"));
 }
 
 void Browser::screenshot(const std::string& path) {

@@ -44,6 +44,8 @@ class Browser {
   /// Elements are given by a CSS selector.
   void click(const std::string& selector);
   void type(const std::string& selector, const std::string& keys);
+  /// From now on, requests for addresses that match the pattern fail, as in "*.png"; "": none.
+  void block(const std::string& pattern);
   /// Writes a PNG of the window's content to the file.
   void screenshot(const std::string& path);
   /// Returns the process from which all others of this browser descend.
@@ -54,6 +56,8 @@ class Browser {
  private:
   /// Sends a command to the driver and returns the value of its answer.
   google::protobuf::Value post(const std::string& path, const google::protobuf::Struct& body);
+  /// Calls a method of Chromium's own protocol (DevTools). `parameters`: an object in JSON.
+  void call(const std::string& method, const std::string& parameters);
   /// Returns WebDriver's name of an element.
   std::string element(const std::string& selector);
 

@@ -272,6 +272,34 @@ TEST_F(DashboardTest, AJobIsPausedResumedAndCancelled) {
   EXPECT_THAT(browser.console_errors(), IsEmpty());
 }
 
+TEST_F(DashboardTest, APictureThatWasNotLoadedIsRequestedAgain) {
+  Browser browser;
+  enter(browser);
+  browser.run(
+      "window.failed = {};"
+      "document.addEventListener('error', ({target}) => { window.failed[target.src] = true; },"
+      "  true);");
+  // Waits until a picture whose address contains `part` has failed, then lets requests pass.
+  const auto fails = [&](const std::string& part) {
+    EXPECT_TRUE(
+        browser.wait("Object.keys(window.failed).some((one) => one.includes('" + part + "'))"));
+    browser.block("");
+  };
+  browser.block("*/preview.png*");
+  drop(browser, "cornell.textproto", cornell());
+  fails("at=end");
+  EXPECT_TRUE(browser.wait(kPictured));
+  EXPECT_TRUE(browser.wait("!document.querySelector('.picture img').hidden"));
+  browser.block("*/clean.png*");
+  browser.click("[data-mode=clean]");
+  fails("clean.png");
+  EXPECT_TRUE(browser.wait("document.querySelectorAll('.pictures img')[1].naturalWidth > 0"));
+  browser.block("*/preview.png*");
+  browser.run("window.failed = {}; location.hash = '#/jobs'");
+  fails("side=256");
+  EXPECT_TRUE(browser.wait("document.querySelector('.thumb')?.naturalWidth > 0"));
+}
+
 TEST_F(DashboardTest, TheGalleryOnAPhone) {
   Browser browser({.width = 390, .height = 844, .pixel_ratio = 2, .phone = true});
   enter(browser);

@@ -2,7 +2,7 @@
 // picture (denoised by the coordinator), or both side by side.
 
 import {get, post} from "./api.js";
-import {el, percent, stateOf, text} from "./dom.js";
+import {el, load, percent, stateOf, text} from "./dom.js";
 import {attempt} from "./notice.js";
 
 const modes = {raw: "As rendered", clean: "Clean", both: "Side by side"};
@@ -67,8 +67,7 @@ export function cleaning(raw) {
       png.hidden = exr.hidden = state.state !== "ready";
       if (state.state !== "ready") return;
       const side = Math.min(2048, Math.ceil(Math.max(frame.clientWidth, frame.clientHeight) * devicePixelRatio));
-      const source = `/api/jobs/${job}/clean.png?side=${side}`;
-      if (img.getAttribute("src") !== source) img.src = source;
+      load(img, `/api/jobs/${job}/clean.png?side=${side}`);
       img.alt = `${status.name}, its noise removed`;
       for (const [link, suffix] of [[png, "png"], [exr, "exr"]]) {
         link.href = `/api/jobs/${job}/clean.${suffix}`;

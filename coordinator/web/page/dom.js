@@ -19,6 +19,13 @@ export function text(element, value) {
   if (element.textContent !== value) element.textContent = value;
 }
 
+/// Loads a picture from an address, unless the element has it already. If that fails, the next call tries it again.
+export function load(img, source) {
+  if (img.getAttribute("src") === source) return;
+  img.onerror = () => img.removeAttribute("src");
+  img.src = source;
+}
+
 /// Shows a list: `parent` has one part for each item, in the same order. `parts`: a Map from the keys of the
 /// items to the parts of the last call. A new item's part is make(item) = {element, update(item), leave?()};
 /// every part is updated; parts without an item are removed.

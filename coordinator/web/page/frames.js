@@ -2,7 +2,7 @@
 // them.
 
 import {get, post} from "./api.js";
-import {el, text} from "./dom.js";
+import {el, load, text} from "./dom.js";
 import {attempt} from "./notice.js";
 
 /// Maximum number of frames in the strip; of more, every second, third and so on is shown.
@@ -24,8 +24,8 @@ function cell(frame, choose) {
       const is = stateOf(now);
       element.dataset.state = is;
       element.title = `frame ${now.frame}: ${is}${now.reason ? `, ${now.reason}` : ""}`;
-      if (is === "done" && img.hidden) {
-        img.src = source(now, stripSide);
+      if (is === "done") {
+        load(img, source(now, stripSide));
         img.hidden = false;
       }
     },
@@ -63,7 +63,7 @@ export function frames(id) {
     chosen = one;
     cells.get(one)?.element.setAttribute("aria-current", "true");
     const ready = loaded.get(one);
-    img.src = ready?.complete ? ready.src : source(frame, stageSide);
+    load(img, ready?.complete ? ready.src : source(frame, stageSide));
     img.hidden = false;
     waiting.hidden = true;
     text(number, `frame ${one}`);
@@ -134,7 +134,8 @@ export function frames(id) {
         }
       }
       for (const one of show_cells) cells.get(one)?.update(known.get(one));
-      if (chosen === null && done().length > 0) show(done()[0]);
+      // There is no picture yet, or it could not be loaded.
+      if (!img.hasAttribute("src") && done().length > 0) show(chosen ?? done()[0]);
       play.disabled = done().length < 2;
       retry.hidden = (status.frames?.failed ?? 0) === 0;
     },

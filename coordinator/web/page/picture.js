@@ -1,7 +1,7 @@
 // A job's picture, updated as samples arrive; optionally with colours that show which worker rendered which rows.
 
 import {cleaning} from "./clean.js";
-import {el, isOver, stateOf, text} from "./dom.js";
+import {el, isOver, load, stateOf, text} from "./dom.js";
 
 /// Colours that are distinguishable with colour vision deficiencies (Okabe and Ito 2008).
 const palette = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2", "#d55e00", "#999999"];
@@ -12,8 +12,7 @@ const there = (status) => stateOf(status) === "done" || (Number(status.samples_d
 /// Shows the newest preview; the old one remains until the new one is loaded.
 export function preview(img, status, side) {
   if (!there(status)) return;
-  const source = `/api/jobs/${status.job}/preview.png?side=${side}&at=${stateOf(status) === "done" ? "end" : status.samples_done}`;
-  if (img.getAttribute("src") !== source) img.src = source;
+  load(img, `/api/jobs/${status.job}/preview.png?side=${side}&at=${stateOf(status) === "done" ? "end" : status.samples_done}`);
 }
 
 /// Returns an element that marks the rows [first, last). `now`: they are being rendered.
