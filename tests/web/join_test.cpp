@@ -168,6 +168,18 @@ TYPED_TEST(JoinTest, ATabRendersJobsAlone) {
   EXPECT_TRUE(tab->wait("document.body.dataset.phase === 'waiting'"));
 }
 
+TYPED_TEST(JoinTest, AnIdleTabShowsNoSpeedAndNoJob) {
+  const auto tab = this->open(1);
+  const auto what = this->settings("cornell", "150");
+  Process client = this->submit(what);
+  EXPECT_TRUE(tab->wait("document.querySelector('#pulse').textContent.includes('job 1')"));
+  EXPECT_TRUE(tab->wait("document.querySelector('#speed').textContent.includes('/s')"));
+  this->expect_same_bytes(client, what);
+  EXPECT_TRUE(tab->wait("document.body.dataset.phase === 'waiting'"));
+  EXPECT_TRUE(tab->wait("!document.querySelector('#speed').textContent.includes('/s')"));
+  EXPECT_TRUE(tab->wait("!document.querySelector('#pulse').textContent.includes('job')"));
+}
+
 TYPED_TEST(JoinTest, ATabBesideANativeWorkerGivesTheSameBytes) {
   this->farm_->add_worker("native", 1);
   const auto tab = this->open(1);

@@ -57,7 +57,8 @@ const state = {phase: "starting", text: "Loading the renderer …", rowsDone: 0,
 let shownAt = 0;
 let showing = null;
 
-/// Sends the state to the page: now, or when STATE_EVERY_MS have passed since the last time.
+/// Sends the state to the page: now, or when STATE_EVERY_MS have passed since the last time. Goes on while samplesPerSecond is
+/// above 0, because it falls to 0 when no more rows are rendered.
 function show(now = false) {
   if (over) return;
   const due = shownAt + STATE_EVERY_MS - performance.now();
@@ -73,6 +74,7 @@ function show(now = false) {
   const span = pieces.length > 0 ? Math.max(1, shownAt / 1000 - pieces[0].began) : 1;
   state.samplesPerSecond = Math.round(pieces.reduce((sum, one) => sum + one.samples, 0) / span);
   postMessage({...state});
+  if (state.samplesPerSecond > 0) showing = setTimeout(() => show(true), STATE_EVERY_MS);
 }
 
 function setPhase(phase, text) {
@@ -268,6 +270,7 @@ function take(start) {
 function drop(id) {
   tasks.delete(id);
   outgoing = outgoing.filter((band) => band.task.id !== id);
+  if (tasks.size === 0) state.job = 0;
 }
 
 /// Reports to the coordinator that this tab cannot render a band, and forgets it.
