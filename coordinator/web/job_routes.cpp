@@ -4,6 +4,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/convert/farm_messages.h"
 #include "coordinator/rpc/picture.h"
+#include "coordinator/scheduler/api/clean_jobs.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
 #include "proto/link/random.h"
@@ -114,7 +115,7 @@ absl::StatusOr<web::Submitted> submit_layer(Engine& engine, const HttpRequest& r
   }
   spec.stop = stop;
   spec.request_id = "layer-" + link::random_hex(8);
-  spec.name = absl::StrCat(spec.name, " (", kind, ")");
+  spec.name = with_suffix(spec.name, absl::StrCat(" (", kind, ")"));
   using Answer = absl::StatusOr<JobId>;
   ASSIGN_OR_RETURN(const JobId job, blocking_call<Answer>([&](auto answer) {
                      engine.submit(spec, answer, view.priority);

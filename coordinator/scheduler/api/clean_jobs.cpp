@@ -10,25 +10,13 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/pixel_version.h"
 #include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
 namespace {
-
-/// Returns `name` with a suffix. The name is shortened if both would be longer than the name of a
-/// job may be, but never inside a UTF-8 character (its further bytes begin with the bits 10).
-std::string with_suffix(std::string name, const std::string& suffix) {
-  if (name.size() + suffix.size() > wire::kJobNameBytes) {
-    std::size_t end = wire::kJobNameBytes - suffix.size();
-    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) {
-      --end;
-    }
-    name.resize(end);
-  }
-  return name + suffix;
-}
 
 /// Returns a job like `of`, but with another integrator and number of samples, and a name with this
 /// suffix.
@@ -44,6 +32,10 @@ JobSpec beside(const JobSpec& of, Integrator integrator, std::uint64_t samples,
 }
 
 }  // namespace
+
+std::string with_suffix(const std::string& name, const std::string& suffix) {
+  return clean_text(name, wire::kJobNameBytes - suffix.size()) + suffix;
+}
 
 absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t samples) {
   if (!computes_radiance(settings.integrator)) {

@@ -6,11 +6,16 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "absl/status/status.h"
 #include "coordinator/scheduler/api/job_spec.h"
 
 namespace bandsaw::coordinator {
+
+/// Returns the name of a job beside another one: its name, then the suffix, of at most a few words.
+/// The name is cut between characters if both would be longer than the name of a job may be.
+std::string with_suffix(const std::string& name, const std::string& suffix);
 
 /// Bounds of the number of samples of the guides.
 inline constexpr std::uint64_t kMinGuideSamples = 8;

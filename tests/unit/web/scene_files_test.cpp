@@ -173,6 +173,15 @@ TEST_F(SceneFilesTest, ALayerIsAJobOfTheSameScene) {
   EXPECT_EQ(post("/api/jobs/99/layer?kind=depth")->status, 404);
 }
 
+TEST_F(SceneFilesTest, ALayerOfAJobWithALongNameHasAShorterName) {
+  const std::string title(200, 'x');
+  post("/api/scenes?name=box.textproto&title=" + title, "a box");
+  const auto layer = message<web::Submitted>(post("/api/jobs/1/layer?kind=normals"));
+  EXPECT_EQ(layer.job(), 2u);
+  EXPECT_EQ(message<web::JobPage>(get("/api/jobs/2")).job().status().name(),
+            std::string(190, 'x') + " (normals)");
+}
+
 // The add-on and the Python module are for everybody who can reach the port: they hold no secret.
 TEST_F(SceneFilesTest, TheAddOnAndTheModuleAreOffered) {
   headers_.clear();
