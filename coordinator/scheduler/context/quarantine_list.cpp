@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 void QuarantineList::add(const record::WorkerQuarantined& r) {
   const auto native = [](const auto& entry) { return !entry.second.browser; };
   const auto natives = std::count_if(entries_.begin(), entries_.end(), native);
-  if (!r.browser && static_cast<std::size_t>(natives) >= kMaxNatives) {
+  if (!r.browser && !contains(r.process) && static_cast<std::size_t>(natives) >= kMaxNatives) {
     const auto lifted = std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) {
       return native(entry) && entry.second.lifted;
     });
@@ -28,6 +28,11 @@ void QuarantineList::lift(const std::string& name) {
   for (auto& [process, entry] : entries_) {
     entry.lifted = entry.lifted || entry.name == name;
   }
+}
+
+bool QuarantineList::in_force(WorkerProcessId process) const {
+  const auto entry = entries_.find(process);
+  return entry != entries_.end() && !entry->second.lifted;
 }
 
 void QuarantineList::forget_browsers() {

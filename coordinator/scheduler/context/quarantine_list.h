@@ -31,8 +31,9 @@ class QuarantineList {
   /// browser could return wrong pixels, be quarantined and join again any number of times.
   static constexpr std::size_t kMaxBrowsers = 256;
 
-  /// Adds or replaces an entry. If there are kMaxNatives entries of native workers, one of these is
-  /// forgotten first: a lifted one if there is one.
+  /// Adds an entry, or replaces that of the same process, also if it was lifted. Before a native
+  /// worker is added to kMaxNatives others, one of these is forgotten: a lifted one if there is
+  /// one.
   void add(const record::WorkerQuarantined& r);
   /// Lifts the quarantine of all processes with this name.
   void lift(const std::string& name);
@@ -46,6 +47,8 @@ class QuarantineList {
 
   /// Returns true if the process has an entry, lifted or not.
   bool contains(WorkerProcessId process) const { return entries_.contains(process); }
+  /// Returns true if the process has an entry that is not lifted.
+  bool in_force(WorkerProcessId process) const;
   /// Returns why a worker is not admitted; std::nullopt: it is admitted. `instance` identifies its
   /// process. `reported_name`: empty for a browser, which is recognised by its process only.
   std::optional<std::string> reason_against(const std::string& instance,

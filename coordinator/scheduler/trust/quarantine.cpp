@@ -29,7 +29,7 @@ void Quarantine::impose(const Reporter& reporter, const std::string& cause) {
     }
   }
   for (const WorkerProcessId process : processes) {
-    if (process != 0 && !context_.quarantine.contains(process)) {
+    if (process != 0 && !context_.quarantine.in_force(process)) {
       context_.emit(record::WorkerQuarantined{process, name, clean_text(reason, wire::kReasonBytes),
                                               reporter.browser});
     }

@@ -254,6 +254,24 @@ TEST(Quarantine, LastsOverRestartsUntilItIsLifted) {
             std::string::npos);
 }
 
+TEST(Quarantine, IsImposedAgainAfterALift) {
+  AuditFarm farm = two_results(7, 0);
+  farm.result(farm.lease(1, true), "a", 8);
+  ASSERT_TRUE(farm.send(input::LiftQuarantine{"worker-a"}).status.ok());
+  ASSERT_TRUE(farm.send(input::Quarantine{"worker-a"}).status.ok());
+  ASSERT_TRUE(farm.send(input::Quarantine{"worker-a"}).status.ok());
+  EXPECT_EQ(farm.all_records<record::WorkerQuarantined>().size(), 2u) << "once for each lift";
+  WorkerHello again = test_worker("a2");
+  again.name = "worker-a";
+  EXPECT_EQ(in<action::Refuse>(farm.send(input::Hello{3, again})).size(), 1u);
+  AuditFarm next;
+  for (const Record& record : farm.scheduler.snapshot()) {
+    next.scheduler.replay(record);
+  }
+  next.take(next.scheduler.replayed(next.now));
+  EXPECT_EQ(in<action::Refuse>(next.send(input::Hello{3, again})).size(), 1u);
+}
+
 TEST(Audit, AuditsTheRowsThatReplaceRetractedOnes) {
   AuditFarm farm = two_results(0, 0);
   farm.submit(test_job("r2", StopAtSamples{8}, 8, 2));
