@@ -75,7 +75,8 @@ void Collector::add_files_of(JobId id, Final& job) const {
   if (::stat(folder_.job(id).c_str(), &found) == 0) {
     job.at = std::max(job.at, static_cast<double>(found.st_mtim.tv_sec));
   }
-  for (const std::string& file : {folder_.result(id), folder_.samples(id)}) {
+  for (const std::string& file : {folder_.result(id), folder_.first(id), folder_.samples(id),
+                                  folder_.attribution(id), folder_.old_attribution(id)}) {
     if (::stat(file.c_str(), &found) == 0) {
       job.bytes += static_cast<std::uint64_t>(found.st_size);
     }

@@ -19,7 +19,8 @@ namespace bandsaw::coordinator {
 /// Limits on the age, size and number of the jobs that are over. Jobs beyond a limit are removed.
 struct Keep {
   double seconds = 30.0 * 24 * 60 * 60;  ///< maximum age of a final job
-  /// Maximum size of results and blobs in total; the oldest jobs are removed first.
+  /// Maximum size of the files of final jobs and of blobs in total; the oldest jobs are removed
+  /// first.
   std::uint64_t bytes = 100'000'000'000;
   double min_seconds = 60.0 * 60;  ///< minimum age at which `bytes` removes a final job
   std::size_t jobs = 10'000;       ///< number of final jobs; each takes about 4 kB of memory
@@ -44,7 +45,7 @@ class Collector {
   struct Final {
     JobId id = 0;
     double at = 0;            ///< seconds since 1970; 0: none of its files is left
-    std::uint64_t bytes = 0;  ///< size of its result files
+    std::uint64_t bytes = 0;  ///< size of its files
   };
   /// The blobs of the packages of one job, each once.
   struct Needs {

@@ -96,6 +96,17 @@ TEST_F(CollectorTest, ForgetsTheOldestBeyondTheBytes) {
   EXPECT_THAT(collector({.bytes = 2'500}).to_forget(jobs, kNow), ElementsAre(1, 2));
 }
 
+TEST_F(CollectorTest, CountsAllFilesOfAJob) {
+  result(1, 1'000, kNow - 9 * kDay);
+  result(2, 1'000, kNow - 8 * kDay);
+  for (const std::string& path : {folder_.first(2), folder_.attribution(2)}) {
+    std::ofstream(path) << std::string(1'000, 'x');
+  }
+  set_time(folder_.job(2), kNow - 8 * kDay);
+  const std::vector<KeptJob> jobs = {{1, true, {}, {}}, {2, true, {}, {}}};
+  EXPECT_THAT(collector({.bytes = 3'500}).to_forget(jobs, kNow), ElementsAre(1));
+}
+
 TEST_F(CollectorTest, AFreshResultIsNotForgottenForItsSize) {
   result(1, 1'000, kNow - kDay);
   result(2, 1'000, kNow - 60);
