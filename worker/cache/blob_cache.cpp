@@ -38,6 +38,10 @@ bool is_ours(const std::filesystem::path& path) {
   return whole_or_part && wire::digest_from_hex(path.stem().string()).ok();
 }
 
+/// While a worker downloads as many bytes as the limit, it lists the folder this many times, to see
+/// what other workers have added. So each of them adds at most this part of the limit unseen.
+constexpr std::uint64_t kListings = 16;
+
 /// Lists the cache's files. Files that are removed during the scan are left out.
 std::vector<Entry> entries(const std::string& folder) {
   std::vector<Entry> found;
@@ -157,9 +161,11 @@ absl::StatusOr<std::unique_ptr<BlobCache::Download>> BlobCache::begin(const wire
 void BlobCache::make_room(std::uint64_t added, const std::string& newest) {
   MutexLock lock(mutex_);
   bytes_ += added;
-  if (bytes_ <= max_bytes_) {
+  added_ += added;
+  if (bytes_ <= max_bytes_ && added_ <= max_bytes_ / kListings) {
     return;
   }
+  added_ = 0;
   std::vector<Entry> all = entries(folder_);
   bytes_ = std::accumulate(all.begin(), all.end(), std::uint64_t{0},
                            [](std::uint64_t sum, const Entry& entry) { return sum + entry.bytes; });

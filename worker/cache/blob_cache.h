@@ -67,8 +67,9 @@ class BlobCache : public BlobSource {
   const std::uint64_t max_bytes_;
   BlobFolder blobs_;
   Mutex mutex_;
-  std::uint64_t bytes_ GUARDED_BY(mutex_) =
-      0;  ///< size at the last scan of the folder plus what this worker added since
+  /// Size at the last scan of the folder plus what this worker added since.
+  std::uint64_t bytes_ GUARDED_BY(mutex_) = 0;
+  std::uint64_t added_ GUARDED_BY(mutex_) = 0;  ///< what this worker added since that scan
 };
 
 }  // namespace bandsaw::worker

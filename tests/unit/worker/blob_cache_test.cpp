@@ -122,6 +122,20 @@ TEST_F(BlobCacheTest, RemovesTheLeastRecentlyUsed) {
   EXPECT_TRUE(cache->has(wire::sha256(bytes_of('d'))));
 }
 
+TEST_F(BlobCacheTest, CountsWhatOtherWorkersAddToTheFolder) {
+  const auto mine = open(3000);
+  const auto theirs = open(3000);
+  put(*mine, bytes_of('a'));
+  put(*mine, bytes_of('b'));
+  set_age(wire::sha256(bytes_of('a')), 30);
+  put(*theirs, bytes_of('c'));
+  put(*theirs, bytes_of('d'));
+  EXPECT_FALSE(mine->has(wire::sha256(bytes_of('a'))));
+  for (const char fill : {'b', 'c', 'd'}) {
+    EXPECT_TRUE(mine->has(wire::sha256(bytes_of(fill)))) << fill;
+  }
+}
+
 TEST_F(BlobCacheTest, KeepsANewBlobThatIsLargerThanTheLimit) {
   const auto cache = open(500);
   put(*cache, bytes_of('a'));
