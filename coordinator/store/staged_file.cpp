@@ -38,7 +38,12 @@ absl::StatusOr<StagedFile> StagedFile::create(const std::string& staging, std::u
 
 absl::StatusOr<StagedFile> StagedFile::resume(const std::string& staging, std::uint64_t size,
                                               std::uint64_t offset) {
-  ASSIGN_OR_RETURN(File file, File::open(staging, O_RDWR | O_CREAT));
+  // A refused upload MUST NOT leave an empty file, which would count as an interrupted upload.
+  absl::StatusOr<File> opened = File::open(staging, offset == 0 ? O_RDWR | O_CREAT : O_RDWR);
+  if (absl::IsNotFound(opened.status())) {
+    return absl::OutOfRangeError(absl::StrCat("0 bytes are there, not ", offset));
+  }
+  ASSIGN_OR_RETURN(File file, std::move(opened));
   ASSIGN_OR_RETURN(const std::uint64_t there, file.size());
   if (there < offset) {
     return absl::OutOfRangeError(absl::StrCat(there, " bytes are there, not ", offset));

@@ -141,6 +141,15 @@ TEST_F(BlobStoreTest, AnUploadMayContinueBeforeTheEndAndNotBeyond) {
   EXPECT_TRUE(writer->commit().ok());
 }
 
+TEST_F(BlobStoreTest, ARefusedUploadLeavesNoFile) {
+  const std::string text = long_text('b');
+  const auto store = open();
+  const absl::Status status = store->write(wire::sha256(text), text.size(), 10).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_THAT(std::string(status.message()), testing::HasSubstr("0 bytes are there, not 10"));
+  EXPECT_EQ(files(), 0u);
+}
+
 TEST_F(BlobStoreTest, ADamagedPartIsReportedAndRemoved) {
   const std::string text = long_text('c');
   const wire::Digest digest = wire::sha256(text);
