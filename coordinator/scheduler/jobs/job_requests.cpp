@@ -71,10 +71,12 @@ absl::Status JobRequests::refusal(const StopRule& stop, const RenderSettings& se
         absl::StrCat("the stop rule or the image size is out of range: samples are [1, ",
                      kMaxSamples, "], error and time are above 0, width and height at least 1"));
   }
-  const std::size_t active = context_.jobs.active().size() + context_.sequences.active().size();
+  // Frame jobs do not count as active: their number is limited in Sequences::advance.
+  std::size_t active = context_.jobs.active().size() + context_.sequences.active().size();
   std::size_t known = context_.jobs.all().size();
   for (const JobId id : context_.sequences.active()) {
     const FrameCounts& frames = context_.sequences.at(id).counts();
+    active -= frames.of(FrameState::kRendering);
     known += frames.of(FrameState::kExpected) + frames.of(FrameState::kWaiting);
   }
   if (active >= wire::kActiveJobs || known + more > kMaxJobs) {

@@ -22,8 +22,8 @@ namespace {
 /// others are being written.
 constexpr std::size_t kAheadPerWorker = 2;
 constexpr std::size_t kAheadInAll = 4;
-/// Maximum number of frame jobs that are not final, of all sequences. The rest of the active jobs
-/// is left to other jobs.
+/// Maximum number of frame jobs that are not final, of all sequences that are not paused. Only the
+/// first kAheadInAll of each sequence are made beyond it, so that no sequence waits for others.
 constexpr std::size_t kMaxOpenFrames = wire::kActiveJobs / 2;
 /// Bytes of the numbers of failed frames in a reason.
 constexpr std::size_t kMaxNumbers = 200;
@@ -250,13 +250,21 @@ void Sequences::forget(const input::Forget& in) {
 }
 
 void Sequences::advance() {
-  const std::set<JobId> active = context_.sequences.active();
-  for (const JobId id : active) {
-    advance(context_.sequences.at(id));
+  std::set<std::pair<std::int32_t, JobId>> order;  // by descending priority, then by id
+  std::size_t open_frames = 0;
+  for (const JobId id : context_.sequences.active()) {
+    const Sequence& sequence = context_.sequences.at(id);
+    order.insert({-sequence.priority, id});
+    open_frames += sequence.held ? 0 : sequence.open_jobs().size();
+  }
+  for (const auto& [descending_priority, id] : order) {
+    advance(context_.sequences.at(id), open_frames);
   }
 }
 
-void Sequences::advance(Sequence& sequence) {
+/// `open_frames`: number of frame jobs that count against kMaxOpenFrames; those that are made here
+/// are added to it.
+void Sequences::advance(Sequence& sequence, std::size_t& open_frames) {
   while (const Sequence::Frame* failed = sequence.next_to_retry()) {
     try_again(sequence, failed->number, failed->failures + 1, failed->reason);
   }
@@ -264,12 +272,18 @@ void Sequences::advance(Sequence& sequence) {
     return;
   }
   const std::size_t ahead = kAheadInAll + kAheadPerWorker * context_.available.eligible();
-  while (sequence.open_jobs().size() < ahead && context_.jobs.active().size() < kMaxOpenFrames) {
+  const auto may_add = [&](std::size_t own) {
+    const bool room =
+        open_frames < kMaxOpenFrames && context_.jobs.active().size() < wire::kActiveJobs;
+    return own < kAheadInAll || (own < ahead && room);
+  };
+  while (may_add(sequence.open_jobs().size())) {
     const Sequence::Frame* next = sequence.next_waiting();
     if (next == nullptr) {
       break;
     }
     requests_.add(sequence.job_spec(*next), sequence.priority);
+    ++open_frames;
   }
   const FrameCounts& counts = sequence.counts();
   const std::size_t over = counts.of(FrameState::kDone) + counts.of(FrameState::kFailed);

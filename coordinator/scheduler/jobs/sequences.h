@@ -4,6 +4,9 @@
 // them, tries failed frames again, and ends the sequence; and requests of users about sequences. A
 // request that cannot be granted sets the status of the step, which is its answer.
 
+#include <cstddef>
+#include <string>
+
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/jobs/job_lifecycle.h"
 #include "coordinator/scheduler/jobs/job_requests.h"
@@ -45,7 +48,7 @@ class Sequences {
   void resume_after_restart();
 
  private:
-  void advance(Sequence& sequence);
+  void advance(Sequence& sequence, std::size_t& open_frames);
   void end(Sequence& sequence, JobState state, const std::string& reason);
   void try_again(Sequence& sequence, FrameNumber number, std::uint32_t failures,
                  const std::string& reason);

@@ -193,8 +193,11 @@ std::optional<std::string> broken_invariant(const Context& context) {
   if (!context.step_is_empty()) {
     return "a step ended with actions or records left";
   }
-  if (context.jobs.active().size() > wire::kActiveJobs ||
-      context.workers.connected() > wire::kWorkers) {
+  std::size_t active = context.jobs.active().size();
+  for (const JobId id : context.sequences.active()) {
+    active -= context.sequences.at(id).open_jobs().size();
+  }
+  if (active > wire::kActiveJobs || context.workers.connected() > wire::kWorkers) {
     return "there are more jobs or workers than the limits allow";
   }
   return std::nullopt;

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "coordinator/scheduler/api/frame_numbers.h"
 #include "farm_driver.h"
@@ -252,6 +253,61 @@ TEST(Sequences, FewOfManyFramesAreJobsAtATime) {
   EXPECT_GE(most, 3u);
   EXPECT_LE(most, 6u);
   EXPECT_EQ(farm.scheduler.jobs(farm.now).size(), 1u);
+}
+
+TEST(Sequences, QueuedJobsDoNotHoldThemUp) {
+  FrameFarm farm;
+  for (int i = 0; i < 500; ++i) {
+    farm.send(input::Submit{test_job(absl::StrCat("still ", i), StopAtSamples{8}), -5});
+  }
+  const SequenceSpec spec = test_sequence("1-20");
+  const JobId id = farm.send(input::SubmitSequence{spec, 100}).job;
+  farm.add(id, spec.frames);
+  farm.join(1);
+  ASSERT_FALSE(farm.all<action::Lease>().empty());
+  EXPECT_EQ(farm.job(farm.all<action::Lease>().front().job).spec.sequence, id);
+}
+
+TEST(Sequences, PausedOnesDoNotHoldUpOthers) {
+  FrameFarm farm;
+  for (SessionId session = 1; session <= 60; ++session) {
+    farm.hello(session, std::to_string(session), 1);
+  }
+  SequenceSpec spec = test_sequence("1-200");
+  std::vector<JobId> paused;
+  for (int i = 0; i < 5; ++i) {
+    spec.request_id = absl::StrCat("paused ", i);
+    paused.push_back(farm.submit_frames(spec));
+  }
+  for (const JobId id : paused) {
+    ASSERT_TRUE(farm.send(input::Pause{id}).status.ok());
+  }
+  spec.request_id = "another";
+  const JobId id = farm.submit_frames(spec);
+  // Two frames for each of the 60 workers, and four more.
+  EXPECT_EQ(farm.in_state(id, FrameState::kRendering).size(), 124u);
+}
+
+// At most 500 frame jobs are made for all sequences. With 39 workers, each of the six sequences has
+// 4 + 2 x 39 of them, 492 in all. The next worker would need 12 more, and eight are left.
+TEST(Sequences, TheHighestPriorityGetsTheLastFrameJobs) {
+  FrameFarm farm;
+  SequenceSpec spec = test_sequence("1-200");
+  std::vector<JobId> ids;
+  for (int i = 0; i < 6; ++i) {
+    spec.request_id = absl::StrCat("sequence ", i);
+    ids.push_back(farm.send(input::SubmitSequence{spec, i == 5 ? 7 : 0}).job);
+    farm.add(ids.back(), spec.frames);
+  }
+  for (SessionId session = 1; session <= 41; ++session) {
+    farm.hello(session, std::to_string(session), 1);
+  }
+  EXPECT_EQ(farm.in_state(ids[5], FrameState::kRendering).size(), 84u);
+  EXPECT_EQ(farm.in_state(ids[0], FrameState::kRendering).size(), 84u);
+  EXPECT_EQ(farm.in_state(ids[4], FrameState::kRendering).size(), 82u);
+  spec.request_id = "one more";
+  const JobId more = farm.submit_frames(spec);
+  EXPECT_EQ(farm.in_state(more, FrameState::kRendering).size(), 4u) << "each has four";
 }
 
 TEST(Sequences, FramesWaitForTheirScenes) {
