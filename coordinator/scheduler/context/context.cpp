@@ -108,6 +108,7 @@ void Context::apply(const record::StateChanged& r) {
     if (is_final(sequence->state)) {  // failed frames are tried again
       sequence->elapsed_before = sequence->elapsed_noted;
       sequence->first_lease_at.reset();
+      sequence->done_before = sequence->counts().of(FrameState::kDone);
     }
     sequence->state = r.state;
     sequence->reason = r.reason;

@@ -208,6 +208,20 @@ TEST(Sequences, AFrameThatFailsTwiceFailsTheJobOnceTheOthersAreDone) {
             absl::StatusCode::kFailedPrecondition);
 }
 
+TEST(Sequences, TheRemainingTimeOfARetryCountsOnlyItsFrames) {
+  FrameFarm farm;
+  const JobId id = farm.submit_frames(test_sequence("1-20"));
+  farm.join(1);
+  do {
+    farm.fails.insert(farm.job_of(id, 7));  // each job that renders frame 7 fails
+  } while (farm.work());
+  ASSERT_EQ(farm.job(id).state, JobState::kFailed);
+  ASSERT_EQ(farm.in_state(id, FrameState::kDone).size(), 19u);
+  ASSERT_TRUE(farm.send(input::RetryFrames{id, {}}).status.ok());
+  farm.pass_time(1, {1});
+  EXPECT_LT(farm.job(id).remaining_s, 0) << "unknown until half of the frame is rendered";
+}
+
 TEST(Sequences, TheReasonsOfTenFailedFramesAreTold) {
   const auto sentences = [](const std::string& frames) {
     FrameFarm farm;
