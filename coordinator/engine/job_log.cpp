@@ -66,6 +66,11 @@ struct Line {
     spdlog::debug("audited job={} rows={}:{} samples={}:{}", r.job, r.band.rows.first,
                   r.band.rows.last, r.band.samples.first, r.band.samples.last);
   }
+  void operator()(const record::RowDisputed& r) const {
+    spdlog::warn("disputed job={} row={} samples={}:{} stored by worker='{}', not by worker='{}'",
+                 r.job, r.band.rows.first, r.band.samples.first, r.band.samples.last,
+                 r.stored.machine, r.other.machine);
+  }
   void operator()(const record::BandLost& r) const {
     spdlog::error(
         "lost job={} rows={}:{} samples={}:{} its record in the band log is damaged; it is "

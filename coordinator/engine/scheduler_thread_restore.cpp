@@ -1,6 +1,6 @@
 // restore() replays the journal, then the band log of each job that is not final (the file with the
-// bands that workers have rendered). A band that is still wanted goes to the scheduler and to the
-// film of its job.
+// bands that workers have rendered). Each band goes to the scheduler, and its rows that are still
+// wanted to the film of its job.
 
 #include <spdlog/spdlog.h>
 
@@ -55,7 +55,7 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
   const auto take = [&](BandRecord record, std::uint64_t offset) {
     BandPixels& pixels = record.pixels;
     std::optional<std::vector<RowRange>> rows = scheduler_.wanted(id, pixels.band);
-    if (!rows || rows->empty()) {
+    if (!rows) {
       return;
     }
     const Band band = pixels.band;
@@ -66,6 +66,9 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
                                         .process = record.process,
                                         .counters = pixels.counters,
                                         .cpu_s = record.cpu_s});
+    if (rows->empty()) {
+      return;  // a duplicate: the scheduler compares it, and the film has its rows already
+    }
     // The rows are still wanted if the scheduler did not count the band, because its machine is
     // quarantined. Then the film does not get it either.
     if (const auto left = scheduler_.wanted(id, band); left && left->empty()) {

@@ -21,6 +21,7 @@ void write_stored(FieldWriter& out, JobId job, const Band& band, WorkerProcessId
 
 // Braced initialisers are evaluated in the order they are written, which is that of the fields.
 
+/// Reads the fields of a record that has only these: BandAudited or BandLost.
 template <class R>
 R read_stored(FieldReader& in) {
   return {.job = in.number("job"),
@@ -28,6 +29,18 @@ R read_stored(FieldReader& in) {
                    .rows = {.first = static_cast<std::uint32_t>(in.number("first_row", UINT32_MAX)),
                             .last = static_cast<std::uint32_t>(in.number("last_row", UINT32_MAX))}},
           .process = read_process(in)};
+}
+
+record::RowDisputed read_disputed(FieldReader& in) {
+  const auto stored = read_stored<record::BandAudited>(in);
+  return {.job = stored.job,
+          .band = stored.band,
+          .stored = {.process = stored.process,
+                     .machine = in.text("machine"),
+                     .digest = in.number("digest")},
+          .other = {.process = in.number("other"),
+                    .machine = in.text("other_machine"),
+                    .digest = in.number("other_digest")}};
 }
 
 }  // namespace
@@ -40,6 +53,16 @@ const char* write_audit(FieldWriter& out, const record::BandAudited& r) {
 const char* write_audit(FieldWriter& out, const record::BandLost& r) {
   write_stored(out, r.job, r.band, r.process);
   return "band_lost";
+}
+
+const char* write_audit(FieldWriter& out, const record::RowDisputed& r) {
+  write_stored(out, r.job, r.band, r.stored.process);
+  out.text("machine", r.stored.machine);
+  out.number("digest", r.stored.digest);
+  out.number("other", r.other.process);
+  out.text("other_machine", r.other.machine);
+  out.number("other_digest", r.other.digest);
+  return "row_disputed";
 }
 
 const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r) {
@@ -66,6 +89,9 @@ std::optional<Record> read_audit(absl::string_view kind, FieldReader& in) {
   }
   if (kind == "band_lost") {
     return read_stored<record::BandLost>(in);
+  }
+  if (kind == "row_disputed") {
+    return read_disputed(in);
   }
   if (kind == "error_forgotten") {
     return record::ErrorForgotten{.job = in.number("job")};

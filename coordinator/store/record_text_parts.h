@@ -42,6 +42,7 @@ record::ShareCounted read_share(FieldReader& in);
 // Results of audits (record_text_audit.cpp). Each write function returns the record's kind.
 const char* write_audit(FieldWriter& out, const record::BandAudited& r);
 const char* write_audit(FieldWriter& out, const record::BandLost& r);
+const char* write_audit(FieldWriter& out, const record::RowDisputed& r);
 const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r);
 const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r);
 const char* write_audit(FieldWriter& out, const record::QuarantineLifted& r);

@@ -14,7 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr int kSchema = 12;  // earlier versions can be read (README.md)
+constexpr int kSchema = 13;  // earlier versions can be read (README.md)
 constexpr char kTables[] =
     "CREATE TABLE IF NOT EXISTS record (sequence INTEGER PRIMARY KEY, kind TEXT NOT NULL,"
     " fields TEXT NOT NULL, seal TEXT NOT NULL) STRICT;";

@@ -124,6 +124,22 @@ struct BandLost {
   Band band;
   WorkerProcessId process = 0;
 };
+/// Another machine returned another digest for a row than the stored one. The job must not end
+/// before it is known which of them is right.
+struct RowDisputed {
+  /// What one machine returned for the row.
+  struct Claim {
+    WorkerProcessId process = 0;
+    std::string machine;  ///< as in Reporter (model/audit.h)
+    std::uint64_t digest = 0;
+    friend bool operator==(const Claim&, const Claim&) = default;
+  };
+  JobId job = 0;
+  Band band;  ///< one row
+  Claim stored;
+  Claim other;
+  friend bool operator==(const RowDisputed&, const RowDisputed&) = default;
+};
 /// The error measured so far is void, because some of its pixels have been retracted.
 struct ErrorForgotten {
   JobId job = 0;
@@ -163,7 +179,7 @@ using Record =
                  record::StateChanged, record::PriorityChanged, record::HoldChanged,
                  record::TimeSpent, record::JobSummary, record::ErrorMeasured, record::ShareCounted,
                  record::FailureLog, record::JobForgotten, record::WorkerJoined, record::WorkerLeft,
-                 record::BandAudited, record::BandLost, record::ErrorForgotten,
+                 record::BandAudited, record::BandLost, record::RowDisputed, record::ErrorForgotten,
                  record::WorkerQuarantined, record::QuarantineLifted, record::SequenceAdded,
                  record::FrameWaits>;
 

@@ -222,12 +222,19 @@ void Context::apply(const record::WorkerLeft& r) { joined.erase(r.instance); }
 void Context::apply(const record::BandAudited& r) {
   if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
     job->audited.insert({r.band, r.process});
+    job->settle_disputes(r.band, r.process);
   }
 }
 
 void Context::apply(const record::BandLost& r) {
   if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
     job->remove_stored(r.band, r.process);
+  }
+}
+
+void Context::apply(const record::RowDisputed& r) {
+  if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
+    job->disputes.push_back(r);
   }
 }
 
@@ -245,7 +252,15 @@ void Context::apply(const record::ErrorForgotten& r) {
   }
 }
 
-void Context::apply(const record::WorkerQuarantined& r) { quarantine.add(r); }
+// What the process returned is void, so it disputes nothing.
+void Context::apply(const record::WorkerQuarantined& r) {
+  quarantine.add(r);
+  for (const JobId id : jobs.active()) {
+    std::erase_if(jobs.at(id).disputes, [&](const record::RowDisputed& one) {
+      return one.stored.process == r.process || one.other.process == r.process;
+    });
+  }
+}
 void Context::apply(const record::QuarantineLifted& r) { quarantine.lift(r.name); }
 
 void Context::apply(const record::SequenceAdded& r) {

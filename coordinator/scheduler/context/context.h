@@ -114,6 +114,7 @@ class Context {
   void apply(const record::WorkerLeft& r);
   void apply(const record::BandAudited& r);
   void apply(const record::BandLost& r);
+  void apply(const record::RowDisputed& r);
   void apply(const record::ErrorForgotten& r);
   void apply(const record::WorkerQuarantined& r);
   void apply(const record::QuarantineLifted& r);

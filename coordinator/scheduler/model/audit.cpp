@@ -80,7 +80,8 @@ std::optional<Audit::Verdict> Audit::verdict(bool only_browsers_left) const {
   // No two agree. If a single machine is left that can render the band, and it has repeated its
   // result, that result is right.
   const auto known = [&](const Result& result) {
-    return !result.reporter.machine.empty() && (browsers_decide || !result.reporter.browser);
+    return !result.reporter.machine.empty() && !result.away &&
+           (browsers_decide || !result.reporter.browser);
   };
   const auto here = std::find_if(results_.begin(), results_.end(), known);
   const bool alone = disputed() && here != results_.end() &&
@@ -90,8 +91,9 @@ std::optional<Audit::Verdict> Audit::verdict(bool only_browsers_left) const {
 
 void Audit::identify(const Reporter& reporter) {
   for (Result& result : results_) {
-    if (result.reporter.process == reporter.process) {
+    if (result.reporter.same_machine(reporter)) {
       result.reporter.machine = reporter.machine;
+      result.away = false;
     }
   }
 }

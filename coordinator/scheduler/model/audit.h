@@ -35,7 +35,8 @@ bool is_audited(const JobSpec& spec, const Band& band, double share);
 /// The machine is the same when its worker is restarted.
 struct Reporter {
   WorkerProcessId process = 0;
-  /// Empty: the process has not connected in this epoch. Each browser is a machine of its own.
+  /// Empty: unknown, because the process has not connected in this epoch. Each browser is a machine
+  /// of its own.
   std::string machine;
   bool browser = false;
 
@@ -51,6 +52,8 @@ class Audit {
     Reporter reporter;
     std::vector<std::uint64_t> digests;  ///< one per row
     bool repeated = false;               ///< the machine rendered it again with the same digests
+    /// It is of an earlier epoch, and the machine, though known, has not connected in this one.
+    bool away = false;
   };
   struct Verdict {
     bool stored_is_right = false;
@@ -69,7 +72,7 @@ class Audit {
   /// connected in this epoch, which cannot do so. If it is a native worker, it also wins against
   /// browsers.
   std::optional<Verdict> verdict(bool only_browsers) const;
-  /// Fills in the machine of a reporter of which only the process was known.
+  /// Notes that a machine has connected. Fills it in where only the process was known.
   void identify(const Reporter& reporter);
   /// Cuts off the rows from `row` on and returns them as an audit of their own. REQUIRES a row
   /// inside the band.

@@ -82,6 +82,7 @@ void Job::fix_samples(std::uint64_t samples) {
   }
   complete_passes_ = std::min(complete_passes_, passes.size());
   std::erase_if(audits, [&](const Audit& audit) { return audit.band().samples.first >= samples; });
+  std::erase_if(disputes, [&](const auto& one) { return one.band.samples.first >= samples; });
 }
 
 bool Job::retract(WorkerProcessId process) {
@@ -104,6 +105,7 @@ void Job::remove_stored(const Band& band, WorkerProcessId process) {
   std::erase_if(audited, [&](const std::pair<Band, WorkerProcessId>& one) {
     return one.second == process && overlap(one.first, band);
   });
+  settle_disputes(band, process);
   Pass* pass = pass_of(band);
   const std::optional<Totals> lost =
       pass == nullptr ? std::nullopt : pass->remove_stored(band, process);
@@ -118,6 +120,12 @@ void Job::remove_stored(const Band& band, WorkerProcessId process) {
       shares.erase(share);
     }
   }
+}
+
+void Job::settle_disputes(const Band& band, WorkerProcessId process) {
+  std::erase_if(disputes, [&](const record::RowDisputed& one) {
+    return one.stored.process == process && overlap(one.band, band);
+  });
 }
 
 void Job::count_complete_passes() {
@@ -135,6 +143,7 @@ void Job::drop_details() {
   failures.clear();
   audits.clear();
   audited.clear();
+  disputes.clear();
   pending_checkpoint.reset();
   suspicions.clear();
   shares.clear();

@@ -68,6 +68,9 @@ class Job {
   /// Frees a band that the process stored, and forgets that it was audited. Frees nothing if
   /// Pass::has_stored is false.
   void remove_stored(const Band& band, WorkerProcessId process);
+  /// Forgets the disputes about rows of a band that the process stored: they are decided, or the
+  /// rows are lost.
+  void settle_disputes(const Band& band, WorkerProcessId process);
   /// Advances the count of complete passes; forgets the row digests of all but the last
   /// kPassesWithDigests of them.
   void count_complete_passes();
@@ -144,6 +147,9 @@ class Job {
   /// Bands confirmed by a second machine, keyed with the process whose result is stored, because
   /// the stored result can be replaced by that of another process.
   std::set<std::pair<Band, WorkerProcessId>> audited;
+  /// Journalled: results that contradict stored rows and are not decided, at most kMaxAudits. After
+  /// a restart, audits are made of them.
+  std::vector<record::RowDisputed> disputes;
 
   std::map<WorkerProcessId, WorkerShare> shares;  ///< at most kMaxShares
   std::optional<record::JobSummary> summary;      ///< for a final job

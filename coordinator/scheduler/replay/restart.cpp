@@ -51,6 +51,9 @@ void Restart::compare_duplicates() {
 
 void Restart::finish() {
   barrier_.begin_after_restart();
+  for (const JobId id : context_.jobs.active()) {
+    comparison_.reopen_disputes(context_.jobs.at(id));
+  }
   compare_duplicates();
   sequences_.resume_after_restart();
   for (auto& [id, job] : context_.jobs.all()) {

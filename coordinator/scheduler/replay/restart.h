@@ -35,8 +35,8 @@ class Restart {
   /// Notes for users that this many bytes of the job's band log are damaged.
   void note_damage(JobId id, std::uint64_t bytes);
   /// Ends the replay: begins the reconnect barrier (nothing is leased until former workers are
-  /// back), compares duplicate bands, and continues each job. A job that was begun with another
-  /// pixel version fails.
+  /// back), opens the audits of disputed rows again, compares duplicate bands, and continues each
+  /// job. A job that was begun with another pixel version fails.
   void finish();
 
  private:

@@ -44,6 +44,9 @@ void add_job(const Job& job, std::vector<Record>& out) {
   for (const auto& [band, process] : job.audited) {
     out.push_back(record::BandAudited{job.id, band, process});
   }
+  for (const record::RowDisputed& dispute : job.disputes) {
+    out.push_back(dispute);
+  }
   if (job.summary) {
     out.push_back(*job.summary);
   }

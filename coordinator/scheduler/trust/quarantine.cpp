@@ -28,6 +28,7 @@ void Quarantine::impose(const Reporter& reporter, const std::string& cause) {
       workers.push_back(id);
     }
   }
+  add_earlier_processes(reporter, processes);
   for (const WorkerProcessId process : processes) {
     if (process != 0 && !context_.quarantine.in_force(process)) {
       context_.emit(record::WorkerQuarantined{process, name, clean_text(reason, wire::kReasonBytes),
@@ -43,6 +44,20 @@ void Quarantine::impose(const Reporter& reporter, const std::string& cause) {
   for (const JobId id : active) {
     for (const WorkerProcessId process : processes) {
       retract(context_.jobs.at(id), process, absl::StrCat(context_.name_of(reporter), " ", reason));
+    }
+  }
+}
+
+/// Adds the processes of the machine that returned results of open audits, also in earlier epochs.
+void Quarantine::add_earlier_processes(const Reporter& reporter,
+                                       std::set<WorkerProcessId>& processes) const {
+  for (const JobId id : context_.jobs.active()) {
+    for (const Audit& audit : context_.jobs.at(id).audits) {
+      for (const Audit::Result& result : audit.results()) {
+        if (result.reporter.same_machine(reporter)) {
+          processes.insert(result.reporter.process);
+        }
+      }
     }
   }
 }

@@ -3,6 +3,7 @@
 // Puts machines that returned wrong pixels under quarantine: they get no work until a user lifts
 // it, and their rows of active jobs are rendered again.
 
+#include <set>
 #include <string>
 
 #include "coordinator/scheduler/context/context.h"
@@ -26,6 +27,7 @@ class Quarantine {
   void lift(const input::LiftQuarantine& in);
 
  private:
+  void add_earlier_processes(const Reporter& reporter, std::set<WorkerProcessId>& processes) const;
   void expel(Worker& worker);
   void retract(Job& job, WorkerProcessId process, const std::string& why);
 

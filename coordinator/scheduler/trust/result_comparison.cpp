@@ -83,6 +83,54 @@ void ResultComparison::open_dispute(Job& job, const Pass& pass, const input::Ban
   }
 }
 
+/// Journals the first row of the audit for which the other result differs from the stored one; none
+/// if they are equal.
+void ResultComparison::note_dispute(const Job& job, const Audit& audit,
+                                    const Audit::Result& other) {
+  const Audit::Result& stored = audit.stored();
+  const auto [ours, theirs] =
+      std::mismatch(stored.digests.begin(), stored.digests.end(), other.digests.begin());
+  if (ours == stored.digests.end() || job.disputes.size() >= Job::kMaxAudits) {
+    return;
+  }
+  const Band& band = audit.band();
+  const auto row = band.rows.first + static_cast<std::uint32_t>(ours - stored.digests.begin());
+  const record::RowDisputed dispute{job.id,
+                                    {band.samples, {row, row + 1}},
+                                    {stored.reporter.process, stored.reporter.machine, *ours},
+                                    {other.reporter.process, other.reporter.machine, *theirs}};
+  if (std::find(job.disputes.begin(), job.disputes.end(), dispute) == job.disputes.end()) {
+    context_.emit(dispute);
+  }
+}
+
+void ResultComparison::reopen_disputes(Job& job) {
+  const auto result = [this](const record::RowDisputed::Claim& claim) {
+    Reporter reporter = context_.reporter_of(claim.process);
+    const bool away = reporter.machine.empty();
+    if (away) {
+      reporter.machine = claim.machine;
+    }
+    return Audit::Result{.reporter = std::move(reporter), .digests = {claim.digest}, .away = away};
+  };
+  for (const record::RowDisputed& one : job.disputes) {
+    const Pass* pass = job.pass_of(one.band);
+    if (pass == nullptr ||
+        pass->process_of_row(one.band.samples, one.band.rows.first) != one.stored.process) {
+      continue;
+    }
+    // If the same row was selected for an audit, that audit does not know the machine.
+    std::erase_if(job.audits,
+                  [&](const Audit& a) { return a.band() == one.band && !a.disputed(); });
+    auto audit = std::find_if(job.audits.begin(), job.audits.end(),
+                              [&](const Audit& a) { return a.band() == one.band; });
+    if (audit == job.audits.end()) {
+      audit = job.audits.insert(audit, Audit(one.band, result(one.stored)));
+    }
+    audit->add(result(one.other), false);
+  }
+}
+
 void ResultComparison::compare(Job& job, const Pass& pass, const input::BandStored& in,
                                const Reporter& reporter) {
   if (job.image_requested) {
@@ -99,8 +147,11 @@ void ResultComparison::compare(Job& job, const Pass& pass, const input::BandStor
     }
     const Lease* lease = context_.leases.find(audit.lease);
     const bool requested = lease != nullptr && worker != nullptr && lease->worker == worker->id;
+    const bool is_first = audit.result_of(reporter) == nullptr;
     if (const auto before = audit.add({reporter, *digests}, requested)) {
       contradicted.emplace_back(audit.band(), *before);
+    } else if (is_first) {
+      note_dispute(job, audit, {reporter, *digests});
     }
     if (requested) {
       rendered.push_back(audit.lease);

@@ -25,9 +25,13 @@ class ResultComparison {
   /// opens an audit for a row that differs, and quarantines machines that are proved wrong. No
   /// effect once the job's image was requested, because its rows cannot be replaced any more.
   void compare(Job& job, const Pass& pass, const input::BandStored& in, const Reporter& reporter);
+  /// After a restart: opens an audit again for each journalled dispute about a row that is stored.
+  /// MUST be called when the job's bands on disk are replayed.
+  void reopen_disputes(Job& job);
 
  private:
   void open_dispute(Job& job, const Pass& pass, const input::BandStored& in);
+  void note_dispute(const Job& job, const Audit& audit, const Audit::Result& other);
   bool decide_one(Job& job);
 
   Context& context_;

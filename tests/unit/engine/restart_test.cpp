@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 
+#include "coordinator/store/band_log.h"
+#include "coordinator/store/sqlite_journal.h"
 #include "tests/unit/engine/fake_worker.h"
 #include "tests/unit/engine/test_farm.h"
 
@@ -121,6 +124,52 @@ TEST(Restart, DamagedBandsAreRenderedAgain) {
   FakeWorker two(farm.scene(), "two");
   two.join(farm.engine());
   expect_local_image(farm, job, kJobSamples);
+}
+
+/// Appends the last record of a band log again, with other pixels, as a result of this process.
+void append_contradiction(const std::string& job_folder, std::uint64_t process) {
+  std::optional<BandRecord> last;
+  BandLogReport report;
+  const auto keep = [&](BandRecord record, std::uint64_t) { last = std::move(record); };
+  absl::StatusOr<BandLog> log = BandLog::open(job_folder, job_folder + "/bands", keep, report);
+  ASSERT_TRUE(log.ok()) << log.status();
+  ASSERT_TRUE(last);
+  last->process = process;
+  last->pixels.sums.front() += 1;
+  ASSERT_TRUE(log->append(*last).ok());
+  ASSERT_TRUE(log->sync().ok());
+}
+
+TEST(Restart, ASecondResultOnDiskIsCompared) {
+  constexpr std::uint64_t kWrong = 12'345;
+  TestFarm farm;
+  ASSERT_TRUE(farm.start().ok());
+  const JobId job = farm.begin(StopAtSamples{.samples = kJobSamples});
+  {
+    FakeWorker one(farm.scene(), "one");
+    one.join(farm.engine());
+    farm.wait_until(job, [](const JobView& view) { return view.fraction > 0.1; });
+  }
+  farm.stop();
+  ASSERT_NO_FATAL_FAILURE(
+      append_contradiction(farm.folder() + "/jobs/" + std::to_string(job), kWrong));
+  ASSERT_TRUE(farm.start().ok());
+  {
+    FakeWorker two(farm.scene(), "two");
+    two.join(farm.engine());
+    expect_local_image(farm, job, kJobSamples);
+  }
+  farm.stop();
+  bool quarantined = false;
+  const auto journal = SqliteJournal::open(farm.folder() + "/journal.sqlite");
+  ASSERT_TRUE(journal.ok()) << journal.status();
+  ASSERT_TRUE((*journal)
+                  ->replay([&](const Record& record) {
+                    const auto* one = std::get_if<record::WorkerQuarantined>(&record);
+                    quarantined = quarantined || (one != nullptr && one->process == kWrong);
+                  })
+                  .ok());
+  EXPECT_TRUE(quarantined) << "the second machine agrees with the first";
 }
 
 /// Runs a coordinator and two workers in this (child) process. It writes each band that was

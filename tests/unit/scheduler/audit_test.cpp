@@ -179,6 +179,76 @@ TEST(Audit, TwoThatRepeatTheirResultsWaitForAThird) {
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
 }
 
+/// Returns the farm of two_results after a restart that selects no bands for audits. The row that a
+/// stored is on disk.
+AuditFarm after_restart(const AuditFarm& farm, const std::vector<Record>& records,
+                        std::uint64_t lie_of_a) {
+  SchedulerOptions options = slow();
+  options.epoch = "two";
+  options.audit_share = 0;
+  AuditFarm next(options);
+  for (const Record& record : records) {
+    next.scheduler.replay(record);
+  }
+  input::BandStored row;
+  row.job = 1;
+  row.band = farm.lease(1, false).band;
+  row.row_digests = honest_digests(row.band);
+  row.row_digests[0] += lie_of_a;
+  row.process = worker_process_id("a");
+  next.scheduler.replay(row);
+  next.take(next.scheduler.replayed(next.now));
+  return next;
+}
+
+// The processes of both machines are new too, as after a power failure. None of them confirms what
+// an earlier process of its machine returned.
+TEST(Audit, ADisputeIsStillOpenAfterARestart) {
+  AuditFarm farm = two_results(7, 0);
+  farm.result(farm.lease(1, true), "a", 7);
+  farm.result(farm.lease(2, true), "b", 0);
+  EXPECT_EQ(farm.all_records<record::RowDisputed>().size(), 1u);
+  for (const std::vector<Record>& records : {farm.records, farm.scheduler.snapshot()}) {
+    AuditFarm next = after_restart(farm, records, 7);
+    EXPECT_EQ(next.job(1).state, JobState::kRunning);
+    WorkerHello a = test_worker("a2", 1);
+    a.name = "worker-a";
+    WorkerHello b = test_worker("b2", 1);
+    b.name = "worker-b";
+    next.send(input::Hello{1, a});
+    next.send(input::Hello{2, b});
+    // The former processes do not reconnect. The first lease is of a2; b2 gets the second one,
+    // because a2 is late, and a2 gets another one after that.
+    next.pass_time(8, {1, 2});
+    next.result(next.lease(2, true), "b2", 0);
+    next.result(next.lease(1, true), "a2", 7);
+    next.pass_time(20, {1, 2});
+    EXPECT_TRUE(next.all_records<record::WorkerQuarantined>().empty());
+    EXPECT_EQ(next.job(1).state, JobState::kRunning);
+    EXPECT_NE(next.job(1).reason.find("worker-a, worker-b returned different pixels"),
+              std::string::npos)
+        << next.job(1).reason;
+    next.send(input::Quarantine{"worker-a"});
+    next.result(next.lease(2, false), "b2");
+    EXPECT_EQ(next.job(1).state, JobState::kFinishing);
+  }
+}
+
+TEST(Audit, ADecidedDisputeIsNotOpenedAfterARestart) {
+  AuditFarm by_third = two_results(0, 7, true);
+  by_third.result(by_third.lease(3, true), "c");
+  EXPECT_EQ(by_third.all_records<record::RowDisputed>().size(), 1u);
+  EXPECT_EQ(by_third.job(1).state, JobState::kFinishing);
+  AuditFarm by_user = two_results(0, 7);
+  by_user.send(input::Quarantine{"worker-b"});
+  for (const AuditFarm* farm : {&by_third, &by_user}) {
+    for (const std::vector<Record>& records : {farm->records, farm->scheduler.snapshot()}) {
+      const AuditFarm next = after_restart(*farm, records, 0);
+      EXPECT_EQ(next.job(1).state, JobState::kFinishing);
+    }
+  }
+}
+
 // The band of a is leased to b when a is lost. Then a returns with wrong pixels of it, and c has to
 // decide.
 TEST(Audit, ABackupTaskThatDiffersOpensADispute) {

@@ -97,6 +97,10 @@ inline std::vector<Record> sample_records() {
           record::WorkerLeft{.instance = ""},
           record::BandAudited{.job = 1, .band = {{16, 32}, {3, UINT32_MAX}}, .process = 7},
           record::BandLost{.job = 1, .band = {{0, 16}, {0, UINT32_MAX}}, .process = UINT64_MAX},
+          record::RowDisputed{.job = 1,
+                              .band = {{0, 16}, {3, 4}},
+                              .stored = {.process = UINT64_MAX, .machine = "a desk", .digest = 5},
+                              .other = {.process = 7, .machine = "", .digest = UINT64_MAX}},
           record::ErrorForgotten{.job = 1},
           record::WorkerQuarantined{.process = UINT64_MAX, .name = "a desk", .reason = "lied\n"},
           record::WorkerQuarantined{
