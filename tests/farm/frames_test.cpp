@@ -160,6 +160,17 @@ TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
   EXPECT_EQ(jobs_of_frames().size(), 18u);
 }
 
+TEST_F(Frames, ThatWereNotSentAreNamedIfAFileCannotBeWritten) {
+  farm_.add_worker("one", 1);
+  std::filesystem::create_directory(file_of(1));
+  // So many that most are not sent when the first one is done.
+  const Finished failed = run(submit("1-2000", {"-o", outputs_}));
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_THAT(failed.err, HasSubstr("w.0001.pfm"));
+  EXPECT_THAT(failed.err, HasSubstr("-2000 were not sent"));
+  EXPECT_THAT(failed.err, HasSubstr("--continue 1"));
+}
+
 TEST_F(Frames, HaveAContactSheetAndAFailedCommandOrMissingFfmpegIsReported) {
   farm_.add_worker("one", 2);
   const std::string sheet = farm_.path("sheet.png");

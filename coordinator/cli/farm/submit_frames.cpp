@@ -111,8 +111,11 @@ ExitCode not_sent(const absl::Status& status, JobId job, const FrameSender& send
                                                                      : import_exit_code(status);
   return console.fail(
       code == ExitCode::kDone ? ExitCode::kFailed : code,
-      absl::StrCat(status.message(), "; the scenes of the frames ", frames_text(sender.unsent()),
-                   " were not sent; send them with the same command and --continue ", job));
+      absl::StrCat(
+          status.message(), "; the scenes of the frames ", frames_text(sender.unsent()),
+          " were not sent, and the job waits for them; send them with the same command and "
+          "--continue ",
+          job));
 }
 
 }  // namespace
@@ -148,12 +151,17 @@ ExitCode submit_frames(FarmClient& client, const SubmitOptions& options,
     say_started(started->job, options.verbosity, console);
     return sent.ok() ? ExitCode::kDone : not_sent(sent, started->job, sender, console);
   }
-  code = watch_frames(client, started->job, wanted, options.verbosity, process);
+  const WatchedFrames watched =
+      watch_frames(client, started->job, wanted, options.verbosity, process);
   sender.stop();
   const absl::Status sent = sender.wait();
-  return sent.ok() || code == ExitCode::kDone || code == ExitCode::kFailed
-             ? code
-             : not_sent(sent, started->job, sender, console);
+  if (sent.ok() || watched.is_over) {
+    return watched.code;
+  }
+  // The sender's error ends the watch with kInterrupted. With any other code the watch has ended by
+  // itself, for example because a file could not be written, and the sender was stopped after it.
+  code = not_sent(sent, started->job, sender, console);
+  return watched.code == ExitCode::kInterrupted ? code : watched.code;
 }
 
 }  // namespace bandsaw::coordinator

@@ -30,7 +30,7 @@ ExitCode watch_sequence(const WatchOptions& options, const JobSpec& spec, FarmCl
     return process.console.fail(lacks_program ? ExitCode::kFailed : ExitCode::kWrong,
                                 std::string(status.message()));
   }
-  return watch_frames(client, options.job, wanted, options.verbosity, process);
+  return watch_frames(client, options.job, wanted, options.verbosity, process).code;
 }
 
 ExitCode watch_image(const WatchOptions& options, FarmClient& client, Process& process) {

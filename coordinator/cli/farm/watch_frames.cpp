@@ -69,8 +69,8 @@ absl::Status check_wanted(const WantedFrames& wanted) {
   return wanted.after.video.empty() ? absl::OkStatus() : Video::check(wanted.after.video);
 }
 
-ExitCode watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
-                      Verbosity verbosity, Process& process) {
+WatchedFrames watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
+                           Verbosity verbosity, Process& process) {
   const Console& console = process.console;
   ProgressDisplay display(console, verbosity);
   FrameFetcher fetcher(client, job, wanted, display, console);
@@ -82,9 +82,9 @@ ExitCode watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
   if (!last.ok()) {
     display.clear();
     const std::string how = come_back(job, wanted.outputs, wanted.denoise, "NAME.####.png");
-    return left_early(last.status(), job, how,
-                      absl::StrCat(last.status().message(), "; the farm keeps the images. ", how),
-                      console);
+    const std::string otherwise =
+        absl::StrCat(last.status().message(), "; the farm keeps the images. ", how);
+    return {left_early(last.status(), job, how, otherwise, console), false};
   }
   absl::Status made = fetcher.make_collections();
   std::vector<std::string> outputs = wanted.outputs;
@@ -106,7 +106,8 @@ ExitCode watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
   } else if (code == ExitCode::kDone) {
     display.done(*last, outputs, {});
   }
-  return run_after(wanted.after.command, client, job, outputs, fetcher.files(), code, console);
+  code = run_after(wanted.after.command, client, job, outputs, fetcher.files(), code, console);
+  return {code, true};
 }
 
 }  // namespace bandsaw::coordinator

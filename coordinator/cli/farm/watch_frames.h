@@ -21,6 +21,12 @@ struct WantedFrames {
   Denoiser denoise = Denoiser::kNone;  ///< kNone: frames are not cleaned
 };
 
+/// How watch_frames() has ended.
+struct WatchedFrames {
+  ExitCode code = ExitCode::kDone;
+  bool is_over = false;  ///< the job is done, failed or cancelled
+};
+
 /// Checks before any work is done that the files can be made. FAILED_PRECONDITION: ffmpeg is
 /// missing. Other errors: a file cannot be written, or its name has no place for the number of a
 /// frame.
@@ -31,7 +37,7 @@ absl::Status check_wanted(const WantedFrames& wanted);
 /// and the video, and runs the command of --then. After a signal it returns kInterrupted, and the
 /// job continues on the farm. If the farm is unreachable, retries for one minute. kFailed: a frame
 /// failed, or a file could not be written.
-ExitCode watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
-                      Verbosity verbosity, Process& process);
+WatchedFrames watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
+                           Verbosity verbosity, Process& process);
 
 }  // namespace bandsaw::coordinator
