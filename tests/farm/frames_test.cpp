@@ -59,6 +59,12 @@ class Frames : public testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return farm_.command(arguments);
   }
+  /// Returns the command line that runs `argv` in the farm's folder.
+  std::vector<std::string> in_the_folder(const std::vector<std::string>& argv) const {
+    std::vector<std::string> out = {"/bin/sh", "-c", "cd \"$0\" && exec \"$@\"", farm_.path(".")};
+    out.insert(out.end(), argv.begin(), argv.end());
+    return out;
+  }
   std::string file_of(int frame) const { return farm_.path(absl::StrFormat("w.%04d.pfm", frame)); }
 
   void expect_bytes_of_render(int frame, const std::vector<std::string>& more = {}) {
@@ -158,6 +164,16 @@ TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
     expect_bytes_of_render(frame, {"--fixed-seed"});
   }
   EXPECT_EQ(jobs_of_frames().size(), 18u);
+}
+
+TEST_F(Frames, WithoutANameDoNotReplaceFilesOfTheModel) {
+  farm_.add_worker("one", 1);
+  std::ofstream(farm_.path("walk.0002.png")) << "a texture";
+  const Finished refused = run(in_the_folder(submit("1-3")));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("walk.0002.png: exists and may belong to the model"));
+  EXPECT_EQ(file_bytes(farm_.path("walk.0002.png")), "a texture");
+  EXPECT_THAT(run(farm_.command({"jobs"})).out, HasSubstr("no jobs"));
 }
 
 TEST_F(Frames, ThatWereNotSentAreNamedIfAFileCannotBeWritten) {

@@ -14,6 +14,8 @@
 #include "coordinator/cli/farm/upload.h"
 #include "coordinator/cli/farm/watch_frames.h"
 #include "coordinator/cli/image/clean.h"
+#include "coordinator/cli/image/report_file.h"
+#include "coordinator/cli/options/output_names.h"
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
 #include "coordinator/scheduler/api/frame_numbers.h"
@@ -55,6 +57,21 @@ absl::StatusOr<std::vector<FrameNumber>> lacking(FarmClient& client, const Submi
                                                    ", not ", frames_text(options.frames)));
   }
   return out;
+}
+
+/// Checks the files of all frames before the job is started. Errors: those of check_wanted() and,
+/// if the user named no outputs, of check_default_output().
+absl::Status check_files(const SubmitOptions& options, const WantedFrames& wanted) {
+  RETURN_IF_ERROR(check_wanted(wanted));
+  if (!options.outputs.empty()) {
+    return absl::OkStatus();
+  }
+  for (const std::string& output : wanted.outputs) {
+    for (const FrameNumber frame : options.frames) {
+      RETURN_IF_ERROR(check_default_output(options.scene, name_of_frame(output, frame)));
+    }
+  }
+  return absl::OkStatus();
 }
 
 struct Started {
@@ -125,7 +142,7 @@ ExitCode submit_frames(FarmClient& client, const SubmitOptions& options,
   const Console& console = process.console;
   const WantedFrames wanted{outputs, options.report, options.display, options.after,
                             options.denoise};
-  if (const absl::Status status = check_wanted(wanted); !status.ok()) {
+  if (const absl::Status status = check_files(options, wanted); !status.ok()) {
     return console.fail(absl::IsFailedPrecondition(status) ? ExitCode::kFailed : ExitCode::kWrong,
                         std::string(status.message()));
   }
