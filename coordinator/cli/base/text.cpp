@@ -7,9 +7,11 @@
 #include <array>
 #include <cmath>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
 #include "renderlib/base/overloaded.h"
 
@@ -111,6 +113,16 @@ std::string printable(absl::string_view text) {
 
 std::string printable_list(const std::vector<std::string>& names) {
   return printable(absl::StrJoin(names, ", "));
+}
+
+std::string shell_word(absl::string_view text) {
+  const bool plain =
+      !text.empty() && text.front() != '#' && std::all_of(text.begin(), text.end(), [](char c) {
+        return absl::ascii_isalnum(static_cast<unsigned char>(c)) ||
+               absl::string_view("%+,-./:=@_#").find(c) != absl::string_view::npos;
+      });
+  return plain ? std::string(text)
+               : absl::StrCat("'", absl::StrReplaceAll(text, {{"'", R"('\'')"}}), "'");
 }
 
 std::size_t columns(absl::string_view text) {

@@ -39,6 +39,10 @@ std::string printable(absl::string_view text);
 /// Joins names, each safe for a terminal: "cornell.png, cornell.pfm".
 std::string printable_list(const std::vector<std::string>& names);
 
+/// Returns the text as one word of a shell's command line. It is quoted if it contains characters
+/// that may have a meaning to the shell.
+std::string shell_word(absl::string_view text);
+
 /// Returns the number of columns of a terminal that the text takes, one for each code point.
 std::size_t columns(absl::string_view text);
 

@@ -18,10 +18,10 @@
 
 namespace bandsaw::coordinator {
 
-FrameFetcher::FrameFetcher(const FarmClient& client, JobId sequence, const WantedFrames& wanted,
+FrameFetcher::FrameFetcher(const FarmClient& client, const WatchOptions& wanted,
                            ProgressDisplay& display, const Console& console)
     : client_(client.another()),
-      sequence_(sequence),
+      sequence_(wanted.job),
       wanted_(wanted),
       display_(display),
       silent_(console, {.quiet = true}) {

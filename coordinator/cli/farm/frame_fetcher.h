@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "coordinator/cli/farm/farm_client.h"
-#include "coordinator/cli/farm/watch_frames.h"
 #include "coordinator/cli/farm/watch_job.h"
 #include "coordinator/cli/image/contact_sheet.h"
 #include "coordinator/cli/image/video.h"
+#include "coordinator/cli/options/options.h"
 #include "coordinator/cli/progress/progress_display.h"
 
 namespace bandsaw::coordinator {
@@ -24,8 +24,9 @@ namespace bandsaw::coordinator {
 /// object.
 class FrameFetcher {
  public:
-  FrameFetcher(const FarmClient& client, JobId sequence, const WantedFrames& wanted,
-               ProgressDisplay& display, const Console& console);
+  /// `wanted`: the sequence, and what is made of its frames.
+  FrameFetcher(const FarmClient& client, const WatchOptions& wanted, ProgressDisplay& display,
+               const Console& console);
 
   /// Fetches the frames that were done since the last call, if a file is made of them, and reports
   /// frames that failed. UNAVAILABLE: the farm cannot be reached; the next call fetches what this
@@ -60,7 +61,7 @@ class FrameFetcher {
 
   const std::unique_ptr<FarmClient> client_;
   const JobId sequence_;
-  const WantedFrames& wanted_;
+  const WatchOptions& wanted_;
   ProgressDisplay& display_;
   ProgressDisplay silent_;             ///< for the jobs of guides: prints nothing
   std::string epoch_;                  ///< run of the coordinator that after_ belongs to

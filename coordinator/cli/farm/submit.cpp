@@ -2,6 +2,7 @@
 // submit_frames() does the work.
 
 #include <atomic>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"
@@ -49,6 +50,18 @@ absl::StatusOr<Image> render_on_farm(FarmClient& client, ImportedPackage& packag
   return std::move(result.image);
 }
 
+/// Returns the options of `watch` by which the files are written, without the job's number.
+WatchOptions watch_options(const SubmitOptions& options, std::vector<std::string> outputs) {
+  return {.outputs = std::move(outputs),
+          .farm = options.farm,
+          .display = options.display,
+          .report = options.report,
+          .tev = options.tev,
+          .verbosity = options.verbosity,
+          .denoise = options.denoise,
+          .after = options.after};
+}
+
 void say_detached(JobId job, Verbosity verbosity, const Console& console) {
   if (verbosity.json) {
     console.line(JsonObject().text("event", "submitted").whole("job", job).str());
@@ -66,9 +79,10 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   if (outputs.empty() && !options.detach) {
     outputs = {default_output(options.scene, options.frames.empty() ? ".png" : ".####.png")};
   }
+  WatchOptions watch = watch_options(options, outputs);
   if (!options.frames.empty()) {
     const auto client = connect_to_farm(options.farm);
-    return client.ok() ? submit_frames(**client, options, outputs, process)
+    return client.ok() ? submit_frames(**client, options, std::move(watch), process)
                        : console.fail(exit_code_of(client.status()),
                                       std::string(client.status().message()));
   }
@@ -119,9 +133,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
     }
     return make_layers(options.layers, *settings, samples, render, counts);
   };
-  const ExitCode code =
-      watch_job(**client, *job, {outputs, *reports, options.display, options.tev, options.denoise},
-                options.verbosity, process, layers);
+  watch.job = *job;
+  const ExitCode code = watch_job(**client, watch, *reports, process, layers);
   std::vector<std::string> files = outputs;
   files.insert(files.end(), reports->begin(), reports->end());
   return run_after(options.after.command, **client, *job, outputs, files, code, console);

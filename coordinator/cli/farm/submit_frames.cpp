@@ -59,14 +59,14 @@ absl::StatusOr<std::vector<FrameNumber>> lacking(FarmClient& client, const Submi
   return out;
 }
 
-/// Checks the files of all frames before the job is started. Errors: those of check_wanted() and,
-/// if the user named no outputs, of check_default_output().
-absl::Status check_files(const SubmitOptions& options, const WantedFrames& wanted) {
-  RETURN_IF_ERROR(check_wanted(wanted));
+/// Checks the files of all frames before the job is started. Errors: those of check_frame_files()
+/// and, if the user named no outputs, of check_default_output().
+absl::Status check_files(const SubmitOptions& options, const WatchOptions& watch) {
+  RETURN_IF_ERROR(check_frame_files(watch));
   if (!options.outputs.empty()) {
     return absl::OkStatus();
   }
-  for (const std::string& output : wanted.outputs) {
+  for (const std::string& output : watch.outputs) {
     for (const FrameNumber frame : options.frames) {
       RETURN_IF_ERROR(check_default_output(options.scene, name_of_frame(output, frame)));
     }
@@ -137,12 +137,10 @@ ExitCode not_sent(const absl::Status& status, JobId job, const FrameSender& send
 
 }  // namespace
 
-ExitCode submit_frames(FarmClient& client, const SubmitOptions& options,
-                       const std::vector<std::string>& outputs, Process& process) {
+ExitCode submit_frames(FarmClient& client, const SubmitOptions& options, WatchOptions watch,
+                       Process& process) {
   const Console& console = process.console;
-  const WantedFrames wanted{outputs, options.report, options.display, options.after,
-                            options.denoise};
-  if (const absl::Status status = check_files(options, wanted); !status.ok()) {
+  if (const absl::Status status = check_files(options, watch); !status.ok()) {
     return console.fail(absl::IsFailedPrecondition(status) ? ExitCode::kFailed : ExitCode::kWrong,
                         std::string(status.message()));
   }
@@ -168,8 +166,8 @@ ExitCode submit_frames(FarmClient& client, const SubmitOptions& options,
     say_started(started->job, options.verbosity, console);
     return sent.ok() ? ExitCode::kDone : not_sent(sent, started->job, sender, console);
   }
-  const WatchedFrames watched =
-      watch_frames(client, started->job, wanted, options.verbosity, process);
+  watch.job = started->job;
+  const WatchedFrames watched = watch_frames(client, watch, process);
   sender.stop();
   const absl::Status sent = sender.wait();
   if (sent.ok() || watched.is_over) {

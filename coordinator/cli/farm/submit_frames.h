@@ -8,9 +8,9 @@
 namespace bandsaw::coordinator {
 
 /// Starts a sequence, or continues one (--continue), sends the scenes of its frames and fetches
-/// their images. `outputs`: names of image files, with a place for the number of a frame
-/// ("walk.####.png").
-ExitCode submit_frames(FarmClient& client, const SubmitOptions& options,
-                       const std::vector<std::string>& outputs, Process& process);
+/// their images. `watch`: what is made of the frames, in files whose names have a place for the
+/// number of a frame ("walk.####.png"); its `job` is ignored.
+ExitCode submit_frames(FarmClient& client, const SubmitOptions& options, WatchOptions watch,
+                       Process& process);
 
 }  // namespace bandsaw::coordinator

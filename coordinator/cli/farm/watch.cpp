@@ -21,16 +21,14 @@ ExitCode watch_sequence(const WatchOptions& options, const JobSpec& spec, FarmCl
         ExitCode::kWrong, absl::StrCat("--preview and --tev are for one image: job ", options.job,
                                        " has frames; watch the job of one of them"));
   }
-  const WantedFrames wanted{options.outputs, options.report, options.display, options.after,
-                            options.denoise};
-  absl::Status status = check_wanted(wanted);
+  absl::Status status = check_frame_files(options);
   const bool lacks_program = absl::IsFailedPrecondition(status);
   status.Update(check_denoise(options.denoise, spec.settings, spec.stop));
   if (!status.ok()) {
     return process.console.fail(lacks_program ? ExitCode::kFailed : ExitCode::kWrong,
                                 std::string(status.message()));
   }
-  return watch_frames(client, options.job, wanted, options.verbosity, process).code;
+  return watch_frames(client, options, process).code;
 }
 
 ExitCode watch_image(const WatchOptions& options, FarmClient& client, Process& process) {
@@ -48,10 +46,7 @@ ExitCode watch_image(const WatchOptions& options, FarmClient& client, Process& p
   if (!reports.ok()) {
     return process.console.fail(ExitCode::kWrong, std::string(reports.status().message()));
   }
-  const ExitCode code =
-      watch_job(client, options.job,
-                {options.outputs, *reports, options.display, options.tev, options.denoise},
-                options.verbosity, process);
+  const ExitCode code = watch_job(client, options, *reports, process);
   std::vector<std::string> files = options.outputs;
   files.insert(files.end(), reports->begin(), reports->end());
   return run_after(options.after.command, client, options.job, options.outputs, files, code,

@@ -46,10 +46,10 @@ absl::StatusOr<Progress> follow(FarmClient& client, JobId job, FrameFetcher& fet
 
 }  // namespace
 
-absl::Status check_wanted(const WantedFrames& wanted) {
-  std::vector<std::string> numbered = wanted.outputs;
-  if (!wanted.report.file.empty() && wanted.report.file != "none") {
-    numbered.push_back(wanted.report.file);
+absl::Status check_frame_files(const WatchOptions& options) {
+  std::vector<std::string> numbered = options.outputs;
+  if (!options.report.file.empty() && options.report.file != "none") {
+    numbered.push_back(options.report.file);
   }
   for (const std::string& name : numbered) {
     if (!has_frame_place(name)) {
@@ -59,21 +59,21 @@ absl::Status check_wanted(const WantedFrames& wanted) {
                        "to be, as in walk.####.exr"));
     }
   }
-  RETURN_IF_ERROR(check_outputs_writable(wanted.outputs));
-  if (wanted.denoise != Denoiser::kNone) {
-    RETURN_IF_ERROR(check_outputs_writable(raw_outputs(wanted.outputs)));
+  RETURN_IF_ERROR(check_outputs_writable(options.outputs));
+  if (options.denoise != Denoiser::kNone) {
+    RETURN_IF_ERROR(check_outputs_writable(raw_outputs(options.outputs)));
   }
-  if (!wanted.after.contact_sheet.empty()) {
-    RETURN_IF_ERROR(check_outputs_writable({wanted.after.contact_sheet}));
+  if (!options.after.contact_sheet.empty()) {
+    RETURN_IF_ERROR(check_outputs_writable({options.after.contact_sheet}));
   }
-  return wanted.after.video.empty() ? absl::OkStatus() : Video::check(wanted.after.video);
+  return options.after.video.empty() ? absl::OkStatus() : Video::check(options.after.video);
 }
 
-WatchedFrames watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
-                           Verbosity verbosity, Process& process) {
+WatchedFrames watch_frames(FarmClient& client, const WatchOptions& options, Process& process) {
+  const JobId job = options.job;
   const Console& console = process.console;
-  ProgressDisplay display(console, verbosity);
-  FrameFetcher fetcher(client, job, wanted, display, console);
+  ProgressDisplay display(console, options.verbosity);
+  FrameFetcher fetcher(client, options, display, console);
   const Interrupts::Listener listener(process.interrupts, [&] {
     client.stop();
     fetcher.stop();
@@ -81,14 +81,14 @@ WatchedFrames watch_frames(FarmClient& client, JobId job, const WantedFrames& wa
   const auto last = follow(client, job, fetcher, display);
   if (!last.ok()) {
     display.clear();
-    const std::string how = come_back(job, wanted.outputs, wanted.denoise, "NAME.####.png");
+    const std::string how = come_back(options, "NAME.####.png");
     const std::string otherwise =
         absl::StrCat(last.status().message(), "; the farm keeps the images. ", how);
     return {left_early(last.status(), job, how, otherwise, console), false};
   }
   absl::Status made = fetcher.make_collections();
-  std::vector<std::string> outputs = wanted.outputs;
-  for (const std::string& file : {wanted.after.contact_sheet, wanted.after.video}) {
+  std::vector<std::string> outputs = options.outputs;
+  for (const std::string& file : {options.after.contact_sheet, options.after.video}) {
     if (!file.empty()) {
       outputs.push_back(file);
     }
@@ -106,7 +106,7 @@ WatchedFrames watch_frames(FarmClient& client, JobId job, const WantedFrames& wa
   } else if (code == ExitCode::kDone) {
     display.done(*last, outputs, {});
   }
-  code = run_after(wanted.after.command, client, job, outputs, fetcher.files(), code, console);
+  code = run_after(options.after.command, client, job, outputs, fetcher.files(), code, console);
   return {code, true};
 }
 

@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/base/ticker.h"
 #include "coordinator/cli/farm/call_with_retries.h"
@@ -25,6 +25,7 @@
 #include "coordinator/cli/progress/image_views.h"
 #include "coordinator/engine/clock.h"
 #include "coordinator/scheduler/api/job_spec.h"
+#include "proto/link/join.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -146,11 +147,18 @@ class Watch {
 };
 
 // Prints an error that occurred after the farm had finished the image, and returns kFailed.
-ExitCode not_fetched(const absl::Status& status, JobId job, const Wanted& wanted,
-                     const Console& console) {
-  return console.fail(ExitCode::kFailed,
-                      absl::StrCat(status.message(), "; the farm keeps the image. ",
-                                   come_back(job, {}, wanted.denoise, "FILE")));
+// The command in it names no outputs, because these may be what cannot be written.
+ExitCode not_fetched(const absl::Status& status, WatchOptions options, const Console& console) {
+  options.outputs.clear();
+  return console.fail(
+      ExitCode::kFailed,
+      absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(options, "FILE")));
+}
+
+// Returns true if --farm names a file, and not a join string or standard input.
+bool is_file_name(const std::string& farm) {
+  std::error_code error;
+  return farm != "-" && !link::parse_join_string(farm).ok() && std::filesystem::exists(farm, error);
 }
 
 /// Returns what is written for the job. Renders the additional layers and, with --denoise, what the
@@ -189,13 +197,36 @@ absl::Status write_pictures(const JobPictures& pictures, const Wanted& wanted) {
   return write_reports(report_text(report), wanted.reports);
 }
 
-std::string come_back(JobId job, const std::vector<std::string>& outputs, Denoiser denoise,
-                      const std::string& otherwise) {
-  const char* const clean = denoise == Denoiser::kNone   ? ""
-                            : denoise == Denoiser::kOidn ? " --denoise=oidn"
-                                                         : " --denoise";
-  return absl::StrCat("Come back with: bandsaw watch ", job, clean, " -o ",
-                      outputs.empty() ? otherwise : absl::StrJoin(outputs, " -o "));
+std::string come_back(const WatchOptions& options, const std::string& otherwise) {
+  std::string out = absl::StrCat("Come back with: bandsaw watch ", options.job);
+  const auto add = [&out](const char* name, const std::string& value) {
+    if (!value.empty()) {
+      absl::StrAppend(&out, " ", name, " ", shell_word(value));
+    }
+  };
+  if (options.denoise != Denoiser::kNone) {
+    out += options.denoise == Denoiser::kOidn ? " --denoise=oidn" : " --denoise";
+  }
+  add("-o", options.outputs.empty() ? otherwise : "");
+  for (const std::string& output : options.outputs) {
+    add("-o", output);
+  }
+  add("--report", options.report.file);
+  out += options.display.half ? " --half" : "";
+  if (options.display.exposure) {
+    add("--exposure", absl::StrCat(*options.display.exposure));
+  }
+  if (options.display.tone) {
+    add("--tone", *options.display.tone == Tone::kFilmic ? "filmic" : "none");
+  }
+  add("--video", options.after.video);
+  if (!options.after.video.empty()) {
+    add("--fps", absl::StrCat(options.after.video_fps));
+  }
+  add("--contact-sheet", options.after.contact_sheet);
+  add("--then", options.after.command);
+  add("--farm", is_file_name(options.farm.farm) ? options.farm.farm : "");
+  return out;
 }
 
 ExitCode left_early(const absl::Status& status, JobId job, const std::string& how,
@@ -216,15 +247,17 @@ absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDispl
   return Watch(client, job, display, on_status).to_the_end();
 }
 
-ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosity verbosity,
-                   Process& process, const BesideImage& beside) {
-  const std::vector<std::string>& outputs = wanted.outputs;
+ExitCode watch_job(FarmClient& client, const WatchOptions& options,
+                   const std::vector<std::string>& reports, Process& process,
+                   const BesideImage& beside) {
+  const JobId job = options.job;
+  const Wanted wanted{options.outputs, reports, options.display, options.tev, options.denoise};
   const auto left = [&](const absl::Status& status) {
-    return left_early(status, job, come_back(job, outputs, wanted.denoise, "FILE"),
-                      std::string(status.message()), process.console);
+    return left_early(status, job, come_back(options, "FILE"), std::string(status.message()),
+                      process.console);
   };
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
-  ProgressDisplay display(process.console, verbosity);
+  ProgressDisplay display(process.console, options.verbosity);
   ImageViews views(display, wanted.display, wanted.tev, absl::StrCat("bandsaw job ", job));
   const auto last = [&] {
     const FollowedImage followed(client, job, views);
@@ -236,7 +269,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
   }
   if (last->job.state != JobState::kDone) {
     display.ended(*last);
-    if (!verbosity.json) {
+    if (!options.verbosity.json) {
       for (const std::string& line : last->job.log) {
         process.console.complain(printable(absl::StrCat(last->job.log_of, " | ", line)));
       }
@@ -245,7 +278,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
     return process.console.fail(
         ExitCode::kFailed, absl::StrCat("job ", job, " ", state_name(last->job.state), reason));
   }
-  if (!outputs.empty() || views.any()) {
+  if (!wanted.outputs.empty() || views.any()) {
     auto result = client.result(job);
     if (!result.ok()) {
       display.clear();
@@ -256,15 +289,15 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
     if (!pictures.ok()) {
       display.clear();
       return exit_code_of(pictures.status()) == ExitCode::kFailed
-                 ? not_fetched(pictures.status(), job, wanted, process.console)
+                 ? not_fetched(pictures.status(), options, process.console)
                  : left(pictures.status());
     }
     if (const auto status = write_pictures(*pictures, wanted); !status.ok()) {
       display.clear();
-      return not_fetched(status, job, wanted, process.console);
+      return not_fetched(status, options, process.console);
     }
   }
-  display.done(*last, outputs, wanted.reports);
+  display.done(*last, wanted.outputs, reports);
   return ExitCode::kDone;
 }
 

@@ -36,11 +36,11 @@ struct JobPictures {
   const Image& best() const { return clean ? clean->image : result.image; }
 };
 
-/// Returns a sentence with the command that follows the job again and writes the same files: "Come
-/// back with: bandsaw watch 7 --denoise -o walk.png". `otherwise`: the name in it if `outputs` is
-/// empty.
-std::string come_back(JobId job, const std::vector<std::string>& outputs, Denoiser denoise,
-                      const std::string& otherwise);
+/// Returns a sentence with the command, ready for a shell, that follows the job again and writes
+/// the same files: "Come back with: bandsaw watch 7 --denoise -o walk.png". `otherwise`: the name
+/// in it if there are no outputs. The farm is named if the user named a file; a join string, which
+/// has a secret, is not shown.
+std::string come_back(const WatchOptions& options, const std::string& otherwise);
 
 /// Prints why a command ends before it has written the files of a job, and returns the exit code.
 /// `how`: the sentence of come_back(), which is printed if the user interrupted the command or the
@@ -63,9 +63,11 @@ using BesideImage =
     std::function<absl::StatusOr<Layers>(std::uint64_t samples, ProgressDisplay& display)>;
 
 /// Displays the job's progress until its state is final, then fetches its image and writes the
-/// files, with the layers made by `beside`, if given. After a signal it returns kInterrupted, and
-/// the job continues on the farm. If the farm is unreachable, retries for one minute.
-ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosity verbosity,
-                   Process& process, const BesideImage& beside = {});
+/// files and `reports` (names that report_files() has returned), with the layers made by `beside`,
+/// if given. After a signal it returns kInterrupted, and the job continues on the farm. If the farm
+/// is unreachable, retries for one minute.
+ExitCode watch_job(FarmClient& client, const WatchOptions& options,
+                   const std::vector<std::string>& reports, Process& process,
+                   const BesideImage& beside = {});
 
 }  // namespace bandsaw::coordinator

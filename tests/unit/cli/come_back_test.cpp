@@ -1,5 +1,5 @@
 // When a command leaves a job early, for example at Ctrl-C, it prints the command that follows the
-// job again. That command repeats the files and the denoiser that the user asked for.
+// job again. That command repeats the files and the settings that the user asked for.
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,54 @@
 namespace bandsaw::coordinator {
 namespace {
 
+WatchOptions of_job_7() {
+  WatchOptions options;
+  options.job = 7;
+  return options;
+}
+
 TEST(ComeBack, RepeatsTheFilesAndTheDenoiser) {
-  EXPECT_EQ(come_back(7, {}, Denoiser::kNone, "FILE"), "Come back with: bandsaw watch 7 -o FILE");
-  EXPECT_EQ(come_back(7, {"a.png", "b.exr"}, Denoiser::kRegression, "FILE"),
+  WatchOptions options = of_job_7();
+  EXPECT_EQ(come_back(options, "FILE"), "Come back with: bandsaw watch 7 -o FILE");
+  options.outputs = {"a.png", "b.exr"};
+  options.denoise = Denoiser::kRegression;
+  EXPECT_EQ(come_back(options, "FILE"),
             "Come back with: bandsaw watch 7 --denoise -o a.png -o b.exr");
-  EXPECT_EQ(come_back(7, {"walk.####.png"}, Denoiser::kOidn, "FILE"),
+  options.outputs = {"walk.####.png"};
+  options.denoise = Denoiser::kOidn;
+  EXPECT_EQ(come_back(options, "FILE"),
             "Come back with: bandsaw watch 7 --denoise=oidn -o walk.####.png");
+}
+
+TEST(ComeBack, QuotesNamesForTheShell) {
+  WatchOptions options = of_job_7();
+  options.outputs = {"it's mine.png"};
+  EXPECT_EQ(come_back(options, "FILE"), R"(Come back with: bandsaw watch 7 -o 'it'\''s mine.png')");
+}
+
+TEST(ComeBack, RepeatsTheSettingsAndWhatIsMadeOfTheImages) {
+  WatchOptions options = of_job_7();
+  options.outputs = {"w.#.exr"};
+  options.display = {.exposure = -1.5, .tone = Tone::kFilmic, .half = true};
+  options.report.file = "none";
+  options.after = {.video = "w.mp4",
+                   .video_fps = 12.5,
+                   .contact_sheet = "s.png",
+                   .command = "cp $BANDSAW_FILES /mnt"};
+  EXPECT_EQ(come_back(options, "FILE"),
+            "Come back with: bandsaw watch 7 -o w.#.exr --report none --half --exposure -1.5 "
+            "--tone filmic --video w.mp4 --fps 12.5 --contact-sheet s.png "
+            "--then 'cp $BANDSAW_FILES /mnt'");
+}
+
+TEST(ComeBack, NamesTheFileOfTheFarmAndShowsNoSecret) {
+  WatchOptions options = of_job_7();
+  options.farm.farm = "/dev/null";
+  EXPECT_EQ(come_back(options, "FILE"), "Come back with: bandsaw watch 7 -o FILE --farm /dev/null");
+  for (const char* farm : {"-", "bsw1-f-10.0.0.1:7878-secret"}) {
+    options.farm.farm = farm;
+    EXPECT_EQ(come_back(options, "FILE"), "Come back with: bandsaw watch 7 -o FILE");
+  }
 }
 
 }  // namespace

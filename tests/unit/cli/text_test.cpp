@@ -61,6 +61,15 @@ TEST(Text, FitCountsColumnsAndTruncatesBetweenCharacters) {
   EXPECT_EQ(pad_left("ü", 3), "  ü");
 }
 
+TEST(Text, AWordOfAShellIsQuotedIfItHasTo) {
+  EXPECT_EQ(shell_word("out/walk.####.png"), "out/walk.####.png");
+  EXPECT_EQ(shell_word("a b.png"), "'a b.png'");
+  EXPECT_EQ(shell_word("it's.png"), R"('it'\''s.png')");
+  EXPECT_EQ(shell_word("####.png"), "'####.png'");
+  EXPECT_EQ(shell_word("~/$x"), "'~/$x'");
+  EXPECT_EQ(shell_word(""), "''");
+}
+
 TEST(DidYouMean, FindsTheNearestWord) {
   const std::vector<std::string> known = {"serve", "submit", "watch", "jobs", "render"};
   EXPECT_EQ(did_you_mean("rendr", known), "render");
