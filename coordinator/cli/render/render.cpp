@@ -38,20 +38,6 @@ std::vector<std::string> outputs_of(const RenderOptions& options) {
                                                      : ".png")};
 }
 
-// The imported scene, ready to render.
-struct Prepared {
-  PackageInfo info;
-  DigestHex digest;
-  SceneDescription scene;
-};
-
-absl::StatusOr<Prepared> prepare(const RenderOptions& options, Process& process) {
-  ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(options.scene, options.verbosity,
-                                                              process, options.image.choices));
-  ASSIGN_OR_RETURN(SceneDescription scene, decode_package(package.manifest(), package.blobs()));
-  return Prepared{package.info(), wire::sha256(package.manifest()).hex(), std::move(scene)};
-}
-
 /// Writes the files of `render --rows`: the sums of the rows to .band files, and a picture of these
 /// rows to all others.
 absl::Status write_part_outputs(const std::vector<BandPixels>& bands, const JobSpec& spec,
@@ -277,12 +263,13 @@ ExitCode run(const RenderOptions& options, Process& process) {
   if (!reports.ok()) {
     return console.fail(ExitCode::kWrong, std::string(reports.status().message()));
   }
-  auto prepared = prepare(options, process);
-  if (!prepared.ok()) {
-    return console.fail(import_exit_code(prepared.status()),
-                        std::string(prepared.status().message()));
+  auto decoded =
+      decode_scene_file(options.scene, options.verbosity, process, options.image.choices);
+  if (!decoded.ok()) {
+    return console.fail(import_exit_code(decoded.status()),
+                        std::string(decoded.status().message()));
   }
-  const auto settings = image_settings(options.image, prepared->info);
+  const auto settings = image_settings(options.image, decoded->info);
   if (!settings.ok()) {
     return console.fail(ExitCode::kWrong, std::string(settings.status().message()));
   }
@@ -296,14 +283,14 @@ ExitCode run(const RenderOptions& options, Process& process) {
                                      ", the image's height, is ", options.rows->last));
   }
   JobSpec spec;
-  spec.name = prepared->info.name;
-  spec.manifest = prepared->digest;
+  spec.name = decoded->info.name;
+  spec.manifest = wire::sha256(decoded->manifest).hex();
   spec.settings = *settings;
   spec.stop = options.image.stop;
   const auto cpus = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  return LocalRun(options, process, spec, options.display.over(prepared->info.display),
+  return LocalRun(options, process, spec, options.display.over(decoded->info.display),
                   options.threads > 0 ? options.threads : cpus)
-      .run(std::move(prepared->scene), outputs, *reports);
+      .run(std::move(decoded->scene), outputs, *reports);
 }
 
 }  // namespace bandsaw::coordinator

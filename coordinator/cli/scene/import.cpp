@@ -86,27 +86,26 @@ absl::Status write_output(const Output& output, bool force) {
   return write_file_atomically(output.to, std::as_bytes(std::span(bytes)));
 }
 
-/// Converts the scene; a signal ends it with CANCELLED.
-absl::StatusOr<SceneFiles> converted(const ImportOptions& options, Process& process) {
-  std::atomic<bool> stop{false};
-  const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
-  ImportLimits limits;
-  limits.stop = &stop;
-  return scene_files_in_process(options.scene, limits, options.choices);
-}
-
 /// Converts the scene and writes all files. The scene file is written last, so that it never names
-/// a file that is missing. Returns the number of files beside it.
+/// a file that is missing. Returns the number of files beside it. CANCELLED: a signal came.
 absl::StatusOr<std::size_t> import_to(const fs::path& target, const ImportOptions& options,
                                       Process& process) {
   if (!options.force && file_exists(target)) {
     return absl::AlreadyExistsError(absl::StrCat(target.string(), " exists; --force replaces it"));
   }
   RETURN_IF_ERROR(check_can_be_written(target));
-  ASSIGN_OR_RETURN(const SceneFiles files, converted(options, process));
+  std::atomic<bool> stop{false};
+  const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
+  ImportLimits limits;
+  limits.stop = &stop;
+  ASSIGN_OR_RETURN(const SceneFiles files,
+                   scene_files_in_process(options.scene, limits, options.choices));
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   ASSIGN_OR_RETURN(const std::vector<Output> outputs, outputs_of(files, options.scene, folder));
   for (const Output& output : outputs) {
+    if (stop) {
+      return absl::CancelledError("interrupted");
+    }
     RETURN_IF_ERROR(write_output(output, options.force));
   }
   RETURN_IF_ERROR(write_file_atomically(target, std::as_bytes(std::span(files.text))));

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <functional>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"
@@ -78,6 +79,20 @@ absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verb
         return import_any_scene(scene, choices, stop, warnings);
       },
       verbosity, process);
+}
+
+absl::StatusOr<DecodedScene> decode_scene_file(const std::string& scene, Verbosity verbosity,
+                                               Process& process, const SceneChoices& choices) {
+  // Without a listener, a signal would end the program before the folder is removed.
+  std::atomic<bool> stop{false};
+  const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
+  ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(scene, verbosity, process, choices));
+  ASSIGN_OR_RETURN(SceneDescription description,
+                   decode_package(package.manifest(), package.blobs()));
+  if (stop) {
+    return absl::CancelledError("interrupted");
+  }
+  return DecodedScene{package.manifest(), package.info(), std::move(description)};
 }
 
 absl::StatusOr<ImportedPackage> FrameImporter::import(std::int64_t frame,

@@ -31,6 +31,19 @@ absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verb
                                                   Process& process,
                                                   const SceneChoices& choices = {});
 
+/// A scene that is imported and decoded. No temporary folder is left of it.
+struct DecodedScene {
+  std::string manifest;
+  PackageInfo info;
+  SceneDescription scene;
+};
+
+/// Imports a scene for a command as import_scene_file() does, and decodes it. CANCELLED: a signal
+/// came; the temporary folder is removed. Other errors: those of import_scene_file() and of
+/// decode_package().
+absl::StatusOr<DecodedScene> decode_scene_file(const std::string& scene, Verbosity verbosity,
+                                               Process& process, const SceneChoices& choices = {});
+
 /// Imports the frames of one scene, one after the other. Its files are read only once: by one
 /// importer (ImportSession) or, for a .blend file, by one Blender that writes a scene for each
 /// frame.

@@ -16,18 +16,17 @@ namespace {
 
 absl::StatusOr<SceneSummary> summary_of_file(const InfoOptions& options, Process& process) {
   // Quiet, because the summary contains the warnings.
-  ASSIGN_OR_RETURN(ImportedPackage package,
-                   import_scene_file(options.scene, {.quiet = true}, process, options.choices));
-  ASSIGN_OR_RETURN(SceneDescription scene, decode_package(package.manifest(), package.blobs()));
-  ASSIGN_OR_RETURN(const std::vector<BlobRef> blobs, package_blobs(package.manifest()));
-  std::uint64_t bytes = package.manifest().size();
+  ASSIGN_OR_RETURN(DecodedScene decoded,
+                   decode_scene_file(options.scene, {.quiet = true}, process, options.choices));
+  ASSIGN_OR_RETURN(const std::vector<BlobRef> blobs, package_blobs(decoded.manifest));
+  std::uint64_t bytes = decoded.manifest.size();
   for (const BlobRef& blob : blobs) {
     bytes += blob.size;
   }
-  SceneSummary summary = summary_of(scene, package.info(), bytes);
+  SceneSummary summary = summary_of(decoded.scene, decoded.info, bytes);
   // The BVHs are built only to determine their size.
   Pool pool(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
-  ASSIGN_OR_RETURN(const auto built, Scene::build(std::move(scene), pool));
+  ASSIGN_OR_RETURN(const auto built, Scene::build(std::move(decoded.scene), pool));
   summary.tree_bytes = built->accel().bytes();
   return summary;
 }

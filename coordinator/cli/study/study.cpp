@@ -32,20 +32,18 @@ struct Prepared {
 absl::StatusOr<std::vector<Prepared>> prepare(const StudyOptions& options, Process& process) {
   std::vector<Prepared> out;
   for (const std::string& scene : options.scenes) {
-    ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(scene, options.verbosity, process));
-    ASSIGN_OR_RETURN(SceneDescription description,
-                     decode_package(package.manifest(), package.blobs()));
-    if (options.every_object && objects_of(description) > kMaxObjects) {
+    ASSIGN_OR_RETURN(DecodedScene decoded, decode_scene_file(scene, options.verbosity, process));
+    if (options.every_object && objects_of(decoded.scene) > kMaxObjects) {
       return absl::InvalidArgumentError(
-          absl::StrCat("--every-object: ", scene, " has ", objects_of(description),
+          absl::StrCat("--every-object: ", scene, " has ", objects_of(decoded.scene),
                        " objects, each to be tested against every ray; at most ", kMaxObjects,
                        ": leave the option out, or choose a smaller scene"));
     }
     ImageOptions image;
     image.seed = options.seed;
     image.width = options.width;
-    ASSIGN_OR_RETURN(const RenderSettings settings, image_settings(image, package.info()));
-    out.push_back({package.info().name, settings, std::move(description)});
+    ASSIGN_OR_RETURN(const RenderSettings settings, image_settings(image, decoded.info));
+    out.push_back({decoded.info.name, settings, std::move(decoded.scene)});
   }
   return out;
 }
