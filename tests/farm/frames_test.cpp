@@ -158,7 +158,7 @@ TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
                               "cp \"$BANDSAW_FILE_LIST\" " + farm_.path("list") +
                                   "; echo job $BANDSAW_JOB is $BANDSAW_STATE: $BANDSAW_FILES"}));
   ASSERT_EQ(again.code, 0) << again.err;
-  EXPECT_THAT(again.out, HasSubstr("job 1 is done: " + outputs_));
+  EXPECT_THAT(again.err, HasSubstr("job 1 is done: " + outputs_));
   EXPECT_THAT(file_bytes(farm_.path("list")), HasSubstr(file_of(20) + "\n"));
   for (const int frame : {1, 3, 20}) {
     expect_bytes_of_render(frame, {"--fixed-seed"});
@@ -199,6 +199,31 @@ TEST_F(Frames, HaveAContactSheetAndAFailedCommandOrMissingFfmpegIsReported) {
       run(submit("1-4", {"-o", outputs_, "--video", farm_.path("w.mp4")}), {"PATH=/nowhere"});
   EXPECT_EQ(without.code, 1);
   EXPECT_THAT(without.err, HasSubstr("ffmpeg, which is not on PATH"));
+}
+
+TEST_F(Frames, AreFollowedByACommandWhoseOutputIsCompleteAndApartFromTheJson) {
+  farm_.add_worker("one", 1);
+  const Finished done = run(submit(
+      "1", {"-o", outputs_, "--then", "echo it ran; head -c 200000 /dev/zero | tr '\\0' x"}));
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(done.out.find("it ran"), std::string::npos);
+  EXPECT_THAT(done.err, HasSubstr("it ran\n" + std::string(200'000, 'x')));
+  const Finished plain = run(farm_.command({"watch", "1", "--then", "echo it ran"}));
+  EXPECT_THAT(plain.out, testing::EndsWith("it ran\n"));
+}
+
+TEST_F(Frames, AreFollowedByACommandThatASignalEnds) {
+  farm_.add_worker("one", 1);
+  const std::string temporary = farm_.path("tmp");
+  std::filesystem::create_directory(temporary);
+  Process client =
+      Process::start(submit("1", {"-o", outputs_, "--then", "echo it began; exec sleep 1000"}),
+                     {"TMPDIR=" + temporary});
+  ASSERT_TRUE(client.wait_for("it began")) << client.err();
+  client.signal(SIGTERM);
+  EXPECT_EQ(client.wait(), 130) << client.err();
+  EXPECT_THAT(client.err(), HasSubstr("--then: the command was interrupted"));
+  EXPECT_TRUE(std::filesystem::is_empty(temporary));
 }
 
 TEST_F(Frames, AreCleanedAsRenderDoes) {

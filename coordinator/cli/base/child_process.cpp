@@ -1,5 +1,6 @@
-// run_child() starts a program with its output in a pipe. Every 20 ms it tests whether the program
-// has ended. If it still runs when the time is over or the caller has set `stop`, it is killed.
+// run_child() starts a program with its output in a pipe, or in a file of the caller. Every 20 ms
+// it tests whether the program has ended. If it still runs when the time is over or the caller has
+// set `stop`, it is killed.
 
 #include "coordinator/cli/base/child_process.h"
 
@@ -26,11 +27,17 @@ using Clock = std::chrono::steady_clock;
 
 struct Child {
   pid_t pid = -1;
-  int output = -1;  ///< read end of the pipe with its output
+  int output = -1;  ///< read end of the pipe with its output; -1: there is no pipe
 };
 
 absl::StatusOr<Child> start(const std::vector<std::string>& arguments,
                             const ChildStreams& streams) {
+  if (streams.output >= 0) {
+    ASSIGN_OR_RETURN(const pid_t pid, spawn(arguments, {.input_file = streams.input,
+                                                        .output = streams.output,
+                                                        .errors = STDERR_FILENO}));
+    return Child{pid};
+  }
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     return errno_status(errno, "cannot make a pipe");
@@ -53,7 +60,7 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
   constexpr std::size_t kMaxOutput = 64 << 10;  // bounds memory; further output is read and dropped
   ChildOutcome outcome;
   const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
-  bool open = true;
+  bool open = child.output >= 0;
   while (waitpid(child.pid, &outcome.wait_status, WNOHANG) == 0) {
     const bool stopped = stop != nullptr && stop->load();
     if (stopped || Clock::now() >= deadline) {
@@ -63,8 +70,8 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
       break;
     }
     pollfd ready{open ? child.output : -1, POLLIN, 0};
-    // A child that has closed its output usually exits at once, so the next look comes after 1 ms.
-    if (poll(&ready, 1, open ? kLookEveryMs : 1) > 0) {
+    // A child that has closed its pipe usually exits at once, so the next look comes after 1 ms.
+    if (poll(&ready, 1, open || child.output < 0 ? kLookEveryMs : 1) > 0) {
       std::array<char, 4096> buffer{};
       const ssize_t got = read(child.output, buffer.data(), buffer.size());
       open = got > 0;
@@ -91,7 +98,11 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
 absl::StatusOr<ChildOutcome> run_child(const std::vector<std::string>& arguments, double seconds,
                                        const std::atomic<bool>* stop, const ChildStreams& streams) {
   ASSIGN_OR_RETURN(const Child child, start(arguments, streams));
-  const absl::Cleanup close_output = [&child] { close(child.output); };
+  const absl::Cleanup close_output = [&child] {
+    if (child.output >= 0) {
+      close(child.output);
+    }
+  };
   return wait_for(child, seconds, stop);
 }
 

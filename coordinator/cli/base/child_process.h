@@ -21,13 +21,16 @@ struct ChildOutcome {
   End end = End::kExited;
   int wait_status = 0;  ///< as returned by waitpid; read it with WIFEXITED and the like
   /// Standard output of the child (with standard error, if the caller asked for it), at most 64
-  /// KiB.
+  /// KiB; empty if the child wrote to a file descriptor of the caller.
   std::string output;
 };
 
 struct ChildStreams {
   std::string input = "/dev/null";  ///< file from which standard input is read
   bool errors_too = false;          ///< include standard error in the output
+  /// File descriptor that the child gets as its standard output; it also gets this process's
+  /// standard error, and ChildOutcome::output stays empty. -1: the output is collected.
+  int output = -1;
 };
 
 /// Starts `arguments[0]` (a path, or a name on PATH) with posix_spawn, without a shell, and waits

@@ -5,7 +5,9 @@
 #include "coordinator/cli/farm/after_job.h"
 
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -37,29 +39,33 @@ std::string write_list(const absl::StatusOr<std::unique_ptr<const ScratchFolder>
 
 }  // namespace
 
-ExitCode run_after(const std::string& command, FarmClient& client, JobId job,
+ExitCode run_after(const WatchOptions& options, FarmClient& client,
                    const std::vector<std::string>& outputs, const std::vector<std::string>& files,
-                   ExitCode code, const Console& console) {
+                   ExitCode code, Process& process) {
+  const std::string& command = options.after.command;
   if (command.empty() || (code != ExitCode::kDone && code != ExitCode::kFailed)) {
     return code;
   }
-  const auto last = client.job(job);
+  const auto last = client.job(options.job);
   if (!last.ok() || !is_final(last->job.state)) {
     return code;
   }
+  std::atomic<bool> stop{false};
+  const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
   const auto folder = ScratchFolder::make("then");
   const std::string list = write_list(folder, files);
-  const auto ran = run_child({"env", absl::StrCat("BANDSAW_JOB=", job),
+  const auto ran = run_child({"env", absl::StrCat("BANDSAW_JOB=", options.job),
                               absl::StrCat("BANDSAW_STATE=", state_name(last->job.state)),
                               absl::StrCat("BANDSAW_FILES=", absl::StrJoin(outputs, "\n")),
                               absl::StrCat("BANDSAW_FILE_LIST=", list), "sh", "-c", command},
-                             kNoLimit_s, nullptr, {.errors_too = true});
-  if (ran.ok()) {
-    console.write(ran->output);
+                             kNoLimit_s, &stop,
+                             {.output = options.verbosity.json ? STDERR_FILENO : STDOUT_FILENO});
+  if (stop) {
+    return process.console.fail(ExitCode::kInterrupted, "--then: the command was interrupted");
   }
   const bool good = ran.ok() && WIFEXITED(ran->wait_status) && WEXITSTATUS(ran->wait_status) == 0;
   if (!good) {
-    return console.fail(
+    return process.console.fail(
         ExitCode::kFailed,
         absl::StrCat("--then: the command failed",
                      ran.ok()

@@ -137,7 +137,7 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   const ExitCode code = watch_job(**client, watch, *reports, process, layers);
   std::vector<std::string> files = outputs;
   files.insert(files.end(), reports->begin(), reports->end());
-  return run_after(options.after.command, **client, *job, outputs, files, code, console);
+  return run_after(watch, **client, outputs, files, code, process);
 }
 
 }  // namespace bandsaw::coordinator

@@ -49,8 +49,7 @@ ExitCode watch_image(const WatchOptions& options, FarmClient& client, Process& p
   const ExitCode code = watch_job(client, options, *reports, process);
   std::vector<std::string> files = options.outputs;
   files.insert(files.end(), reports->begin(), reports->end());
-  return run_after(options.after.command, client, options.job, options.outputs, files, code,
-                   process.console);
+  return run_after(options, client, options.outputs, files, code, process);
 }
 
 }  // namespace

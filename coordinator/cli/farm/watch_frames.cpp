@@ -106,7 +106,7 @@ WatchedFrames watch_frames(FarmClient& client, const WatchOptions& options, Proc
   } else if (code == ExitCode::kDone) {
     display.done(*last, outputs, {});
   }
-  code = run_after(options.after.command, client, job, outputs, fetcher.files(), code, console);
+  code = run_after(options, client, outputs, fetcher.files(), code, process);
   return {code, true};
 }
 
