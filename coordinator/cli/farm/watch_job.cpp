@@ -259,7 +259,7 @@ ExitCode watch_job(FarmClient& client, const WatchOptions& options,
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
   ProgressDisplay display(process.console, options.verbosity);
   ImageViews views(display, wanted.display, wanted.tev, absl::StrCat("bandsaw job ", job));
-  const auto last = [&] {
+  auto last = [&] {
     const FollowedImage followed(client, job, views);
     return follow_job(client, job, display);
   }();
@@ -292,6 +292,7 @@ ExitCode watch_job(FarmClient& client, const WatchOptions& options,
                  ? not_fetched(pictures.status(), options, process.console)
                  : left(pictures.status());
     }
+    last->clean_error = pictures->clean ? pictures->clean->total.at_most() : -1;
     if (const auto status = write_pictures(*pictures, wanted); !status.ok()) {
       display.clear();
       return not_fetched(status, options, process.console);

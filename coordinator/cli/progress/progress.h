@@ -18,6 +18,9 @@ struct Progress {
   /// none.
   std::string bad_sample_at;
   int threads = 0;  ///< threads of a render on this machine; 0: a farm's job
+  /// Upper bound of the error of the image without noise (--denoise), a fraction; negative:
+  /// unknown, or the noise is not removed. job.error is that of the image as rendered.
+  double clean_error = -1;
 };
 
 /// Converts the status of a job that the coordinator has sent. Values that the message lacks become

@@ -49,8 +49,11 @@ JsonObject progress_json(const Progress& progress, const std::string& event) {
       .number("samples_per_s", job.samples_per_s)
       .whole("samples_done", job.samples_done)
       .whole("samples_per_pixel", job.samples_per_pixel)
-      .known_number("error", job.error)
-      .whole("rays", job.counters.rays)
+      .known_number("error", job.error);
+  if (progress.clean_error >= 0) {
+    out.number("clean_error", progress.clean_error);
+  }
+  out.whole("rays", job.counters.rays)
       .number("cpu_s", job.cpu_s)
       .whole("bad_samples", job.counters.bad_samples);
   if (job.counters.bad_samples > 0) {

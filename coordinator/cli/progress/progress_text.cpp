@@ -38,13 +38,21 @@ std::string count(std::size_t n, const std::string& what) {
   return absl::StrCat(n, " ", what, n == 1 ? "" : "s");
 }
 
+// Returns the error of the image that is written: of the clean one if there is one. Empty: unknown.
+std::string error_text(const Progress& progress) {
+  return progress.clean_error >= 0 ? "clean error " + percent(progress.clean_error)
+         : progress.job.error >= 0 ? "error " + percent(progress.job.error)
+                                   : "";
+}
+
 // Returns the figures of bar_line() and plain_line(), such as "error 1.6 %", "48 Msamples".
-std::vector<std::string> measures(const JobView& job) {
+std::vector<std::string> measures(const Progress& progress) {
+  const JobView& job = progress.job;
   std::vector<std::string> out;
   if (job.has_frames()) {
     out.push_back(frames_done_text(job.frames));
-  } else if (job.error >= 0) {
-    out.push_back("error " + percent(job.error));
+  } else if (const std::string error = error_text(progress); !error.empty()) {
+    out.push_back(error);
   }
   out.push_back(si_with(static_cast<double>(job.samples_done), "samples"));
   if (job.samples_per_s > 0) {
@@ -91,14 +99,14 @@ std::string header_line(const Progress& progress) {
 
 std::string bar_line(const Progress& progress, std::size_t width) {
   const std::string before = percent_done(progress.job) + " ";
-  const std::string after = " " + absl::StrJoin(measures(progress.job), kDot);
+  const std::string after = " " + absl::StrJoin(measures(progress), kDot);
   const std::size_t taken = columns(before) + columns(after);
   const std::size_t available = width > taken ? width - taken : 0;
   return before + bar(progress.job.fraction, std::min(available, kBarColumns)) + after;
 }
 
 std::string plain_line(const Progress& progress) {
-  std::vector<std::string> parts = measures(progress.job);
+  std::vector<std::string> parts = measures(progress);
   if (progress.job.id > 0) {
     parts.push_back(count(progress.job.workers.size(), "worker"));
   }
@@ -138,8 +146,8 @@ std::string final_line(const Progress& progress, const std::string& name,
   if (job.has_frames()) {
     absl::StrAppend(&line, kDot, count(job.frames.all(), "frame"));
   }
-  if (job.error >= 0) {
-    absl::StrAppend(&line, kDot, "error ", percent(job.error));
+  if (const std::string error = error_text(progress); !error.empty()) {
+    absl::StrAppend(&line, kDot, error);
   }
   absl::StrAppend(&line, kDot, duration(job.elapsed_s), kDot);
   absl::StrAppend(&line, progress.threads > 0

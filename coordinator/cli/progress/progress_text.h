@@ -17,8 +17,10 @@ std::string frames_done_text(const FrameCounts& frames);
 /// no job number; a sequence also has the number of its frames.
 std::string header_line(const Progress& progress);
 
-/// Returns a progress bar and figures. The bar is shortened so that the line fits `width` columns:
-/// " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left".
+/// Returns a progress bar and figures. If the noise is removed, the error is that of the clean
+/// image as soon as it is known, here and in final_line(): "clean error 1.6 %". The bar is
+/// shortened so that the line fits `width` columns: " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48
+/// Msamples · 5.2 M/s · 0:09 left".
 std::string bar_line(const Progress& progress, std::size_t width);
 
 /// Returns the whole state in one line, for a pipe: the same without the bar, but with the number

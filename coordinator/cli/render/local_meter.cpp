@@ -76,6 +76,7 @@ Progress LocalMeter::progress(Clocks now) const {
     job.counters = counters_;
   }
   job.error = job.curve.empty() ? -1 : job.curve.back().estimate.at_most();
+  progress.clean_error = measured.empty() ? -1 : measured.back().estimate.relative_rmse;
   if (job.counters.bad_samples > 0) {
     progress.bad_sample_at = bad_sample_text(job.counters);
   }

@@ -96,6 +96,7 @@ class LocalRun {
     progress.job.state = JobState::kDone;
     progress.job.fraction = 1;
     progress.job.remaining_s = 0;
+    progress.clean_error = clean_ ? clean_->denoised.total.at_most() : -1;
     if (const absl::Status written = write(progress, outputs, reports); !written.ok()) {
       display_.clear();
       return process_.console.fail(ExitCode::kFailed, std::string(written.message()));

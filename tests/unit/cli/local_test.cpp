@@ -90,6 +90,10 @@ TEST(LocalMeter, ReportsTheProgressOfARender) {
   EXPECT_EQ(progress.job.curve[0].samples, 32u);
   EXPECT_DOUBLE_EQ(progress.job.curve[0].elapsed_s, 1);
   EXPECT_DOUBLE_EQ(progress.job.curve[0].cpu_s, 2);
+  EXPECT_EQ(progress.clean_error, -1);
+  meter.measured(32, 0.25);
+  EXPECT_EQ(meter.progress({.steady_s = 102, .cpu_s = 11}).clean_error, 0.25);
+  EXPECT_EQ(meter.progress({.steady_s = 102, .cpu_s = 11}).job.error, 0.5);
 }
 
 }  // namespace

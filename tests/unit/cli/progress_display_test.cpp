@@ -171,6 +171,16 @@ TEST(Painter, TruncatesToTheWindowAndRedrawsInPlace) {
   EXPECT_EQ(painter.clear(), "");
 }
 
+TEST(Json, HasTheErrorOfACleanImageBesideThatOfTheRenderedOne) {
+  Progress progress = sample();
+  progress.job.error = 0.5;
+  EXPECT_FALSE(parsed(progress_json(progress, "done").str()).fields().contains("clean_error"));
+  progress.clean_error = 0.25;
+  const auto done = parsed(progress_json(progress, "done").str());
+  EXPECT_EQ(done.fields().at("error").number_value(), 0.5);
+  EXPECT_EQ(done.fields().at("clean_error").number_value(), 0.25);
+}
+
 TEST(Json, EscapesAndRepairsInvalidUtf8) {
   JsonObject object;
   object.text("a\"b", "\\ \x01 ü \xff \xc3")

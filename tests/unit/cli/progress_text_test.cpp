@@ -109,6 +109,15 @@ TEST(ProgressText, TheLastLineShowsTheCost) {
   EXPECT_EQ(final_line(progress, "cornell.png"), "cornell.png · 21.4 s · 1 thread");
 }
 
+TEST(ProgressText, TheErrorOfACleanImageIsItsOwn) {
+  Progress progress = some_progress();
+  progress.job.error = 0.16;
+  progress.clean_error = 0.06;
+  EXPECT_THAT(plain_line(progress), HasSubstr(" 62 % · clean error 6 % · 48 Msamples"));
+  EXPECT_EQ(final_line(progress, "cornell.png"),
+            "cornell.png · clean error 6 % · 12.0 s · 4 workers");
+}
+
 TEST(ProgressText, TheLastLineNamesTheReports) {
   EXPECT_THAT(final_line(some_progress(), "a.png", "a.json"),
               testing::EndsWith(" · report a.json"));
