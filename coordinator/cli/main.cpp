@@ -21,6 +21,11 @@ int main(int argc, char** argv) {
   }
   Interrupts interrupts;
   Process process{console, interrupts};
-  return static_cast<int>(
-      std::visit([&](const auto& options) { return run(options, process); }, *command));
+  const ExitCode code =
+      std::visit([&](const auto& options) { return run(options, process); }, *command);
+  if (const absl::Status written = console.write_error();
+      code == ExitCode::kDone && !written.ok()) {
+    return static_cast<int>(console.fail(ExitCode::kFailed, std::string(written.message())));
+  }
+  return static_cast<int>(code);
 }

@@ -153,5 +153,24 @@ TEST_F(FullDiskFarm, StartsWithoutItsReserve) {
   expect_it_goes_on();
 }
 
+// Every write to /dev/full fails as on a full disk.
+TEST(FullDisk, OfStandardOutputIsAnError) {
+  for (const std::string command : {"info", "completion"}) {
+    const Finished done = run({"/bin/sh", "-c", "exec \"$@\" > /dev/full", "sh", BANDSAW_BIN,
+                               command, command == "info" ? kCornell : "bash"});
+    EXPECT_EQ(done.code, 1);
+    EXPECT_EQ(done.err, "bandsaw: standard output: No space left on device\n");
+  }
+}
+
+// `render` ignores SIGPIPE, so that it writes the image although its reader has ended.
+TEST(FullDisk, IsNotAReaderThatHasEnded) {
+  const TempDir folder;
+  const Finished done =
+      run({"/bin/sh", "-c", "{ \"$@\"; echo code $? >&2; } | true", "sh", BANDSAW_BIN, "render",
+           kCornell, "--width", "32", "--samples", "1", "-o", folder / "a.png"});
+  EXPECT_EQ(done.err, "code 0\n");
+}
+
 }  // namespace
 }  // namespace bandsaw::test

@@ -13,19 +13,21 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
+#include "renderlib/base/file.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
-// Write errors end it silently: if the reader is gone, no one would see a message.
-void write_all(int fd, absl::string_view text) {
+// Returns 0, or the errno of the write that failed.
+int write_all(int fd, absl::string_view text) {
   while (!text.empty()) {
     const ssize_t n = ::write(fd, text.data(), text.size());
     if (n < 0 && errno != EINTR) {
-      return;
+      return errno;
     }
     text.remove_prefix(n > 0 ? static_cast<std::size_t>(n) : 0);
   }
+  return 0;
 }
 
 bool environment_has(const char* name) {
@@ -43,10 +45,27 @@ Console::Console(Write out, Write err, bool is_terminal, bool colour)
 Console Console::standard() {
   const char* term = std::getenv("TERM");
   const bool dumb = term == nullptr || absl::string_view(term) == "dumb";
-  const bool terminal = isatty(STDOUT_FILENO) == 1 && !dumb;
-  return Console([](absl::string_view text) { write_all(STDOUT_FILENO, text); },
-                 [](absl::string_view text) { write_all(STDERR_FILENO, text); }, terminal,
-                 terminal && !environment_has("NO_COLOR"));
+  const bool tty = isatty(STDOUT_FILENO) == 1;
+  const bool terminal = tty && !dumb;
+  const auto error = std::make_shared<std::atomic<int>>(0);
+  const auto out = [error, tty](absl::string_view text) {
+    const int failed = write_all(STDOUT_FILENO, text);
+    // Writing to a terminal that was closed fails with EIO.
+    int none = 0;
+    if (failed != 0 && failed != EPIPE && !tty) {
+      error->compare_exchange_strong(none, failed);
+    }
+  };
+  Console console(
+      out, [](absl::string_view text) { write_all(STDERR_FILENO, text); }, terminal,
+      terminal && !environment_has("NO_COLOR"));
+  console.error_ = error;
+  return console;
+}
+
+absl::Status Console::write_error() const {
+  const int error = error_ == nullptr ? 0 : error_->load();
+  return error == 0 ? absl::OkStatus() : errno_status(error, "standard output");
 }
 
 TerminalSize Console::size() const {

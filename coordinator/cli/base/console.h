@@ -3,9 +3,12 @@
 // Commands write all text through a Console: to standard output, or to standard error. It also
 // knows whether standard output is a terminal, and the terminal's size and colours.
 
+#include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 
+#include "absl/status/status.h"
 #include "absl/strings/string_view.h"
 #include "coordinator/cli/base/exit_code.h"
 
@@ -33,6 +36,10 @@ class Console {
   /// "dumb". It has colour if it is a terminal and NO_COLOR is not set (no-color.org).
   static Console standard();
 
+  /// Returns the error of the first write to standard output that failed; OK if all succeeded. A
+  /// reader that has ended, a closed pipe or terminal, is no error.
+  absl::Status write_error() const;
+
   bool is_terminal() const { return is_terminal_; }
   bool colour() const { return colour_; }
   /// Asks the terminal for its size at every call, because its window can be resized.
@@ -50,6 +57,7 @@ class Console {
   ExitCode fail(ExitCode code, absl::string_view text) const;
 
  private:
+  std::shared_ptr<std::atomic<int>> error_;  ///< errno of the first failure; nullptr: not recorded
   Write out_;
   Write err_;
   bool is_terminal_;
