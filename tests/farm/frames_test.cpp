@@ -268,6 +268,10 @@ TEST_F(Frames, AreAVideo) {
       run({"/usr/bin/ffprobe", "-v", "error", "-count_frames", "-show_entries",
            "stream=codec_name,width,height,nb_read_frames,r_frame_rate", "-of", "csv=p=0", video});
   EXPECT_EQ(probe.out, "h264,24,24,12/1,6\n") << probe.err;
+  // ffmpeg takes no part of the name for a protocol.
+  const Finished colon = run(in_the_folder(farm_.command({"watch", "1", "--video", "a:b.mp4"})));
+  EXPECT_EQ(colon.code, 0) << colon.err;
+  EXPECT_TRUE(std::filesystem::exists(farm_.path("a:b.mp4")));
   // Nothing half-written is left.
   for (const auto& entry : std::filesystem::directory_iterator(farm_.path("."))) {
     EXPECT_EQ(entry.path().filename().string().find(".part"), std::string::npos) << entry.path();

@@ -89,7 +89,7 @@ absl::Status Video::start() {
   for (const char* option : {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"}) {
     arguments.emplace_back(option);
   }
-  arguments.push_back(part_);
+  arguments.push_back("file:" + part_);  // else ffmpeg takes "a:" for a protocol
   ASSIGN_OR_RETURN(PipedChild child, PipedChild::start(arguments));
   ffmpeg_.emplace(std::move(child));
   return absl::OkStatus();
