@@ -125,9 +125,13 @@ absl::Status unknown(const std::string& kind, const std::string& word,
 }
 
 /// Returns INVALID_ARGUMENT if the parser has found an argument or option that the command does not
-/// have. `command`: its name.
+/// have. `app`: the parser of the command `command`.
 absl::Status check_no_extras(const CLI::App& app, const std::string& command) {
-  const std::vector<std::string> extras = app.remaining();
+  std::vector<std::string> extras = app.remaining();
+  // The parser of the program gets what follows a "--" after the command's last argument.
+  const std::vector<std::string> later = app.get_parent()->remaining();
+  extras.insert(extras.end(), later.begin(), later.end());
+  std::erase(extras, "--");  // the parser keeps it, although it only separates
   if (extras.empty()) {
     return absl::OkStatus();
   }

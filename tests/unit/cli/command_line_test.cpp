@@ -188,6 +188,15 @@ TEST(CommandLine, TheSceneMayComeLastAndOptionsMayBeJoinedWithEquals) {
   EXPECT_EQ(options.threads, 3);
 }
 
+TEST(CommandLine, ArgumentsAfterTwoDashesAreNoOptions) {
+  EXPECT_EQ(parsed<RenderOptions>("render -- -a.glb").scene, "-a.glb");
+  EXPECT_EQ(parsed<RenderOptions>("render a.glb --").scene, "a.glb");
+  EXPECT_THAT(parsed<StitchOptions>("stitch -o c.png -- -a.band b.band").parts,
+              ElementsAre("-a.band", "b.band"));
+  expect_wrong("render a.glb -- b.glb", "one argument too many, 'b.glb'");
+  expect_wrong("render -- a.glb b.glb", "one argument too many, 'b.glb'");
+}
+
 TEST(CommandLine, WithoutAStopRuleThereAre64Samples) {
   EXPECT_EQ(parsed<RenderOptions>("render a.glb").image.stop, StopRule(StopAtSamples{64}));
 }
