@@ -200,6 +200,9 @@ absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw) {
   if (raw.preview && (raw.quiet || raw.json || raw.detach)) {
     return wrong("--preview draws on the terminal: --quiet, --json and --detach exclude it");
   }
+  if (raw.preview && raw.rows) {
+    return wrong("--preview shows a whole image while it forms: --rows excludes it");
+  }
   return Verbosity{.quiet = raw.quiet, .json = raw.json, .preview = raw.preview};
 }
 

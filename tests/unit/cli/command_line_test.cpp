@@ -170,6 +170,7 @@ TEST(CommandLine, AnImageCanBeDisplayedWhileItIsRendered) {
   expect_wrong("submit a.glb --tev h", "as in 127.0.0.1:14158");
   expect_wrong("submit a.glb --tev h:1 --detach", "--tev");
   expect_wrong("render a.glb --samples 1 --rows 0:1 --tev h:1", "--rows");
+  expect_wrong("render a.glb --samples 1 --rows 0:1 --preview", "--rows excludes it");
   expect_wrong("render a.glb --tev 14158", "HOST:PORT");
 }
 
