@@ -85,11 +85,12 @@ absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
     return wrong("--fixed-seed needs --frame or --frames");
   }
   if (raw.frame) {
-    // The same as kMaxFrameNumber of scheduler/api/frame_numbers.h.
-    constexpr std::int64_t kMaxFrame = 1'000'000'000;
-    std::int64_t frame = 0;
-    if (!absl::SimpleAtoi(*raw.frame, &frame) || std::abs(frame) > kMaxFrame) {
-      return wrong(absl::StrCat("--frame: must be a whole number, is '", *raw.frame, "'"));
+    FrameNumber frame = 0;
+    // Compared on both sides: the least number has no absolute value.
+    if (!absl::SimpleAtoi(*raw.frame, &frame) || frame > kMaxFrameNumber ||
+        frame < -kMaxFrameNumber) {
+      return wrong(absl::StrCat("--frame: must be a whole number in [", -kMaxFrameNumber, ", ",
+                                kMaxFrameNumber, "], is '", *raw.frame, "'"));
     }
     choices.frame = frame;
   }
@@ -125,11 +126,17 @@ absl::StatusOr<SceneChoices> checked_choices(const RawOptions& raw) {
   return choices;
 }
 
-/// With --frame, replaces #### in the names of the outputs by the number of the frame.
-void number_outputs(const SceneChoices& choices, std::vector<std::string>& outputs) {
-  for (std::string& output : outputs) {
-    output = choices.frame ? name_of_frame(output, *choices.frame) : output;
+/// With --frame, replaces #### in the names of the outputs and of the report by the number of the
+/// frame.
+void number_files(const SceneChoices& choices, std::vector<std::string>& outputs,
+                  ReportOption& report) {
+  if (!choices.frame) {
+    return;
   }
+  for (std::string& output : outputs) {
+    output = name_of_frame(output, *choices.frame);
+  }
+  report.file = name_of_frame(report.file, *choices.frame);
 }
 
 absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
@@ -349,9 +356,9 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   options.detach = raw.detach;
   RETURN_IF_ERROR(check_scene(raw, "submit"));
   ASSIGN_OR_RETURN(options.image, checked_image(raw));
-  number_outputs(options.image.choices, options.outputs);
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
   ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.detach));
+  number_files(options.image.choices, options.outputs, options.report);
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
   RETURN_IF_ERROR(check_outputs(options.outputs, false));
@@ -418,9 +425,9 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
   options.outputs = raw.outputs;
   RETURN_IF_ERROR(check_scene(raw, "render"));
   ASSIGN_OR_RETURN(options.image, checked_image(raw));
-  number_outputs(options.image.choices, options.outputs);
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
   ASSIGN_OR_RETURN(options.report, checked_report(raw));
+  number_files(options.image.choices, options.outputs, options.report);
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
   RETURN_IF_ERROR(

@@ -73,7 +73,14 @@ TEST(CommandLine, AFrameHasItsTimeAndItsName) {
               ElementsAre("w.-012.png"));
   EXPECT_THAT(parsed<SubmitOptions>("submit a.glb --frame 12345 -o #.png").outputs,
               ElementsAre("12345.png"));
+  EXPECT_EQ(parsed<RenderOptions>("render a.glb --frame 7 --report r.##.json").report.file,
+            "r.07.json");
+  EXPECT_EQ(parsed<SubmitOptions>("submit a.glb --frame 7 --report #.json").report.file, "7.json");
+  EXPECT_EQ(parsed<SubmitOptions>("submit a.glb --frames 1-2 --report #.json").report.file,
+            "#.json");
   expect_wrong("render a.glb --frame 1.5", "--frame: must be a whole number");
+  expect_wrong("render a.glb --frame 2000000000", "in [-1000000000, 1000000000], is '2000000000'");
+  expect_wrong("render a.glb --frame -9223372036854775808", "in [-1000000000, 1000000000]");
   expect_wrong("render a.glb --fps 25", "--fps needs --frame");
   expect_wrong("render a.glb --frame 1 --shutter 2", "--shutter: must be a number in [0, 1]");
 }
