@@ -85,6 +85,30 @@ class AddOn(unittest.TestCase):
         scene = self.fake.scenes[-1]
         return json.loads(scene["files"][scene["main"]]), scene["files"]
 
+    def material_of(self, nodes, **inputs):
+        """Renders a plane whose Principled BSDF the function `nodes` changes (scenes.material). Returns the material's fields that were sent."""
+        thing = scenes.plane(1, scenes.material("tested", nodes, **inputs))
+        thing.name = "tested"
+        self.render()
+        return self.sent()[0]["material"][-1]
+
+    def texels(self, texture):
+        """The pixels of the image of a message Texture that was sent last, linear, rows from the bottom: (height, width, 3)."""
+        name = texture["image"]["file"]
+        path = os.path.join(self.folder.name, name)
+        with open(path, "wb") as file:
+            file.write(self.sent()[1][name])
+        image = bpy.data.images.load(path)
+        width, height = image.size
+        pixels = np.array(image.pixels[:]).reshape(height, width, 4)[:, :, :3]
+        if texture["image"]["encoding"] == "ENCODING_SRGB":
+            pixels = sys.modules["bandsaw_blender.files"].linear(pixels)
+        return pixels
+
+    def told(self):
+        """What the last render has named as not shown, one a line."""
+        return "\n".join(sys.modules["bandsaw_blender.engine"].last_warnings)
+
     def test_a_still_has_the_farms_pixels(self):
         self.render()
         got = self.pixels()
@@ -215,6 +239,39 @@ class AddOn(unittest.TestCase):
         told = "\n".join(sys.modules["bandsaw_blender.engine"].last_warnings)
         for word in ('material "cartoon"', "transparent background", "the importer says this"):
             self.assertIn(word, told)
+
+    def test_reflectances_above_1_are_sent_as_1(self):
+        made = self.material_of(None, Base_Color=(2, 0.5, 0.25, 1), Roughness=1.0, Specular=0.0)
+        self.assertEqual(max(made["gltf"]["base_color"]["rgb"]), 1)
+
+        def bright(tree, shader):
+            noise, double = tree.nodes.new("ShaderNodeTexNoise"), tree.nodes.new("ShaderNodeMath")
+            double.operation, double.inputs[1].default_value = "MULTIPLY", 3
+            tree.links.new(noise.outputs["Fac"], double.inputs[0])
+            for name in ("Base Color", "Roughness", "Alpha"):
+                tree.links.new(double.outputs[0], shader.inputs[name])
+            tree.links.new(double.outputs[0], scenes.socket(shader, "Emission"))
+            scenes.socket(shader, "Emission_Strength").default_value = 1
+        made = self.material_of(bright)["gltf"]
+        for field in ("base_color_texture", "roughness_texture", "alpha_texture"):
+            self.assertEqual(self.texels(made[field]).max(), 1, field)
+        self.assertGreater(self.texels(made["emissive_texture"]).max(), 1.2)
+
+    def test_a_float_image_above_1_reflects_1_and_emits_as_it_is(self):
+        image = scenes.picture("hdr", np.full((4, 4, 3), 1.5), is_float=True)
+        image.filepath_raw, image.file_format = os.path.join(self.folder.name, "hdr.exr"), "OPEN_EXR"
+        image.save()
+        image = bpy.data.images.load(image.filepath_raw)
+
+        def both(tree, shader):
+            node = tree.nodes.new("ShaderNodeTexImage")
+            node.image = image
+            tree.links.new(node.outputs["Color"], shader.inputs["Base Color"])
+            tree.links.new(node.outputs["Color"], scenes.socket(shader, "Emission"))
+            scenes.socket(shader, "Emission_Strength").default_value = 1
+        made = self.material_of(both)["gltf"]
+        self.assertTrue(np.allclose(self.texels(made["base_color_texture"]), 1))
+        self.assertTrue(np.allclose(self.texels(made["emissive_texture"]), 1.5))
 
     def test_two_million_triangles(self):
         geometry = sys.modules["bandsaw_blender.geometry"]

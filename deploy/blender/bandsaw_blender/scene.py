@@ -388,10 +388,10 @@ def material_part(out, material, piece, thing):
         surface = shader.surface()
     except evaluate.Unsupported as error:
         shader.warn(f"{error} cannot be shown; the surface is grey")
-        surface = shading.Surface("diffuse", texture=shading.Value(list(material.diffuse_color)[:3]).message())
+        surface = shader.plain_surface()
     except ValueError as error:
         shader.warn(f"its textures cannot be baked ({error}); the surface is grey")
-        surface = shading.Surface("diffuse", texture=shading.Value(list(material.diffuse_color)[:3]).message())
+        surface = shader.plain_surface()
     if surface is None and medium is None:
         return None
     part = {}

@@ -48,6 +48,11 @@ class Value:
         return Value(texture={"mix": {"a": {"color": rgb((1, 1, 1))}, "b": {"color": rgb((0, 0, 0))}, "amount": self.texture}})
 
 
+# Returns a reflectance, a share or a roughness as a scene file may have it: each component in [0, 1].
+def limited(value):
+    return np.clip(value, 0, 1)
+
+
 # Returns the message Color.
 def rgb(values):
     return {"rgb": [float(max(x, 0.0)) for x in values]}
@@ -135,11 +140,13 @@ class Images:
             self.warn(f'the image "{image.name}" has the colour space {image.colorspace_settings.name}, which is read as sRGB')
         return "ENCODING_SRGB"
 
-    def file(self, image):
-        """Returns the name of the image's file in the scene. Raises Unsupported if there is none."""
-        key = image.name_full
+    def file(self, image, unlimited=True):
+        """Returns the name of the image's file in the scene. `unlimited`: its values may exceed 1; otherwise those become 1. Raises Unsupported if
+        there is no file."""
+        lower = not unlimited and image.is_float and bool(self.pixels(image)[:, :, :3].max() > 1)
+        key = image.name_full, lower
         if key not in self._files:
-            self._files[key] = self._stored(image)
+            self._files[key] = self.store("image.exr", files.exr(limited(self.pixels(image)[::-1, :, :3]))) if lower else self._stored(image)
         return self._files[key]
 
     def _stored(self, image):
@@ -187,35 +194,37 @@ class Shader:
             return None
         return value[0] if value.ndim == 2 else np.repeat(value[:1], 3)
 
-    def value(self, socket, is_number=False, default=0.0):
-        """Returns the Value of an input; `default` if the shader has no such input. If it cannot be evaluated, warns and returns the input's own value."""
+    def value(self, socket, is_number=False, default=0.0, unlimited=False):
+        """Returns the Value of an input; `default` if the shader has no such input. `unlimited`: it may exceed 1, as emission does; otherwise it is
+        limited to [0, 1]. If it cannot be evaluated, warns and returns the input's own value."""
         if socket is None:
             return Value(default)
+        limit = (lambda value: value) if unlimited else limited
         try:
             constant = self.constant(socket)
             if constant is not None:
-                return Value(evaluate.number(constant[None])[0] if is_number else constant)
-            direct = self.direct_image(socket)
-            return direct if direct is not None else self.baked(socket, is_number)
+                return Value(limit(evaluate.number(constant[None])[0] if is_number else constant))
+            direct = self.direct_image(socket, unlimited)
+            return direct if direct is not None else self.baked(socket, is_number, unlimited)
         except Unsupported as error:
             self.warn(f"{error} cannot be shown; {socket.name} is constant there")
             own = np.atleast_1d(np.array(socket.default_value, dtype=float))
-            return Value(own[0] if own.size == 1 else own[:3])
+            return Value(limit(own[0] if own.size == 1 else own[:3]))
 
-    def number(self, node, *names, default=0.0):
-        return self.value(input_of(node, *names), True, default)
+    def number(self, node, *names, default=0.0, unlimited=False):
+        return self.value(input_of(node, *names), True, default, unlimited)
 
     def plain(self, node, *names, default=0.0):
         """Returns a number for a field that takes no texture. Of a texture it is the mean, and a warning says so."""
         socket = input_of(node, *names)
-        value = self.value(socket, True, default)
+        value = self.value(socket, True, default, unlimited=True)
         if value.constant is None:
             self.warn(f"a texture at {socket.name} cannot be shown; its mean is used")
             return float(value.mean) if hasattr(value, "mean") else float(socket.default_value)
         return value.number
 
-    def direct_image(self, socket):
-        """Returns the Value of an image that is used as it is; None: it has to be baked."""
+    def direct_image(self, socket, unlimited=False):
+        """Returns the Value of an image that is used as it is; None: it has to be baked. `unlimited`: its values may exceed 1."""
         output = from_node(socket)
         if output is None or output.node.type != "TEX_IMAGE" or output.name != "Color" or self.in_group(output):
             return None
@@ -227,7 +236,8 @@ class Shader:
             return None
         wrap = {"REPEAT": "WRAP_REPEAT", "EXTEND": "WRAP_CLAMP", "MIRROR": "WRAP_MIRROR"}[node.extension]
         nearest = "FILTER_NEAREST" if node.interpolation == "Closest" else "FILTER_BILINEAR"
-        image = {"file": self.out.images.file(node.image), "wrap": wrap, "filter": nearest, "encoding": self.out.images.encoding(node.image), **placed}
+        file = self.out.images.file(node.image, unlimited)
+        image = {"file": file, "wrap": wrap, "filter": nearest, "encoding": self.out.images.encoding(node.image), **placed}
         return Value(texture={"image": image})
 
     # True if the node is in another node tree than the shader that is converted.
@@ -260,8 +270,9 @@ class Shader:
             return None
         return fields if name in ("", self.piece.uv_names[0]) else None
 
-    # Returns the Value of an input as an image: over the uvs if they lie in [0, 1] and nothing else matters, otherwise in the atlas.
-    def baked(self, socket, is_number):
+    # Returns the Value of an input as an image: over the uvs if they lie in [0, 1] and nothing else matters, otherwise in the atlas. `unlimited`:
+    # its values may exceed 1.
+    def baked(self, socket, is_number, unlimited=False):
         uvs = self.piece.triangles.uvs
         if uvs and uvs[0].min() >= -1e-6 and uvs[0].max() <= 1 + 1e-6:
             size = self.bake_size(socket)
@@ -269,13 +280,13 @@ class Shader:
             grid = np.stack([(x + 0.5) / size[0], (y + 0.5) / size[1]], axis=1)
             try:
                 value = self.evaluator(evaluate.Points(len(grid), uv={"": grid, self.piece.uv_names[0]: grid})).socket(socket)
-                return self.stored(value, size, is_number, {})
+                return self.stored(value, size, is_number, unlimited, {})
             except evaluate.NeedsCoordinates:
                 pass
         points = self.piece.points()
         value = self.evaluator(points).socket(socket)
         side = self.piece.atlas.side
-        return self.stored(value, (side, side), is_number, {"uv_set": "UV_SET_SECOND", "wrap": "WRAP_CLAMP"})
+        return self.stored(value, (side, side), is_number, unlimited, {"uv_set": "UV_SET_SECOND", "wrap": "WRAP_CLAMP"})
 
     def bake_size(self, socket):
         """Returns the width and height for baking an input: those of the largest image among the nodes before it, and at least 1,024 with a
@@ -294,14 +305,14 @@ class Shader:
             waiting.extend(from_node(s) for s in node.inputs)
         return min(width, MOST_BAKED), min(height, MOST_BAKED)
 
-    # Stores baked values as an image of `size` (width, height), rows from the bottom. Returns its Value, whose `mean` is set. `fields`: of
-    # ImageTexture.
-    def stored(self, value, size, is_number, fields):
+    # Stores baked values as an image of `size` (width, height), rows from the bottom. Returns its Value, whose `mean` is set. `unlimited`: values
+    # may exceed 1; otherwise they are limited to [0, 1]. `fields`: of ImageTexture.
+    def stored(self, value, size, is_number, unlimited, fields):
         width, height = size
-        value = evaluate.number(value) if is_number else evaluate.color(value)
+        value = np.nan_to_num(evaluate.number(value) if is_number else evaluate.color(value))
+        value = value if unlimited else limited(value)
         if len(value) == 1:
             return Value(value[0])
-        value = np.nan_to_num(value)
         mean = value.mean(axis=0)
         picture = (value.reshape(height, width) if is_number else value.reshape(height, width, 3))[::-1]
         if is_number and value.max() <= 1:
@@ -398,8 +409,7 @@ class Shader:
         """Returns the Surface of the material; None: it has none (a volume alone)."""
         if not self.blender.use_nodes or self.blender.node_tree is None:
             self.tree = None
-            made = Surface("diffuse", texture=Value(list(self.blender.diffuse_color)[:3]).message())
-            return made
+            return self.plain_surface()
         self.tree = self.blender.node_tree
         end = output_node(self.tree)
         if end is None:
@@ -409,6 +419,10 @@ class Shader:
             self.warn("displacement cannot be shown")
         output = from_node(end.inputs["Surface"])
         return None if output is None else self.shader(output)
+
+    def plain_surface(self):
+        """Returns a diffuse Surface of the material's colour in the viewport."""
+        return Surface("diffuse", texture=Value(limited(list(self.blender.diffuse_color)[:3])).message())
 
     # Returns the Surface of a shader node; one of type T is converted by the method shader_T(node, output). Raises Unsupported.
     def shader(self, output):
@@ -517,7 +531,7 @@ class Shader:
     shader_background = shader_emission
 
     def emission(self, node, color, strength):
-        emitted = self.value(input_of(node, *color), default=1.0).times(self.number(node, *strength, default=1.0))
+        emitted = self.value(input_of(node, *color), default=1.0, unlimited=True).times(self.number(node, *strength, default=1.0, unlimited=True))
         return None if emitted.is_constant(0) else emitted
 
     def shader_holdout(self, node, output):
