@@ -273,6 +273,56 @@ class AddOn(unittest.TestCase):
         self.assertTrue(np.allclose(self.texels(made["base_color_texture"]), 1))
         self.assertTrue(np.allclose(self.texels(made["emissive_texture"]), 1.5))
 
+    def test_a_muted_node_passes_its_input_on(self):
+        def muted(kind, output, name):
+            def nodes(tree, shader):
+                node = tree.nodes.new("ShaderNode" + kind)
+                if "Color" in node.inputs:
+                    node.inputs["Color"].default_value = (0, 1, 0, 1)
+                tree.links.new(node.outputs[output], shader.inputs[name])
+                node.mute = True
+            return nodes
+        # What is muted has an input for the colour, or none that fits: then the shader's own value counts.
+        for kind, output, name, green in (("HueSaturation", 0, "Base Color", 1), ("TexVoronoi", "Color", "Base Color", 0), ("Bump", 0, "Normal", 0),
+                                          ("NormalMap", 0, "Normal", 0)):
+            color = self.material_of(muted(kind, output, name), Base_Color=(1, 0, 0, 1), Roughness=1.0, Specular=0.0)["gltf"]["base_color"]["rgb"]
+            self.assertGreater(color[1 if green else 0], 0.9, kind)
+            self.assertEqual(color[0 if green else 1], 0, kind)
+        self.assertEqual(self.told(), "")
+
+    def test_a_muted_link_is_none(self):
+        def nodes(tree, shader):
+            tree.links.new(tree.nodes.new("ShaderNodeRGB").outputs[0], shader.inputs["Base Color"]).is_muted = True
+            displacement = tree.nodes.new("ShaderNodeDisplacement")
+            tree.links.new(displacement.outputs[0], tree.nodes["Material Output"].inputs["Displacement"])
+            displacement.mute = True
+        color = self.material_of(nodes, Base_Color=(1, 0, 0, 1), Roughness=1.0, Specular=0.0)["gltf"]["base_color"]["rgb"]
+        self.assertEqual(color[1:], [0, 0])
+        self.assertEqual(self.told(), "")
+
+    def test_a_muted_shader_is_black(self):
+        def nodes(tree, shader):
+            shader.mute = True
+        self.assertEqual(self.material_of(nodes)["diffuse"]["texture"]["color"]["rgb"], [0, 0, 0])
+
+    def test_muted_volumes_worlds_and_lamps(self):
+        def fog(tree, shader):
+            node = tree.nodes.new("ShaderNodeVolumePrincipled")
+            tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
+            node.mute = True
+        tree, _ = scenes.world(1, 1, 1)
+        mist = tree.nodes.new("ShaderNodeVolumeScatter")
+        tree.links.new(mist.outputs[0], tree.nodes["World Output"].inputs["Volume"])
+        mist.mute = True
+        lamp = scenes.light("POINT", (0, 0, 3), 100).data
+        lamp.use_nodes = True
+        lamp.node_tree.nodes["Emission"].mute = True
+        self.material_of(fog)
+        sent, _ = self.sent()
+        self.assertEqual([field for field in ("medium", "fog", "light") if field in sent], [])
+        self.assertEqual([model for model in sent["model"] if "interior" in model], [])
+        self.assertEqual(self.told(), "")
+
     def test_two_million_triangles(self):
         geometry = sys.modules["bandsaw_blender.geometry"]
         mesh = bpy.data.meshes.new("big")

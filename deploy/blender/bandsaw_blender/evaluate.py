@@ -25,16 +25,27 @@ class Points:
         self.object, self.normal, self.position = local, normal, position
 
 
-def from_node(socket):
-    """Returns the node and output socket that feed an input, through reroutes; None: it is not linked."""
-    while socket.is_linked and socket.links and socket.links[0].is_valid:
+def source(socket):
+    """Returns what gives an input its value, through reroutes and muted nodes: an output socket, or the input whose own value it is."""
+    own = socket
+    while socket.is_linked and socket.links and socket.links[0].is_valid and not socket.links[0].is_muted:
         output = socket.links[0].from_socket
-        if output.node.mute:
-            raise Unsupported(f'the muted node "{output.node.name}"')
-        if output.node.type != "REROUTE":
+        if output.node.type == "REROUTE":
+            socket = output.node.inputs[0]
+        elif output.node.mute:
+            passed = [link.from_socket for link in output.node.internal_links if link.to_socket == output]
+            if not passed:
+                break
+            socket = own = passed[0]
+        else:
             return output
-        socket = output.node.inputs[0]
-    return None
+    return own
+
+
+def from_node(socket):
+    """Returns the output socket that feeds an input, through reroutes and muted nodes; None: it is not linked."""
+    found = source(socket)
+    return found if found.is_output else None
 
 
 def input_of(node, *names):
@@ -67,14 +78,15 @@ class Evaluator:
     def socket(self, socket):
         """Returns the value of an input socket: what is linked to it, or its own. A vector at an input for a number becomes the mean of its
         components, as in Blender; number() converts a colour."""
-        output = from_node(socket)
-        if output is not None:
-            value = self.output(output)
-            return value.mean(axis=1) if (output.type, socket.type, value.ndim) == ("VECTOR", "VALUE", 2) else value
-        if not hasattr(socket, "default_value"):
-            raise Unsupported(f'the input "{socket.name}"')
-        value = np.atleast_1d(np.array(socket.default_value, dtype=float))
-        return value if value.size == 1 else value[None, :3]
+        found = source(socket)
+        if found.is_output:
+            value = self.output(found)
+        elif hasattr(found, "default_value"):
+            own = np.atleast_1d(np.array(found.default_value, dtype=float))
+            value = own if own.size == 1 else own[None, :3]
+        else:
+            raise Unsupported(f'the input "{found.name}"')
+        return value.mean(axis=1) if (found.type, socket.type, value.ndim) == ("VECTOR", "VALUE", 2) else value
 
     # Returns the value of the first of these inputs that the node has; `default` if it has none.
     def of(self, node, *names, default=0.0):

@@ -406,19 +406,21 @@ class Shader:
     # ---- shaders ----
 
     def surface(self):
-        """Returns the Surface of the material; None: it has none (a volume alone)."""
+        """Returns the Surface of the material; None: it is a volume alone."""
         if not self.blender.use_nodes or self.blender.node_tree is None:
             self.tree = None
             return self.plain_surface()
         self.tree = self.blender.node_tree
         end = output_node(self.tree)
         if end is None:
-            return None
+            return Surface("")
         displacement = input_of(end, "Displacement")
         if displacement is not None and from_node(displacement) is not None:
             self.warn("displacement cannot be shown")
         output = from_node(end.inputs["Surface"])
-        return None if output is None else self.shader(output)
+        if output is not None:
+            return self.shader(output)
+        return None if from_node(end.inputs["Volume"]) is not None else Surface("")  # black, as in Cycles
 
     def plain_surface(self):
         """Returns a diffuse Surface of the material's colour in the viewport."""
