@@ -141,6 +141,18 @@ class AddOn(unittest.TestCase):
         self.assertEqual(sorted(os.listdir(self.folder.name)), ["f0003.exr", "f0004.exr", "f0005.exr"])
         self.assertEqual([scene["title"] for scene in self.fake.scenes], ["untitled 3", "untitled 4", "untitled 5"])
 
+    def test_an_animation_has_the_world_of_each_frame(self):
+        tree, background = scenes.world(1, 1, 1)
+        for frame, strength in ((1, 2), (2, 3)):
+            background.inputs["Strength"].default_value = strength
+            background.inputs["Strength"].keyframe_insert("default_value", frame=frame)
+        self.scene.frame_set(1)
+        self.scene.frame_start, self.scene.frame_end = 1, 2
+        self.scene.render.filepath = os.path.join(self.folder.name, "f")
+        bpy.ops.render.render(animation=True)
+        found = [json.loads(scene["files"][scene["main"]])["background"]["constant"]["rgb"] for scene in self.fake.scenes]
+        self.assertEqual(found, [[2, 2, 2], [3, 3, 3]])
+
     def test_percentage_and_region(self):
         self.scene.render.resolution_percentage = 50
         self.render()

@@ -136,7 +136,7 @@ def build(depsgraph, scene, size, region=None, camera=None, frame_set=None):
         if any(system.settings.type == "HAIR" and system.settings.render_type == "PATH" for system in getattr(thing, "particle_systems", ())):
             out.warn(f'the hair of "{thing.name}" is not shown')
     place(out, shapes)
-    lights.add_world(out, scene.world)
+    lights.add_world(out, depsgraph.scene_eval.world)
     center, radius = Vector((0, 0, 0)), 1.0
     if np.isfinite(out.low).all():
         center = TO_SCENE @ Vector((out.low + out.high) / 2)
