@@ -335,6 +335,35 @@ class AddOn(unittest.TestCase):
         self.assertEqual([model for model in sent["model"] if "interior" in model], [])
         self.assertEqual(self.told(), "")
 
+    def test_a_texture_lies_on_the_uv_map_that_its_node_names(self):
+        image = scenes.picture("halves", np.concatenate([np.tile([1.0, 0, 0], (8, 4, 1)), np.tile([0, 1.0, 0], (8, 4, 1))], axis=1))
+        for name, column in (("second", 0), ("third", 1), ("nowhere", 0)):
+            def nodes(tree, shader):
+                for number, uv_map in enumerate(("second", "third", name)):
+                    uv = tree.nodes.new("ShaderNodeUVMap")
+                    uv.uv_map = uv_map
+                texture = tree.nodes.new("ShaderNodeTexImage")
+                texture.image = image
+                tree.links.new(uv.outputs[0], texture.inputs["Vector"])
+                invert = tree.nodes.new("ShaderNodeInvert")  # so that it is baked
+                tree.links.new(texture.outputs["Color"], invert.inputs["Color"])
+                tree.links.new(invert.outputs[0], shader.inputs["Base Color"])
+            thing = scenes.plane(1, scenes.material(name, nodes))
+            for other, u in (("second", 0.25), ("third", 0.75)):
+                thing.data.uv_layers.new(name=other).data.foreach_set("uv", [u, 0.5] * 4)
+            self.render()
+            texture = self.sent()[0]["material"][-1]["gltf"]["base_color_texture"]
+            pixels = self.texels(texture)
+            if name == "nowhere":  # on the active map, which is baked whole
+                self.assertNotIn("uv_set", texture["image"])
+                self.assertLess(pixels[:, 64, 0].max(), 0.01)
+                self.assertGreater(pixels[:, 192, 0].min(), 0.99)
+            else:  # one colour: inverted red is cyan, inverted green magenta
+                self.assertEqual(texture["image"]["uv_set"], "UV_SET_SECOND")
+                self.assertLess(pixels[:, :, column].max(), 0.01, name)
+                self.assertGreater(pixels[:, :, 1 - column].min(), 0.99, name)
+            bpy.data.objects.remove(thing)
+
     def test_two_million_triangles(self):
         geometry = sys.modules["bandsaw_blender.geometry"]
         mesh = bpy.data.meshes.new("big")

@@ -18,7 +18,7 @@ class NeedsCoordinates(Unsupported):
 
 class Points:
     """The points at which nodes are evaluated, n = `count`. Each coordinate is an array of n rows, or None if the points do not have it: `uv` (a
-    dictionary of arrays (n, 2) by the name of the uv map, "" the active one), `generated`, `object`, `normal`, `position` (n, 3)."""
+    dictionary of arrays (n, 2) by the name of the uv map, "" the active one; None for a map of the mesh that they do not have), `generated`, `object`, `normal`, `position` (n, 3)."""
 
     def __init__(self, count, uv=None, generated=None, local=None, normal=None, position=None):
         self.count, self.uv, self.generated = count, uv or {}, generated
@@ -126,8 +126,7 @@ class Evaluator:
         return array
 
     def uv(self, name):
-        uv = self.points.uv.get(name, self.points.uv.get("")) if name else self.points.uv.get("")
-        uv = self.need(uv, "uv coordinates")
+        uv = self.need(self.points.uv.get(name, self.points.uv.get("")), "uv coordinates")
         return np.concatenate([uv, np.zeros((len(uv), 1))], axis=1)
 
     # ---- groups ----

@@ -17,8 +17,8 @@ class Vertices:
 
 
 class Triangles:
-    """The triangles of a mesh with one material slot. `positions` (v, 3), `normals` (v, 3) or None (flat everywhere), `uvs`: a list of at
-    most two (v, 2), v = 0 at the bottom; `indices` (t, 3). `ends`: None, or the Vertices when the shutter opens and when it closes; all else
+    """The triangles of a mesh with one material slot. `positions` (v, 3), `normals` (v, 3) or None (flat everywhere), `uvs`: a list of
+    (v, 2), v = 0 at the bottom, of which at most two are written to files; `indices` (t, 3). `ends`: None, or the Vertices when the shutter opens and when it closes; all else
     is that of the frame."""
 
     def __init__(self, positions, normals, uvs, indices, ends=None):
@@ -98,7 +98,7 @@ class Pose:
 
 def triangles_of(mesh, uv_names, ends=None):
     """Returns a dictionary from the indices of the material slots that the mesh uses to their Triangles. `uv_names`: the names of the uv maps to
-    keep, at most two; "" is the active one. `ends`: the Poses of the mesh when the shutter opens and when it closes, which fit to it; None: it
+    keep, "" is the active one. `ends`: the Poses of the mesh when the shutter opens and when it closes, which fit to it; None: it
     does not deform."""
     mesh.calc_loop_triangles()
     count, loops = len(mesh.loop_triangles), len(mesh.loops)
@@ -107,7 +107,7 @@ def triangles_of(mesh, uv_names, ends=None):
     corners = _get(mesh.loop_triangles, "loops", count, 3, np.int32)
     of_corner = _get(mesh.loop_triangles, "vertices", count, 3, np.int32)
     slots = _get(mesh.loop_triangles, "material_index", count, 1, np.int32)
-    uvs = [_get(layer.data, "uv", loops, 2, np.float32) for layer in _uv_layers(mesh, uv_names)]
+    uvs = [_get(layer.data, "uv", loops, 2, np.float32) for layer in uv_layers(mesh, uv_names)]
     pose = Pose(mesh)
     used = np.unique(slots)
     if len(used) == 1:
@@ -120,7 +120,8 @@ def _has_sharp(mesh):
     return attribute is not None
 
 
-def _uv_layers(mesh, names):
+def uv_layers(mesh, names):
+    """Returns the uv maps of the mesh with these names, each once; the active one for "" and for a name that the mesh does not have."""
     if not len(mesh.uv_layers):
         return []
     active = next((layer for layer in mesh.uv_layers if layer.active_render), mesh.uv_layers[0])
@@ -129,7 +130,7 @@ def _uv_layers(mesh, names):
         layer = mesh.uv_layers.get(name, active) if name else active
         if all(layer.name != other.name for other in found):
             found.append(layer)
-    return found[:2]
+    return found
 
 
 def _indexed(pose, uvs, corners, of_corner, ends):
@@ -195,7 +196,7 @@ def glb(triangles):
 
     first, last = triangles.ends or (Vertices(triangles.positions, triangles.normals), None)
     add_vectors(attributes, first)
-    for number, uv in enumerate(triangles.uvs):
+    for number, uv in enumerate(triangles.uvs[:2]):
         flipped = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
         attributes[f"TEXCOORD_{number}"] = add(np.ascontiguousarray(flipped, dtype="<f4"), "VEC2", 5126, 34962)
     indices = np.ascontiguousarray(triangles.indices.reshape(-1), dtype="<u4")

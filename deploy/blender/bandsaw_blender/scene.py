@@ -346,7 +346,7 @@ def parts_of(out, thing, mesh, matrix, ends):
     names = [""] + [name for name in uv_names(materials) if name]
     parts = []
     pieces = geometry.triangles_of(mesh, names, ends)
-    real = [next((layer.name for layer in mesh.uv_layers if layer.active_render), "")] + names[1:] if len(mesh.uv_layers) else [""]
+    real = [layer.name for layer in geometry.uv_layers(mesh, names)]
     size = np.array(mesh.texspace_size, dtype=float) * 2
     low = np.array(mesh.texspace_location, dtype=float) - size / 2
     size = np.where(size == 0, 1, size)
@@ -363,7 +363,7 @@ def parts_of(out, thing, mesh, matrix, ends):
     return parts
 
 
-# Returns a list with the first name of a uv map that the materials contain; it is empty if they contain none.
+# Returns the names of the uv maps that the materials contain.
 def uv_names(materials):
     found = []
     for material in materials:
@@ -375,7 +375,7 @@ def uv_names(materials):
                         found.append(node.uv_map)
                     if node.type == "GROUP" and node.node_tree is not None:
                         waiting.append(node.node_tree)
-    return found[:1]
+    return found
 
 
 def material_part(out, material, piece, thing):

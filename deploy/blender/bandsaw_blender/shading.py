@@ -279,7 +279,8 @@ class Shader:
             y, x = np.divmod(np.arange(size[0] * size[1]), size[0])
             grid = np.stack([(x + 0.5) / size[0], (y + 0.5) / size[1]], axis=1)
             try:
-                value = self.evaluator(evaluate.Points(len(grid), uv={"": grid, self.piece.uv_names[0]: grid})).socket(socket)
+                known = {**dict.fromkeys(self.piece.uv_names), "": grid, self.piece.uv_names[0]: grid}
+                value = self.evaluator(evaluate.Points(len(grid), uv=known)).socket(socket)
                 return self.stored(value, size, is_number, unlimited, {})
             except evaluate.NeedsCoordinates:
                 pass
