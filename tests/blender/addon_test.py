@@ -245,12 +245,29 @@ class AddOn(unittest.TestCase):
             tree.links.new(tree.nodes.new("ShaderNodeBsdfToon" if hasattr(bpy.types, "ShaderNodeBsdfToon") else "ShaderNodeBsdfSheen").outputs[0],
                            tree.nodes["Material Output"].inputs["Surface"])
         scenes.plane(1, scenes.material("cartoon", nodes))
+
+        def sides(tree, shader):
+            tree.links.new(tree.nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"], shader.inputs["Roughness"])
+            tree.links.new(tree.nodes.new("ShaderNodeLightPath").outputs["Is Shadow Ray"], shader.inputs["Metallic"])
+        scenes.plane(1, scenes.material("sides", sides))
         self.scene.render.film_transparent = True
         self.fake.warnings = ["the importer says this"]
         self.render()
-        told = "\n".join(sys.modules["bandsaw_blender.engine"].last_warnings)
-        for word in ('material "cartoon"', "transparent background", "the importer says this"):
-            self.assertIn(word, told)
+        for word in ('material "cartoon"', "transparent background", "the importer says this", 'material "sides": "Backfacing" of the node "Geometry"',
+                     'material "sides": the node "Light Path" depends on the ray'):
+            self.assertIn(word, self.told())
+
+    def test_a_backdrop_for_the_camera_does_not_light_the_scene(self):
+        tree, lit = scenes.world(1, 0.5, 0)
+        backdrop, mix, path = (tree.nodes.new("ShaderNode" + kind) for kind in ("Background", "MixShader", "LightPath"))
+        backdrop.inputs["Color"].default_value = (0, 0, 1, 1)
+        tree.links.new(path.outputs["Is Camera Ray"], mix.inputs[0])
+        tree.links.new(lit.outputs[0], mix.inputs[1])
+        tree.links.new(backdrop.outputs[0], mix.inputs[2])
+        tree.links.new(mix.outputs[0], tree.nodes["World Output"].inputs["Surface"])
+        self.render()
+        self.assertEqual(self.sent()[0]["background"], {"constant": {"rgb": [1, 0.5, 0]}})
+        self.assertIn('the world: the node "Light Path" depends on the ray', self.told())
 
     def test_reflectances_above_1_are_sent_as_1(self):
         made = self.material_of(None, Base_Color=(2, 0.5, 0.25, 1), Roughness=1.0, Specular=0.0)

@@ -68,12 +68,14 @@ def color(value):
 
 
 class Evaluator:
-    """Evaluates nodes at `points` (a Points). `images`: a function from a Blender image to its pixels (height, width, 4) as linear floats,
-    rows from the bottom. A node of type T is evaluated by the method node_T(node, output), which returns the value of that output. `groups`:
+    """Evaluates nodes at `points` (a Points), as rays of the camera see them; for a `light` or the world, as other rays do. `images`:
+    a function from a Blender image to its pixels (height, width, 4) as linear floats, rows from the bottom; `warn`: a function of a text, which
+    names what is not as in Blender. A node of type T is evaluated by the method node_T(node, output), which returns the value of that output. `groups`:
     the group nodes around the node that is evaluated, the innermost last; `memory`: values that were computed before."""
 
-    def __init__(self, points, images):
-        self.points, self.images, self.groups, self.memory = points, images, [], {}
+    def __init__(self, points, images, warn, light=False):
+        self.points, self.images, self.warn, self.light = points, images, warn, light
+        self.groups, self.memory = [], {}
 
     def socket(self, socket):
         """Returns the value of an input socket: what is linked to it, or its own. A vector at an input for a number becomes the mean of its
@@ -175,11 +177,14 @@ class Evaluator:
         if output.name in ("Normal", "True Normal"):
             return self.need(self.points.normal, "normals")
         if output.name == "Backfacing":
+            self.warn(f'"Backfacing" of the node "{node.name}" is not shown; both sides are as the front')
             return np.zeros(1)
         raise Unsupported(f'"{output.name}" of the node "{node.name}"')
 
     def node_light_path(self, node, output):
-        return np.array([1.0 if output.name == "Is Camera Ray" else 0.0])
+        ray = "Diffuse" if self.light else "Camera"
+        self.warn(f'the node "{node.name}" depends on the ray; all rays get what it gives to {ray.lower()} rays')
+        return np.array([1.0 if output.name == f"Is {ray} Ray" else 0.0])
 
     def node_mapping(self, node, output):
         from mathutils import Euler, Vector

@@ -47,11 +47,16 @@ def node_factor(out, light):
     try:
         if output.node.type != "EMISSION":
             raise Unsupported(f'the node "{output.node.name}"')
-        values = evaluate.Evaluator(evaluate.Points(1), out.images.pixels)
+        values = evaluator(out, f'the light "{light.name}"', evaluate.Points(1), light=True)
         return evaluate.color(values.of(output.node, "Color"))[0] * evaluate.number(values.of(output.node, "Strength"))[0]
     except Unsupported as error:
         out.warn(f'the light "{light.name}": {error} cannot be shown; the light has its plain colour')
         return np.ones(3)
+
+
+def evaluator(out, where, points, light=False):
+    """Returns the Evaluator of the nodes of `where`, a text for warnings. `light`: as Evaluator has it."""
+    return evaluate.Evaluator(points, out.images.pixels, lambda text: out.warn(f"{where}: {text}"), light)
 
 
 def add_sun(out, thing, placed, place, toward, tint):
@@ -160,7 +165,7 @@ def world_background(out, world):
 def radiance_of(out, output, points, values=None):
     """Returns the radiance of the world's shader at points, whose generated coordinates are directions."""
     node = output.node
-    values = values or evaluate.Evaluator(points, out.images.pixels)
+    values = values or evaluator(out, "the world", points, light=True)
     if node.type in ("BACKGROUND", "EMISSION"):
         return evaluate.color(values.of(node, "Color")) * evaluate.number(values.of(node, "Strength"))[:, None]
     if node.type in ("MIX_SHADER", "ADD_SHADER"):
@@ -229,7 +234,7 @@ def medium_of(out, output, where, density_grid=None):
     """Returns the message Medium of a volume shader, without a name; None: it cannot be shown, and a warning says so. `where`: the volume's
     owner, for warnings; `density_grid`: the name of the grid that the caller adds, None: no grid."""
     node = output.node
-    values = evaluate.Evaluator(evaluate.Points(1), out.images.pixels)
+    values = evaluator(out, where, evaluate.Points(1))
     try:
         if node.type == "ADD_SHADER":
             parts = [medium_of(out, s, where) for s in map(from_node, node.inputs) if s is not None]

@@ -182,7 +182,7 @@ class Shader:
     # ---- values ----
 
     def evaluator(self, points):
-        made = evaluate.Evaluator(points, self.out.images.pixels)
+        made = evaluate.Evaluator(points, self.out.images.pixels, self.warn)
         made.groups = list(self.groups)
         return made
 
