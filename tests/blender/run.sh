@@ -67,6 +67,16 @@ case $part in
     ! "$build/bin/bandsaw" render "$work/out/bad.blend" --samples 1 -o "$work/out/bad.pfm" 2>"$work/error"
     grep -q "bad.blend: Blender made no scene of it" "$work/error" || { cat "$work/error"; exit 1; }
     [ ! -e "$work/out/bad.pfm" ]
+    # Of several view layers the first one is rendered, which has the ball in the middle of the image.
+    in_blender "$here/save.py" "$work/out/layers.blend" layers
+    "$build/bin/bandsaw" render "$work/out/layers.blend" --samples 4 --report none -o "$work/out/layers.pfm" 2>"$work/error"
+    grep -q 'only the view layer "ViewLayer" is rendered' "$work/error" || { cat "$work/error"; exit 1; }
+    /usr/bin/python3 - "$work/out/layers.pfm" <<'END'
+import sys
+import numpy
+r, g, b = numpy.fromfile(sys.argv[1], "<f4", offset=len(b"PF\n96 64\n-1.0\n")).reshape(64, 96, 3)[32, 48]
+assert g > 4 * max(r, b), (r, g, b)
+END
     # For a sequence one Blender writes all frames. Each must be as that of a Blender that writes this frame alone.
     start_farm
     in_blender "$here/save.py" "$work/out/motion.blend" motion

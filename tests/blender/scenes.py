@@ -22,7 +22,7 @@ def build(name):
     made.render.resolution_x, made.render.resolution_y, made.render.resolution_percentage = 96, 64, 100
     made.view_settings.view_transform = "Standard"
     camera((0, -7, 2.5), (0, 0, 0.6))
-    SCENES[name]()
+    (SCENES.get(name) or OTHERS[name])()
 
 
 # ---- parts ----
@@ -444,3 +444,20 @@ def volume():
     node.inputs["Anisotropy"].default_value = 0.3
     tree.links.new(node.outputs[0], tree.nodes.new("ShaderNodeOutputMaterial").inputs["Volume"])
     cube((0, 0, 1.01), 2, made)
+
+
+# ---- scenes for other tests, which are not compared with Cycles ----
+
+
+def layers():
+    """Two view layers; the second one is without the ball."""
+    SCENES["lens"]()
+    hidden = bpy.data.collections.new("hidden")
+    bpy.context.scene.collection.children.link(hidden)
+    one = ball((0, 0, 1), diffuse(0, 1, 0))
+    bpy.context.scene.collection.objects.unlink(one)
+    hidden.objects.link(one)
+    bpy.context.scene.view_layers.new("without").layer_collection.children["hidden"].exclude = True
+
+
+OTHERS = {"layers": layers}

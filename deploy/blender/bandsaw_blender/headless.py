@@ -27,9 +27,15 @@ class ExportEngine(bpy.types.RenderEngine):
     bl_label = "Bandsaw (scene files)"
 
     def render(self, depsgraph):
+        # Blender calls this for each view layer, but a scene file holds one: the first.
+        layers = [layer.name for layer in depsgraph.scene.view_layers if layer.use]
+        if depsgraph.view_layer.name != layers[0]:
+            return
         try:
             size = (self.resolution_x, self.resolution_y)
             made = scenes.build(depsgraph, depsgraph.scene, size, engine.region_of(depsgraph.scene.render, size), None, self.frame_set)
+            if len(layers) > 1:
+                made.warn(f'only the view layer "{layers[0]}" is rendered')
             write(_folder[0], made)
         except Exception as error:
             traceback.print_exc()
@@ -80,7 +86,7 @@ def export(folder, name, frame):
     scene.render.engine = ExportEngine.bl_idname
     if frame is not None:
         scene.frame_set(int(frame))
-    scene.render.use_compositing = scene.render.use_sequencer = False
+    scene.render.use_compositing = scene.render.use_sequencer = scene.render.use_single_layer = False
     if scene.camera is None:
         fail(folder, "the scene has no camera")
     else:
