@@ -381,6 +381,38 @@ class AddOn(unittest.TestCase):
                 self.assertGreater(pixels[:, :, 1 - column].min(), 0.99, name)
             bpy.data.objects.remove(thing)
 
+    def test_baked_normals_are_in_the_world_and_shared_ones_are_named(self):
+        def nodes(tree, shader):
+            coordinates = tree.nodes.new("ShaderNodeNewGeometry")
+            tree.links.new(coordinates.outputs["Normal"], shader.inputs["Base Color"])
+        wall = scenes.plane(4, scenes.material("snow", nodes), turn=(0, np.pi / 2, 0))  # its normal is +x in the world, +z in its space
+        wall.scale = (1, 2, 3)
+        self.render()
+        pixels = self.texels(self.sent()[0]["material"][-1]["gltf"]["base_color_texture"])
+        self.assertLess(abs(pixels[10:100, 10:100] - (1, 0, 0)).max(), 0.01)
+        self.assertEqual(self.told(), "")
+        other = scenes.link(wall.copy())
+        other.rotation_euler = (0, 0, 0)
+        self.render()
+        self.assertIn(f'textures of the mesh "{wall.data.name}" depend on where it is', self.told())
+
+    def test_generated_coordinates_are_those_before_deformation(self):
+        def nodes(tree, shader):
+            coordinates = tree.nodes.new("ShaderNodeTexCoord")
+            tree.links.new(coordinates.outputs["Generated"], shader.inputs["Base Color"])
+        thing = scenes.plane(2, scenes.material("generated", nodes))
+        self.render()
+        before = self.texels(self.sent()[0]["material"][-1]["gltf"]["base_color_texture"])
+        thing.shape_key_add(name="basis")
+        moved = thing.shape_key_add(name="moved")
+        for point in moved.data:
+            point.co.x += 5
+        moved.value = 1
+        self.render()
+        after = self.texels(self.sent()[0]["material"][-1]["gltf"]["base_color_texture"])
+        self.assertGreater(before[:, :, 0].std(), 0.2)
+        self.assertLess(abs(after - before).max(), 0.01)
+
     def test_two_million_triangles(self):
         geometry = sys.modules["bandsaw_blender.geometry"]
         mesh = bpy.data.meshes.new("big")

@@ -18,11 +18,13 @@ class NeedsCoordinates(Unsupported):
 
 class Points:
     """The points at which nodes are evaluated, n = `count`. Each coordinate is an array of n rows, or None if the points do not have it: `uv` (a
-    dictionary of arrays (n, 2) by the name of the uv map, "" the active one; None for a map of the mesh that they do not have), `generated`, `object`, `normal`, `position` (n, 3)."""
+    dictionary of arrays (n, 2) by the name of the uv map, "" the active one; None for a map of the mesh that they do not have), `generated`, `object`, `normal`
+    (n, 3), all in the object's space; `position`, `world_normal` (n, 3). `used`: a set that gets the names of the coordinates that nodes need."""
 
-    def __init__(self, count, uv=None, generated=None, local=None, normal=None, position=None):
+    def __init__(self, count, uv=None, generated=None, local=None, normal=None, position=None, world_normal=None, used=None):
         self.count, self.uv, self.generated = count, uv or {}, generated
-        self.object, self.normal, self.position = local, normal, position
+        self.object, self.normal, self.position, self.world_normal = local, normal, position, world_normal
+        self.used = set() if used is None else used
 
 
 def source(socket):
@@ -119,16 +121,20 @@ class Evaluator:
             return color(self.socket(socket))
         if node.type == "TEX_IMAGE":
             return self.uv("")
-        return self.need(self.points.generated, "generated coordinates")
+        return self.need("generated", "generated coordinates")
 
-    # Returns the array, a coordinate of the points. Raises NeedsCoordinates if they do not have it.
-    def need(self, array, what):
+    # Returns the coordinate `name` of the points. Raises NeedsCoordinates if they do not have it; `what` names it then.
+    def need(self, name, what):
+        array = getattr(self.points, name)
         if array is None:
             raise NeedsCoordinates(what)
+        self.points.used.add(name)
         return array
 
     def uv(self, name):
-        uv = self.need(self.points.uv.get(name, self.points.uv.get("")), "uv coordinates")
+        uv = self.points.uv.get(name, self.points.uv.get(""))
+        if uv is None:
+            raise NeedsCoordinates("uv coordinates")
         return np.concatenate([uv, np.zeros((len(uv), 1))], axis=1)
 
     # ---- groups ----
@@ -161,11 +167,11 @@ class Evaluator:
         if name == "UV":
             return self.uv("")
         if name == "Generated":
-            return self.need(self.points.generated, "generated coordinates")
+            return self.need("generated", "generated coordinates")
         if name == "Object" and node.object is None:
-            return self.need(self.points.object, "object coordinates")
+            return self.need("object", "object coordinates")
         if name == "Normal":
-            return self.need(self.points.normal, "normals")
+            return self.need("normal", "normals")
         raise Unsupported(f'"{name}" of the node "{node.name}"')
 
     def node_uvmap(self, node, output):
@@ -173,9 +179,9 @@ class Evaluator:
 
     def node_new_geometry(self, node, output):
         if output.name == "Position":
-            return self.need(self.points.position, "positions")
+            return self.need("position", "positions")
         if output.name in ("Normal", "True Normal"):
-            return self.need(self.points.normal, "normals")
+            return self.need("world_normal", "normals")
         if output.name == "Backfacing":
             self.warn(f'"Backfacing" of the node "{node.name}" is not shown; both sides are as the front')
             return np.zeros(1)
@@ -432,13 +438,14 @@ MATH = {
 }
 
 
-def _unit(a):
+# Returns vectors (n, 3) with the length 1.
+def unit(a):
     return a / np.maximum(np.linalg.norm(a, axis=1, keepdims=True), 1e-30)
 
 
 VECTOR_MATH = {
     "ADD": lambda a, b, s: a + b, "SUBTRACT": lambda a, b, s: a - b, "MULTIPLY": lambda a, b, s: a * b,
-    "DIVIDE": lambda a, b, s: np.where(b == 0, 0, a / b), "SCALE": lambda a, b, s: a * s[:, None], "NORMALIZE": lambda a, b, s: _unit(a),
+    "DIVIDE": lambda a, b, s: np.where(b == 0, 0, a / b), "SCALE": lambda a, b, s: a * s[:, None], "NORMALIZE": lambda a, b, s: unit(a),
     "LENGTH": lambda a, b, s: np.linalg.norm(a, axis=1), "DISTANCE": lambda a, b, s: np.linalg.norm(a - b, axis=1),
     "DOT_PRODUCT": lambda a, b, s: (a * b).sum(axis=1), "CROSS_PRODUCT": lambda a, b, s: np.cross(a, b), "ABSOLUTE": lambda a, b, s: np.abs(a),
     "MINIMUM": lambda a, b, s: np.minimum(a, b), "MAXIMUM": lambda a, b, s: np.maximum(a, b), "FLOOR": lambda a, b, s: np.floor(a),

@@ -18,17 +18,19 @@ class Vertices:
 
 class Triangles:
     """The triangles of a mesh with one material slot. `positions` (v, 3), `normals` (v, 3) or None (flat everywhere), `uvs`: a list of
-    (v, 2), v = 0 at the bottom, of which at most two are written to files; `indices` (t, 3). `ends`: None, or the Vertices when the shutter opens and when it closes; all else
+    (v, 2), v = 0 at the bottom, of which at most two are written to files; `indices` (t, 3). `undeformed` (v, 3): where the vertices are
+    without modifiers and shape keys; None: at `positions`. `ends`: None, or the Vertices when the shutter opens and when it closes; all else
     is that of the frame."""
 
-    def __init__(self, positions, normals, uvs, indices, ends=None):
-        self.positions, self.normals, self.uvs, self.indices, self.ends = positions, normals, uvs, indices, ends
+    def __init__(self, positions, normals, uvs, indices, undeformed=None, ends=None):
+        self.positions, self.normals, self.uvs, self.indices, self.undeformed, self.ends = positions, normals, uvs, indices, undeformed, ends
 
     def _selected(self, which, indices):
         """Triangles of the vertices `which`."""
         frame = Vertices(self.positions, self.normals)[which]
         ends = None if self.ends is None else tuple(end[which] for end in self.ends)
-        return Triangles(frame.positions, frame.normals, [uv[which] for uv in self.uvs], indices.astype(np.uint32).reshape(-1, 3), ends)
+        undeformed = None if self.undeformed is None else self.undeformed[which]
+        return Triangles(frame.positions, frame.normals, [uv[which] for uv in self.uvs], indices.astype(np.uint32).reshape(-1, 3), undeformed, ends)
 
     def box(self):
         """Returns the lowest and the highest coordinates, two arrays of 3."""
@@ -71,11 +73,13 @@ def _corner_normals(mesh, loops):
 
 
 class Pose:
-    """A mesh of Blender at a time: `positions` (vertices, 3), `vertex_of_loop` (loops), and `normals` (loops, 3), or None: flat everywhere."""
+    """A mesh of Blender at a time: `positions`, `undeformed` (vertices, 3), as Triangles has them, `vertex_of_loop` (loops), and `normals` (loops, 3), or None: flat everywhere."""
 
     def __init__(self, mesh):
         vertices, loops = len(mesh.vertices), len(mesh.loops)
         self.positions = _get(mesh.vertices, "co", vertices, 3, np.float32)
+        undeformed = _get(mesh.vertices, "undeformed_co", vertices, 3, np.float32)
+        self.undeformed = None if np.array_equal(undeformed, self.positions) else undeformed
         self.vertex_of_loop = _get(mesh.loops, "vertex_index", loops, 1, np.int32)
         smooth = _get(mesh.polygons, "use_smooth", len(mesh.polygons), 1, bool)
         custom = mesh.has_custom_normals
@@ -141,7 +145,7 @@ def _indexed(pose, uvs, corners, of_corner, ends):
     per_corner = [each.normals for each in poses if each.normals is not None] + uvs
     if not per_corner:
         flat_ends = None if ends is None else tuple(Vertices(end.positions, None) for end in ends)
-        return Triangles(pose.positions, None, [], of_corner.astype(np.uint32), flat_ends)
+        return Triangles(pose.positions, None, [], of_corner.astype(np.uint32), pose.undeformed, flat_ends)
     values = [a[flat] for a in per_corner]
     representative = np.zeros(len(pose.positions), dtype=np.int64)
     representative[vertex] = np.arange(len(flat))  # the last corner of each vertex
@@ -163,7 +167,8 @@ def _indexed(pose, uvs, corners, of_corner, ends):
     result = [a[all_corners] for a in values]
     placed = [Vertices(np.concatenate([each.positions, each.positions[vertex[added]]]), result.pop(0) if each.normals is not None else None)
               for each in poses]
-    return Triangles(placed[0].positions, placed[0].normals, result, index.reshape(-1, 3), tuple(placed[1:]) or None)
+    undeformed = None if pose.undeformed is None else np.concatenate([pose.undeformed, pose.undeformed[vertex[added]]])
+    return Triangles(placed[0].positions, placed[0].normals, result, index.reshape(-1, 3), undeformed, tuple(placed[1:]) or None)
 
 
 def box(low, high):

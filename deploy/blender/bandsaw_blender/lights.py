@@ -221,7 +221,7 @@ def baked_environment(out, output, width=1024):
     longitude = (0.5 - (x + 0.5) / width) * 2 * np.pi
     latitude = (0.5 - (y + 0.5) / height) * np.pi
     d = np.stack([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)], axis=1)
-    points = evaluate.Points(len(d), generated=d, local=d, normal=d, position=d)
+    points = evaluate.Points(len(d), generated=d, local=d, normal=d, position=d, world_normal=d)
     values = np.broadcast_to(radiance_of(out, output, points), (len(d), 3))
     picture = np.maximum(np.nan_to_num(values), 0).reshape(height, width, 3)
     return {"environment": {"file": out.images.store("world.exr", files.exr(picture))}}

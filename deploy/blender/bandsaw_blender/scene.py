@@ -101,8 +101,8 @@ class Scene:
 
 
 class Shape:
-    """A mesh with its materials, which all its placements share. `parts`: for each material slot, fields of the message Model; `placements`: pairs
-    of a matrix and, if it moves, the matrices at both ends of the shutter."""
+    """A mesh with its materials, which all its placements share. `parts`: for each material slot, fields of the message Model, its "box", and
+    "in_world": whether its textures depend on where it is; `placements`: pairs of a matrix and, if it moves, the matrices at both ends of the shutter."""
 
     def __init__(self, parts):
         self.parts, self.placements = parts, []
@@ -337,6 +337,8 @@ def add_geometry(out, shapes, thing, matrix, moved, motion):
     if motion is not None and (sheared(motion[0]) or sheared(motion[1])):
         out.warn(f'the motion of "{thing.name}", which is sheared, is not blurred')
         motion = None
+    if shape.placements and any(part["in_world"] for part in shape.parts):
+        out.warn(f'textures of the mesh "{data.name}" depend on where it is; all that share it have those of the first one')
     shape.placements.append((matrix, motion))
 
 
@@ -356,6 +358,7 @@ def parts_of(out, thing, mesh, matrix, ends):
         part = material_part(out, material, piece, thing)
         if part is not None:
             part["box"] = triangles.box()
+            part["in_world"] = not piece.used.isdisjoint(("position", "world_normal"))
             part["file"] = out.store("mesh.glb", geometry.glb(piece.finished()))
             if ends is not None:
                 part["animation"] = geometry.DEFORMS
@@ -447,7 +450,7 @@ def add_grid(out, thing, matrix):
 def place(out, shapes):
     """Writes the placements: as models where there is one, otherwise as instances of a group."""
     for shape in shapes.values():
-        models = [{field: value for field, value in part.items() if field != "box"} for part in shape.parts]
+        models = [{field: value for field, value in part.items() if field not in ("box", "in_world")} for part in shape.parts]
         if not models:
             continue
         for part in shape.parts:

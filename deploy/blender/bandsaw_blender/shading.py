@@ -69,11 +69,12 @@ class Surface:
 
 class Piece:
     """A piece of geometry with one material. `triangles`; `low`, `size`: the box of the whole mesh, for generated coordinates; `world`: the
-    matrix that places it, 4 x 4; `uv_names`: the names of the uv sets. `atlas`: made when a texture needs it."""
+    matrix that places it, 4 x 4; `uv_names`: the names of the uv sets. `atlas`: made when a texture needs it; `used`: the names
+    of the coordinates that its textures need, as Points has them."""
 
     def __init__(self, triangles, low, size, world, uv_names):
         self.triangles, self.low, self.size, self.world, self.uv_names = triangles, low, size, world, uv_names
-        self.atlas = None
+        self.atlas, self.used = None, set()
 
     def make_atlas(self):
         if self.atlas is None:
@@ -107,13 +108,14 @@ class Piece:
             return np.einsum("nk,nkd->nd", weights, by_triangle)
 
         local = spread(self.triangles.positions.astype(np.float64)[flat])
-        normal = spread(self.triangles.corner_normals().astype(np.float64))
-        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-30)
+        undeformed = local if self.triangles.undeformed is None else spread(self.triangles.undeformed.astype(np.float64)[flat])
+        normal = evaluate.unit(spread(self.triangles.corner_normals().astype(np.float64)))
         uvs = [spread(uv.astype(np.float64)[flat]) for uv in self.triangles.uvs]
         world = np.array(self.world)
         return evaluate.Points(len(local), uv={"": uvs[0], **dict(zip(self.uv_names, uvs))} if uvs else {},
-                               generated=(local - self.low) / self.size, local=local, normal=normal,
-                               position=local @ world[:3, :3].T + world[:3, 3])
+                               generated=(undeformed - self.low) / self.size, local=local, normal=normal,
+                               position=local @ world[:3, :3].T + world[:3, 3],
+                               world_normal=evaluate.unit(normal @ np.linalg.pinv(world[:3, :3])), used=self.used)
 
 
 class Images:
@@ -382,8 +384,7 @@ class Shader:
         along_u, along_v = (corners[:, 1] - corners[:, 0]) * sign, (corners[:, 2] - corners[:, 0]) * sign  # a texel
         which = np.maximum(atlas.triangle, 0)
         pu, pv = along_u[which], along_v[which]
-        n = self.piece.points().normal @ np.linalg.inv(linear)
-        n /= np.maximum(np.linalg.norm(n, axis=1, keepdims=True), 1e-30)
+        n = self.piece.points().world_normal
         # Mikkelsen 2010, "Bump mapping unparametrized surfaces on the GPU".
         ru, rv = np.cross(pv, n), np.cross(n, pu)
         determinant = (pu * ru).sum(axis=1, keepdims=True)
