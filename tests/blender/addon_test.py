@@ -413,6 +413,16 @@ class AddOn(unittest.TestCase):
         self.assertGreater(before[:, :, 0].std(), 0.2)
         self.assertLess(abs(after - before).max(), 0.01)
 
+    def test_a_mirrored_area_light_shines_forwards(self):
+        for scale in ((1, 1, 1), (-1, 1, 1), (1, -2, 1), (1, 1, -1)):
+            lamp = scenes.light("AREA", (0, 0, 3), 100, size=1)
+            lamp.rotation_euler, lamp.scale = (0, 0, 0), scale
+            self.render()
+            quad = self.sent()[0]["shape"][0]["quad"]
+            normal = np.cross(quad["u"], quad["v"])
+            self.assertEqual(np.sign(normal).tolist(), [0, -scale[2], 0], scale)
+            bpy.data.objects.remove(lamp)
+
     def test_two_million_triangles(self):
         geometry = sys.modules["bandsaw_blender.geometry"]
         mesh = bpy.data.meshes.new("big")

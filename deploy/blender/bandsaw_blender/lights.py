@@ -113,8 +113,10 @@ def add_area(out, thing, placed, place, toward, tint):
         out.warn(f'the spread of the area light "{thing.name}" is not shown')
     radiance = tint / (area * (math.pi if bpy.app.version >= (4, 0) else 4))  # before Blender 4.0 the power was not that of a Lambertian emitter
     if not round_one:
-        # Its normal u x v looks along the light's -z.
-        out.lamp({"quad": {"corner": vector(Vector(place) - across / 2 - along / 2), "u": vector(along), "v": vector(across)}}, radiance, not thing.visible_camera)
+        # Its normal u x v looks along the light's -z, also if the light is mirrored.
+        u, v = (across, along) if across.cross(along).dot(Vector(toward)) > 0 else (along, across)
+        corner = Vector(place) - across / 2 - along / 2
+        out.lamp({"quad": {"corner": vector(corner), "u": vector(u), "v": vector(v)}}, radiance, not thing.visible_camera)
     elif abs(across.length - along.length) < 1e-6 * across.length:
         out.lamp({"disk": {"center": place, "normal": toward, "radius": across.length / 2}}, radiance, not thing.visible_camera)
     else:
