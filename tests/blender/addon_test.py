@@ -179,9 +179,15 @@ class AddOn(unittest.TestCase):
         self.assertEqual([job["kind"] for job in self.fake.jobs.values()], ["path", "depth", "normals", "albedo"])
         engine = sys.modules["bandsaw_blender.engine"]
         # The farm's layer has (n + 1) / 2 with y up; Blender's pass has n with z up. Depth 0 means no hit, in Blender 1e10.
-        up = engine.pass_pixels("normals", np.full((1, 1, 3), 0.5) + [[[0, 0.5, 0]]], None, None)
+        up = engine.pass_pixels("normals", np.full((1, 1, 3), 0.5) + [[[0, 0.5, 0]]], None)
         self.assertEqual(up.tolist(), [[[0, 0, 1]]])
-        self.assertEqual(engine.pass_pixels("depth", np.zeros((1, 1, 3)), None, None).tolist(), [[[1e10]]])
+        eye = {"window": [-2, 4, -3, 1]}
+        self.assertEqual(engine.pass_pixels("depth", np.zeros((1, 1, 3)), eye).tolist(), [[[1e10]]])
+        # The farm's depth is along the ray: the pixels' centres are at (-0.5, 0), (2.5, 0), (-0.5, -2) and (2.5, -2), at distance 1.
+        rays = np.sqrt([[1.25, 7.25], [5.25, 11.25]])
+        for camera, depths in ((eye, np.full((2, 2), 3)), ({**eye, "orthographic": {}}, 3 * rays)):
+            found = engine.pass_pixels("depth", np.repeat(3 * rays[:, :, None], 3, axis=2), camera)[:, :, 0]
+            self.assertLess(abs(found - depths).max(), 1e-6)
 
     def test_no_string(self):
         preferences().farm = ""

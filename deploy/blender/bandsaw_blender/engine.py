@@ -137,7 +137,7 @@ class BandsawEngine(bpy.types.RenderEngine):
                     wait = time.monotonic() + max(0.4, 4 * (time.monotonic() - began))
             self.stop_if_asked()
             self.set_pixels(result, "Combined", with_alpha(job.image().array()))
-            self.add_passes(depsgraph, job, result)
+            self.add_passes(depsgraph, job, result, made.scene["camera"])
             self.update_result(result)
             done = True
         finally:
@@ -174,7 +174,8 @@ class BandsawEngine(bpy.types.RenderEngine):
         except TypeError:
             found.rect.foreach_set(rows.reshape(-1))  # later versions the number of values
 
-    def add_passes(self, depsgraph, job, result):
+    # Renders the passes. `camera`: the message Camera of the scene.
+    def add_passes(self, depsgraph, job, result, camera):
         wanted = [entry for entry in PASSES if getattr(depsgraph.view_layer, entry[0], False)]
         jobs = [(entry, job.layer(entry[5])) for entry in wanted]
         for (_, name, channels, _, _, kind), layer in jobs:
@@ -183,19 +184,29 @@ class BandsawEngine(bpy.types.RenderEngine):
             if self.test_break():
                 layer.cancel()
                 raise Stopped()
-            self.set_pixels(result, name, pass_pixels(kind, layer.image().array(), depsgraph, self.camera_override))
+            self.set_pixels(result, name, pass_pixels(kind, layer.image().array(), camera))
 
 
 def with_alpha(pixels):
     return np.concatenate([pixels, np.ones(pixels.shape[:2] + (1,), dtype=np.float32)], axis=2)
 
 
-def pass_pixels(kind, pixels, depsgraph, camera):
-    """Returns the pixels of a layer of the farm (`kind`: as in PASSES) in the form of Blender's pass."""
+def pass_pixels(kind, pixels, camera):
+    """Returns the pixels of a layer of the farm (`kind`: as in PASSES) in the form of Blender's pass. `camera`: the message Camera of the scene."""
     if kind == "normals":
         hit = pixels.any(axis=2, keepdims=True)
         n = np.where(hit, 2 * pixels - 1, 0)
         return np.stack([n[:, :, 0], -n[:, :, 2], n[:, :, 1]], axis=2)  # from y up to z up
     if kind == "depth":
-        return np.where(pixels[:, :, :1] > 0, pixels[:, :, :1], 1e10)  # Blender's mark of a ray that hits nothing
+        # The farm's depth is the distance along the ray, Blender's that along the camera's axis; 1e10 is its mark of a ray that hits nothing.
+        depth = pixels[:, :, :1] if "orthographic" in camera else pixels[:, :, :1] / ray_lengths(camera["window"], *pixels.shape[:2])
+        return np.where(pixels[:, :, :1] > 0, depth, 1e10)
     return pixels
+
+
+def ray_lengths(window, height, width):
+    """Returns the distances (height, width, 1), rows from the top, from a perspective camera to its `window` at the pixels' centres."""
+    left, right, bottom, top = window
+    x = left + (np.arange(width) + 0.5) / width * (right - left)
+    y = top - (np.arange(height) + 0.5) / height * (top - bottom)
+    return np.sqrt(1 + x[None, :, None] ** 2 + y[:, None, None] ** 2)
