@@ -429,6 +429,31 @@ class AddOn(unittest.TestCase):
             self.assertEqual(np.sign(normal).tolist(), [0, -scale[2], 0], scale)
             bpy.data.objects.remove(lamp)
 
+    def test_colours_are_multiplied_by_an_alpha_that_is_not_used(self):
+        image = bpy.data.images.new("veil", 4, 4, alpha=True)
+        image.pixels.foreach_set(np.tile(np.array([1, 1, 0, 0.25], dtype=np.float32), 16))
+        image.filepath_raw, image.file_format = os.path.join(self.folder.name, "veil.png"), "PNG"
+        image.save()
+        image = bpy.data.images.load(image.filepath_raw)
+
+        def nodes(tree, shader):
+            node = tree.nodes.new("ShaderNodeTexImage")
+            node.image = image
+            scale = tree.nodes.new("ShaderNodeVectorMath")  # so that the emission is baked
+            scale.operation = "SCALE"
+            tree.links.new(node.outputs["Color"], shader.inputs["Base Color"])
+            tree.links.new(node.outputs["Color"], scale.inputs[0])
+            tree.links.new(scale.outputs[0], scenes.socket(shader, "Emission"))
+            scenes.socket(shader, "Emission_Strength").default_value = 1
+        made = self.material_of(nodes)["gltf"]
+        for field in ("base_color_texture", "emissive_texture"):  # 0.25 is encoded: Cycles multiplies the values of the file
+            self.assertLess(abs(self.texels(made[field]) - (0.0509, 0.0509, 0)).max(), 0.002, field)
+
+        def with_alpha(tree, shader):
+            nodes(tree, shader)
+            tree.links.new(tree.nodes["Image Texture"].outputs["Alpha"], shader.inputs["Alpha"])
+        self.assertLess(abs(self.texels(self.material_of(with_alpha)["gltf"]["base_color_texture"]) - (1, 1, 0)).max(), 0.005)
+
     def test_two_million_triangles(self):
         geometry = sys.modules["bandsaw_blender.geometry"]
         mesh = bpy.data.meshes.new("big")

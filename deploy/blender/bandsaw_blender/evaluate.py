@@ -223,7 +223,10 @@ class Evaluator:
             return np.array([[1.0, 0.0, 1.0]]) if output.name == "Color" else np.ones(1)
         if node.projection != "FLAT":
             raise Unsupported(f'the projection of the image node "{node.name}"')
-        found = look_up(self.images(node.image), self.coordinates(node)[:, :2], node.extension, node.interpolation == "Closest")
+        pixels = self.images(node.image)
+        if covered(node):
+            pixels = multiplied(pixels)
+        found = look_up(pixels, self.coordinates(node)[:, :2], node.extension, node.interpolation == "Closest")
         return found[:, 3] if output.name == "Alpha" else found[:, :3]
 
     def node_tex_environment(self, node, output):
@@ -507,6 +510,20 @@ def blackbody(temperature):
     found /= found[:, 1:2]
     to_rgb = np.array([[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]])
     return np.maximum(found @ to_rgb.T, 0)
+
+
+def covered(node):
+    """Returns true if an image node multiplies colours by their alpha: Cycles does so where the node's alpha is not used. Pixels of float images are
+    multiplied by it already."""
+    image = node.image
+    return (image.depth == 32 and not image.is_float and image.alpha_mode not in ("CHANNEL_PACKED", "NONE") and not node.outputs["Alpha"].is_linked and
+            image.colorspace_settings.name == "sRGB")
+
+
+# Returns linear pixels (height, width, 4) whose colours are multiplied by alpha, as Cycles does: the values that sRGB encodes are.
+def multiplied(pixels):
+    alpha = pixels[:, :, 3:]
+    return np.concatenate([files.linear(files.srgb_codes(pixels[:, :, :3]) / 255 * alpha), alpha], axis=2)
 
 
 def look_up(pixels, uv, extension, nearest):

@@ -142,13 +142,17 @@ class Images:
             self.warn(f'the image "{image.name}" has the colour space {image.colorspace_settings.name}, which is read as sRGB')
         return "ENCODING_SRGB"
 
-    def file(self, image, unlimited=True):
-        """Returns the name of the image's file in the scene. `unlimited`: its values may exceed 1; otherwise those become 1. Raises Unsupported if
-        there is no file."""
+    def file(self, image, unlimited=True, covered=False):
+        """Returns the name of the image's file in the scene. `unlimited`: its values may exceed 1; otherwise those become 1. `covered`: its colours are
+        multiplied by alpha. Raises Unsupported if there is no file."""
         lower = not unlimited and image.is_float and bool(self.pixels(image)[:, :, :3].max() > 1)
-        key = image.name_full, lower
+        darker = covered and bool(self.pixels(image)[:, :, 3].min() < 1)
+        key = image.name_full, lower, darker
         if key not in self._files:
-            self._files[key] = self.store("image.exr", files.exr(limited(self.pixels(image)[::-1, :, :3]))) if lower else self._stored(image)
+            if lower:
+                self._files[key] = self._encoded(image, limited(self.pixels(image)))
+            else:
+                self._files[key] = self._encoded(image, evaluate.multiplied(self.pixels(image))) if darker else self._stored(image)
         return self._files[key]
 
     def _stored(self, image):
@@ -162,7 +166,11 @@ class Images:
                     return self.store("image" + suffix, file.read())
             except OSError:
                 raise Unsupported(f'the image "{image.name}", whose file is missing ({path})')
-        pixels = self.pixels(image)[::-1, :, :3]
+        return self._encoded(image, self.pixels(image))
+
+    # Stores `pixels` in the way of the image.
+    def _encoded(self, image, pixels):
+        pixels = pixels[::-1, :, :3]
         if image.is_float:
             return self.store("image.exr", files.exr(pixels))
         codes = files.srgb_codes(pixels) if image.colorspace_settings.name == "sRGB" else (np.clip(pixels, 0, 1) * 255 + 0.5).astype(np.uint8)
@@ -238,7 +246,7 @@ class Shader:
             return None
         wrap = {"REPEAT": "WRAP_REPEAT", "EXTEND": "WRAP_CLAMP", "MIRROR": "WRAP_MIRROR"}[node.extension]
         nearest = "FILTER_NEAREST" if node.interpolation == "Closest" else "FILTER_BILINEAR"
-        file = self.out.images.file(node.image, unlimited)
+        file = self.out.images.file(node.image, unlimited, evaluate.covered(node))
         image = {"file": file, "wrap": wrap, "filter": nearest, "encoding": self.out.images.encoding(node.image), **placed}
         return Value(texture={"image": image})
 
