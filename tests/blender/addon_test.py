@@ -454,6 +454,23 @@ class AddOn(unittest.TestCase):
             tree.links.new(tree.nodes["Image Texture"].outputs["Alpha"], shader.inputs["Alpha"])
         self.assertLess(abs(self.texels(self.material_of(with_alpha)["gltf"]["base_color_texture"]) - (1, 1, 0)).max(), 0.005)
 
+    def test_what_cannot_be_hidden_is_named(self):
+        self.render()
+        self.assertEqual(self.told(), "")
+        thing = scenes.cube((0, 0, 1), 1, scenes.diffuse(1, 0, 0))
+        thing.is_shadow_catcher = thing.is_holdout = True
+        rays = ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow")
+        for kind in rays:
+            setattr(thing, "visible_" + kind, False)
+        self.scene.world.cycles_visibility.camera = False
+        self.scene.camera.data.clip_start = 1
+        self.render()
+        told = self.told()
+        for words in ("shadow catcher", "holdout", "by the camera", "diffuse rays", "glossy rays", "transmitted", "volumes scatter", "casts shadows"):
+            self.assertEqual(len([line for line in told.splitlines() if line.startswith('"Cube" ') and words in line]), 1, told)
+        self.assertIn("Ray Visibility", told)
+        self.assertIn("Clip Start", told)
+
     def test_two_million_triangles(self):
         geometry = sys.modules["bandsaw_blender.geometry"]
         mesh = bpy.data.meshes.new("big")

@@ -138,6 +138,9 @@ def add_world(out, world):
     except Unsupported as error:
         out.warn(f"the world: {error} cannot be shown; the background is black")
     out.scene["background"] = background or {"constant": rgb((0, 0, 0))}
+    rays = getattr(world, "cycles_visibility", None)
+    if rays is not None and not all(getattr(rays, kind) for kind in ("camera", "diffuse", "glossy", "transmission", "scatter")):
+        out.warn("the world is seen by all rays, although its Ray Visibility says that it is not")
     if world is None or not world.use_nodes or world.node_tree is None:
         return
     end = shading.output_node(world.node_tree)

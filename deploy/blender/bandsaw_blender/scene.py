@@ -295,6 +295,8 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
         message["orthographic"] = {"height": 2.0}
     else:
         message["vertical_fov"] = 90.0
+    if data.clip_start > 0.1 + 1e-6:  # Blender's default
+        out.warn("what is nearer to the camera than its Clip Start is shown")
     if data.dof.use_dof and flat:
         out.warn("the depth of field of an orthographic camera is not shown")
     elif data.dof.use_dof:
@@ -319,6 +321,22 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
 # ---- geometry ----
 
 
+# Settings of objects that Bandsaw has not: for each its name, the value that has an effect, and what is shown although it is set.
+IGNORED = (("visible_camera", False, "is seen by the camera, although its setting says that it is not"),
+           ("visible_diffuse", False, "is seen by diffuse rays, although its setting says that it is not"),
+           ("visible_glossy", False, "is seen by glossy rays, although its setting says that it is not"),
+           ("visible_transmission", False, "is seen by transmitted rays, although its setting says that it is not"),
+           ("visible_volume_scatter", False, "is seen by rays that volumes scatter, although its setting says that it is not"),
+           ("visible_shadow", False, "casts shadows, although its setting says that it does not"),
+           ("is_shadow_catcher", True, "is shown itself, although it is a shadow catcher"), ("is_holdout", True, "is shown, although it is a holdout"))
+
+
+def name_ignored(out, thing):
+    for setting, effective, what in IGNORED:
+        if getattr(thing, setting) == effective:
+            out.warn(f'"{thing.name}" {what}')
+
+
 def materials_of(thing, mesh):
     slots = [slot.material for slot in thing.material_slots]
     return slots or [material for material in mesh.materials]
@@ -332,8 +350,7 @@ def add_geometry(out, shapes, thing, matrix, moved, motion):
     if shape is None:
         with mesh_of(thing) as mesh:
             shape = shapes[key] = Shape(parts_of(out, thing, mesh, matrix, moved.ends_of(out, thing, mesh)) if mesh is not None else [])
-    if not thing.visible_camera:
-        out.warn(f'"{thing.name}" is seen by the camera, although its setting says that it is not')
+    name_ignored(out, thing)
     if motion is not None and (sheared(motion[0]) or sheared(motion[1])):
         out.warn(f'the motion of "{thing.name}", which is sheared, is not blurred')
         motion = None
