@@ -471,6 +471,20 @@ class AddOn(unittest.TestCase):
         self.assertIn("Ray Visibility", told)
         self.assertIn("Clip Start", told)
 
+    def test_fire_in_a_grid_is_named(self):
+        fire = scenes.only("VolumePrincipled", Blackbody_Intensity=1.0)
+        tree = fire.node_tree
+        end = tree.nodes["Material Output"]
+        tree.links.new(end.inputs["Surface"].links[0].from_socket, end.inputs["Volume"])
+        tree.links.remove(end.inputs["Surface"].links[0])
+        grid = scenes.link(bpy.data.objects.new("flame", bpy.data.volumes.new("flame")))
+        grid.data.materials.append(fire)
+        grid.data.filepath = os.path.join(self.folder.name, "flame.vdb")
+        with open(grid.data.filepath, "wb") as file:
+            file.write(b"not a grid, so the volume is empty")
+        self.render()
+        self.assertIn('the volume "flame": fire', self.told())
+
     def test_two_million_triangles(self):
         geometry = sys.modules["bandsaw_blender.geometry"]
         mesh = bpy.data.meshes.new("big")

@@ -235,9 +235,9 @@ def baked_environment(out, output, width=1024):
 # ---- media ----
 
 
-def medium_of(out, output, where, density_grid=None):
+def medium_of(out, output, where):
     """Returns the message Medium of a volume shader, without a name; None: it cannot be shown, and a warning says so. `where`: the volume's
-    owner, for warnings; `density_grid`: the name of the grid that the caller adds, None: no grid."""
+    owner, for warnings."""
     node = output.node
     values = evaluator(out, where, evaluate.Points(1))
     try:
@@ -265,8 +265,8 @@ def medium_of(out, output, where, density_grid=None):
             glow = color("Emission Color") * evaluate.number(values.of(node, "Emission Strength"))[0]
             if glow.any():
                 made["emission"] = rgb(glow)
-            if density_grid is None and float(evaluate.number(values.of(node, "Blackbody Intensity"))[0]) > 0:
-                out.warn(f"{where}: the black body of a volume without a temperature is not shown")
+            if float(evaluate.number(values.of(node, "Blackbody Intensity"))[0]) > 0:
+                out.warn(f"{where}: fire (the volume's black body) is not shown")
             return made
         raise Unsupported(f'the node "{node.name}" ({node.bl_label})')
     except Unsupported as error:

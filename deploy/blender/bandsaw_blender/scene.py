@@ -447,7 +447,7 @@ def add_grid(out, thing, matrix):
         volume = evaluate.from_node(end.inputs["Volume"]) if end is not None else None
         if volume is None:
             return
-        medium = lights.medium_of(out, volume, f'the volume "{thing.name}"', "density")
+        medium = lights.medium_of(out, volume, f'the volume "{thing.name}"')
         if medium is None:
             return
     with open(path, "rb") as file:
