@@ -8,6 +8,7 @@ import sys
 import tempfile
 import time
 import unittest
+from unittest import mock
 
 import bpy
 import numpy as np
@@ -188,6 +189,15 @@ class AddOn(unittest.TestCase):
         for camera, depths in ((eye, np.full((2, 2), 3)), ({**eye, "orthographic": {}}, 3 * rays)):
             found = engine.pass_pixels("depth", np.repeat(3 * rays[:, :, None], 3, axis=2), camera)[:, :, 0]
             self.assertLess(abs(found - depths).max(), 1e-6)
+
+    def test_esc_during_the_passes_cancels_all_of_them(self):
+        layer = bpy.context.view_layer
+        layer.use_pass_z = layer.use_pass_normal = layer.use_pass_diffuse_color = True
+        module = sys.modules["bandsaw_blender.engine"]
+        passes = [mock.Mock(**{"progress.return_value": []}) for _ in range(3)]
+        engine, job = mock.Mock(**{"test_break.return_value": True}), mock.Mock(**{"layer.side_effect": passes})
+        self.assertRaises(module.Stopped, module.BandsawEngine.add_passes, engine, mock.Mock(view_layer=layer), job, None, None)
+        self.assertEqual([submitted.cancel.call_count for submitted in passes], [1, 1, 1])
 
     def test_no_string(self):
         preferences().farm = ""

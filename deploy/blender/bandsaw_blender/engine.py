@@ -182,7 +182,8 @@ class BandsawEngine(bpy.types.RenderEngine):
             for progress in layer.progress(interval=0.2, patience=PATIENCE, stop=self.test_break):
                 self.update_stats("", f"{name}: {progress}")
             if self.test_break():
-                layer.cancel()
+                for _, submitted in jobs:
+                    submitted.cancel()  # without effect on one that is done
                 raise Stopped()
             self.set_pixels(result, name, pass_pixels(kind, layer.image().array(), camera))
 
