@@ -269,8 +269,8 @@ class AddOn(unittest.TestCase):
         self.scene.render.film_transparent = True
         self.fake.warnings = ["the importer says this"]
         self.render()
-        for word in ('material "cartoon"', "transparent background", "the importer says this", 'material "sides": "Backfacing" of the node "Geometry"',
-                     'material "sides": the node "Light Path" depends on the ray'):
+        for word in ('material "cartoon"', "transparent background", "the importer says this",
+                     'material "sides": "Backfacing" of the node "Geometry"', 'material "sides": the node "Light Path" depends on the ray'):
             self.assertIn(word, self.told())
 
     def test_a_backdrop_for_the_camera_does_not_light_the_scene(self):

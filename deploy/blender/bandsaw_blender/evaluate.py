@@ -18,8 +18,9 @@ class NeedsCoordinates(Unsupported):
 
 class Points:
     """The points at which nodes are evaluated, n = `count`. Each coordinate is an array of n rows, or None if the points do not have it: `uv` (a
-    dictionary of arrays (n, 2) by the name of the uv map, "" the active one; None for a map of the mesh that they do not have), `generated`, `object`, `normal`
-    (n, 3), all in the object's space; `position`, `world_normal` (n, 3). `used`: a set that gets the names of the coordinates that nodes need."""
+    dictionary of arrays (n, 2) by the name of the uv map, "" the active one; None for a map of the mesh that they do not have), `generated`, `object`,
+    `normal` (n, 3), all in the object's space; `position`, `world_normal` (n, 3). `used`: a set that gets the names of the coordinates that nodes
+    need."""
 
     def __init__(self, count, uv=None, generated=None, local=None, normal=None, position=None, world_normal=None, used=None):
         self.count, self.uv, self.generated = count, uv or {}, generated
@@ -72,8 +73,8 @@ def color(value):
 class Evaluator:
     """Evaluates nodes at `points` (a Points), as rays of the camera see them; for a `light` or the world, as other rays do. `images`:
     a function from a Blender image to its pixels (height, width, 4) as linear floats, rows from the bottom; `warn`: a function of a text, which
-    names what is not as in Blender. A node of type T is evaluated by the method node_T(node, output), which returns the value of that output. `groups`:
-    the group nodes around the node that is evaluated, the innermost last; `memory`: values that were computed before."""
+    names what is not as in Blender. A node of type T is evaluated by the method node_T(node, output), which returns the value of that output.
+    `groups`: the group nodes around the node that is evaluated, the innermost last; `memory`: values that were computed before."""
 
     def __init__(self, points, images, warn, light=False):
         self.points, self.images, self.warn, self.light = points, images, warn, light
@@ -516,8 +517,8 @@ def covered(node):
     """Returns true if an image node multiplies colours by their alpha: Cycles does so where the node's alpha is not used. Pixels of float images are
     multiplied by it already."""
     image = node.image
-    return (image.depth == 32 and not image.is_float and image.alpha_mode not in ("CHANNEL_PACKED", "NONE") and not node.outputs["Alpha"].is_linked and
-            image.colorspace_settings.name == "sRGB")
+    return (image.depth == 32 and not image.is_float and image.colorspace_settings.name == "sRGB" and
+            image.alpha_mode not in ("CHANNEL_PACKED", "NONE") and not node.outputs["Alpha"].is_linked)
 
 
 # Returns linear pixels (height, width, 4) whose colours are multiplied by alpha, as Cycles does: the values that sRGB encodes are.

@@ -73,7 +73,8 @@ def _corner_normals(mesh, loops):
 
 
 class Pose:
-    """A mesh of Blender at a time: `positions`, `undeformed` (vertices, 3), as Triangles has them, `vertex_of_loop` (loops), and `normals` (loops, 3), or None: flat everywhere."""
+    """A mesh of Blender at a time: `positions`, `undeformed` (vertices, 3), as Triangles has them, `vertex_of_loop` (loops), and
+    `normals` (loops, 3), or None: flat everywhere."""
 
     def __init__(self, mesh):
         vertices, loops = len(mesh.vertices), len(mesh.loops)

@@ -102,7 +102,8 @@ class Scene:
 
 class Shape:
     """A mesh with its materials, which all its placements share. `parts`: for each material slot, fields of the message Model, its "box", and
-    "in_world": whether its textures depend on where it is; `placements`: pairs of a matrix and, if it moves, the matrices at both ends of the shutter."""
+    "in_world": whether its textures depend on where it is; `placements`: pairs of a matrix and, if it moves, the matrices at both
+    ends of the shutter."""
 
     def __init__(self, parts):
         self.parts, self.placements = parts, []
@@ -328,7 +329,8 @@ IGNORED = (("visible_camera", False, "is seen by the camera, although its settin
            ("visible_transmission", False, "is seen by transmitted rays, although its setting says that it is not"),
            ("visible_volume_scatter", False, "is seen by rays that volumes scatter, although its setting says that it is not"),
            ("visible_shadow", False, "casts shadows, although its setting says that it does not"),
-           ("is_shadow_catcher", True, "is shown itself, although it is a shadow catcher"), ("is_holdout", True, "is shown, although it is a holdout"))
+           ("is_shadow_catcher", True, "is shown itself, although it is a shadow catcher"),
+           ("is_holdout", True, "is shown, although it is a holdout"))
 
 
 def name_ignored(out, thing):

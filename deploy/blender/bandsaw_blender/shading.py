@@ -143,8 +143,8 @@ class Images:
         return "ENCODING_SRGB"
 
     def file(self, image, unlimited=True, covered=False):
-        """Returns the name of the image's file in the scene. `unlimited`: its values may exceed 1; otherwise those become 1. `covered`: its colours are
-        multiplied by alpha. Raises Unsupported if there is no file."""
+        """Returns the name of the image's file in the scene. `unlimited`: its values may exceed 1; otherwise those become 1. `covered`: its colours
+        are multiplied by alpha. Raises Unsupported if there is no file."""
         lower = not unlimited and image.is_float and bool(self.pixels(image)[:, :, :3].max() > 1)
         darker = covered and bool(self.pixels(image)[:, :, 3].min() < 1)
         key = image.name_full, lower, darker
