@@ -11,7 +11,8 @@
 namespace bandsaw {
 namespace {
 
-/// Part of the photons that try the geometric normal where the shading normal is another.
+/// Part of the directions that rough surfaces sample about the geometric normal, where the shading
+/// normal is another.
 constexpr double kGeometricPart = 0.125;
 /// Squared distances between unit vectors: normals that differ by less are one normal, and
 /// directions that differ by less agree up to rounding.
@@ -21,8 +22,8 @@ constexpr double kSameDirection = 1e-20;
 /// The two normals about which mirrors, fuzzy metal and smooth glass can scatter, unit vectors on
 /// the side of the photon. They use the shading normal, except where that would lead to the wrong
 /// side of the surface. Which normal a path uses depends on the direction from which it comes
-/// (for_mirror() and for_glass() in material/bsdf.cpp), and that is the photon's result. So a
-/// photon tries one of the normals at random.
+/// (for_mirror() and for_glass() in material/bsdf.cpp), and that is the photon's result. So both
+/// have to be tried.
 struct PhotonNormals {
   Vec3 geometric;
   Vec3 shading;
@@ -57,14 +58,12 @@ PhotonScattering path_value(const Scene& scene, const SurfacePoint& point, const
   return {out, evaluate(of_path, in).value * static_cast<float>(std::abs(cosines) / pdf)};
 }
 
-/// Scatters at a mirror or at smooth glass, whose BSDF seen from `in` is `bsdf`. The photon is
-/// absorbed if a path would use the other normal.
-std::optional<PhotonScattering> scatter_specular(const Scene& scene, const SurfacePoint& point,
-                                                 const Bsdf& bsdf, const Vec3& in,
-                                                 const Sample4& numbers) {
-  const PhotonNormals normals = normals_at(scene, point, in);
-  const bool is_geometric = normals.same || numbers[3] < kGeometricPart;
-  const Vec3& normal = is_geometric ? normals.geometric : normals.shading;
+/// Scatters at a mirror or at smooth glass about a normal. `bsdf`: that seen from `in`; `number`
+/// selects reflection or refraction. Returns std::nullopt if a path would use the other normal.
+std::optional<PhotonScattering> scatter_about(const Scene& scene, const SurfacePoint& point,
+                                              const Bsdf& bsdf, const Vec3& in,
+                                              const PhotonNormals& normals, const Vec3& normal,
+                                              double number) {
   const double cos_in = std::min(1.0, dot(in, normal));
   if (!(cos_in > 0)) {
     return std::nullopt;
@@ -72,7 +71,7 @@ std::optional<PhotonScattering> scatter_specular(const Scene& scene, const Surfa
   Vec3 out = normalize(mirrored(in, normal));
   bool is_refracted = false;
   if (const auto* glass = std::get_if<DielectricBsdf>(&bsdf);
-      glass != nullptr && numbers[2] >= fresnel(cos_in, glass->eta)) {
+      glass != nullptr && number >= fresnel(cos_in, glass->eta)) {
     const std::optional<double> cos_out = refracted_cos(cos_in, glass->eta);
     if (!cos_out) {
       return std::nullopt;
@@ -84,21 +83,42 @@ std::optional<PhotonScattering> scatter_specular(const Scene& scene, const Surfa
   if ((out_geometric < 0) != is_refracted) {
     return std::nullopt;
   }
-  double factor = std::abs(out_geometric) / dot(in, normals.geometric);
-  if (is_refracted) {
-    factor *= cos_in / std::abs(dot(out, normal));
-  }
   Bsdf of_path = bsdf;
   if (!normals.same) {
     of_path = bsdf_at(scene.material(point.material), scene.textures(), point, out);
     if (!is_path(of_path, in, normal)) {
       return std::nullopt;
     }
-    factor /= is_geometric ? kGeometricPart : 1 - kGeometricPart;
+  }
+  double factor = std::abs(out_geometric) / dot(in, normals.geometric);
+  if (is_refracted) {
+    factor *= cos_in / std::abs(dot(out, normal));
   }
   const auto* mirror = std::get_if<MirrorBsdf>(&of_path);
   const Rgb reflectance = mirror != nullptr ? mirror->reflectance : gray(1);
   return PhotonScattering{out, reflectance * static_cast<float>(factor)};
+}
+
+/// Scatters at a mirror or at smooth glass, whose BSDF seen from `in` is `bsdf`. If paths come here
+/// about both normals, one of the two ways is chosen at random, with twice the power.
+std::optional<PhotonScattering> scatter_specular(const Scene& scene, const SurfacePoint& point,
+                                                 const Bsdf& bsdf, const Vec3& in,
+                                                 const Sample4& numbers) {
+  const PhotonNormals normals = normals_at(scene, point, in);
+  const auto about = [&](const Vec3& normal) {
+    return scatter_about(scene, point, bsdf, in, normals, normal, numbers[2]);
+  };
+  std::optional<PhotonScattering> by_shading = about(normals.shading);
+  if (normals.same) {
+    return by_shading;
+  }
+  std::optional<PhotonScattering> by_geometric = about(normals.geometric);
+  if (!by_shading || !by_geometric) {
+    return by_shading ? by_shading : by_geometric;
+  }
+  by_shading->factor = by_shading->factor * 2;
+  by_geometric->factor = by_geometric->factor * 2;
+  return numbers[3] < 0.5 ? by_shading : by_geometric;
 }
 
 /// Samples a direction from one of two BSDFs seen from `in`, with the pdf of both together. Both
@@ -129,10 +149,14 @@ Bsdf fuzzy_lobe(const FuzzyMetalBsdf& metal, const Vec3& normal, const PhotonNor
 
 /// Returns the BSDF seen from `in`, with the geometric normal as shading normal.
 Bsdf without_shading_normal(const Scene& scene, const SurfacePoint& point, const Vec3& in) {
-  Material flat = scene.material(point.material);
-  flat.relief = {};
   SurfacePoint at = point;
   at.shading_normal = point.geometric_normal;
+  const Material& material = scene.material(point.material);
+  if (!bends(material.relief)) {
+    return bsdf_at(material, scene.textures(), at, in);
+  }
+  Material flat = material;
+  flat.relief = {};
   return bsdf_at(flat, scene.textures(), at, in);
 }
 
