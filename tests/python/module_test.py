@@ -344,7 +344,7 @@ class AddOn(unittest.TestCase):
         positions = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=np.float32)
         corners = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
         uv = positions[:, :2].copy()
-        pose = self.geometry.Vertices(positions, None)
+        pose = types.SimpleNamespace(positions=positions, undeformed=None, normals=None)
         kept = self.geometry._indexed(pose, [uv], corners, corners, None)
         self.assertEqual(len(kept.positions), 4)
         # Now each triangle has loops of its own, and one uv differs at a shared vertex.
@@ -364,7 +364,7 @@ class AddOn(unittest.TestCase):
         up = np.tile(np.array([[0, 0, 1]], dtype=np.float32), (4, 1))
         # One loop a corner. When the shutter closes, the third vertex has two normals, so it is split.
         of_corner, loops = np.array([0, 1, 2, 0, 2, 3]), np.arange(6).reshape(2, 3)
-        pose = geometry.Vertices(positions, up[[0, 0, 0, 0, 0, 0]])
+        pose = types.SimpleNamespace(positions=positions, undeformed=None, normals=up[[0, 0, 0, 0, 0, 0]])
         bent = pose.normals.copy()
         bent[4] = (1, 0, 0)
         ends = geometry.Vertices(positions - 1, pose.normals), geometry.Vertices(positions * 3, bent)
@@ -399,10 +399,12 @@ class AddOn(unittest.TestCase):
         np, node = bandsaw.numpy, types.SimpleNamespace
 
         def socket_after(kind, output_type, type="VALUE", **more):
-            output = node(node=node(type=kind, mute=False, as_pointer=lambda: kind, **more), type=output_type, identifier="", name="Position")
-            return node(type=type, is_linked=True, links=[node(is_valid=True, from_socket=output)])
+            output = node(node=node(type=kind, mute=False, as_pointer=lambda: kind, **more), type=output_type, identifier="", name="Position",
+                          is_output=True)
+            return node(type=type, is_linked=True, links=[node(is_valid=True, is_muted=False, from_socket=output)])
 
-        values = self.evaluate.Evaluator(self.evaluate.Points(2, position=np.array([[3.0, 1.0, 2.0], [0.0, 0.0, -3.0]])), None)
+        points = self.evaluate.Points(2, position=np.array([[3.0, 1.0, 2.0], [0.0, 0.0, -3.0]]))
+        values = self.evaluate.Evaluator(points, None, self.fail)
         vector = socket_after("NEW_GEOMETRY", "VECTOR")
         self.assertEqual(self.evaluate.number(values.socket(vector)).tolist(), [2, -1])
         color = socket_after("RGB", "RGBA", outputs=[node(default_value=(1, 0, 0, 1))])
