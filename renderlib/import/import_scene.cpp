@@ -53,9 +53,12 @@ bool has_light(const SceneDescription& scene) {
 }
 
 /// Returns a camera that sees all placed meshes, for the scene's image size.
-Camera framed(const ImportedScene& out) {
+Camera framed(const ImportedScene& out, const Shutter& shutter) {
   const Geometry& geometry = out.scene.geometry;
-  return frame(geometry, geometry.instances, static_cast<double>(out.info.width) / out.info.height);
+  Camera camera =
+      frame(geometry, geometry.instances, static_cast<double>(out.info.width) / out.info.height);
+  std::visit([&](auto& of_kind) { of_kind.shutter = shutter; }, camera);
+  return camera;
 }
 
 /// Returns the camera for a scene file without a camera of its own: the model's camera that the
@@ -74,7 +77,7 @@ absl::StatusOr<MovingCamera> camera_of_a_model(const Field& root, const scene::S
     return root.error("camera",
                       "is required, for example camera { position: [0, 1, 5] look_at: [0, 0, 0] }");
   }
-  return MovingCamera{framed(draft.out)};
+  return MovingCamera{framed(draft.out, draft.shutter)};
 }
 
 void set_camera(MovingCamera camera, SceneDescription& scene) {
@@ -257,7 +260,7 @@ absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
     return with_shutter(draft.cameras.front(), draft.shutter);
   }
   if (draft.shutter == Shutter{} && !draft.out.scene.geometry.instances.empty()) {
-    return MovingCamera{framed(draft.out)};
+    return MovingCamera{framed(draft.out, draft.shutter)};
   }
   // A draft has a shutter interval at time 0 until one is set.
   SceneDraft at_zero(draft.folder, draft.file, draft.memory);
@@ -267,9 +270,7 @@ absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
     model = read_model(real, false, at_zero).value_or(Model{});
   }
   at_zero.out.scene.geometry.instances = model.instances;
-  Camera camera = framed(at_zero.out);
-  std::visit([&](auto& c) { c.shutter = draft.shutter; }, camera);
-  return MovingCamera{camera};
+  return MovingCamera{framed(at_zero.out, draft.shutter)};
 }
 
 absl::Status read_model_alone(const std::string& path, const ImportChoices& choices,

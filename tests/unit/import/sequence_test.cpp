@@ -355,6 +355,14 @@ TEST_F(Sequence, AModelWithoutAnAnimationMustHaveAPlacement) {
               HasSubstr("holds no triangle that can be rendered"));
 }
 
+TEST_F(Sequence, ACameraThatFramesTheModelOfASceneFileHasItsShutter) {
+  two_nodes().write(folder_, "m.gltf");
+  const ImportedScene imported = read_text(R"(model { file: "m.gltf" })", frame(30, 60, 0.25));
+  const Shutter shutter = shutter_of(imported.scene.camera);
+  EXPECT_DOUBLE_EQ(shutter.open, 0.5);
+  EXPECT_DOUBLE_EQ(shutter.close, 0.5 + 0.25 / 60);
+}
+
 TEST_F(Sequence, DamagedAnimationsAreErrors) {
   const auto with = [&](const std::vector<float>& times, const std::vector<float>& values,
                         const char* interpolation) {
