@@ -163,7 +163,7 @@ TEST(Squashed, S12_ALightAroundTheReceiverDoesNotShadowItself) {
     Geometry lamp = placed(c.to_world, false);
     lamp.instances[0].material = MaterialId{0};
     const std::vector<Texture> textures = {ConstantTexture{gray(1)}};
-    const std::vector<Material> materials = {Emissive{{TextureId{0}}}};
+    const std::vector<Material> materials = {Emissive{.radiance = TextureId{0}}};
     const Lights lights(lamp, materials, textures, {}, {});
     Pool pool(1);
     const Accel accel = Accel::build(lamp, pool);

@@ -134,7 +134,10 @@ std::optional<Hit> hit_at(const Obj& obj, double x, double y, bool& doubtful) {
   std::optional<Hit> nearest;
   doubtful = false;
   for (const auto& [corners, material] : obj.triangles) {
-    const auto& [a, b, c] = corners;
+    // No structured binding, because clang 14 does not capture one in a lambda.
+    const Corner& a = corners[0];
+    const Corner& b = corners[1];
+    const Corner& c = corners[2];
     const auto side = [&](const Vec3& from, const Vec3& to) {
       return (to.x - from.x) * (y - from.y) - (to.y - from.y) * (x - from.x);
     };

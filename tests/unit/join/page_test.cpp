@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "absl/strings/escaping.h"
 #include "coordinator/web/qr_code.h"
 #include "tests/unit/join/join_farm.h"
 

@@ -6,6 +6,7 @@
 
 #include <thread>
 
+#include "absl/strings/escaping.h"
 #include "tests/unit/join/join_farm.h"
 
 namespace bandsaw::coordinator {
