@@ -35,7 +35,9 @@ void add(const Vec3& in, const Vec3& out, double amount, Parts& parts) {
 
 /// Returns a direction on either side of z = 0, with the pdf |cos| / (2 pi).
 Vec3 direction(test::Random& random) {
-  const Vec3 up = sample_cosine_hemisphere(random.uniform(), random.uniform());
+  const double u = random.uniform();  // not as arguments, whose order differs between compilers
+  const double v = random.uniform();
+  const Vec3 up = sample_cosine_hemisphere(u, v);
   return random.uniform() < 0.5 ? up : -up;
 }
 
@@ -57,8 +59,9 @@ void expect_the_light_of_paths(const SceneMaker& maker, MaterialId material) {
     const auto photon = scatter_photon(*scene, point, in, numbers);
     add(in, photon ? photon->out : Vec3{}, photon ? 2 * kPi * photon->factor.g : 0, of_photons);
     const Vec3 out = direction(random);
-    const auto path = sample(bsdf_at(of, scene->textures(), point, out), random.uniform(),
-                             random.uniform(), random.uniform());
+    const Sample4 other{random.uniform(), random.uniform(), random.uniform()};
+    const auto path =
+        sample(bsdf_at(of, scene->textures(), point, out), other[0], other[1], other[2]);
     add(path ? path->wi : Vec3{}, out, path ? 2 * kPi * path->weight.g : 0, of_paths);
   }
   for (std::size_t i = 0; i < kParts; ++i) {
