@@ -127,7 +127,7 @@ struct BandLost {
 /// Another machine returned another digest for a row than the stored one. The job must not end
 /// before it is known which of them is right.
 struct RowDisputed {
-  /// What one machine returned for the row.
+  /// The result of one machine for the row.
   struct Claim {
     WorkerProcessId process = 0;
     std::string machine;  ///< as in Reporter (model/audit.h)

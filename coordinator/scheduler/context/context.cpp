@@ -252,7 +252,7 @@ void Context::apply(const record::ErrorForgotten& r) {
   }
 }
 
-// What the process returned is void, so it disputes nothing.
+// All results of the process are void, so its disputes are removed.
 void Context::apply(const record::WorkerQuarantined& r) {
   quarantine.add(r);
   for (const JobId id : jobs.active()) {

@@ -48,7 +48,7 @@ class GraphicsState {
  private:
   absl::Status set(const Place& place, std::size_t k, const Transform& to);
 
-  /// What end_import() brings back.
+  /// The state that end_import() restores.
   struct Importing {
     State current;
     std::vector<State> saved;
