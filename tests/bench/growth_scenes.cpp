@@ -99,9 +99,8 @@ GrownScene textured(double texels) {
   ImageTexture image;
   image.width = image.height = side;
   image.texels = SharedBytes(std::move(bytes));
-  maker.scene.materials.push_back(Diffuse{maker.texture(std::move(image))});
-  maker.quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0},
-             MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)});
+  const MaterialId floor = maker.material(Diffuse{maker.texture(std::move(image))});
+  maker.quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, floor);
   return grown(std::move(maker));
 }
 

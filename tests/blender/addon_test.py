@@ -71,6 +71,12 @@ class AddOn(unittest.TestCase):
         width, height = image.size
         return np.array(image.pixels[:]).reshape(height, width, 4)
 
+    def saved(self, image, name, file_format):
+        """Saves the image to a file and returns the image that is loaded from it."""
+        image.filepath_raw, image.file_format = os.path.join(self.folder.name, name), file_format
+        image.save()
+        return bpy.data.images.load(image.filepath_raw)
+
     def fails_with(self, *words):
         """A render must end with one error that has these words, and Blender must go on."""
         with self.assertRaises(RuntimeError) as caught:
@@ -304,9 +310,7 @@ class AddOn(unittest.TestCase):
 
     def test_a_float_image_above_1_reflects_1_and_emits_as_it_is(self):
         image = scenes.picture("hdr", np.full((4, 4, 3), 1.5), is_float=True)
-        image.filepath_raw, image.file_format = os.path.join(self.folder.name, "hdr.exr"), "OPEN_EXR"
-        image.save()
-        image = bpy.data.images.load(image.filepath_raw)
+        image = self.saved(image, "hdr.exr", "OPEN_EXR")
 
         def both(tree, shader):
             node = tree.nodes.new("ShaderNodeTexImage")
@@ -327,7 +331,7 @@ class AddOn(unittest.TestCase):
                 tree.links.new(node.outputs[output], shader.inputs[name])
                 node.mute = True
             return nodes
-        # What is muted has an input for the colour, or none that fits: then the shader's own value counts.
+        # A muted node has an input for the colour, or none that fits: then the shader's own value counts.
         for kind, output, name, green in (("HueSaturation", 0, "Base Color", 1), ("TexVoronoi", "Color", "Base Color", 0), ("Bump", 0, "Normal", 0),
                                           ("NormalMap", 0, "Normal", 0)):
             color = self.material_of(muted(kind, output, name), Base_Color=(1, 0, 0, 1), Roughness=1.0, Specular=0.0)["gltf"]["base_color"]["rgb"]
@@ -442,9 +446,7 @@ class AddOn(unittest.TestCase):
     def test_colours_are_multiplied_by_an_alpha_that_is_not_used(self):
         image = bpy.data.images.new("veil", 4, 4, alpha=True)
         image.pixels.foreach_set(np.tile(np.array([1, 1, 0, 0.25], dtype=np.float32), 16))
-        image.filepath_raw, image.file_format = os.path.join(self.folder.name, "veil.png"), "PNG"
-        image.save()
-        image = bpy.data.images.load(image.filepath_raw)
+        image = self.saved(image, "veil.png", "PNG")
 
         def nodes(tree, shader):
             node = tree.nodes.new("ShaderNodeTexImage")

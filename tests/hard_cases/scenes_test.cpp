@@ -101,8 +101,7 @@ test::Moments through_water_and_glass(double overlap) {
   constexpr double kFar = 100;
   test::SceneMaker maker;
   const auto slab = [&](double low, double high, const Dielectric& inside) {
-    maker.scene.materials.push_back(inside);
-    const MaterialId material{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+    const MaterialId material = maker.material(inside);
     maker.quad({-kFar, high, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, material);
     maker.quad({-kFar, low, -kFar}, {2 * kFar, 0, 0}, {0, 0, 2 * kFar}, material);
   };

@@ -33,21 +33,21 @@ void add_block(SceneMaker& maker, const Vec3& corner, const Vec3& u, const Vec3&
 TextureId SceneMaker::texture(Texture texture) {
   return append<TextureId>(scene.textures, std::move(texture));
 }
+MaterialId SceneMaker::material(Material material) {
+  return append<MaterialId>(scene.materials, std::move(material));
+}
 MaterialId SceneMaker::diffuse(float reflectance) { return diffuse(gray(reflectance)); }
 MaterialId SceneMaker::diffuse(const Rgb& reflectance) {
-  return append<MaterialId, Material>(scene.materials,
-                                      Diffuse{texture(ConstantTexture{reflectance})});
+  return material(Diffuse{texture(ConstantTexture{reflectance})});
 }
 MaterialId SceneMaker::metal(float reflectance, double fuzz) {
-  return append<MaterialId, Material>(scene.materials,
-                                      Metal{texture(ConstantTexture{gray(reflectance)}), fuzz});
+  return material(Metal{texture(ConstantTexture{gray(reflectance)}), fuzz});
 }
 MaterialId SceneMaker::glass(double index_of_refraction) {
-  return append<MaterialId, Material>(scene.materials, Dielectric{index_of_refraction});
+  return material(Dielectric{index_of_refraction});
 }
 MaterialId SceneMaker::lamp(float radiance, bool one_sided) {
-  return append<MaterialId, Material>(
-      scene.materials, Emissive{texture(ConstantTexture{gray(radiance)}), one_sided});
+  return material(Emissive{texture(ConstantTexture{gray(radiance)}), one_sided});
 }
 
 void SceneMaker::sphere(const Vec3& center, double radius, MaterialId material) {

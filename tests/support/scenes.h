@@ -14,6 +14,7 @@ namespace bandsaw::test {
 class SceneMaker {
  public:
   TextureId texture(Texture texture);
+  MaterialId material(Material material);
   MaterialId diffuse(float reflectance);
   MaterialId diffuse(const Rgb& reflectance);
   MaterialId metal(float reflectance, double fuzz);

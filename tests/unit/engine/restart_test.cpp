@@ -104,16 +104,23 @@ TEST(Restart, AFinishedJobKeepsItsResult) {
   EXPECT_EQ(rendered_by(), by_one);
 }
 
-TEST(Restart, DamagedBandsAreRenderedAgain) {
-  TestFarm farm;
+/// Starts the farm and a job, which becomes `job`, and stops the farm when a worker has rendered a
+/// tenth of it.
+void render_a_tenth(TestFarm& farm, JobId& job) {
   ASSERT_TRUE(farm.start().ok());
-  const JobId job = farm.begin(StopAtSamples{.samples = kJobSamples});
+  job = farm.begin(StopAtSamples{.samples = kJobSamples});
   {
     FakeWorker one(farm.scene(), "one");
     one.join(farm.engine());
     farm.wait_until(job, [](const JobView& view) { return view.fraction > 0.1; });
   }
   farm.stop();
+}
+
+TEST(Restart, DamagedBandsAreRenderedAgain) {
+  TestFarm farm;
+  JobId job = 0;
+  ASSERT_NO_FATAL_FAILURE(render_a_tenth(farm, job));
   {
     std::fstream bands(farm.folder() + "/jobs/" + std::to_string(job) + "/bands",
                        std::ios::in | std::ios::out | std::ios::binary);
@@ -143,14 +150,8 @@ void append_contradiction(const std::string& job_folder, std::uint64_t process) 
 TEST(Restart, ASecondResultOnDiskIsCompared) {
   constexpr std::uint64_t kWrong = 12'345;
   TestFarm farm;
-  ASSERT_TRUE(farm.start().ok());
-  const JobId job = farm.begin(StopAtSamples{.samples = kJobSamples});
-  {
-    FakeWorker one(farm.scene(), "one");
-    one.join(farm.engine());
-    farm.wait_until(job, [](const JobView& view) { return view.fraction > 0.1; });
-  }
-  farm.stop();
+  JobId job = 0;
+  ASSERT_NO_FATAL_FAILURE(render_a_tenth(farm, job));
   ASSERT_NO_FATAL_FAILURE(
       append_contradiction(farm.folder() + "/jobs/" + std::to_string(job), kWrong));
   ASSERT_TRUE(farm.start().ok());

@@ -49,6 +49,13 @@ class GltfWriter {
   Json& primitive() { return root["meshes"][0]["primitives"][0]; }
   Json& attributes() { return primitive()["attributes"]; }
 
+  /// Gives the first mesh one triangle, (0, 0, 0), (1, 0, 0), (0, 1, 0), which follows joint 0.
+  void add_skinned_triangle() {
+    attributes() = {{"POSITION", add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)},
+                    {"JOINTS_0", add<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4)},
+                    {"WEIGHTS_0", add<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, 4)}};
+  }
+
   /// Adds bytes to the buffer, with a buffer view of them; returns the index of the view.
   std::size_t view(const std::string& part) {
     bytes.resize((bytes.size() + 3) / 4 * 4);

@@ -311,14 +311,19 @@ Connections:  {
 )";
 }
 
+/// Imports an FBX file with a light of these properties.
+absl::StatusOr<ImportedScene> import_fbx_light(const std::string& properties) {
+  const TempDir folder;
+  return import_scene(write_text(folder, "l.fbx", fbx_light(properties)));
+}
+
 // FBX states the angles across the whole cones.
 TEST(Fbx, TheConesOfASpotLightAreHalfItsAngles) {
-  const TempDir folder;
-  const auto imported = import_scene(write_text(folder, "l.fbx", fbx_light(R"(
+  const auto imported = import_fbx_light(R"(
 			P: "LightType", "enum", "", "",2
 			P: "InnerAngle", "Number", "", "A",60
 			P: "OuterAngle", "Number", "", "A",90
-)")));
+)");
   ASSERT_TRUE(imported.ok()) << imported.status();
   const auto& spot = std::get<SpotLight>(imported->scene.lights.at(0));
   EXPECT_NEAR(length(spot.position - Vec3{0, 2, 0}), 0, 1e-6);
@@ -329,12 +334,11 @@ TEST(Fbx, TheConesOfASpotLightAreHalfItsAngles) {
 
 // Assimp makes the falloff of such a light infinite.
 TEST(Fbx, AQuadraticDecayThatStartsAtZeroIsNotBlack) {
-  const TempDir folder;
-  const auto imported = import_scene(write_text(folder, "l.fbx", fbx_light(R"(
+  const auto imported = import_fbx_light(R"(
 			P: "LightType", "enum", "", "",0
 			P: "DecayType", "enum", "", "",2
 			P: "DecayStart", "Number", "", "A",0
-)")));
+)");
   ASSERT_TRUE(imported.ok()) << imported.status();
   EXPECT_EQ(std::get<PointLight>(imported->scene.lights.at(0)).intensity, (Rgb{4, 4, 4}));
   EXPECT_THAT(imported->info.warnings, Contains(HasSubstr("the light \"lamp\" falls off")));

@@ -390,10 +390,7 @@ TEST_F(Gltf, BonesOfOneNameAreDistinguished) {
 // would place the same triangle again.
 TEST_F(Gltf, EachSkinPosesTheMeshThatItShares) {
   GltfWriter file;
-  file.attributes() = {
-      {"POSITION", file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)},
-      {"JOINTS_0", file.add<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4)},
-      {"WEIGHTS_0", file.add<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, 4)}};
+  file.add_skinned_triangle();
   file.root["nodes"] = Json::parse(R"([{"mesh": 0, "skin": 0}, {"mesh": 0, "skin": 1},
     {"mesh": 0, "translation": [5, 0, 0]}, {"mesh": 0, "skin": 0},
     {"translation": [0, 2, 0]}, {"translation": [0, 0, 7]}])");

@@ -207,10 +207,7 @@ TEST_F(Sequence, MovingNodesAreFramesDuringTheExposure) {
 
 TEST_F(Sequence, SkinsAndMorphTargetsHaveThePoseOfTheFrame) {
   GltfWriter file;
-  file.attributes() = {
-      {"POSITION", file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)},
-      {"JOINTS_0", file.add<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4)},
-      {"WEIGHTS_0", file.add<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, 4)}};
+  file.add_skinned_triangle();
   file.primitive()["targets"] =
       Json::array({{{"POSITION", file.add<float>({0, 0, 0, 4, 0, 0, 0, 0, 0}, 3)}}});
   file.root["nodes"] = Json::parse(R"([{"mesh": 0, "skin": 0}, {"translation": [0, 0, 0]}])");

@@ -134,12 +134,9 @@ TEST(Caustics, APartlyTransparentWallReceivesThePowerOfAnOpaqueOne) {
     Material half = Diffuse{maker.texture(ConstantTexture{gray(0.5f)})};
     half.alpha = {AlphaMode::kBlend, {maker.texture(ConstantTexture{gray(1)}), 0.4}};
     const MaterialId other = mixture ? maker.metal(0.9f, 0.9) : wall;
-    maker.scene.materials.push_back(half);
-    MaterialId of_walls{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+    MaterialId of_walls = maker.material(half);
     if (mixture) {
-      maker.scene.materials.push_back(
-          Mix{other, of_walls, maker.texture(ConstantTexture{gray(0.7f)})});
-      of_walls = MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+      of_walls = maker.material(Mix{other, of_walls, maker.texture(ConstantTexture{gray(0.7f)})});
     }
     for (Quad& quad : maker.scene.geometry.quads) {
       quad.material = of_walls;
@@ -212,9 +209,7 @@ TEST(Caustics, TheShareOnTheSurfaceIgnoresTransparentSurfaces) {
   maker.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, maker.diffuse(0.5f));
   Material hole = MetallicRoughness{};
   hole.alpha = {AlphaMode::kMask, {TextureId{0}, 0}};
-  maker.scene.materials.push_back(hole);
-  const MaterialId card{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
-  maker.quad({1.9, 0, -1}, {0, 4, 0}, {0, 0, 4}, card);
+  maker.quad({1.9, 0, -1}, {0, 4, 0}, {0, 0, 4}, maker.material(hole));
   maker.camera({3, 3, 3}, {0, 0, 0}, 60);
   const CausticPhoton photon{.position = {2, 2, 0}, .radius = 0.5f, .normal = {0, 0, 1}};
   EXPECT_EQ(share_on_surface(*maker.build(), photon), 1);
@@ -321,9 +316,7 @@ TEST(Caustics, ChangeNoMeanWithFuzzyMetalAndRoughGlass) {
     maker.sphere({0.5, 0.6, 1}, 0.25, maker.lamp(10));
     MaterialId caster = maker.metal(0.9f, 0.2);
     if (glass) {
-      maker.scene.materials.push_back(
-          Material{Dielectric{.index_of_refraction = 1.5, .roughness = 0.4}});
-      caster = MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+      caster = maker.material(Dielectric{.index_of_refraction = 1.5, .roughness = 0.4});
     }
     maker.sphere({0, 0, -0.8}, 0.7, caster);
     const auto scene = maker.build();

@@ -80,9 +80,7 @@ TEST(Guiding, KeepsTheFurnace) {
   SceneMaker maker;
   Material wall{Diffuse{maker.texture(ConstantTexture{{0.5f, 0.5f, 0.5f}})}};
   wall.emission.radiance = {maker.texture(ConstantTexture{{1, 1, 1}}), {1, 1, 1}};
-  maker.scene.materials.push_back(wall);
-  maker.sphere({0, 0, 0}, 2,
-               MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)});
+  maker.sphere({0, 0, 0}, 2, maker.material(wall));
   maker.sphere({0.5, 0, 0}, 0.6, maker.glass(1.5));
   maker.camera({-1.5, 0, 0}, {1, 0, 0}, 60);
   const auto scene = maker.build();

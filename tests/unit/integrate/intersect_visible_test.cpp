@@ -39,11 +39,6 @@ Material blended(double alpha) {
   return m;
 }
 
-MaterialId add(SceneMaker& maker, const Material& material) {
-  maker.scene.materials.push_back(material);
-  return MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
-}
-
 /// Texture 0 is white, so that factors alone define a material.
 SceneMaker white_sky() {
   SceneMaker maker;
@@ -55,7 +50,7 @@ SceneMaker white_sky() {
 TEST(Alpha, CoplanarBlendedSurfacesAreHitOneAfterTheOther) {
   for (const int layers : {1, 2, 5}) {
     SceneMaker maker = white_sky();
-    const MaterialId half = add(maker, blended(0.25));
+    const MaterialId half = maker.material(blended(0.25));
     for (int i = 0; i < layers; ++i) {
       maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, half);
       maker.triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, half);
@@ -71,7 +66,7 @@ TEST(Alpha, CoplanarBlendedSurfacesAreHitOneAfterTheOther) {
 
 TEST(Alpha, BothSidesOfASphereAreHit) {
   SceneMaker maker = white_sky();
-  const MaterialId half = add(maker, blended(0.5));
+  const MaterialId half = maker.material(blended(0.5));
   maker.sphere({0, 0, 0}, 1, half);
   maker.sphere({0, 0, 0.3}, 1, half);
   const Moments sum = light_along(maker, {.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}}, 20000);
@@ -85,7 +80,7 @@ TEST(Alpha, AMaskedSurfaceIsPresentOrAbsent) {
     Material mask = blended(0.5);
     mask.alpha.mode = AlphaMode::kMask;
     mask.alpha.cutoff = cutoff;
-    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, mask));
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(mask));
     const Moments sum =
         light_along(maker, {.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}}, 2000);
     EXPECT_NEAR(sum.mean(), cutoff > 0.5 ? 1 : 0, 0.07);
@@ -99,9 +94,9 @@ TEST(Alpha, AttenuatesShadowRaysAndAllTechniquesAgree) {
   MetallicRoughness floor;
   floor.roughness.factor = 0.6;
   floor.base_color.factor = {0.7f, 0.7f, 0.7f};
-  maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, add(maker, floor));
+  maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, maker.material(floor));
   maker.quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(5));
-  maker.quad({-4, 1, -4}, {8, 0, 0}, {0, 0, 8}, add(maker, blended(0.5)));
+  maker.quad({-4, 1, -4}, {8, 0, 0}, {0, 0, 8}, maker.material(blended(0.5)));
   const Ray ray{.origin = {0.3, 0.9, 0.4}, .direction = normalize({0.1, -1, 0.05})};
   expect_techniques_agree(maker, ray, 0.1);
 }
@@ -115,7 +110,7 @@ TEST(Alpha, ATransparentLightEmitsFromBothSides) {
   maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, maker.diffuse(0.5f));
   Material lamp = blended(0.5);
   lamp.emission.radiance.factor = {4, 4, 4};
-  maker.sphere({0, 2, 0}, 0.7, add(maker, lamp));
+  maker.sphere({0, 2, 0}, 0.7, maker.material(lamp));
   expect_techniques_agree(maker, {.origin = {2, 3, 0}, .direction = normalize({-0.5, -1, 0})}, 0.1);
 }
 
@@ -128,7 +123,7 @@ TEST(SeeThrough, M6_GlassOfIndexOneCastsNoShadow) {
     maker.sphere({0.5, 3, 0}, 0.2, maker.lamp(9));
     maker.scene.lights = {PointLight{{-0.5, 3, 0}, gray(4)}};
     if (roughness) {
-      maker.sphere({0, 1, 0}, 0.8, add(maker, Dielectric{1 + 1e-7, *roughness}));
+      maker.sphere({0, 1, 0}, 0.8, maker.material(Dielectric{1 + 1e-7, *roughness}));
     }
     const Ray ray{.origin = {0, 1, 5}, .direction = normalize({0, -0.2, -1})};
     return light_along(maker, ray, 256).mean();
@@ -144,7 +139,7 @@ TEST(Emission, OfAScatteringSurfaceIsAddedToItsReflection) {
   SceneMaker maker = white_sky();
   Material glow = black();
   glow.emission = {{{}, {3, 3, 3}}, true};
-  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, glow));
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(glow));
   const Ray front{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
   EXPECT_NEAR(light_along(maker, front, 2000).mean(), 3.02, 0.03);
   const Ray back{.origin = {0.1, 0.2, -5}, .direction = {0, 0, 1}};
@@ -160,7 +155,7 @@ TEST(Emission, IsAttenuatedByTheClearCoat) {
   coated.coat.factor = 0.5;
   Material glow = coated;
   glow.emission.radiance.factor = {3, 3, 3};
-  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, glow));
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(glow));
   const Ray ahead{.origin = {0, 0, 5}, .direction = {0, 0, -1}};
   EXPECT_NEAR(light_along(maker, ahead, 10).mean(), 3 * (1 - 0.5 * 0.04), 1e-6);
   const Vec3 slanted{std::sqrt(0.75), 0, -0.5};
@@ -177,7 +172,7 @@ TEST(SeeThrough, DeltaLightsAreVisibleThroughRoughTransmission) {
   for (const Material& material : {Material(paper), Material(Dielectric{1.5, 0.5})}) {
     SceneMaker maker = white_sky();
     maker.background({0, 0, 0}, {0, 0, 0});
-    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, material));
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(material));
     maker.scene.lights = {PointLight{{0.3, 0.1, -2}, gray(4)}};
     const Ray ray{.origin = {0, 0, 3}, .direction = {0, 0, -1}};
     const auto scene = maker.build();
@@ -199,8 +194,8 @@ TEST(NestedGlass, M9_TheHigherPriorityRefractsInOverlaps) {
   // Water (priority 1) that overlaps its tumbler (priority 2): a slab of each, overlapping by 0.1.
   const auto stack = [](double overlap) {
     SceneMaker maker = white_sky();
-    const MaterialId water = add(maker, Dielectric{1.33, 0, 1});
-    const MaterialId glass = add(maker, Dielectric{1.5, 0, 2});
+    const MaterialId water = maker.material(Dielectric{1.33, 0, 1});
+    const MaterialId glass = maker.material(Dielectric{1.5, 0, 2});
     const auto slab = [&](double low, double high, MaterialId material) {
       maker.quad({-kFar, high, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, material);
       maker.quad({-kFar, low, -kFar}, {2 * kFar, 0, 0}, {0, 0, 2 * kFar}, material);
@@ -246,7 +241,7 @@ TEST(NestedGlass, M9_AnAirBubbleInGlassRefractsOutwards) {
 TEST(NestedGlass, OverlappingBodiesOfOneGlassAreOne) {
   SceneMaker maker = white_sky();
   maker.background({0, 0, 0}, {0, 0, 0});
-  const MaterialId glass = add(maker, Dielectric{1.5, 0, 1});
+  const MaterialId glass = maker.material(Dielectric{1.5, 0, 1});
   for (const double z : {0.0, 1.0, -0.7}) {
     maker.sphere({0, 0, z}, 1, glass);
   }
@@ -261,8 +256,8 @@ TEST(NestedGlass, OverlappingBodiesOfOneGlassAreOne) {
 TEST(NestedGlass, EmissionBehindAHiddenBoundaryCounts) {
   SceneMaker maker = white_sky();
   maker.background({0, 0, 0}, {0, 0, 0});
-  maker.sphere({0, 0, 0}, 2, add(maker, Dielectric{1.5, 0, 1}));
-  maker.sphere({0, 0, 2}, 1, add(maker, Dielectric{1.2, 0, 2}));
+  maker.sphere({0, 0, 0}, 2, maker.material(Dielectric{1.5, 0, 1}));
+  maker.sphere({0, 0, 2}, 1, maker.material(Dielectric{1.2, 0, 2}));
   maker.quad({-0.3, -0.3, 1.3}, {0, 0.6, 0}, {0, 0, 1.3}, maker.diffuse(0.8f));
   maker.sphere({0.3, 0, 1.5}, 0.15, maker.lamp(10));
   const Ray ray{.origin = {2.7, 0, 5.4}, .direction = normalize({-1, 0, -1})};
@@ -274,8 +269,8 @@ TEST(NestedGlass, EmissionBehindAHiddenBoundaryCounts) {
 // passed it.
 TEST(NestedGlass, ScatteringBeforeAHiddenBoundaryIsStillInTheGlass) {
   SceneMaker maker = white_sky();
-  maker.sphere({0, 0, 0}, 1, add(maker, Dielectric{1.5, 0, 2}));
-  maker.sphere({1.5, 0, 0}, 1, add(maker, Dielectric{1.33, 0, 1}));
+  maker.sphere({0, 0, 0}, 1, maker.material(Dielectric{1.5, 0, 2}));
+  maker.sphere({1.5, 0, 0}, 1, maker.material(Dielectric{1.33, 0, 1}));
   test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, test::medium(0, 2)));
   const auto scene = maker.build();
   PathCounts counts;

@@ -22,11 +22,6 @@ using test::SceneMaker;
 
 constexpr double kFar = 100;
 
-MaterialId add(SceneMaker& maker, const Material& material) {
-  maker.scene.materials.push_back(material);
-  return MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
-}
-
 SceneMaker with_sky(float radiance) {
   SceneMaker maker;
   maker.texture(ConstantTexture{{1, 1, 1}});
@@ -45,9 +40,9 @@ TEST(Mixture, ShowsEachPartWithItsProbability) {
   const MaterialId black = maker.diffuse(0.0f);
   const MaterialId gray = maker.diffuse(0.5f);
   const TextureId quarter = maker.texture(ConstantTexture{{0.25f, 0.25f, 0.25f}});
-  const MaterialId inner = add(maker, Mix{black, gray, quarter});
+  const MaterialId inner = maker.material(Mix{black, gray, quarter});
   // 1/4 of (1/4 of 0.5) and 3/4 of 0.5.
-  wall(maker, add(maker, Mix{gray, inner, quarter}));
+  wall(maker, maker.material(Mix{gray, inner, quarter}));
   const Moments sum = light_along(maker, kAhead, 20000);
   EXPECT_NEAR(sum.mean(), 0.75 * 0.5 + 0.25 * 0.125, 4 * sum.standard_error());
   const auto scene = maker.build();
@@ -58,9 +53,9 @@ TEST(Mixture, WithHolesLetsLightThroughAndAllTechniquesAgree) {
   SceneMaker maker = with_sky(0);
   Material lattice = Diffuse{TextureId{0}};
   lattice.alpha = {AlphaMode::kBlend, {TextureId{0}, 0.25}};
-  const MaterialId holes = add(maker, lattice);
+  const MaterialId holes = maker.material(lattice);
   const TextureId half = maker.texture(ConstantTexture{{0.5f, 0.5f, 0.5f}});
-  const MaterialId cover = add(maker, Mix{holes, maker.diffuse(0.2f), half});
+  const MaterialId cover = maker.material(Mix{holes, maker.diffuse(0.2f), half});
   maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, maker.diffuse(0.7f));
   maker.quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(5));
   maker.quad({-4, 1, -4}, {8, 0, 0}, {0, 0, 8}, cover);
@@ -74,10 +69,10 @@ TEST(Mixture, OfALightIsALight) {
   Material glow = Diffuse{TextureId{0}};
   glow.emission.radiance = {TextureId{0}, {6, 6, 6}};
   glow.alpha = {AlphaMode::kBlend, {TextureId{0}, 0.5}};
-  const MaterialId lit = add(maker, glow);
+  const MaterialId lit = maker.material(glow);
   const TextureId third = maker.texture(ConstantTexture{{0.3f, 0.3f, 0.3f}});
   maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, maker.diffuse(0.5f));
-  maker.sphere({0, 2, 0}, 0.7, add(maker, Mix{lit, maker.diffuse(0.1f), third}));
+  maker.sphere({0, 2, 0}, 0.7, maker.material(Mix{lit, maker.diffuse(0.1f), third}));
   EXPECT_EQ(maker.build()->lights().size(), 1u);
   expect_techniques_agree(maker, {.origin = {2, 3, 0}, .direction = normalize({-0.5, -1, 0})}, 0.1);
 }
@@ -85,19 +80,19 @@ TEST(Mixture, OfALightIsALight) {
 TEST(Mixture, InARoomReusesPaths) {
   SceneMaker maker = with_sky(0);
   const TextureId half = maker.texture(ConstantTexture{{0.5f, 0.5f, 0.5f}});
-  wall(maker, add(maker, Mix{maker.diffuse(0.2f), maker.diffuse(0.8f), half}));
+  wall(maker, maker.material(Mix{maker.diffuse(0.2f), maker.diffuse(0.8f), half}));
   maker.sphere({0, 0, 2}, 0.2, maker.lamp(3));
   EXPECT_TRUE(maker.build()->reuses_paths());
   Material holes = Diffuse{TextureId{0}};
   holes.alpha = {AlphaMode::kBlend, {TextureId{0}, 0.5}};
-  wall(maker, add(maker, Mix{add(maker, holes), maker.diffuse(0.8f), half}));
+  wall(maker, maker.material(Mix{maker.material(holes), maker.diffuse(0.8f), half}));
   EXPECT_FALSE(maker.build()->reuses_paths());
 }
 
 // The lamp is behind the sheet: lights are sampled on both sides of it.
 TEST(Sheet, LightFromBehindIsFoundByAllTechniques) {
   SceneMaker maker = with_sky(0);
-  const MaterialId sheet = add(maker, DiffuseTransmission{TextureId{0}, TextureId{0}});
+  const MaterialId sheet = maker.material(DiffuseTransmission{TextureId{0}, TextureId{0}});
   maker.quad({-kFar, -kFar, 0}, {2 * kFar, 0, 0}, {0, 2 * kFar, 0}, sheet);
   maker.sphere({0.5, 0, -2}, 0.3, maker.lamp(40));
   maker.sphere({-1, 0.5, 3}, 0.3, maker.lamp(20));
@@ -105,7 +100,7 @@ TEST(Sheet, LightFromBehindIsFoundByAllTechniques) {
   // The sheet transmits half of the light of a small lamp. With the irradiance E, its radiance is
   // E / (2 pi).
   SceneMaker behind = with_sky(0);
-  const MaterialId paper = add(behind, DiffuseTransmission{TextureId{0}, TextureId{0}});
+  const MaterialId paper = behind.material(DiffuseTransmission{TextureId{0}, TextureId{0}});
   behind.quad({-kFar, -kFar, 0}, {2 * kFar, 0, 0}, {0, 2 * kFar, 0}, paper);
   behind.sphere({0.1, 0.2, -3}, 0.1, behind.lamp(100));
   const Moments sum = light_along(behind, kAhead, 500);
@@ -117,7 +112,7 @@ TEST(EmissionOfDiffuse, IsAddedAndLightsOthers) {
   SceneMaker maker = with_sky(1);
   Material glow = Diffuse{TextureId{0}};
   glow.emission = {{TextureId{0}, {3, 3, 3}}, true};
-  const MaterialId lit = add(maker, glow);
+  const MaterialId lit = maker.material(glow);
   wall(maker, lit);
   EXPECT_NEAR(light_along(maker, kAhead, 100).mean(), 4, 1e-5);
   const Ray back{.origin = {0.1, 0.2, -5}, .direction = {0, 0, 1}};
@@ -150,7 +145,7 @@ TEST(HeightMap, TiltsTheNormalByItsSlope) {
           coordinate(maker, in_space ? RampTexture::Over::kX : RampTexture::Over::kU);
       bumped.relief.height_scale = scale;
       const double left = in_space ? 0 : -1;  // the ramp by position begins at 0
-      maker.quad({left, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, bumped));
+      maker.quad({left, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(bumped));
       const Rgb n = normal_at(maker, {.origin = {0.4, 0.2, 5}, .direction = {0, 0, -1}});
       const double slope = in_space ? scale : scale / 2;
       EXPECT_NEAR(2.0 * n.r - 1, -slope / std::sqrt(1 + slope * slope), 2e-4);
@@ -166,13 +161,13 @@ TEST(HeightMap, KnowsTheLengthsOfUvsOnBallsAndDisks) {
   Material bumped = Diffuse{TextureId{0}};
   bumped.relief.height = coordinate(ball, RampTexture::Over::kV);
   bumped.relief.height_scale = 3;
-  ball.sphere({0, 0, 0}, 2, add(ball, bumped));
+  ball.sphere({0, 0, 0}, 2, ball.material(bumped));
   const Rgb of_ball = normal_at(ball, {.origin = {0, 1e-9, 5}, .direction = {0, 0, -1}});
   const double slope = 3 / (3.14159265358979 * 2);
   EXPECT_NEAR(2.0 * of_ball.g - 1, -slope / std::sqrt(1 + slope * slope), 5e-4);
   SceneMaker disk = with_sky(1);
   bumped.relief.height = coordinate(disk, RampTexture::Over::kU);
-  disk.scene.geometry.disks = {{{0, 0, 0}, {0, 0, 1}, 2, add(disk, bumped)}};
+  disk.scene.geometry.disks = {{{0, 0, 0}, {0, 0, 1}, 2, disk.material(bumped)}};
   const Rgb of_disk = normal_at(disk, {.origin = {0.3, 0.4, 5}, .direction = {0, 0, -1}});
   const double across = 2.0 * of_disk.b - 1;
   EXPECT_NEAR(across, 1 / std::sqrt(1 + 0.75 * 0.75), 5e-4);

@@ -85,8 +85,7 @@ TEST(SampleValue, AlbedoOfAGltfMaterialIsItsBaseColour) {
   material.metallic = {gold, 1};
   material.roughness = {gold, 0.5};
   material.coat.texture = material.coat_roughness.texture = material.transmission.texture = gold;
-  maker.scene.materials.emplace_back(material);
-  wall(maker, MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)});
+  wall(maker, maker.material(material));
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.4f, 0.6f, 0.1f}));
 }
 
@@ -95,8 +94,7 @@ TEST(SampleValue, UsesNormalMapsAndSkipsHoles) {
   wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
   Material bent = MetallicRoughness{};
   bent.relief.normal = maker.texture(ConstantTexture{{0.75f, 0.5f, 0.75f}});
-  maker.scene.materials.emplace_back(bent);
-  const MaterialId id{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+  const MaterialId id = maker.material(bent);
   wall(maker, id);
   const Rgb normal = value(maker, Integrator::kNormals, kAhead);
   EXPECT_NEAR(normal.r, 0.5 + std::sqrt(0.125), 1e-6);
@@ -118,7 +116,7 @@ TEST(SampleValue, ANormalMapTiltsAlongItsUvSet) {
   map.texels = std::vector<std::byte>{std::byte{255}, std::byte{128}, std::byte{128}};
   Material bent = MetallicRoughness{};
   bent.relief.normal = maker.texture(map);
-  maker.scene.materials.emplace_back(bent);
+  const MaterialId id = maker.material(bent);
   Mesh mesh;
   mesh.positions = {{-9, -9, 0}, {9, -9, 0}, {-9, 9, 0}};
   mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
@@ -126,7 +124,6 @@ TEST(SampleValue, ANormalMapTiltsAlongItsUvSet) {
   mesh.triangles = {{0, 1, 2}};
   Geometry& geometry = maker.scene.geometry;
   geometry.meshes.push_back(mesh);
-  const MaterialId id{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
   geometry.instances.push_back({MeshId{0}, id, Transform{}});
   const Ray ahead{.origin = {-3, -3, 5}, .direction = {0, 0, -1}};
   EXPECT_GT(value(maker, Integrator::kNormals, ahead).g, 0.99f);
@@ -169,8 +166,7 @@ TEST(SampleValue, AmbientOcclusionSkipsHolesAndHiddenLamps) {
   wall(maker, maker.diffuse(0.5f));
   Material hole = MetallicRoughness{};
   hole.alpha = {AlphaMode::kMask, {TextureId{0}, 0}};
-  maker.scene.materials.push_back(hole);
-  wall(maker, MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)}, 2);
+  wall(maker, maker.material(hole), 2);
   const MaterialId lamp = maker.lamp(1);
   std::get<Emissive>(maker.scene.materials[index_of(lamp)].kind).hidden = true;
   wall(maker, lamp, 3);

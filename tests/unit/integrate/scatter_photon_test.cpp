@@ -93,9 +93,7 @@ TEST(ScatterPhoton, CarriesTheLightOfPathsAtTiltedGlass) {
 
 TEST(ScatterPhoton, CarriesTheLightOfPathsAtTiltedRoughGlass) {
   SceneMaker maker = maker_with_floor();
-  maker.scene.materials.push_back(
-      Material{Dielectric{.index_of_refraction = 1.5, .roughness = 0.5}});
-  const MaterialId glass{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+  const MaterialId glass = maker.material(Dielectric{.index_of_refraction = 1.5, .roughness = 0.5});
   expect_the_light_of_paths(maker, glass);
 }
 
@@ -104,9 +102,8 @@ TEST(ScatterPhoton, CarriesTheLightOfPathsAtATiltedGltfMetal) {
   MetallicRoughness metal;
   metal.metallic.factor = 1;
   metal.roughness.factor = 0.5;
-  maker.scene.materials.push_back(Material{metal});
-  expect_the_light_of_paths(
-      maker, MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)});
+  const MaterialId id = maker.material(metal);
+  expect_the_light_of_paths(maker, id);
 }
 
 TEST(ScatterPhoton, CarriesTheLightOfPathsAtTiltedFuzzyMetal) {

@@ -60,8 +60,7 @@ std::vector<Case> cases() {
   });
   add("textured", [](auto& m) {
     const TextureId texture = m.texture(stripes());
-    m.scene.materials.push_back(Emissive{texture, false});
-    const MaterialId lamp{static_cast<std::uint32_t>(m.scene.materials.size() - 1)};
+    const MaterialId lamp = m.material(Emissive{texture, false});
     m.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, lamp);
     m.sphere({2, 1, 0}, 0.5, lamp);
     m.instance(test::grid(1), translation({-2, 2, 0}) * rotation({1, 0, 0}, 80), lamp);
