@@ -1,6 +1,7 @@
 // The program `bandsaw`: parses the arguments, hides secrets among them from other users of the
 // machine, and runs the command. Each command has a function run() (cli/options/commands.h).
 
+#include <new>
 #include <string>
 #include <variant>
 #include <vector>
@@ -8,6 +9,21 @@
 #include "coordinator/cli/command_line.h"
 #include "coordinator/cli/options/commands.h"
 #include "proto/link/join.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+// Runs the command. Memory that the standard library cannot get is an error of the command.
+ExitCode run_command(const Command& command, Process& process) {
+  try {
+    return std::visit([&](const auto& options) { return run(options, process); }, command);
+  } catch (const std::bad_alloc&) {
+    return process.console.fail(ExitCode::kFailed, "not enough memory");
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
 
 int main(int argc, char** argv) {
   using namespace bandsaw::coordinator;
@@ -21,8 +37,7 @@ int main(int argc, char** argv) {
   }
   Interrupts interrupts;
   Process process{console, interrupts};
-  const ExitCode code =
-      std::visit([&](const auto& options) { return run(options, process); }, *command);
+  const ExitCode code = run_command(*command, process);
   if (const absl::Status written = console.write_error();
       code == ExitCode::kDone && !written.ok()) {
     return static_cast<int>(console.fail(ExitCode::kFailed, std::string(written.message())));

@@ -37,6 +37,7 @@
 // standard output, with CODE as absl::StatusCodeToString writes it.
 
 #include <sys/prctl.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cerrno>
@@ -324,9 +325,11 @@ absl::Status run_without_exceptions(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
-    return absl::ResourceExhaustedError(absl::StrCat(name_of(argv[2]),
-                                                     ": needs more memory than the ", argv[5],
-                                                     " bytes that reading a file may take"));
+    rlimit memory{};
+    getrlimit(RLIMIT_AS, &memory);
+    return absl::ResourceExhaustedError(
+        absl::StrCat(name_of(argv[2]), ": needs more memory than the ", memory.rlim_cur,
+                     " bytes that reading a file may take"));
   } catch (const std::exception& error) {
     return absl::InvalidArgumentError(
         absl::StrCat(name_of(argv[2]), ": cannot be read: ", error.what()));

@@ -15,6 +15,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstddef>
@@ -153,8 +154,15 @@ constexpr bool kShadowMemory = false;
 constexpr bool kShadowMemory = false;
 #endif
 
+// Limits the resource to `most`, or to the hard limit that this process has inherited if that is
+// lower: only privileged users may raise a hard limit.
 absl::Status limit(__rlimit_resource resource, std::uint64_t most, const char* what) {
-  const rlimit value{most, most};
+  rlimit inherited{};
+  if (getrlimit(resource, &inherited) != 0) {
+    return errno_status(errno, what);
+  }
+  const rlim_t lowest = std::min<rlim_t>(most, inherited.rlim_max);
+  const rlimit value{lowest, lowest};
   return setrlimit(resource, &value) == 0 ? absl::OkStatus() : errno_status(errno, what);
 }
 

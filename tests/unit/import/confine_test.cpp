@@ -91,6 +91,24 @@ TEST(Confine, LimitsCoreDumpsFilesAndTime) {
             0);
 }
 
+// A batch system sets such limits, and only privileged users may raise them.
+TEST(Confine, KeepsLowerLimitsThatItHasInherited) {
+  const Folders folders;
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const rlimit inherited{30, 30};
+    setrlimit(RLIMIT_CPU, &inherited);
+    const Confinement to{folders.readable.path(), folders.writable.path(), 8ull << 30, 60, 1 << 20};
+    rlimit cpu{};
+    const bool is_confined = confine_this_process(to).ok() && getrlimit(RLIMIT_CPU, &cpu) == 0;
+    _exit(is_confined ? static_cast<int>(cpu.rlim_max) : 200);
+  }
+  int status = 0;
+  waitpid(pid, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 30);
+}
+
 TEST(Confine, AllowsOnlyTwoFoldersIfTheKernelHasLandlock) {
   if (syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) < 0) {
     GTEST_SKIP() << "this kernel has no Landlock";
