@@ -70,7 +70,10 @@ part_blender() {
   deploy/install.sh blender && preset release bandsaw bandsaw-worker bandsaw-import && tests build/release --label-regex '^blender$'
 }
 
-part_asan-ubsan() { preset asan-ubsan all && tests build/asan-ubsan --label-regex '^default$'; }
+part_asan-ubsan() {
+  export LSAN_OPTIONS="suppressions=$PWD/tests/lsan_suppressions.txt"
+  preset asan-ubsan all && tests build/asan-ubsan --label-regex '^default$'
+}
 
 # The system's libraries are not built for ThreadSanitizer, so it does not see their locks. Therefore it ignores their accesses to memory.
 # Two groups of tests are left out: one reads JSON into protobuf's Struct, whose layout in the library differs from that in a program
@@ -86,6 +89,7 @@ part_clang() {
 }
 
 part_fuzz() {
+  export LSAN_OPTIONS="suppressions=$PWD/tests/lsan_suppressions.txt"
   deploy/install.sh clang && cmake --preset fuzz -DBANDSAW_TESTS=ON -DBANDSAW_FUZZ_SECONDS=$((fuzz_minutes * 60)) &&
     cmake --build --preset fuzz --target fuzz_targets && tests build/fuzz --label-regex '^fuzz$'
 }
