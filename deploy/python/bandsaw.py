@@ -302,7 +302,12 @@ _REFERENCES = {
     ".textproto": rb'"([^"\n]+)"', ".json": rb'"([^"\n]+)"', ".gltf": rb'"uri"\s*:\s*"([^"\n]+)"',
     ".pbrt": rb'"([^"\n]+)"', ".xml": rb'"([^"\n]+)"',
 }
+# In binary files and in quotes: a picture's name. It begins after a control character or a quote, so that each byte is looked at once.
+_REFERENCES[".fbx"] = _REFERENCES[".3ds"] = (
+    rb'(?i)(?<![^\x00-\x1f"])([^\x00-\x1f"]+?\.(?:png|jpe?g|tga|bmp|tiff?|exr|hdr|webp|dds|gif))')
 _ALSO_QUOTED = {".textproto": rb"'([^'\n]+)'"}  # a second pattern
+_SCENES = (".textproto", ".json", ".pbrt", ".xml")  # the others are models
+_NAMES_FROM_THE_TOP = (".pbrt", ".xml")  # an included file names files relative to the folder of the scene that includes it
 
 
 def _files_of(scene):
@@ -322,21 +327,27 @@ def _files_of(scene):
         for pattern in filter(None, (_REFERENCES.get(suffix), _ALSO_QUOTED.get(suffix))):
             with open(path, "rb") as file:
                 text = file.read()
+            own = os.path.dirname(name)
             for found in re.findall(pattern, text, re.MULTILINE):
-                waiting.extend(_below(folder, os.path.dirname(name), found))
+                for beside in {own, ""} if suffix in _NAMES_FROM_THE_TOP else {own}:
+                    waiting.extend(_below(folder, beside, found, suffix not in _SCENES))
     return main, files
 
 
-def _below(folder, beside, found):
+def _below(folder, beside, found, or_last_part):
     """Returns the name, relative to `folder`, of the file that `found` names in a file in the folder `beside`, in a list;
-    nothing if there is no such file below the folder."""
+    nothing if there is no such file below the folder. `or_last_part`: else that of the file with the last part of the name,
+    because models name pictures by their paths on another machine."""
     try:
         text = found.decode("utf-8")
     except UnicodeDecodeError:
         return []
     words = text.split(" ")
     rests = [" ".join(words[at:]) for at in range(len(words))]  # what precedes a name may be options
-    for spelled in [text, urllib.parse.unquote(text)] + rests:
+    spellings = [text, urllib.parse.unquote(text)] + rests
+    if or_last_part:
+        spellings += [re.split(r"[/\\]", spelled)[-1] for spelled in spellings[:2]]
+    for spelled in spellings:
         name = os.path.normpath(os.path.join(beside, spelled.replace("\\", "/"))).replace(os.sep, "/")
         if not name.startswith(("../", "/")) and "\0" not in name and os.path.isfile(os.path.join(folder, name)):
             return [name]

@@ -9,6 +9,7 @@ import struct
 import sys
 import tempfile
 import threading
+import time
 import types
 import unittest
 import zlib
@@ -113,6 +114,34 @@ class Files(unittest.TestCase):
                               "secret__bin": "s"})
         _, files = bandsaw._files_of(os.path.join(folder, "in", "a.gltf"))
         self.assertEqual(sorted(files), ["a.gltf", "my mesh.bin"])
+
+    def test_included_files_name_files_from_the_folder_of_the_scene(self):
+        folder = self.make(**{"main__pbrt": 'Include "geometry/g.pbrt"', "geometry/g__pbrt": 'Shape "plymesh" "string filename" "geometry/m.ply"',
+                              "geometry/m__ply": "m", "main__xml": '<include filename="sub/a.xml"/>',
+                              "sub/a__xml": '<string name="filename" value="meshes/b.obj"/> <string name="filename" value="c.obj"/>',
+                              "meshes/b__obj": "b", "sub/c__obj": "c"})
+        _, files = bandsaw._files_of(os.path.join(folder, "main.pbrt"))
+        self.assertEqual(sorted(files), ["geometry/g.pbrt", "geometry/m.ply", "main.pbrt"])
+        _, files = bandsaw._files_of(os.path.join(folder, "main.xml"))
+        self.assertEqual(sorted(files), ["main.xml", "meshes/b.obj", "sub/a.xml", "sub/c.obj"])
+
+    def test_pictures_of_binary_models_are_found(self):
+        # As in an FBX file, which has the length of a text before it, and a 3DS file, whose texts end with a zero byte.
+        fbx = 'S\x0e\0\0\0C:\\x\\Wood 1.PNGS\x0d\0\0\0maps\\bump.jpeg R\x01\x02.png\0'
+        folder = self.make(**{"in/a__fbx": fbx, "in/Wood 1__PNG": "w", "in/maps/bump__jpeg": "b", "in/other__png": "o",
+                              "in/b__3ds": "\0\xa3\x0d\0\0\0stone.tga\0", "in/stone__tga": "s",
+                              "in/s__textproto": 'model { file: "b.3ds" } model { file: "/x/other.png" }'})
+        _, files = bandsaw._files_of(os.path.join(folder, "in", "a.fbx"))
+        self.assertEqual(sorted(files), ["Wood 1.PNG", "a.fbx", "maps/bump.jpeg"])
+        _, files = bandsaw._files_of(os.path.join(folder, "in", "s.textproto"))
+        self.assertEqual(sorted(files), ["b.3ds", "s.textproto", "stone.tga"])
+
+    def test_a_long_line_of_a_model_is_searched_once(self):
+        folder = self.make(**{"a__fbx": "a: " + "0.5," * 250000 + '\n"a.png"', "a__png": "p"})
+        began = time.monotonic()
+        _, files = bandsaw._files_of(os.path.join(folder, "a.fbx"))
+        self.assertEqual(sorted(files), ["a.fbx", "a.png"])
+        self.assertLess(time.monotonic() - began, 10)  # minutes, if every byte of the line began a search
 
     def test_a_missing_scene_is_named(self):
         with self.assertRaises(bandsaw.BandsawError) as caught:
