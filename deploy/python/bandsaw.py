@@ -117,7 +117,7 @@ class _PinnedConnection(http.client.HTTPSConnection):
         found = hashlib.sha256(self.sock.getpeercert(binary_form=True)).digest()
         if found != self._digest:
             self.close()
-            raise NoFarm(f"{self.host}:{self.port} is another farm: its certificate is not the one that the farm's string names")
+            raise NoFarm("it is another farm: its certificate is not the one that the farm's string names")
 
 
 class Farm:
@@ -172,13 +172,14 @@ class Farm:
         for address in list(self._addresses):
             try:
                 status, answer = self._send(address, method, path, body, headers, timeout)
-            except (OSError, http.client.HTTPException) as error:
+                refusal = _refusal(status, answer)
+            except (NoFarm, OSError, http.client.HTTPException) as error:
                 troubles.append(f"{address[0]}:{address[1]}: {_reason(error)}")
                 continue
             self._addresses.remove(address)
             self._addresses.insert(0, address)  # the next request is sent first to the one that answered
-            if status >= 400:
-                raise _refusal(status, answer)
+            if refusal is not None:
+                raise refusal
             return answer
         raise NoFarm(
             "no coordinator answers (" + "; ".join(troubles) + "). Is `bandsaw serve` running there, with "
@@ -283,10 +284,13 @@ def _reason(error):
 
 
 def _refusal(status, answer):
+    """Returns the error that a coordinator's answer is; None if it is none. Raises NoFarm if another program has answered."""
+    if status < 300:
+        return None
     try:
         message = json.loads(answer)["error"]
     except (ValueError, KeyError, TypeError):
-        return NoFarm(f"what answers there is not a Bandsaw coordinator of this version (HTTP status {status})")
+        raise NoFarm(f"what answers there is not a Bandsaw coordinator of this version (HTTP status {status})") from None
     if status == 401:
         return WrongString("the farm refuses this string: its secret is wrong or was rotated (" + message + ")")
     return Refused(status, message)

@@ -160,6 +160,37 @@ class Jobs(unittest.TestCase):
     def posts(self):
         return [path for method, path in self.fake.requests if method == "POST"]
 
+    def test_an_address_of_another_program_is_not_the_last(self):
+        with socket.create_server(("127.0.0.1", 0)) as server:
+            def serve():
+                connection, _ = server.accept()
+                connection.recv(4096)
+                connection.sendall(b"HTTP/1.1 302 Found\r\nContent-Length: 0\r\n\r\n")
+                connection.close()
+
+            thread = threading.Thread(target=serve, daemon=True)
+            thread.start()
+            self.farm._addresses.insert(0, server.getsockname()[:2])
+            self.assertEqual(self.farm.check(), "fake")
+            thread.join()
+        self.assertEqual(self.farm._addresses[0][1], self.fake.port)
+
+    def test_an_address_of_another_farm_is_not_the_last(self):
+        send = self.farm._send
+
+        def send_or_refuse(address, *more):
+            if address[0] == "other":
+                raise bandsaw.NoFarm("it is another farm")
+            return send(address, *more)
+
+        self.farm._send = send_or_refuse
+        self.farm._addresses.insert(0, ("other", 1))
+        self.assertEqual(self.farm.check(), "fake")
+        self.farm._addresses = [("other", 1)]
+        with self.assertRaises(bandsaw.NoFarm) as caught:
+            self.farm.check()
+        self.assertIn("other:1: it is another farm", str(caught.exception))
+
     def test_files_are_sent_once(self):
         files = {"a.glb": b"mesh", "b.png": b"image"}
         self.farm.submit("one", files=files, samples=3, title="first one")
