@@ -99,7 +99,7 @@ def _host_and_port(text):
 
 
 def _is_loopback(host):
-    return host in ("localhost", "::1") or host.startswith("127.")
+    return host in ("localhost", "::1") or re.fullmatch(r"127\.[0-9.]+", host) is not None  # not a name such as 127.example.org
 
 
 class _PinnedConnection(http.client.HTTPSConnection):
@@ -145,16 +145,26 @@ class Farm:
 
     # ---- requests ----
 
-    def _connect(self, address):
+    def _connect(self, address, timeout):
+        """Returns an open connection, over which nothing was sent. It is plain if the farm has no certificate, and to the dashboard that the
+        string names on loopback. Another loopback address may be the end of a tunnel to either kind of dashboard, so TLS is tried first.
+        Raises OSError, or NoFarm: another farm."""
         host, port = address
-        if self._join.certificate is None or _is_loopback(host):
-            return http.client.HTTPConnection(host, port, timeout=self._timeout)
-        return _PinnedConnection(host, port, self._timeout, self._join.certificate)
+        loopback = _is_loopback(host)
+        if self._join.certificate is not None and not (loopback and address == self._join.web):
+            pinned = _PinnedConnection(host, port, timeout, self._join.certificate)
+            try:
+                pinned.connect()
+                return pinned
+            except ssl.SSLError:
+                if not loopback:
+                    raise
+        plain = http.client.HTTPConnection(host, port, timeout=timeout)
+        plain.connect()
+        return plain
 
     def _send(self, address, method, path, body, headers, timeout):
-        connection = self._connect(address)
-        if timeout is not None:
-            connection.timeout = timeout
+        connection = self._connect(address, self._timeout if timeout is None else timeout)
         try:
             connection.request(method, path, body=body() if callable(body) else body, headers=headers)
             reply = connection.getresponse()

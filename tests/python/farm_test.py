@@ -128,6 +128,32 @@ class OnAFarm(unittest.TestCase):
         self.assertIn("secret", str(caught.exception))
 
 
+    def test_a_loopback_address_may_be_a_tunnel(self):
+        # The string does not say that the dashboard there is plain.
+        places, rest = self.loopback.string.split("+", 1)
+        web, rest = rest.split("-", 1)
+        self.assertRegex(web, r"^127\.0\.0\.1:\d+$")
+        self.assertEqual(bandsaw.Farm(f"{places}+{web.split(':')[1]}-{rest}").check(), self.farm.check())
+
+
+class Tunnelled(unittest.TestCase):
+    """The dashboard beyond loopback, so with TLS, at an address that is on loopback: as at the end of a tunnel."""
+
+    def test_a_loopback_address_may_have_tls(self):
+        with tempfile.TemporaryDirectory() as folder:
+            loopback = LoopbackFarm(folder, web="0.0.0.0:0")
+            try:
+                farm = bandsaw.Farm(loopback.string)
+                self.assertEqual(farm._addresses, [("127.0.0.1", farm._join.web[1])])
+                self.assertNotEqual(farm.check(), "")
+                digest = base64.urlsafe_b64encode(farm._join.certificate).decode().rstrip("=")
+                with self.assertRaises(bandsaw.NoFarm) as caught:
+                    bandsaw.Farm(loopback.string.replace(digest, "A" * 43)).check()
+                self.assertIn("another farm", str(caught.exception))
+            finally:
+                loopback.stop()
+
+
 class Restarted(unittest.TestCase):
     """The coordinator beyond loopback, so with TLS; it is killed while a job runs."""
 

@@ -12,6 +12,7 @@ import threading
 import time
 import types
 import unittest
+import unittest.mock
 import zlib
 
 SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
@@ -62,16 +63,18 @@ class NoFarms(unittest.TestCase):
         self.assertIn("nothing listens there", str(caught.exception))
         self.assertIn("bandsaw serve", str(caught.exception))
 
-    def answer_with(self, reply):
-        """The port of a server that answers one connection with these bytes."""
+    def answer_with(self, reply, connections=1):
+        """The port of a server that answers so many connections with these bytes. What comes is in `received`."""
         server = socket.create_server(("127.0.0.1", 0))
         self.addCleanup(server.close)
+        self.received = []
 
         def serve():
-            connection, _ = server.accept()
-            connection.recv(4096)
-            connection.sendall(reply)
-            connection.close()
+            while len(self.received) < connections:
+                connection, _ = server.accept()
+                self.received.append(connection.recv(4096))
+                connection.sendall(reply)
+                connection.close()
 
         thread = threading.Thread(target=serve, daemon=True)
         thread.start()
@@ -83,6 +86,22 @@ class NoFarms(unittest.TestCase):
         with self.assertRaises(bandsaw.NoFarm) as caught:
             bandsaw.Farm(string(f"127.0.0.1:1+127.0.0.1:{port}")).check()
         self.assertIn("not a Bandsaw coordinator", str(caught.exception))
+
+    def test_a_tunnel_to_a_plain_dashboard(self):
+        port = self.answer_with(b'HTTP/1.1 400 Bad Request\r\nContent-Length: 15\r\n\r\n{"error": "no"}', connections=2)
+        with self.assertRaises(bandsaw.Refused):
+            bandsaw.Farm(string(f"127.0.0.1:1+{port}")).check()
+        self.assertEqual([SECRET.encode() in one for one in self.received], [False, True])
+
+    def test_the_secret_is_not_sent_in_plain_text_to_other_machines(self):
+        self.assertEqual([bandsaw._is_loopback(host) for host in ("127.0.0.2", "localhost", "::1", "127.example.org", "10.0.0.1")],
+                         [True, True, True, False, False])
+        for web in ("{}", "127.0.0.1:{}"):
+            port = self.answer_with(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+            with unittest.mock.patch.object(bandsaw, "_is_loopback", lambda host: False), self.assertRaises(bandsaw.NoFarm) as caught:
+                bandsaw.Farm(string("127.0.0.1:1+" + web.format(port))).check()
+            self.assertIn("no TLS there", str(caught.exception))
+            self.assertNotIn(SECRET.encode(), self.received[0])
 
     def test_what_is_not_http_is_no_farm(self):
         port = self.answer_with(b"SSH-2.0-x\r\n")
