@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 absl::StatusOr<web::Submitted> Scenes::submit(const std::string& path, const SceneRequest& wanted) {
   const absl::Cleanup done = [this] { --reading_; };
   if (++reading_ > kAtOnce) {
-    return absl::ResourceExhaustedError("other scenes are being read; try again in a moment");
+    return absl::UnavailableError("other scenes are being read; try again in a moment");
   }
   ASSIGN_OR_RETURN(const SceneOnFarm scene, import_scene_(path, wanted.inside, stop_));
   const JobSpec spec{

@@ -166,8 +166,14 @@ class Farm:
     def _send(self, address, method, path, body, headers, timeout):
         connection = self._connect(address, self._timeout if timeout is None else timeout)
         try:
-            connection.request(method, path, body=body() if callable(body) else body, headers=headers)
-            reply = connection.getresponse()
+            try:
+                connection.request(method, path, body=body() if callable(body) else body, headers=headers)
+            except (ConnectionError, ssl.SSLError):
+                reply = _early_reply(connection)
+                if reply is None:
+                    raise
+            else:
+                reply = connection.getresponse()
             return reply.status, reply.read()
         finally:
             connection.close()
@@ -242,8 +248,8 @@ class Farm:
                 answer = json.loads(self.request("POST", path, json.dumps(message).encode(), timeout=600))
                 return Job(self, int(answer["job"]), answer.get("warning", []))
             except Refused as refused:
-                # 409: the coordinator has just removed an unused file; 429: it is reading other scenes.
-                if refused.status not in (409, 429) or again == 0:
+                # 409: the coordinator has just removed an unused file; 503: it is reading other scenes. A full disk has 429.
+                if refused.status not in (409, 503) or again == 0:
                     raise
                 time.sleep(0.5)
         raise AssertionError
@@ -281,6 +287,15 @@ class Farm:
 
         # The coordinator gives a body one second for each 32 KiB.
         self.request("POST", "/api/files", parts, total, timeout=max(60.0, total / 32768))
+
+
+def _early_reply(connection):
+    """Returns the answer of a coordinator that has refused a body before it came to its end, and then closed the connection;
+    None: there is none."""
+    try:
+        return connection.getresponse()
+    except (OSError, http.client.HTTPException):
+        return None
 
 
 def _reason(error):

@@ -18,10 +18,10 @@ SECRET = "abcdefghijklmnopqrst-_"
 
 class FakeFarm:
     """`seconds`: the time that a job takes; 0: each request for its state completes a quarter of it. Tests may set `refusals`, the HTTP statuses
-    with which the next scenes are refused, and `warnings`, those of every accepted scene. `scenes`, `jobs` and `requests` are what has come."""
+    with which the next scenes are refused, `full`, whether its disk is full, and `warnings`, those of every accepted scene. `scenes`, `jobs` and `requests` are what has come."""
 
     def __init__(self, seconds=0.0):
-        self.seconds, self.refusals, self.warnings = seconds, [], []
+        self.seconds, self.refusals, self.warnings, self.full = seconds, [], [], False
         self.files, self.scenes, self.jobs, self.requests = {}, [], {}, []
         self.lock = threading.Lock()
         farm = self
@@ -31,7 +31,10 @@ class FakeFarm:
                 farm.answer(self, b"")
 
             def do_POST(self):
-                farm.answer(self, self.rfile.read(int(self.headers.get("Content-Length", 0))))
+                if farm.full and self.path == "/api/files":
+                    farm.answer(self, self.rfile.read(1))  # the connection is closed before the rest has come
+                else:
+                    farm.answer(self, self.rfile.read(int(self.headers.get("Content-Length", 0))))
 
             def log_message(self, *ignored):
                 pass
@@ -92,6 +95,8 @@ class FakeFarm:
         return self.job(job, method, match[2] or "", parameters)
 
     def take_files(self, body):
+        if self.full:
+            return self.problem(429, "the disk is full")
         taken = []
         while body:
             head, body = body.split(b"\n", 1)

@@ -56,6 +56,21 @@ class LoopbackFarm:
             process.stdout.close()
 
 
+def refuse_early(test, farm):
+    """Sends a file that is too large. The coordinator refuses it at once and closes the connection after two seconds."""
+    size = 1 << 40
+
+    def body():
+        yield f"{'0' * 64} {size}\n".encode()
+        for _ in range(200):
+            yield bytes(4096)
+            time.sleep(0.05)
+
+    with test.assertRaises(bandsaw.Refused) as caught:
+        farm.request("POST", "/api/files", body, size + 100)
+    test.assertIn("at most", str(caught.exception))
+
+
 class OnAFarm(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -128,6 +143,9 @@ class OnAFarm(unittest.TestCase):
         self.assertIn("secret", str(caught.exception))
 
 
+    def test_an_upload_that_is_refused_early_has_its_reason(self):
+        refuse_early(self, self.farm)
+
     def test_a_loopback_address_may_be_a_tunnel(self):
         # The string does not say that the dashboard there is plain.
         places, rest = self.loopback.string.split("+", 1)
@@ -146,6 +164,7 @@ class Tunnelled(unittest.TestCase):
                 farm = bandsaw.Farm(loopback.string)
                 self.assertEqual(farm._addresses, [("127.0.0.1", farm._join.web[1])])
                 self.assertNotEqual(farm.check(), "")
+                refuse_early(self, farm)
                 digest = base64.urlsafe_b64encode(farm._join.certificate).decode().rstrip("=")
                 with self.assertRaises(bandsaw.NoFarm) as caught:
                     bandsaw.Farm(loopback.string.replace(digest, "A" * 43)).check()

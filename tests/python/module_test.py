@@ -229,8 +229,20 @@ class Jobs(unittest.TestCase):
         self.assertEqual(len(self.fake.scenes), 2)
 
     def test_a_busy_coordinator_is_asked_again(self):
-        self.fake.refusals = [429]
+        self.fake.refusals = [503]
         self.assertEqual(self.farm.submit("one", files={}).number, 1)
+
+    def test_a_full_disk_is_told_at_once(self):
+        self.fake.refusals = [429, 429]
+        with self.assertRaises(bandsaw.Refused):
+            self.farm.submit("one", files={})
+        self.assertEqual(self.fake.refusals, [429])
+
+    def test_an_upload_that_is_refused_early_has_its_reason(self):
+        self.fake.full = True
+        with self.assertRaises(bandsaw.Refused) as caught:
+            self.farm.submit("one", files={"large.bin": bytes(64 << 20)})
+        self.assertEqual((caught.exception.status, str(caught.exception)), (429, "the disk is full"))
 
     def test_an_error_of_the_scene_is_told(self):
         self.fake.refusals = [400]

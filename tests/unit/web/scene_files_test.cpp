@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <cstring>
 #include <utility>
 
@@ -66,6 +67,28 @@ TEST_F(SceneFilesTest, ASceneOfSentFilesBecomesAJob) {
   EXPECT_EQ(job.name(), "walk 1");
   EXPECT_EQ(job.settings().width(), 48u);
   EXPECT_EQ(job.stop().samples(), 32u);
+}
+
+// Clients repeat the request after 503, but not after 429, the status of a full disk.
+TEST_F(SceneFilesTest, TheThirdSceneAtATimeMayBeSentAgain) {
+  const std::string box = "a box";
+  const std::string body = scene("box.json", hex_of(box));
+  std::atomic<int> refused{0};
+  options_.import_scene = [&, read = options_.import_scene](const std::string& path,
+                                                            const std::string& inside,
+                                                            const std::atomic<bool>& stop) {
+    // Each import submits another scene while it runs.
+    if (const int status = post("/api/scenes/files", body)->status; status != 200) {
+      refused = status;
+    }
+    return read(path, inside, stop);
+  };
+  start_dashboard();
+  headers_.erase("Cookie");
+  log_in();
+  ASSERT_EQ(post("/api/files", sent(box))->status, 200);
+  EXPECT_EQ(post("/api/scenes/files", body)->status, 200);
+  EXPECT_EQ(refused, 503);
 }
 
 // A client cannot parse a list of jobs with a name that is not UTF-8.
