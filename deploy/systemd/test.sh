@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
-# Checks that systemd accepts the units, and that it rates their confinement as safe. Exit status 77: systemd-analyze is not
-# installed.
+# Checks that a worker stops before the coordinator of its machine, that systemd accepts the units, and that it rates their confinement as
+# safe. Exit status 77: systemd-analyze is not installed.
 # Usage: deploy/systemd/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 programs=$(cd "$1" && pwd)
+grep -q '^After=.*\bbandsaw\.service\b' "$here/bandsaw-worker.service" || {
+  echo "bandsaw-worker.service: it does not stop before bandsaw.service, which takes its last bands" >&2
+  exit 1
+}
 if ! command -v systemd-analyze >/dev/null; then
   echo "skipped: systemd-analyze is not here"
   exit 77
