@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks that a worker stops before the coordinator of its machine, that systemd accepts the units, and that it rates their confinement as
-# safe. Exit status 77: systemd-analyze is not installed.
+# Checks that a worker stops before the coordinator of its machine, which services the packages restart, that systemd accepts the units, and
+# that it rates their confinement as safe. Exit status 77: systemd-analyze is not installed.
 # Usage: deploy/systemd/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -9,12 +9,33 @@ grep -q '^After=.*\bbandsaw\.service\b' "$here/bandsaw-worker.service" || {
   echo "bandsaw-worker.service: it does not stop before bandsaw.service, which takes its last bands" >&2
   exit 1
 }
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+# restarts PACKAGE OLD-VERSION SERVICE...: the script of the installed package (no old version) or the upgraded one restarts these services,
+# and succeeds although systemctl fails, as it does for a masked unit.
+mkdir "$dir/bin"
+printf '#!/bin/sh\necho "$*" >>"%s"\n[ "$1" = daemon-reload ]\n' "$dir/calls" >"$dir/bin/systemctl"
+chmod +x "$dir/bin/systemctl"
+restarts() {
+  : >"$dir/calls"
+  sed "s#/run/systemd/system#$dir#" "$here/../packages/postinst" |
+    DPKG_MAINTSCRIPT_PACKAGE=$1 PATH=$dir/bin:$PATH sh -s configure "$2" 2>/dev/null || {
+    echo "postinst of $1: it fails if a service cannot be restarted" >&2
+    exit 1
+  }
+  [ "$(sed -n 's/^--no-block try-restart //p' "$dir/calls" | xargs)" = "${*:3}" ] || {
+    echo "postinst of $1, old version '$2': it does not restart '${*:3}':" >&2
+    cat "$dir/calls" >&2
+    exit 1
+  }
+}
+restarts bandsaw ""
+restarts bandsaw 0.1 bandsaw.service
+restarts bandsaw-worker-arm64 "" bandsaw.service
 if ! command -v systemd-analyze >/dev/null; then
   echo "skipped: systemd-analyze is not here"
   exit 77
 fi
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
 for unit in "$here"/*.service "$here"/*.timer; do
   sed "s#=/usr/bin/bandsaw#=$programs/bandsaw#" "$unit" >"$dir/${unit##*/}"
 done
