@@ -31,7 +31,10 @@ restarts() {
 }
 restarts bandsaw ""
 restarts bandsaw 0.1 bandsaw.service
+restarts bandsaw-worker "" bandsaw.service
+restarts bandsaw-worker 0.1 bandsaw.service bandsaw-worker.service
 restarts bandsaw-worker-arm64 "" bandsaw.service
+restarts bandsaw-worker-arm64 0.1 bandsaw.service
 if ! command -v systemd-analyze >/dev/null; then
   echo "skipped: systemd-analyze is not here"
   exit 77
