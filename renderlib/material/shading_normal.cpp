@@ -48,6 +48,15 @@ UvSet set_of(absl::Span<const Texture> textures, TextureId map) {
   return image == nullptr ? UvSet::kFirst : image->uv_set;
 }
 
+/// Returns the step, in lengths of `way`, of a central difference of a height map: 2^-14, or 2^-14
+/// repetitions of the map if it repeats along `way`. So the difference spans at most a texel of
+/// images of up to 8192 texels. Heights are floats: their rounding is an error of the slope of
+/// about 2^-11 of the height per repetition, which is not visible; shorter steps would increase it.
+double difference_step(absl::Span<const Texture> textures, TextureId map,
+                       const TextureCoordinates& way) {
+  return 0x1p-14 / std::max(1.0, repetitions(textures, map, way));
+}
+
 /// Returns the frame of the uvs, made orthonormal around the normal n; it is left-handed where the
 /// uvs are mirrored. Returns any frame around n if u has no direction or is almost parallel to n.
 Basis uv_basis(const Vec3& n, const Directions& uv) {
@@ -116,17 +125,17 @@ Vec3 displaced_normal(const SurfacePoint& point, absl::Span<const Texture> textu
                       double scale) {
   const bool second = set_of(textures, map) == UvSet::kSecond;
   const Vec3& n = point.shading_normal;
-  // Central differences over a fraction of a texel of all but the largest images.
-  constexpr double kStep = 0x1p-14;
   const auto slope = [&](const Vec2& toward, const Vec3& along) {
-    const auto height = [&](double step) {
+    const TextureCoordinates way{toward, toward, along, {}};
+    const double step = difference_step(textures, map, way);
+    const auto height = [&](double by) {
       TextureCoordinates at = texture_coordinates(point);
-      at.uv = {at.uv.x + step * toward.x, at.uv.y + step * toward.y};
-      at.uv2 = {at.uv2.x + step * toward.x, at.uv2.y + step * toward.y};
-      at.position = at.position + along * step;
+      at.uv = at.uv + way.uv * by;
+      at.uv2 = at.uv2 + way.uv2 * by;
+      at.position = at.position + way.position * by;
       return double{luminance(evaluate(textures, map, at))};
     };
-    return (height(kStep) - height(-kStep)) / (2 * kStep);
+    return (height(step) - height(-step)) / (2 * step);
   };
   const Vec3& u = second ? point.along_u2 : point.along_u;
   const Vec3& v = second ? point.along_v2 : point.along_v;

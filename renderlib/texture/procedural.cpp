@@ -62,6 +62,32 @@ Rgb evaluate(const NoiseTexture& texture, const TextureCoordinates& at) {
   return blend(texture.low, texture.high, static_cast<float>(t));
 }
 
+double repetitions(const CheckerTexture& checker, const TextureCoordinates& way) {
+  const Vec3& size = checker.size;
+  if (checker.mapping == CheckerTexture::Mapping::kUv) {
+    const Vec2& uv = way.of(checker.uv_set);
+    return max_abs({uv.x / size.x, uv.y / size.y, 0});
+  }
+  const Vec3& p = way.of(checker.space);
+  return max_abs({p.x / size.x, p.y / size.y, p.z / size.z});
+}
+
+double repetitions(const NoiseTexture& texture, const TextureCoordinates& way) {
+  const Vec3& p = way.of(texture.space);
+  if (texture.kind != NoiseTexture::Kind::kMarble) {
+    return max_abs(texture.scale * p);
+  }
+  const double cells = max_abs(texture.turbulence_scale * p);
+  const double phase =
+      std::abs(texture.scale * dot(texture.axis, p)) + std::abs(texture.strength) * cells;
+  return std::max(cells, phase * (0.5 * kInvPi));
+}
+
+double repetitions(const RampTexture& ramp, const TextureCoordinates& way) {
+  const double range = ramp.stops.back().at - ramp.stops.front().at;
+  return range > 0 ? std::abs(coordinate(ramp, way)) / range : 0;
+}
+
 double coordinate(const RampTexture& ramp, const TextureCoordinates& at) {
   const Vec2& uv = at.of(ramp.uv_set);
   const Vec3& p = at.of(ramp.space);

@@ -1,6 +1,6 @@
 // Each function on a texture has a visitor of the variant: for its value at a point, its maximum,
-// its mean, and whether it uses positions in object space. Visitors follow references to other
-// textures.
+// its mean, its repetitions, and whether it uses positions in object space. Visitors follow
+// references to other textures.
 
 #include "renderlib/texture/texture.h"
 
@@ -77,6 +77,27 @@ struct Mean {
   Rgb operator()(const ProductTexture& t) const { return of(t.a) * of(t.b); }
 };
 
+struct Repetitions {
+  absl::Span<const Texture> textures;
+  const TextureCoordinates& way;
+
+  double of(TextureId id) const { return std::visit(*this, textures[index_of(id)]); }
+
+  double operator()(const ConstantTexture&) const { return 0; }
+  double operator()(const ImageTexture& t) const { return repetitions(t, way); }
+  double operator()(const CheckerTexture& t) const {
+    return std::max({repetitions(t, way), of(t.even), of(t.odd)});
+  }
+  double operator()(const NoiseTexture& t) const { return repetitions(t, way); }
+  double operator()(const RampTexture& t) const {
+    return t.over == RampTexture::Over::kTexture ? of(t.texture) : repetitions(t, way);
+  }
+  double operator()(const MixTexture& t) const {
+    return std::max({of(t.a), of(t.b), of(t.amount)});
+  }
+  double operator()(const ProductTexture& t) const { return std::max(of(t.a), of(t.b)); }
+};
+
 struct UsesObjectSpace {
   absl::Span<const Texture> textures;
 
@@ -108,6 +129,11 @@ Rgb evaluate(absl::Span<const Texture> textures, TextureId id, const TextureCoor
 float max_value(absl::Span<const Texture> textures, TextureId id) { return Most{textures}.of(id); }
 
 Rgb mean(absl::Span<const Texture> textures, TextureId id) { return Mean{textures}.of(id); }
+
+double repetitions(absl::Span<const Texture> textures, TextureId id,
+                   const TextureCoordinates& way) {
+  return Repetitions{textures, way}.of(id);
+}
 
 bool uses_uv(const Texture& texture) {
   if (const auto* checker = std::get_if<CheckerTexture>(&texture)) {

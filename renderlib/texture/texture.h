@@ -137,6 +137,12 @@ float max_value(absl::Span<const Texture> textures, TextureId id);
 /// they are black everywhere.
 Rgb mean(absl::Span<const Texture> textures, TextureId id);
 
+/// Returns how many times textures[id] repeats, about, on a way along which the coordinates change
+/// by `way`: images repeat themselves, checkers their cells, noise its lattice, marble its veins;
+/// a ramp over a coordinate repeats after the distance from its first to its last stop. Returns the
+/// largest number of itself and the textures that it refers to; 0 for constants.
+double repetitions(absl::Span<const Texture> textures, TextureId id, const TextureCoordinates& way);
+
 /// Returns true if the texture itself uses uv coordinates; textures that it refers to do not count.
 bool uses_uv(const Texture& texture);
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <variant>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/bsdf.h"
 #include "renderlib/material/shading_normal.h"
+#include "renderlib/texture/noise.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
 
@@ -69,6 +71,81 @@ TEST(Maps, TheNormalMapOfTheCoatUsesItsOwnUvs) {
   const Vec3 leaning = normalize({0.5, 0, 1});
   EXPECT_NEAR(length(bsdf.normal.shading - leaning), 0, 1e-6);
   EXPECT_NEAR(length(bsdf.coat_normal - Vec3{0, leaning.x, leaning.z}), 0, 1e-6);
+}
+
+/// The point (x, y) of a quad in the plane z = 0 that begins at the origin and has sides of length
+/// `side`.
+SurfacePoint on_quad(double side, double x, double y) {
+  SurfacePoint p = point(x / side);
+  p.position = {x, y, 0};
+  p.uv = p.uv2 = {x / side, y / side};
+  p.along_u = {side, 0, 0};
+  p.along_v = {0, side, 0};
+  return p;
+}
+
+/// A height map of 64 waves along u, of 16 texels each, which is repeated `scale` times.
+ImageTexture waves(double scale) {
+  ImageTexture map;
+  map.width = 1024;
+  map.height = 1;
+  map.format = ImageTexture::Format::kFloat32;
+  map.channels = 1;
+  std::vector<float> heights;
+  for (int i = 0; i < 1024; ++i) {
+    heights.push_back(0.5f + 0.5f * std::sin(static_cast<float>(i) * 0.3926991f));
+  }
+  const auto bytes = std::as_bytes(std::span(heights));
+  map.texels = std::vector<std::byte>(bytes.begin(), bytes.end());
+  map.uv_transform.m = {scale, 0, 0, 0, scale, 0};
+  return map;
+}
+
+// A repetition of the map is one unit long on each of the quads, so they have the same relief. The
+// points are away from the middles of texels, where the slope jumps. The tolerance is for heights
+// in float (difference_step in shading_normal.cpp): 2^-11 of the height of 0.005, tenfold.
+TEST(HeightMap, IsTheSameHoweverOftenItRepeats) {
+  for (const double x : {0.3, 0.54, 0.78}) {
+    const std::vector<Texture> once{waves(1)};
+    const Vec3 expected = displaced_normal(on_quad(1, x, 0.3), once, TextureId{0}, 0.005);
+    EXPECT_GT(std::abs(expected.x), 0.2);
+    for (const double scale : {30, 200}) {
+      const std::vector<Texture> often{waves(scale)};
+      const Vec3 normal = displaced_normal(on_quad(scale, x, 0.3), often, TextureId{0}, 0.005);
+      EXPECT_LE(length(normal - expected), 2.5e-5) << x << " " << scale;
+    }
+  }
+}
+
+// The relief is that of the noise in space, whatever the size of the quad that it is on. The
+// tolerance is for heights in float: 2^-11 of the height of 0.02 for each of 12 cells in a unit,
+// fourfold.
+TEST(HeightMap, InSpaceDoesNotDependOnTheSizeOfTheQuad) {
+  const std::vector<Texture> textures{NoiseTexture{.scale = 12}};
+  constexpr double kHeight = 0.02;
+  for (const double x : {0.31, 0.52, 0.77}) {
+    const auto height = [&](double dx, double dy) {
+      return kHeight * 0.5 * (1 + noise({12 * (x + dx), 12 * (0.17 + dy), 0}));
+    };
+    constexpr double kStep = 1e-5;
+    const Vec3 expected = normalize({(height(-kStep, 0) - height(kStep, 0)) / (2 * kStep),
+                                     (height(0, -kStep) - height(0, kStep)) / (2 * kStep), 1});
+    EXPECT_LT(expected.z, 0.9999);
+    for (const double side : {1, 4000}) {
+      const Vec3 normal = displaced_normal(on_quad(side, x, 0.17), textures, TextureId{0}, kHeight);
+      EXPECT_LE(length(normal - expected), 5e-4) << x << " " << side;
+    }
+  }
+}
+
+// The height rises by 2 over a ramp of 0.001 units, on a quad of 4000 units.
+TEST(HeightMap, FollowsAShortRamp) {
+  RampTexture ramp;
+  ramp.over = RampTexture::Over::kX;
+  ramp.stops = {{0.3, gray(0)}, {0.301, gray(2)}};
+  const std::vector<Texture> textures{ramp};
+  const Vec3 normal = displaced_normal(on_quad(4000, 0.3005, 0.3), textures, TextureId{0}, 0.0005);
+  EXPECT_LE(length(normal - normalize({-1, 0, 1})), 1e-3);
 }
 
 /// Returns true if `mapped` equals `there` at u = 0.5 and `next` at u = 1.5, from all sides.

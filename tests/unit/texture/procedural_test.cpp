@@ -252,6 +252,45 @@ TEST(Textures, BoundTheirValuesAndAreNotBlackOnAverage) {
   }
 }
 
+TEST(Textures, CountTheirRepetitions) {
+  RampTexture ramp;
+  ramp.over = RampTexture::Over::kV;
+  ramp.stops = {{1, {}}, {1.5, kWhite}};
+  ImageTexture turned;
+  turned.uv_transform.m = {0, -40, 7, 30, 0, 7};
+  NoiseTexture marble{.kind = NoiseTexture::Kind::kMarble, .scale = 6, .strength = 3};
+  marble.turbulence_scale = 0.25;
+  const Textures textures{ConstantTexture{},
+                          CheckerTexture{.even = id(0), .odd = id(0), .size = {0.5, 0.25, 1}},
+                          CheckerTexture{.even = id(1),
+                                         .odd = id(0),
+                                         .mapping = CheckerTexture::Mapping::kPosition,
+                                         .size = {1, 1, 0.125}},
+                          NoiseTexture{.space = Space::kObject, .scale = -12},
+                          ramp,
+                          turned,
+                          marble,
+                          MixTexture{id(4), id(0), id(3)},
+                          ProductTexture{id(1), id(5)},
+                          RampTexture{.texture = id(5), .stops = {{0, {}}}}};
+  const auto along = [&](const TextureCoordinates& way) {
+    std::vector<double> counts;
+    for (std::uint32_t i = 0; i < textures.size(); ++i) {
+      counts.push_back(repetitions(textures, id(i), way));
+    }
+    return counts;
+  };
+  using Counts = std::vector<double>;
+  EXPECT_EQ(along({.uv = {-1, 0}}), (Counts{0, 2, 2, 0, 0, 30, 0, 0, 30, 30}));
+  EXPECT_EQ(along({.uv = {0, 1}}), (Counts{0, 4, 4, 0, 2, 40, 0, 2, 40, 40}));
+  EXPECT_EQ(along({.object_position = {0, 2, 1}}), (Counts{0, 0, 0, 24, 0, 0, 0, 24, 0, 0}));
+  const Counts in_space = along({.position = {0, 0, 8}});
+  EXPECT_EQ(in_space[2], 64);
+  // Its phase turns by 6 * 8 from the axis, and by about 3 for each of 2 cells of the turbulence.
+  EXPECT_NEAR(in_space[6], 54 / (2 * 3.14159265358979), 1e-9);
+  EXPECT_EQ(along({.position = {8, 0, 0}})[6], 2);
+}
+
 std::string fault(const Textures& textures) {
   std::vector<std::uint64_t> cost;
   for (std::size_t i = 0; i < textures.size(); ++i) {
