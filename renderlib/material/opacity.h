@@ -56,12 +56,13 @@ inline double opacity(const Material& material, absl::Span<const Texture> textur
   }
   const Alpha& alpha = material.alpha;
   const Rgb texel = look_up(textures, alpha.value.texture, point);
-  const double part = alpha.luminance ? luminance(texel) : texel.r;
-  const double value = std::clamp(alpha.value.factor * part, 0.0, 1.0);
+  const auto value = [&](float part) { return std::clamp(alpha.value.factor * part, 0.0, 1.0); };
   if (alpha.mode == AlphaMode::kMask) {
-    return value >= alpha.cutoff ? 1 : 0;
+    // Texels are floats, so a cutoff of 0.7 is the float nearest to 0.7.
+    const double part = value(alpha.luminance ? luminance_exact_for_grays(texel) : texel.r);
+    return static_cast<float>(part) >= static_cast<float>(alpha.cutoff) ? 1 : 0;
   }
-  return value;
+  return value(alpha.luminance ? luminance(texel) : texel.r);
 }
 
 /// Returns the opacity of material `id`; that of a mixture is the mean over its parts, weighted by

@@ -109,9 +109,12 @@ double coordinate(const RampTexture& ramp, const TextureCoordinates& at) {
 }
 
 Rgb evaluate(const RampTexture& ramp, double value) {
+  // The values of a texture are floats, so a step is at the float nearest to its stop.
+  const bool in_floats = ramp.steps && ramp.over == RampTexture::Over::kTexture;
   const auto next =
-      std::find_if(ramp.stops.begin(), ramp.stops.end(),
-                   [&](const RampTexture::Stop& stop) { return !(stop.at <= value); });
+      std::find_if(ramp.stops.begin(), ramp.stops.end(), [&](const RampTexture::Stop& stop) {
+        return !((in_floats ? double{static_cast<float>(stop.at)} : stop.at) <= value);
+      });
   if (next == ramp.stops.begin()) {
     return next->color;
   }

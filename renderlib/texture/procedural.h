@@ -21,7 +21,8 @@ double repetitions(const RampTexture& ramp, const TextureCoordinates& way);
 
 /// Returns the coordinate that the ramp maps to a colour. `ramp.over` MUST NOT be kTexture.
 double coordinate(const RampTexture& ramp, const TextureCoordinates& at);
-/// Returns the ramp's colour at `value`; NaN maps to the first stop.
+/// Returns the ramp's colour at `value`, which is a float if `ramp.over` is kTexture; NaN maps to
+/// the first stop.
 Rgb evaluate(const RampTexture& ramp, double value);
 
 }  // namespace bandsaw

@@ -24,8 +24,11 @@ struct Evaluate {
   Rgb operator()(const CheckerTexture& t) const { return of(is_even(t, at) ? t.even : t.odd); }
   Rgb operator()(const NoiseTexture& t) const { return evaluate(t, at); }
   Rgb operator()(const RampTexture& t) const {
-    const bool inner = t.over == RampTexture::Over::kTexture;
-    return evaluate(t, inner ? luminance(of(t.texture)) : coordinate(t, at));
+    if (t.over != RampTexture::Over::kTexture) {
+      return evaluate(t, coordinate(t, at));
+    }
+    const Rgb inner = of(t.texture);
+    return evaluate(t, t.steps ? luminance_exact_for_grays(inner) : luminance(inner));
   }
   Rgb operator()(const MixTexture& t) const {
     const float amount = std::clamp(luminance(of(t.amount)), 0.0f, 1.0f);

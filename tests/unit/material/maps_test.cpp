@@ -11,6 +11,7 @@
 
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/bsdf.h"
+#include "renderlib/material/opacity.h"
 #include "renderlib/material/shading_normal.h"
 #include "renderlib/texture/noise.h"
 #include "tests/support/meshes.h"
@@ -71,6 +72,22 @@ TEST(Maps, TheNormalMapOfTheCoatUsesItsOwnUvs) {
   const Vec3 leaning = normalize({0.5, 0, 1});
   EXPECT_NEAR(length(bsdf.normal.shading - leaning), 0, 1e-6);
   EXPECT_NEAR(length(bsdf.coat_normal - Vec3{0, leaning.x, leaning.z}), 0, 1e-6);
+}
+
+TEST(AlphaMask, IsOpaqueWhereAlphaEqualsTheCutoff) {
+  for (int k = 1; k <= 255; ++k) {
+    const double cutoff = k / 255.0;
+    const auto grey = static_cast<float>(cutoff);
+    const std::vector<Texture> textures{ConstantTexture{gray(grey)},
+                                        ConstantTexture{gray(std::nextafter(grey, 0.0f))}};
+    for (const bool luminance : {false, true}) {
+      Material masked = Diffuse{TextureId{0}};
+      masked.alpha = {AlphaMode::kMask, {TextureId{0}, 1}, luminance, cutoff};
+      EXPECT_EQ(opacity(masked, textures, point(0.5)), 1) << cutoff << " " << luminance;
+      masked.alpha.value.texture = TextureId{1};
+      EXPECT_EQ(opacity(masked, textures, point(0.5)), 0) << cutoff << " " << luminance;
+    }
+  }
 }
 
 /// The point (x, y) of a quad in the plane z = 0 that begins at the origin and has sides of length

@@ -209,6 +209,41 @@ TEST(Ramp, AppliesToATextureAndToEachCoordinate) {
   EXPECT_EQ(evaluate(Textures{ramp}, id(0), at).g, 8);
 }
 
+// The stops are doubles, and the greys are floats: of a constant, of an image of 8 bits, and the
+// greatest one below the stop.
+TEST(Ramp, StepsAtAGreyThatEqualsTheStop) {
+  RampTexture ramp;
+  ramp.texture = id(0);
+  ramp.steps = true;
+  const auto steps_at = [&](double stop, const Texture& grey) {
+    ramp.stops = {{-1, {1, 0, 0}}, {stop, {0, 1, 0}}};
+    return at_uv({grey, ramp}, 0.5, 0.5) == Rgb{0, 1, 0};
+  };
+  const auto expect_step = [&](double stop) {
+    const auto nearest = static_cast<float>(stop);
+    EXPECT_TRUE(steps_at(stop, ConstantTexture{gray(nearest)})) << stop;
+    EXPECT_FALSE(steps_at(stop, ConstantTexture{gray(std::nextafter(nearest, -1.0f))})) << stop;
+  };
+  for (int k = 0; k <= 10; ++k) {
+    expect_step(k / 10.0);
+  }
+  for (unsigned k = 0; k <= 255; ++k) {
+    expect_step(k / 255.0);
+    ImageTexture image{.width = 1, .height = 1, .format = ImageTexture::Format::kLinear8};
+    image.texels = std::vector<std::byte>(3, std::byte(k));
+    EXPECT_TRUE(steps_at(k / 255.0, image)) << k;
+  }
+}
+
+TEST(Ramp, StepsOverACoordinateAreNotRoundedToFloats) {
+  RampTexture ramp;
+  ramp.over = RampTexture::Over::kX;
+  ramp.steps = true;
+  ramp.stops = {{1e6, {1, 0, 0}}, {1e6 + 0.01, {0, 1, 0}}};
+  EXPECT_EQ(at_point({ramp}, {1e6 + 0.005, 0, 0}), (Rgb{1, 0, 0}));
+  EXPECT_EQ(at_point({ramp}, {1e6 + 0.015, 0, 0}), (Rgb{0, 1, 0}));
+}
+
 TEST(Mix, InterpolatesBetweenTwoTextures) {
   const Textures parts{ConstantTexture{{1, 2, 3}}, ConstantTexture{{3, 2, 1}},
                        ConstantTexture{{0.25f, 0.25f, 0.25f}}, ConstantTexture{{7, 7, 7}}};
