@@ -70,6 +70,10 @@ bool is_at(int fd, const std::string& path) {
          open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
 }
 
+/// Returns true if removed files may let the call succeed that gave this errno: the disk has no
+/// bytes or no inodes left, or the user's quota of them is used up.
+bool is_full(int error) { return error == ENOSPC || error == EDQUOT; }
+
 /// Removes a file unless it is being downloaded. Otherwise another worker's commit could give the
 /// blob's name to a partial file that a third worker has started again.
 bool remove_unused(const std::string& path) {
@@ -138,12 +142,22 @@ absl::StatusOr<std::unique_ptr<BlobBytes>> BlobCache::get(const wire::Digest& di
   return blob;
 }
 
+absl::StatusOr<int> BlobCache::open_part(const std::string& path) {
+  while (true) {
+    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    if (fd >= 0) {
+      return fd;
+    }
+    const int error = errno;
+    if (!is_full(error) || !give_up_some(1)) {
+      return errno_status(error, path);
+    }
+  }
+}
+
 absl::StatusOr<std::unique_ptr<BlobCache::Download>> BlobCache::begin(const wire::Digest& digest) {
   const std::string path = part_of(digest);
-  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-  if (fd < 0) {
-    return errno_status(errno, path);
-  }
+  ASSIGN_OR_RETURN(const int fd, open_part(path));
   const bool is_taken = flock(fd, LOCK_EX | LOCK_NB) != 0;
   if (is_taken && errno != EWOULDBLOCK) {
     const absl::Status status = errno_status(errno, absl::StrCat("a lock on ", path));
@@ -193,7 +207,7 @@ absl::Status BlobCache::Download::append(absl::Span<const std::byte> bytes) {
     const ssize_t written = pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset_));
     if (written < 0 && errno != EINTR) {
       const int error = errno;
-      if (error == ENOSPC && cache_.give_up_some(bytes.size())) {
+      if (is_full(error) && cache_.give_up_some(bytes.size())) {
         continue;
       }
       return errno_status(error, absl::StrCat("the cache folder ", cache_.folder_));

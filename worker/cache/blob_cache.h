@@ -38,7 +38,8 @@ class BlobCache : public BlobSource {
     Download& operator=(const Download&) = delete;
 
     std::uint64_t offset() const { return offset_; }  ///< offset of the next byte to fetch
-    /// Appends the next bytes. RESOURCE_EXHAUSTED: the disk is full and nothing is left to evict.
+    /// Appends the next bytes. RESOURCE_EXHAUSTED: the disk is full, or the user's quota of it, and
+    /// nothing is left to evict.
     absl::Status append(absl::Span<const std::byte> bytes);
     /// Publishes the blob under its name. DATA_LOSS: the bytes do not match the digest; they are
     /// deleted.
@@ -51,12 +52,15 @@ class BlobCache : public BlobSource {
     std::uint64_t offset_;
   };
   /// Starts or resumes a download. Returns nullptr if another worker of this machine is fetching
-  /// the blob; check again a little later.
+  /// the blob; check again a little later. RESOURCE_EXHAUSTED: as for append(); a new file needs an
+  /// inode.
   absl::StatusOr<std::unique_ptr<Download>> begin(const wire::Digest& digest);
 
  private:
   BlobCache(std::string folder, std::uint64_t max_bytes);
   std::string part_of(const wire::Digest& digest) const;
+  /// Opens a partial file, and creates it if there is none. Errors are those of begin().
+  absl::StatusOr<int> open_part(const std::string& path) EXCLUDES(mutex_);
   /// Accounts for `added` bytes and evicts the oldest files until the rest fits; keeps `newest`.
   void make_room(std::uint64_t added, const std::string& newest) EXCLUDES(mutex_);
   /// Evicts the least recently used files because the disk is full: `wanted` bytes, or more.

@@ -20,6 +20,29 @@ std::vector<std::byte> bytes_of(char fill, std::size_t size = 1000) {
   return std::vector<std::byte>(size, static_cast<std::byte>(fill));
 }
 
+/// A small disk in memory at `folder`, which is unmounted at the end.
+class SmallDisk {
+ public:
+  /// `options`: those of tmpfs, which limit the disk.
+  SmallDisk(std::string folder, const char* options) : folder_(std::move(folder)) {
+    std::filesystem::create_directory(folder_);
+    is_mounted_ = ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, options) == 0;
+  }
+  ~SmallDisk() {
+    if (is_mounted_) {
+      ::umount2(folder_.c_str(), MNT_DETACH);
+    }
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  /// False if this user may not mount.
+  bool is_mounted() const { return is_mounted_; }
+
+ private:
+  std::string folder_;
+  bool is_mounted_ = false;
+};
+
 class BlobCacheTest : public ::testing::Test {
  protected:
   std::unique_ptr<BlobCache> open(std::uint64_t max_bytes = 1 << 30) {
@@ -146,26 +169,42 @@ TEST_F(BlobCacheTest, KeepsANewBlobThatIsLargerThanTheLimit) {
 
 // The disk may be full before the cache has reached its limit.
 TEST_F(BlobCacheTest, FreesSpaceOnAFullDisk) {
-  const std::string disk = folder_ / "cache";
-  std::filesystem::create_directory(disk);
-  if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=256k") != 0) {
+  const SmallDisk disk(folder_ / "cache", "size=256k");
+  if (!disk.is_mounted()) {
     GTEST_SKIP() << "a small disk needs root";
   }
-  {
-    const auto cache = open();
-    const auto large = [](char fill) {
-      return std::vector<std::byte>(100 << 10, static_cast<std::byte>(fill));
-    };
-    for (const char fill : {'a', 'b', 'c', 'd'}) {
-      put(*cache, large(fill));
-    }
-    EXPECT_TRUE(cache->get(wire::sha256(large('d'))).ok());
-    EXPECT_FALSE(cache->has(wire::sha256(large('a'))));
-    auto download = *cache->begin(wire::sha256(std::vector<std::byte>(1 << 20)));
-    EXPECT_EQ(download->append(std::vector<std::byte>(1 << 20)).code(),
-              absl::StatusCode::kResourceExhausted);
+  const auto cache = open();
+  for (const char fill : {'a', 'b', 'c', 'd'}) {
+    put(*cache, bytes_of(fill, 100 << 10));
   }
-  ::umount2(disk.c_str(), MNT_DETACH);
+  EXPECT_TRUE(cache->get(wire::sha256(bytes_of('d', 100 << 10))).ok());
+  EXPECT_FALSE(cache->has(wire::sha256(bytes_of('a', 100 << 10))));
+  auto download = *cache->begin(wire::sha256(std::vector<std::byte>(1 << 20)));
+  EXPECT_EQ(download->append(std::vector<std::byte>(1 << 20)).code(),
+            absl::StatusCode::kResourceExhausted);
+}
+
+// The folder itself has one of the four inodes.
+TEST_F(BlobCacheTest, FreesInodesOnAFullDisk) {
+  const SmallDisk disk(folder_ / "cache", "nr_inodes=4");
+  if (!disk.is_mounted()) {
+    GTEST_SKIP() << "a small disk needs root";
+  }
+  const auto cache = open();
+  for (const char fill : {'a', 'b', 'c', 'd'}) {
+    put(*cache, bytes_of(fill));
+  }
+  EXPECT_TRUE(cache->get(wire::sha256(bytes_of('d'))).ok());
+  EXPECT_FALSE(cache->has(wire::sha256(bytes_of('a'))));
+}
+
+TEST_F(BlobCacheTest, ReportsADiskWithoutInodes) {
+  const SmallDisk disk(folder_ / "cache", "nr_inodes=1");
+  if (!disk.is_mounted()) {
+    GTEST_SKIP() << "a small disk needs root";
+  }
+  EXPECT_EQ(open()->begin(wire::sha256(bytes_of('a'))).status().code(),
+            absl::StatusCode::kResourceExhausted);
 }
 
 TEST_F(BlobCacheTest, DoesNotRemoveForeignFiles) {
