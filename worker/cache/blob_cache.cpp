@@ -143,13 +143,18 @@ absl::StatusOr<std::unique_ptr<BlobBytes>> BlobCache::get(const wire::Digest& di
 }
 
 absl::StatusOr<int> BlobCache::open_part(const std::string& path) {
+  bool is_folder_made = false;
   while (true) {
     const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (fd >= 0) {
       return fd;
     }
     const int error = errno;
-    if (!is_full(error) || !give_up_some(1)) {
+    if (error == ENOENT && !is_folder_made) {
+      std::error_code ignored;  // opening the file fails again
+      std::filesystem::create_directories(folder_, ignored);
+      is_folder_made = true;
+    } else if (!is_full(error) || !give_up_some(1)) {
       return errno_status(error, path);
     }
   }

@@ -59,7 +59,8 @@ class BlobCache : public BlobSource {
  private:
   BlobCache(std::string folder, std::uint64_t max_bytes);
   std::string part_of(const wire::Digest& digest) const;
-  /// Opens a partial file, and creates it if there is none. Errors are those of begin().
+  /// Opens a partial file, and creates it, and the folder, if there is none. Errors are those of
+  /// begin().
   absl::StatusOr<int> open_part(const std::string& path) EXCLUDES(mutex_);
   /// Accounts for `added` bytes and evicts the oldest files until the rest fits; keeps `newest`.
   void make_room(std::uint64_t added, const std::string& newest) EXCLUDES(mutex_);

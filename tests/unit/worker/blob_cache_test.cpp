@@ -167,6 +167,15 @@ TEST_F(BlobCacheTest, KeepsANewBlobThatIsLargerThanTheLimit) {
   EXPECT_FALSE(cache->has(wire::sha256(bytes_of('a'))));
 }
 
+TEST_F(BlobCacheTest, MakesARemovedFolderAgain) {
+  const auto cache = open();
+  put(*cache, bytes_of('a'));
+  std::filesystem::remove_all(folder_ / "cache");
+  EXPECT_FALSE(cache->has(wire::sha256(bytes_of('a'))));
+  put(*cache, bytes_of('b'));
+  EXPECT_TRUE(cache->get(wire::sha256(bytes_of('b'))).ok());
+}
+
 // The disk may be full before the cache has reached its limit.
 TEST_F(BlobCacheTest, FreesSpaceOnAFullDisk) {
   const SmallDisk disk(folder_ / "cache", "size=256k");
