@@ -15,13 +15,17 @@ namespace bandsaw {
 
 absl::StatusOr<MappedFile> MappedFile::open(const std::string& path, int flags) {
   ASSIGN_OR_RETURN(const File file, File::open_regular(path, flags));
+  return map(file);
+}
+
+absl::StatusOr<MappedFile> MappedFile::map(const File& file) {
   ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
   if (size == 0) {
     return MappedFile(nullptr, 0);
   }
   void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd(), 0);
   if (data == MAP_FAILED) {
-    return errno_status(errno, absl::StrCat("cannot map ", path));
+    return errno_status(errno, absl::StrCat("cannot map ", file.path()));
   }
   return MappedFile(static_cast<const std::byte*>(data), size);
 }

@@ -10,12 +10,16 @@
 
 namespace bandsaw {
 
+class File;  // renderlib/base/file.h
+
 /// The file MUST NOT be truncated while it is mapped; it may be replaced or removed.
 class MappedFile {
  public:
   /// `flags` and errors are those of File::open_regular: NOT_FOUND if the file does not exist,
   /// INVALID_ARGUMENT if it is not a regular file.
   static absl::StatusOr<MappedFile> open(const std::string& path, int flags = 0);
+  /// Maps an open file, which may be closed then.
+  static absl::StatusOr<MappedFile> map(const File& file);
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;
   ~MappedFile();

@@ -3,6 +3,7 @@
 // Reads blobs (the parts of a scene package, named by their SHA-256) from files
 // `<folder>/<digest in hexadecimal>`, which are written once and never changed.
 
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -10,7 +11,12 @@
 
 namespace bandsaw {
 
-/// Each call of get() maps the file and hashes it; nothing is cached. Thread-safe.
+/// Returns the digest of the first `size` bytes of an open file; `path` is for errors. Returns
+/// DATA_LOSS if the disk cannot read the bytes or the file is shorter. (The file is not mapped for
+/// it, because a process that touches a bad sector of a mapped file is killed by SIGBUS.)
+absl::StatusOr<wire::Digest> digest_of_file(int fd, std::uint64_t size, const std::string& path);
+
+/// Each call of get() hashes the file and maps it; nothing is cached. Thread-safe.
 class BlobFolder : public BlobSource {
  public:
   explicit BlobFolder(std::string folder) : folder_(std::move(folder)) {}

@@ -227,18 +227,10 @@ absl::Status BlobCache::Download::append(absl::Span<const std::byte> bytes) {
 
 absl::Status BlobCache::Download::commit() {
   const std::string part = cache_.part_of(digest_);
-  wire::Hasher hasher;
-  std::vector<std::byte> buffer(1 << 20);
-  for (std::uint64_t at = 0; at < offset_;) {
-    const ssize_t got = pread(fd_, buffer.data(), buffer.size(), static_cast<off_t>(at));
-    if (got <= 0) {
-      return errno_status(got < 0 ? errno : EIO, part);
-    }
-    hasher.update(absl::MakeConstSpan(buffer.data(), static_cast<std::size_t>(got)));
-    at += static_cast<std::uint64_t>(got);
-  }
-  if (hasher.finish() != digest_) {
+  const absl::StatusOr<wire::Digest> received = digest_of_file(fd_, offset_, part);
+  if (!received.ok() || *received != digest_) {
     unlink(part.c_str());
+    RETURN_IF_ERROR(received.status());
     return absl::DataLossError(
         absl::StrCat("the received bytes of blob ", digest_.hex(), " do not have that digest"));
   }

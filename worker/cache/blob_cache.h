@@ -25,7 +25,7 @@ class BlobCache : public BlobSource {
 
   bool has(const wire::Digest& digest) const;
   /// Returns the blob and marks it as used. NOT_FOUND: the cache does not have it. DATA_LOSS: the
-  /// file was damaged (the digest is checked at each call), and is now removed.
+  /// file was damaged or cannot be read (the digest is checked at each call), and is now removed.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
 
   /// A download in progress. The bytes written so far are kept when it is destroyed, and the next
@@ -41,8 +41,8 @@ class BlobCache : public BlobSource {
     /// Appends the next bytes. RESOURCE_EXHAUSTED: the disk is full, or the user's quota of it, and
     /// nothing is left to evict.
     absl::Status append(absl::Span<const std::byte> bytes);
-    /// Publishes the blob under its name. DATA_LOSS: the bytes do not match the digest; they are
-    /// deleted.
+    /// Publishes the blob under its name. DATA_LOSS: the bytes do not match the digest, or
+    /// cannot be read again; they are deleted.
     absl::Status commit();
 
    private:

@@ -193,6 +193,23 @@ TEST_F(BlobCacheTest, FreesSpaceOnAFullDisk) {
             absl::StatusCode::kResourceExhausted);
 }
 
+// A page of a hole cannot be mapped on a full disk, and is read as zeros. So a mapped blob would
+// end the process here, as it would on a bad sector.
+TEST_F(BlobCacheTest, RemovesABlobThatCannotBeMapped) {
+  const SmallDisk disk(folder_ / "cache", "size=256k");
+  if (!disk.is_mounted()) {
+    GTEST_SKIP() << "a small disk needs root";
+  }
+  const auto cache = open();
+  const auto digest = wire::sha256(bytes_of('a', 100 << 10));
+  put(*cache, bytes_of('a', 100 << 10));
+  std::filesystem::resize_file(path_of(digest), 0);
+  std::filesystem::resize_file(path_of(digest), 100 << 10);
+  std::ofstream(folder_ / "cache/thesis.tex") << std::string(300 << 10, 'x');
+  EXPECT_EQ(cache->get(digest).status().code(), absl::StatusCode::kDataLoss);
+  EXPECT_FALSE(cache->has(digest));
+}
+
 // The folder itself has one of the four inodes.
 TEST_F(BlobCacheTest, FreesInodesOnAFullDisk) {
   const SmallDisk disk(folder_ / "cache", "nr_inodes=4");
