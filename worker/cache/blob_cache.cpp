@@ -229,7 +229,7 @@ absl::Status BlobCache::Download::commit() {
   const std::string part = cache_.part_of(digest_);
   const absl::StatusOr<wire::Digest> received = digest_of_file(fd_, offset_, part);
   if (!received.ok() || *received != digest_) {
-    unlink(part.c_str());
+    discard();
     RETURN_IF_ERROR(received.status());
     return absl::DataLossError(
         absl::StrCat("the received bytes of blob ", digest_.hex(), " do not have that digest"));
@@ -242,5 +242,7 @@ absl::Status BlobCache::Download::commit() {
   cache_.make_room(offset_, path);
   return absl::OkStatus();
 }
+
+void BlobCache::Download::discard() { unlink(cache_.part_of(digest_).c_str()); }
 
 }  // namespace bandsaw::worker

@@ -44,6 +44,8 @@ class BlobCache : public BlobSource {
     /// Publishes the blob under its name. DATA_LOSS: the bytes do not match the digest, or
     /// cannot be read again; they are deleted.
     absl::Status commit();
+    /// Deletes the bytes written so far, so that the next download begins at byte 0.
+    void discard();
 
    private:
     BlobCache& cache_;

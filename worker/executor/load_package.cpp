@@ -87,8 +87,9 @@ absl::Status FetchingSource::fetch(const wire::Digest& digest) {
 }
 
 absl::Status FetchingSource::download(const wire::Digest& digest, BlobCache::Download& place) {
-  RETURN_IF_ERROR(
-      transfer_(digest, place.offset(), [&](absl::Span<const std::byte> bytes) -> absl::Status {
+  const std::uint64_t before = place.offset();
+  const absl::Status status =
+      transfer_(digest, before, [&](absl::Span<const std::byte> bytes) -> absl::Status {
         if (stop_) {
           return stopped();
         }
@@ -98,7 +99,12 @@ absl::Status FetchingSource::download(const wire::Digest& digest, BlobCache::Dow
         }
         step(bytes.size());
         return place.append(bytes);
-      }));
+      });
+  if (absl::IsInvalidArgument(status) && before > 0 && place.offset() == before) {
+    place.discard();  // the partial file is longer than the blob
+    return absl::DataLossError(status.message());
+  }
+  RETURN_IF_ERROR(status);
   return place.commit();
 }
 

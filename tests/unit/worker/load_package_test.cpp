@@ -32,6 +32,9 @@ class LoadPackageTest : public ::testing::Test {
     if (found == farm_.all().end()) {
       return absl::NotFoundError("no such blob");
     }
+    if (offset > found->second.size()) {
+      return absl::InvalidArgumentError("offset: beyond the blob's end");
+    }
     const auto rest = absl::MakeConstSpan(found->second).subspan(offset);
     const bool breaks = breaks_-- > 0;
     const auto sent = breaks ? rest.first(rest.size() / 2) : rest;
@@ -103,6 +106,15 @@ TEST_F(LoadPackageTest, FetchesADamagedBlobAgain) {
   std::ofstream(folder_ / "cache/" + manifest_.hex()) << "damaged";
   prepared_ = 0;
   EXPECT_TRUE(load(*open(), manifest_).ok());
+}
+
+TEST_F(LoadPackageTest, FetchesABlobAgainWhosePartIsTooLong) {
+  const auto cache = open();
+  const std::string part = folder_ / ("cache/" + manifest_.hex() + ".part");
+  std::ofstream(part) << std::string(farm_.all().at(manifest_).size() + 1, 'x');
+  const auto scene = load(*cache, manifest_);
+  EXPECT_TRUE(scene.ok()) << scene.status();
+  EXPECT_EQ(bytes_sent_, total_);
 }
 
 TEST_F(LoadPackageTest, ReportsABlobThatTheFarmLacks) {
