@@ -1,9 +1,12 @@
 // parallel_for() puts a range of indices into a list. Threads take one index after the other from
-// the oldest range; the caller waits until the last index is done.
+// the oldest range; the caller waits until the last index is done. A range whose body has thrown is
+// taken off the list.
 
 #include "renderlib/base/pool.h"
 
 #include <algorithm>
+#include <exception>
+#include <utility>
 
 namespace bandsaw {
 
@@ -13,7 +16,22 @@ struct Pool::Range {
   std::int64_t running = 0;  // number of calls of `body` that run; guarded by Pool::mutex_
   std::int64_t count = 0;
   absl::FunctionRef<void(std::int64_t)> body;
+  std::exception_ptr error;  // the first that `body` threw; guarded by Pool::mutex_
 };
+
+namespace {
+
+/// Calls body(index) and returns what it throws, or null.
+std::exception_ptr call(absl::FunctionRef<void(std::int64_t)> body, std::int64_t index) {
+  try {
+    body(index);
+  } catch (...) {
+    return std::current_exception();
+  }
+  return nullptr;
+}
+
+}  // namespace
 
 Pool::Pool(int threads) {
   for (int i = 0; i < std::max(1, threads); ++i) {
@@ -36,12 +54,15 @@ void Pool::parallel_for(std::int64_t count, absl::FunctionRef<void(std::int64_t)
   if (count <= 0) {
     return;
   }
-  Range range{.count = count, .body = body};
+  Range range{.count = count, .body = body, .error = nullptr};
   MutexLock lock(mutex_);
   ranges_.push_back(&range);
   work_.notify_all();
   while (range.next < range.count || range.running > 0) {
     done_.wait(mutex_);
+  }
+  if (range.error != nullptr) {
+    std::rethrow_exception(std::move(range.error));
   }
 }
 
@@ -61,8 +82,13 @@ void Pool::run() {
       ranges_.pop_front();
     }
     mutex_.unlock();
-    range.body(index);
+    std::exception_ptr error = call(range.body, index);
     mutex_.lock();
+    if (error != nullptr && range.error == nullptr) {
+      range.error = std::move(error);
+      range.next = range.count;
+      std::erase(ranges_, &range);
+    }
     if (--range.running == 0 && range.next == range.count) {
       done_.notify_all();
     }

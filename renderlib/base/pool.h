@@ -42,7 +42,8 @@ class Pool {
   int threads() const { return static_cast<int>(threads_.size()); }
 
   /// Calls body(i) once for each i in [0, count), in any order, from the pool's threads; returns
-  /// when all calls have returned. MUST NOT be called from within a body.
+  /// when all calls have returned. MUST NOT be called from within a body. If a body throws, throws
+  /// the first exception when the running calls have returned; no further calls are made.
   void parallel_for(std::int64_t count, absl::FunctionRef<void(std::int64_t)> body)
       EXCLUDES(mutex_);
 

@@ -1,10 +1,12 @@
-// The thread pool: parallel_for() calls each index once, also for several callers at once.
+// The thread pool: parallel_for() calls each index once, also for several callers at once, and
+// throws what a call throws.
 
 #include "renderlib/base/pool.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <new>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -62,6 +64,45 @@ TEST(Pool, FinishesOneRangeWhileAnotherIsHeldUp) {
   release = true;
   release.notify_all();
   slow.join();
+}
+
+TEST(Pool, ThrowsWhatACallThrows) {
+  Pool pool(3);
+  std::vector<std::atomic<int>> calls(1000);
+  const auto body = [&](std::int64_t i) {
+    ++calls[static_cast<std::size_t>(i)];
+    if (i == 5) {
+      throw std::bad_alloc();
+    }
+  };
+  EXPECT_THROW(pool.parallel_for(1000, body), std::bad_alloc);
+  for (const std::atomic<int>& count : calls) {
+    EXPECT_LE(count, 1);
+  }
+  std::atomic<int> sum = 0;
+  pool.parallel_for(7, [&](std::int64_t i) { sum += static_cast<int>(i); });
+  EXPECT_EQ(sum, 21) << "the pool still works";
+}
+
+TEST(Pool, ThrowsOnceIfEveryCallThrows) {
+  Pool pool(3);
+  for (int round = 0; round < 100; ++round) {
+    EXPECT_THROW(pool.parallel_for(7, [](std::int64_t) { throw std::bad_alloc(); }),
+                 std::bad_alloc);
+  }
+}
+
+TEST(Pool, MakesNoFurtherCallsAfterAnException) {
+  Pool pool(1);
+  int calls = 0;
+  const auto body = [&](std::int64_t i) {
+    ++calls;
+    if (i == 2) {
+      throw std::bad_alloc();
+    }
+  };
+  EXPECT_THROW(pool.parallel_for(10, body), std::bad_alloc);
+  EXPECT_EQ(calls, 3);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <new>
 
 #include "renderlib/render/render_band.h"
 #include "tests/support/scenes.h"
@@ -67,6 +68,9 @@ class ExecutorTest : public ::testing::Test {
     if (!load_error_.ok()) {
       return load_error_;
     }
+    if (load_needs_too_much_memory_) {
+      pool_.parallel_for(1, [](std::int64_t) { throw std::bad_alloc(); });
+    }
     return test::cornell_box().build();
   }
 
@@ -88,6 +92,7 @@ class ExecutorTest : public ::testing::Test {
   CondVar changed_;
   bool gate_closed_ = false;  ///< while it is true, loading a scene does not end
   absl::Status load_error_;   ///< result of loading, unless it is OK
+  bool load_needs_too_much_memory_ = false;
   std::vector<wire::Digest> loads_;
   std::vector<TaskId> prepared_;
   std::vector<TaskId> order_;
@@ -142,6 +147,23 @@ TEST_F(ExecutorTest, ReportsALoadFailureAndTriesAgainForTheNextBand) {
   {
     MutexLock lock(mutex_);
     load_error_ = absl::OkStatus();
+  }
+  executor_->add(task(2, 0, 1));
+  wait_for_ended(2);
+  EXPECT_TRUE(finished_.contains(2));
+}
+
+// Scenes are built, and bands rendered, by the threads of the pool.
+TEST_F(ExecutorTest, ReportsThatAThreadOfThePoolHasTooLittleMemory) {
+  load_needs_too_much_memory_ = true;
+  start();
+  executor_->add(task(1, 0, 1));
+  wait_for_ended(1);
+  ASSERT_TRUE(failed_.contains(1));
+  EXPECT_EQ(failed_.at(1).code(), absl::StatusCode::kResourceExhausted);
+  {
+    MutexLock lock(mutex_);
+    load_needs_too_much_memory_ = false;
   }
   executor_->add(task(2, 0, 1));
   wait_for_ended(2);
