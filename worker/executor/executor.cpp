@@ -21,6 +21,11 @@ double seconds(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+/// Returns the time that has passed since any fixed moment, and the CPU time of this process.
+RenderCost time_now() {
+  return {.render_s = seconds(CLOCK_MONOTONIC), .cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID)};
+}
+
 }  // namespace
 
 Executor::Executor(Pool& pool, LoadScene load, ExecutorEvents events)
@@ -113,7 +118,7 @@ absl::StatusOr<FinishedBand> Executor::render(Running& running) {
   reach(running, Reached::kScene);
   RETURN_IF_ERROR(wait_for_earlier(running, Reached::kRows));
   events_.rendering(task.id, 0);
-  const double began = seconds(CLOCK_MONOTONIC);
+  const RenderCost began = time_now();
   ASSIGN_OR_RETURN(BandPixels pixels, render_band(
                                           *scene, task.settings, task.band, pool_, running.stop,
                                           [&](std::uint32_t rows_done) {
@@ -152,14 +157,12 @@ absl::Status Executor::wait_for_earlier(const Running& running, Reached reached)
   return running.stop ? absl::CancelledError("stopped") : absl::OkStatus();
 }
 
-RenderCost Executor::cost_since(double began_s) {
-  const double now = seconds(CLOCK_MONOTONIC);
-  const double cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
+RenderCost Executor::cost_since(const RenderCost& began) {
   MutexLock lock(mutex_);
-  const RenderCost cost{.render_s = now - std::max(began_s, last_end_s_),
-                        .cpu_s = cpu - last_cpu_s_};
-  last_end_s_ = now;
-  last_cpu_s_ = cpu;
+  const RenderCost now = time_now();  // under the lock, so that it is not earlier than last_end_
+  const RenderCost cost{.render_s = now.render_s - std::max(began.render_s, last_end_.render_s),
+                        .cpu_s = now.cpu_s - std::max(began.cpu_s, last_end_.cpu_s)};
+  last_end_ = now;
   return cost;
 }
 

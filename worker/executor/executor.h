@@ -61,8 +61,9 @@ class Executor {
   void reach(Running& running, Reached reached) EXCLUDES(mutex_);
   /// Waits until every earlier task has reached `reached`. CANCELLED: this task was stopped.
   absl::Status wait_for_earlier(const Running& running, Reached reached) EXCLUDES(mutex_);
-  /// Returns the time since `began_s` (CLOCK_MONOTONIC) or since the last band ended, if later.
-  RenderCost cost_since(double began_s) EXCLUDES(mutex_);
+  /// Returns the time, and the CPU time of the process, since `began` or since the last band ended,
+  /// if later. The CPU time may include that of loading the next band's scene.
+  RenderCost cost_since(const RenderCost& began) EXCLUDES(mutex_);
 
   Pool& pool_;
   SceneCache scenes_;
@@ -72,8 +73,7 @@ class Executor {
   bool closing_ GUARDED_BY(mutex_) = false;
   std::deque<Task> waiting_ GUARDED_BY(mutex_);
   RunningList running_ GUARDED_BY(mutex_);  ///< in the order in which they were started
-  double last_end_s_ GUARDED_BY(mutex_) = 0;
-  double last_cpu_s_ GUARDED_BY(mutex_) = 0;
+  RenderCost last_end_ GUARDED_BY(mutex_);  ///< the clocks when the last band ended
   std::vector<std::thread> threads_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <map>
 #include <new>
 
@@ -22,6 +23,13 @@ Task task(TaskId id, std::uint32_t first_row, std::uint32_t rows, char scene = '
           .settings = kSettings,
           .band = {.samples = {.first = 0, .last = 16},
                    .rows = {.first = first_row, .last = first_row + rows}}};
+}
+
+/// Returns the CPU time of this process.
+double cpu_s() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 /// An executor that renders the Cornell box for every manifest, and its recorded callbacks.
@@ -71,7 +79,9 @@ class ExecutorTest : public ::testing::Test {
     if (load_needs_too_much_memory_) {
       pool_.parallel_for(1, [](std::int64_t) { throw std::bad_alloc(); });
     }
-    return test::cornell_box().build();
+    std::shared_ptr<const Scene> scene = test::cornell_box().build();
+    loaded_cpu_s_ = cpu_s();
+    return scene;
   }
 
   void wait_for_ended(std::size_t count) {
@@ -93,6 +103,7 @@ class ExecutorTest : public ::testing::Test {
   bool gate_closed_ = false;  ///< while it is true, loading a scene does not end
   absl::Status load_error_;   ///< result of loading, unless it is OK
   bool load_needs_too_much_memory_ = false;
+  double loaded_cpu_s_ = 0;  ///< cpu_s() when the last scene was loaded
   std::vector<wire::Digest> loads_;
   std::vector<TaskId> prepared_;
   std::vector<TaskId> order_;
@@ -120,6 +131,15 @@ TEST_F(ExecutorTest, RendersTheSamePixelsAsRenderBand) {
     EXPECT_GE(band.cost.render_s, 0);
     EXPECT_GE(band.cost.cpu_s, 0);
   }
+}
+
+// The process has used CPU time before, at least for its start.
+TEST_F(ExecutorTest, CountsTheCpuTimeOfRenderingOnly) {
+  start();
+  executor_->add(task(1, 0, 1));
+  wait_for_ended(1);
+  EXPECT_GT(finished_.at(1).cost.cpu_s, 0);
+  EXPECT_LE(finished_.at(1).cost.cpu_s, cpu_s() - loaded_cpu_s_);
 }
 
 TEST_F(ExecutorTest, KeepsTheLastTwoScenes) {
