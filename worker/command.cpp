@@ -203,28 +203,27 @@ int run(const Arguments& arguments, const WrapCalls& wrap_calls) {
   const sigset_t set = watched_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread is made: all inherit it
   const Log log = start_log(arguments.quiet);
-  DaemonOptions options{
-      .join = *std::move(join),
-      .info = {.instance = link::random_hex(16),
-               .name = arguments.name,
-               .build = build_description(**kernel),
-               .threads = arguments.threads,
-               .pixel_version = kPixelVersion,
-               .canary = canary(*kernel)},
-      .kernel = *kernel,
-      .cache_folder = arguments.cache,
-      .cache_bytes = static_cast<std::uint64_t>(arguments.cache_gb * 1e9),
-      .log_tail = [tail = log.tail] { return tail->last_formatted(); },
-      .joined =
-          [&](const std::string& address, const std::string& name) {
-            std::printf("bandsaw-worker %s · %u thread%s · joined %s as %s\n", BANDSAW_VERSION,
-                        arguments.threads, arguments.threads == 1 ? "" : "s", address.c_str(),
-                        name.c_str());
-            std::fflush(stdout);
-          },
-      .new_log_lines = [news = log.news](std::size_t most) { return news->take(most); },
-      .log_lines_lost = [news = log.news] { news->again(); },
-      .wrap_calls = wrap_calls};
+  DaemonOptions options{.join = *std::move(join),
+                        .info = {.instance = link::random_hex(16),
+                                 .name = arguments.name,
+                                 .build = build_description(**kernel),
+                                 .threads = arguments.threads,
+                                 .pixel_version = kPixelVersion,
+                                 .canary = canary(*kernel)},
+                        .kernel = *kernel,
+                        .cache_folder = arguments.cache,
+                        .cache_bytes = static_cast<std::uint64_t>(arguments.cache_gb * 1e9),
+                        .log_tail = [tail = log.tail] { return tail->last_formatted(); },
+                        .joined =
+                            [&](const std::string& address, const std::string& name) {
+                              std::printf("bandsaw-worker %s · %u thread%s · joined %s as %s\n",
+                                          BANDSAW_VERSION, arguments.threads,
+                                          arguments.threads == 1 ? "" : "s", address.c_str(),
+                                          name.c_str());
+                              std::fflush(stdout);
+                            },
+                        .log = log.news,
+                        .wrap_calls = wrap_calls};
   absl::StatusOr<std::unique_ptr<Daemon>> daemon = Daemon::create(std::move(options));
   if (!daemon.ok()) {
     return fail(kUnfit, daemon.status());

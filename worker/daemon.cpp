@@ -11,6 +11,7 @@
 #include "renderlib/base/status_macros.h"
 #include "worker/band_pipeline.h"
 #include "worker/executor/backoff.h"
+#include "worker/log_queue.h"
 #include "worker/session/farm_calls.h"
 #include "worker/session/shared_session.h"
 
@@ -60,6 +61,8 @@ class Daemon::Impl {
   void write_all(SessionStream& stream, SendQueue& queue);
   /// Sends new lines of the log. Returns false if the stream is broken.
   bool write_log(SessionStream& stream);
+  /// Tells the queue of log lines what a message says of the lines that were sent.
+  void note_log(const farm::ToWorker& message);
   void handle(const farm::ToWorker& message, const std::string& address);
   void log_loss(const absl::Status& status);
 
@@ -141,11 +144,23 @@ void Daemon::Impl::write_all(SessionStream& stream, SendQueue& queue) {
 
 bool Daemon::Impl::write_log(SessionStream& stream) {
   const std::vector<std::string> lines =
-      options_.new_log_lines ? options_.new_log_lines(wire::kLogLines) : std::vector<std::string>();
+      options_.log ? options_.log->take(wire::kLogLines) : std::vector<std::string>();
   return lines.empty() || stream.Write(log_message(lines));
 }
 
+void Daemon::Impl::note_log(const farm::ToWorker& message) {
+  if (options_.log == nullptr) {
+    return;
+  }
+  if (message.has_welcome()) {
+    options_.log->again(message.welcome().epoch() != epoch_);
+  } else {
+    options_.log->arrived();
+  }
+}
+
 void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& address) {
+  note_log(message);  // first, because lines are sent as soon as the session is welcome
   const SessionEffects effects = session_.receive(message);
   if (message.has_welcome()) {
     backoff_.reset();
@@ -154,9 +169,6 @@ void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& addr
     spdlog::info("joined {} as {}", address, session_.name());
     if (!joined_ && options_.joined) {
       options_.joined(address, session_.name());
-    }
-    if (joined_ && message.welcome().epoch() != epoch_ && options_.log_lines_lost) {
-      options_.log_lines_lost();
     }
     epoch_ = message.welcome().epoch();
     joined_ = true;

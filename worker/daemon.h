@@ -19,6 +19,8 @@ struct Kernel;  // renderlib/render/kernel.h
 
 namespace bandsaw::worker {
 
+class LogQueue;  // worker/log_queue.h
+
 /// Returns an implementation that is used instead of `calls`, which outlives it. A test makes
 /// a worker with it that returns wrong pixels.
 using WrapCalls = std::function<std::unique_ptr<CoordinatorApi>(CoordinatorApi& calls)>;
@@ -34,10 +36,7 @@ struct DaemonOptions {
   /// Called once, when the coordinator first admits this worker, with the coordinator's address and
   /// the name that it gave to the worker.
   std::function<void(const std::string& address, const std::string& name)> joined;
-  /// Removes and returns at most `max` new lines of the log, for the coordinator; may be nullptr.
-  std::function<std::vector<std::string>(std::size_t max)> new_log_lines = nullptr;
-  /// Called when a restarted coordinator has lost the lines that it was sent; may be nullptr.
-  std::function<void()> log_lines_lost = nullptr;
+  std::shared_ptr<LogQueue> log = nullptr;  ///< lines for the coordinator; nullptr: none are sent
   /// nullptr: rendering calls the coordinator directly.
   WrapCalls wrap_calls = nullptr;
 };

@@ -1,5 +1,6 @@
-// A sink of spdlog that keeps lines until they are sent. A coordinator that restarts may lose lines
-// that it has received; again() puts the last ones back into the queue.
+// A sink of spdlog that keeps lines until they are sent. Lines are lost on the way if the
+// connection breaks, and afterwards if the coordinator restarts; again() puts the last ones back
+// into the queue.
 
 #include "worker/log_queue.h"
 
@@ -23,7 +24,7 @@ std::vector<std::string> LogQueue::take(std::size_t most) {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::vector<std::string> taken;
   if (lost_ > 0 && most > 0) {
-    taken.push_back(absl::StrCat(lost_, " lines were not sent in time"));
+    lines_.push_front(absl::StrCat(lost_, " lines were not sent in time"));
     lost_ = 0;
   }
   while (taken.size() < most && !lines_.empty()) {
@@ -34,13 +35,24 @@ std::vector<std::string> LogQueue::take(std::size_t most) {
       taken_.pop_front();
     }
   }
+  under_way_ += taken.size();
   return taken;
 }
 
-void LogQueue::again() {
+void LogQueue::arrived() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  lines_.insert(lines_.begin(), taken_.begin(), taken_.end());
-  taken_.clear();
+  under_way_ = 0;
+}
+
+void LogQueue::again(bool restarted) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::size_t count =
+      restarted ? taken_.size() : std::min<std::size_t>(under_way_, taken_.size());
+  const auto first = taken_.end() - static_cast<std::ptrdiff_t>(count);
+  lines_.insert(lines_.begin(), first, taken_.end());
+  taken_.erase(first, taken_.end());
+  lost_ += under_way_ - std::min<std::uint64_t>(under_way_, count);
+  under_way_ = 0;
 }
 
 }  // namespace bandsaw::worker

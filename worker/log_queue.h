@@ -18,9 +18,12 @@ class LogQueue final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   /// Removes and returns the oldest lines, at most `most`. Thread-safe.
   std::vector<std::string> take(std::size_t most);
-  /// Puts the lines that were taken last (at most 50) back into the queue, because the coordinator
-  /// lost them in a restart. Thread-safe.
-  void again();
+  /// Notes that the coordinator has answered: the lines taken so far have arrived. Thread-safe.
+  void arrived();
+  /// Puts lines back into the queue because a new connection begins: those taken since arrived(),
+  /// or all if the coordinator has `restarted`, but only the last 50; the others taken since
+  /// arrived() count as dropped. Thread-safe.
+  void again(bool restarted);
 
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override;
@@ -31,6 +34,7 @@ class LogQueue final : public spdlog::sinks::base_sink<std::mutex> {
   static constexpr std::size_t kTakenKept = 50;  ///< lines; as many as one message has
   std::deque<std::string> lines_;  ///< protected by the base class's mutex, as are all members
   std::deque<std::string> taken_;  ///< the newest taken lines
+  std::uint64_t under_way_ = 0;    ///< lines taken since arrived()
   std::uint64_t lost_ = 0;         ///< lines dropped since the last take()
 };
 

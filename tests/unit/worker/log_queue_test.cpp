@@ -1,5 +1,6 @@
 // LogQueue: the lines of a worker's log that wait to be sent to the coordinator. At most 500 wait,
-// and the last 50 that were taken can be returned again, for a coordinator that restarted.
+// and the last 50 that were taken can be returned again, after a lost connection or for a
+// coordinator that restarted.
 
 #include "worker/log_queue.h"
 
@@ -36,12 +37,43 @@ TEST(LogQueue, ReturnsTheLastLinesAgainBeforeNewOnes) {
     log.logger.info("{}", i);
   }
   EXPECT_EQ(log.queue->take(60).size(), 60u);
+  log.queue->arrived();
   log.logger.info("new");
-  log.queue->again();
+  log.queue->again(true);
   const std::vector<std::string> again = log.queue->take(100);
   ASSERT_EQ(again.size(), 51u);
   EXPECT_EQ(again.front(), "info 10\n");
   EXPECT_EQ(again.back(), "info new\n");
+}
+
+TEST(LogQueue, ReturnsLinesAgainThatMayNotHaveArrived) {
+  Logging log;
+  log.logger.info("one");
+  log.logger.info("two");
+  log.logger.info("three");
+  EXPECT_THAT(log.queue->take(1), ElementsAre("info one\n"));
+  log.queue->arrived();
+  EXPECT_EQ(log.queue->take(2).size(), 2u);
+  log.logger.info("new");
+  log.queue->again(false);
+  EXPECT_THAT(log.queue->take(9), ElementsAre("info two\n", "info three\n", "info new\n"));
+  log.queue->arrived();
+  log.queue->again(false);
+  EXPECT_THAT(log.queue->take(9), IsEmpty());
+  log.queue->again(true);
+  EXPECT_EQ(log.queue->take(9).size(), 4u) << "a coordinator that restarted has lost all lines";
+}
+
+TEST(LogQueue, CountsLinesThatItCannotReturnAgain) {
+  Logging log;
+  for (int i = 0; i < 60; ++i) {
+    log.logger.info("{}", i);
+  }
+  EXPECT_EQ(log.queue->take(60).size(), 60u);
+  log.queue->again(false);
+  EXPECT_THAT(log.queue->take(2), ElementsAre(HasSubstr("10 lines"), "info 10\n"));
+  log.queue->again(false);
+  EXPECT_THAT(log.queue->take(3), ElementsAre(HasSubstr("10 lines"), "info 10\n", "info 11\n"));
 }
 
 TEST(LogQueue, CountsDroppedLines) {
