@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -137,16 +138,17 @@ sigset_t watched_signals() {
   sigemptyset(&set);
   sigaddset(&set, SIGTERM);
   sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGUSR2);  // ends the thread
+  sigaddset(&set, SIGUSR2);  // wakes the thread when it shall end
   return set;
 }
 
-/// Drains at the first SIGTERM or SIGINT, exits at once at the second. The signals MUST be blocked
-/// in all threads.
+/// Drains at the first SIGTERM or SIGINT, exits at once at the second. Ignores SIGUSR2 from
+/// outside, which batch systems send as a warning. The signals MUST be blocked in all threads.
 class SignalWatch {
  public:
-  explicit SignalWatch(Daemon& daemon) : thread_([&daemon] { watch(daemon); }) {}
+  explicit SignalWatch(Daemon& daemon) : thread_([this, &daemon] { watch(daemon); }) {}
   ~SignalWatch() {
+    ending_ = true;
     pthread_kill(thread_.native_handle(), SIGUSR2);
     thread_.join();
   }
@@ -154,22 +156,25 @@ class SignalWatch {
   SignalWatch& operator=(const SignalWatch&) = delete;
 
  private:
-  static void watch(Daemon& daemon) {
+  void watch(Daemon& daemon) {
     const sigset_t set = watched_signals();
-    for (int count = 0;; ++count) {
+    bool is_draining = false;
+    while (!ending_) {
       int signal = 0;
       sigwait(&set, &signal);
       if (signal == SIGUSR2) {
-        return;
+        continue;
       }
-      if (count > 0) {
+      if (is_draining) {
         std::_Exit(kInterrupted);
       }
+      is_draining = true;
       daemon.drain(signal == SIGTERM ? "SIGTERM" : "SIGINT");
     }
   }
 
-  std::thread thread_;
+  std::atomic<bool> ending_{false};
+  std::thread thread_;  ///< last: it reads the member above
 };
 
 int run(const Arguments& arguments, const WrapCalls& wrap_calls) {
