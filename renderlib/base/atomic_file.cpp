@@ -101,6 +101,17 @@ absl::Status write_file_atomically(const std::string& path, absl::Span<const std
   return sync_folder(folder_of(path));
 }
 
+absl::Status name_file(const std::string& part, const std::string& path) {
+  {
+    ASSIGN_OR_RETURN(File file, File::open(part, O_WRONLY));
+    RETURN_IF_ERROR(file.sync());
+  }
+  if (::rename(part.c_str(), path.c_str()) != 0) {
+    return errno_status(errno, absl::StrCat("cannot write ", path));
+  }
+  return sync_folder(folder_of(path));
+}
+
 absl::Status check_can_be_written(const std::string& path) {
   struct stat info {};
   if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) {

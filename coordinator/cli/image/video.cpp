@@ -3,7 +3,6 @@
 
 #include "coordinator/cli/image/video.h"
 
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -120,9 +119,7 @@ absl::Status Video::finish() {
     return absl::FailedPreconditionError(absl::StrCat(path_, ": a video needs at least one frame"));
   }
   RETURN_IF_ERROR(failed(ffmpeg_->finish()));
-  if (std::rename(part_.c_str(), path_.c_str()) != 0) {
-    return errno_status(errno, path_);
-  }
+  RETURN_IF_ERROR(name_file(part_, path_));
   part_.clear();
   return absl::OkStatus();
 }

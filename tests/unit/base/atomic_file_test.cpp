@@ -45,6 +45,17 @@ TEST(AtomicFile, WritesAndReplacesWholeFiles) {
   EXPECT_EQ(files_in(dir.path()), 2u);
 }
 
+TEST(AtomicFile, NamesAFileOfAnotherProgram) {
+  const test::TempDir dir;
+  std::ofstream(dir / "a.part") << "new";
+  std::ofstream(dir / "a") << "old";
+  EXPECT_EQ(name_file(dir / "a.part", dir / "a"), absl::OkStatus());
+  EXPECT_EQ(content(dir / "a"), "new");
+  EXPECT_EQ(files_in(dir.path()), 1u);
+  EXPECT_EQ(name_file(dir / "a.part", dir / "a").code(), absl::StatusCode::kNotFound);
+  EXPECT_EQ(content(dir / "a"), "new");
+}
+
 TEST(AtomicFile, HasTheModeOfAnyNewFile) {
   const test::TempDir dir;
   ASSERT_EQ(write_file_atomically(dir / "a", bytes("x")), absl::OkStatus());
