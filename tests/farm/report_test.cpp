@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "tests/farm/farm_processes.h"
 
@@ -147,6 +148,31 @@ TEST(ReportOfParts, EqualsThatOfTheWholeExceptForUnknownFields) {
         << same;
   }
   EXPECT_TRUE(report(path("top.json")).fields().at("error").has_null_value());
+}
+
+// EXR files of 16-bit numbers clip values above 65,504. The lamp has one such channel; it covers
+// the middle of the image, so both parts have some of its pixels.
+TEST(ReportOfParts, CountsTheValuesThatAreClipped) {
+  const TempDir folder;
+  std::ofstream(folder / "lamp.textproto") << R"(
+camera { position: [0, 0, 5] look_at: [0, 0, 0] vertical_fov: 40 }
+image { width: 16 height: 16 }
+material { name: "lamp" emissive { radiance { rgb: [1e6, 2, 0.5] } } }
+shape { quad { corner: [-1, -1, 0] u: [2, 0, 0] v: [0, 2, 0] } material: "lamp" }
+)";
+  const auto clipped = [&](const std::string& name, const std::vector<std::string>& with) {
+    std::vector<std::string> command = {BANDSAW_BIN, "render", folder / "lamp.textproto",
+                                        "--quiet",   "--half", "--samples",
+                                        "16",        "-o",     folder / (name + ".exr")};
+    command.insert(command.end(), with.begin(), with.end());
+    expect_success(run(command));
+    return number(report(folder / (name + ".json")), "health", "cut_off_values");
+  };
+  const double top = clipped("top", {"--rows", "0:8"});
+  const double bottom = clipped("bottom", {"--rows", "8:16"});
+  EXPECT_GT(top, 0);
+  EXPECT_GT(bottom, 0);
+  EXPECT_EQ(top + bottom, clipped("whole", {}));
 }
 
 TEST(ReportFile, OfASceneFileIsNotTouched) {

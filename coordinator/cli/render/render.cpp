@@ -39,10 +39,11 @@ std::vector<std::string> outputs_of(const RenderOptions& options) {
 }
 
 /// Writes the files of `render --rows`: the sums of the rows to .band files, and a picture of these
-/// rows to all others.
-absl::Status write_part_outputs(const std::vector<BandPixels>& bands, const JobSpec& spec,
-                                const RowRange& rows, const std::vector<std::string>& outputs,
-                                const Display& display) {
+/// rows to all others. Returns the picture; it is empty if there are only .band files.
+absl::StatusOr<Image> write_part_outputs(const std::vector<BandPixels>& bands, const JobSpec& spec,
+                                         const RowRange& rows,
+                                         const std::vector<std::string>& outputs,
+                                         const Display& display) {
   std::vector<std::string> pictures;
   for (const std::string& output : outputs) {
     if (!is_part_name(output)) {
@@ -56,10 +57,11 @@ absl::Status write_part_outputs(const std::vector<BandPixels>& bands, const JobS
     RETURN_IF_ERROR(write_part(output, records, display));
   }
   if (pictures.empty()) {
-    return absl::OkStatus();
+    return Image{};
   }
-  ASSIGN_OR_RETURN(const Image image, image_of_part(bands, spec.settings, rows));
-  return write_outputs(image, pictures, display);
+  ASSIGN_OR_RETURN(Image image, image_of_part(bands, spec.settings, rows));
+  RETURN_IF_ERROR(write_outputs(image, pictures, display));
+  return image;
 }
 
 /// Renders one image, shows its progress and writes its files. `spec`: the job that would render it
@@ -215,12 +217,16 @@ class LocalRun {
 
   absl::Status write(const Progress& progress, const std::vector<std::string>& outputs,
                      const std::vector<std::string>& reports) const {
-    RETURN_IF_ERROR(options_.rows ? write_part_outputs(bands_, spec_, rows_, outputs, picture_)
-                    : clean_
-                        ? write_clean_outputs(clean_->denoised, image_, outputs, picture_, layers_)
-                        : write_outputs(image_, outputs, picture_, layers_));
+    Image part;  // the rows of --rows
+    if (options_.rows) {
+      ASSIGN_OR_RETURN(part, write_part_outputs(bands_, spec_, rows_, outputs, picture_));
+    } else {
+      RETURN_IF_ERROR(
+          clean_ ? write_clean_outputs(clean_->denoised, image_, outputs, picture_, layers_)
+                 : write_outputs(image_, outputs, picture_, layers_));
+    }
     Report report{progress, options_.rows ? "" : pixels_sha256(image_), outputs,
-                  cut_off_values(image_, outputs, picture_)};
+                  cut_off_values(options_.rows ? part : image_, outputs, picture_)};
     if (clean_) {
       report.clean = clean_report(clean_->denoised, options_.denoise, outputs);
     }
