@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "renderlib/denoise/maps.h"
 #include "renderlib/denoise/prepare.h"
@@ -33,14 +34,28 @@ float channel(const Rgb& color, std::size_t c) {
   return c == 0 ? color.r : c == 1 ? color.g : color.b;
 }
 
-/// Sums over all channels and over the valid pixels of a row (FitInput::valid).
+/// Returns true if the means of both parts of a pixel's samples are finite. That of the second is
+/// not finite if that of the first or that of all samples is not.
+bool has_finite_parts(const DenoiseInput& input, std::size_t at) {
+  const float share = input.first_share[at];
+  bool finite = share > 0 && share < 1;
+  for (std::size_t c = 0; c < 3 && finite; ++c) {
+    finite = std::isfinite(
+        second_value(channel(input.mean.pixels[at], c), channel(input.first.pixels[at], c), share));
+  }
+  return finite;
+}
+
+/// Sums over all channels and over the pixels of a row that have finite parts.
 struct RowSums {
+  std::uint64_t pixels = 0;
   double value = 0;
   double raw = 0;       ///< estimated squared errors as rendered
   double clean = 0;     ///< estimated squared errors of the result
   double variance = 0;  ///< the parts of `clean` that are noise
 
   void add(const RowSums& other) {
+    pixels += other.pixels;
     value += other.value;
     raw += other.raw;
     clean += other.clean;
@@ -104,7 +119,8 @@ class Selection {
   /// Returns half `h` of the result at a pixel, for channel `c`.
   float mixed(int x, int y, std::size_t h, std::size_t c) const;
   Rgb value_of(int x, int y) const;
-  /// Adds a pixel to the sums.
+  /// Adds a pixel to the sums if it has finite parts. One that is too bright for the filters is
+  /// added as it was rendered.
   void add_pixel(int x, int y, RowSums& sums) const;
 
   const Strip& strip_;
@@ -199,13 +215,14 @@ Rgb Selection::value_of(int x, int y) const {
 }
 
 void Selection::add_pixel(int x, int y, RowSums& sums) const {
-  if (!valid(x, y)) {
+  const std::size_t at = in_image(x, y);
+  if (!has_finite_parts(strip_.input, at)) {
     return;
   }
-  const std::size_t at = in_image(x, y);
   const bool rendered = is_rendered(x, y);
   const float first_share = strip_.input.first_share[at];
   const double share = first_share;
+  ++sums.pixels;
   for (std::size_t c = 0; c < 3; ++c) {
     const float mean = channel(strip_.input.mean.pixels[at], c);
     const float of_first = channel(strip_.input.first.pixels[at], c);
@@ -256,12 +273,12 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
   }
 }
 
-CleanError total_of(const std::vector<RowSums>& rows, std::size_t pixels) {
+CleanError total_of(const std::vector<RowSums>& rows) {
   RowSums all;
   for (const RowSums& row : rows) {
     all.add(row);
   }
-  const double count = 3 * static_cast<double>(pixels);
+  const double count = 3 * std::max(1.0, static_cast<double>(all.pixels));
   all.clean = at_least_variance(all.clean, all.variance);
   return {.mean = all.value / count,
           .rmse_raw = std::sqrt(all.raw / count),
@@ -300,7 +317,7 @@ Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int str
     strip.fits = fit(strip.planes, kSettings, pool);
     Selection(strip, pool).write(out, sums);
   }
-  out.total = total_of(sums, out.image.pixels.size());
+  out.total = total_of(sums);
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "renderlib/denoise/maps.h"
@@ -44,6 +45,7 @@ Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Imag
   const Image second = second_part(input);
   const MapSize size{static_cast<int>(clean.width), static_cast<int>(clean.height)};
   Map errors(size.pixels());
+  std::uint64_t pixels = 0;
   double sum = 0;
   double raw = 0;
   double squares = 0;
@@ -60,6 +62,7 @@ Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Imag
     const auto a = channels(clean_first.pixels[i]);
     const auto b = channels(clean_second.pixels[i]);
     double of_pixel = 0;
+    ++pixels;
     for (std::size_t c = 0; c < 3; ++c) {
       const double apart = of_first[c] - of_second[c];
       of_pixel += squared_error(a[c], b[c], of_first[c], of_second[c], share);
@@ -72,7 +75,7 @@ Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Imag
   }
   smooth(errors, size, kSmoothing, pool);
   squares = at_least_variance(squares, variance);
-  const double count = 3 * static_cast<double>(size.pixels());
+  const double count = 3 * std::max(1.0, static_cast<double>(pixels));
   Denoised out{std::move(clean), {input.mean.width, input.mean.height, {}}, {}};
   for (const float error : errors) {
     out.error.pixels.push_back(gray(std::sqrt(std::max(0.0f, error))));

@@ -211,6 +211,31 @@ TEST(Denoise, ValuesThatAreNotFiniteStayAndHarmNoOthers) {
   EXPECT_TRUE(std::isfinite(clean.total.rmse_clean));
 }
 
+// In red the parts are 1.1e30 and 0.9e30, so the error of their mean is 0.1e30. The mean of all
+// channels is 1e30 / 3, and the mean of the squared errors is (0.1e30)^2 / 3.
+TEST(Denoise, PixelsTooBrightForTheFiltersCountAsRendered) {
+  DenoiseInput input = noisy(flat, 0, 13);
+  for (std::size_t i = 0; i < input.mean.pixels.size(); ++i) {
+    input.first.pixels[i] = {1.1e30f, 2, 0.5f};
+    input.mean.pixels[i] = {1e30f, 2, 0.5f};
+  }
+  const Denoised clean = denoised(input);
+  expect_same_bits(clean.image, input.mean);
+  EXPECT_NEAR(clean.total.mean / 1e30, 1.0 / 3, 1e-5);
+  EXPECT_NEAR(clean.total.relative_raw(), 0.1 * std::sqrt(3.0), 1e-5);
+  EXPECT_NEAR(clean.total.relative_clean(), 0.1 * std::sqrt(3.0), 1e-5);
+}
+
+TEST(Denoise, TheErrorIsThatOfTheFinitePixels) {
+  DenoiseInput input = noisy(flat, 0.05f, 14);
+  for (std::size_t i = 0; i < input.mean.pixels.size(); i += 2) {
+    input.mean.pixels[i] = gray(std::numeric_limits<float>::quiet_NaN());
+  }
+  const Denoised clean = denoised(input);
+  EXPECT_NEAR(clean.total.mean, 0.5, 0.01);
+  EXPECT_NEAR(clean.total.rmse_raw / 0.05, 1, 0.05);
+}
+
 TEST(Denoise, PartsMayDifferInSize) {
   // The second part has three times as many samples as the first.
   DenoiseInput input = noisy(flat, 0.05f, 10);

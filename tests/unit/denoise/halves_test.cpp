@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tests/support/random.h"
 
@@ -62,6 +63,22 @@ TEST(Halves, TellErrorAndBiasOfALinearFilter) {
   EXPECT_NEAR(clean.total.rmse_clean, std::sqrt(variance + bias * bias), 0.005);
   EXPECT_NEAR(clean.total.bias_share, bias * bias / (variance + bias * bias), 0.05);
   EXPECT_NEAR(clean.total.mean, 1, 0.01);
+}
+
+// The parts are 1.1 and 0.9, so the error of their mean is 0.1.
+TEST(Halves, LeaveOutPixelsThatAreNotFinite) {
+  const Image mean{kSide, kSide, std::vector<Rgb>(kSide * kSide, gray(1))};
+  const Image first{kSide, kSide, std::vector<Rgb>(kSide * kSide, gray(1.1f))};
+  DenoiseInput input{mean, first, std::vector<float>(kSide * kSide, 0.5f), mean, mean};
+  for (std::size_t i = 0; i < input.mean.pixels.size(); i += 2) {
+    input.mean.pixels[i] = gray(std::numeric_limits<float>::quiet_NaN());
+  }
+  Pool pool(1);
+  const Denoised clean =
+      with_error_of_halves(input, input.mean, input.first, second_part(input), pool);
+  EXPECT_NEAR(clean.total.mean, 1, 1e-5);
+  EXPECT_NEAR(clean.total.rmse_raw, 0.1, 1e-5);
+  EXPECT_NEAR(clean.total.rmse_clean, 0.1, 1e-5);
 }
 
 }  // namespace
