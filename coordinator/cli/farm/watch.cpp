@@ -38,7 +38,7 @@ ExitCode watch_image(const WatchOptions& options, FarmClient& client, Process& p
                                              options.job, " is a single image"));
   }
   if (options.denoise != Denoiser::kNone) {
-    if (const auto status = check_outputs_writable(raw_outputs(options.outputs)); !status.ok()) {
+    if (const auto status = check_raw_outputs(options.outputs); !status.ok()) {
       return process.console.fail(ExitCode::kWrong, std::string(status.message()));
     }
   }

@@ -61,7 +61,7 @@ absl::Status check_frame_files(const WatchOptions& options) {
   }
   RETURN_IF_ERROR(check_outputs_writable(options.outputs));
   if (options.denoise != Denoiser::kNone) {
-    RETURN_IF_ERROR(check_outputs_writable(raw_outputs(options.outputs)));
+    RETURN_IF_ERROR(check_raw_outputs(options.outputs));
   }
   if (!options.after.contact_sheet.empty()) {
     RETURN_IF_ERROR(check_outputs_writable({options.after.contact_sheet}));

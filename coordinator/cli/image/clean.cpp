@@ -22,6 +22,15 @@ namespace {
 
 bool is_exr(const std::string& output) { return absl::EndsWithIgnoreCase(output, ".exr"); }
 
+/// Returns the absolute name of a file, in a folder without links and "..". The file itself may be
+/// a link, which is replaced when the file is written. Returns `file` if the system reports errors.
+std::filesystem::path full_name(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path full = std::filesystem::absolute(file, error);
+  const auto folder = std::filesystem::weakly_canonical(full.parent_path(), error);
+  return error ? file : folder / full.filename();
+}
+
 std::string raw_name(const std::string& output) {
   std::filesystem::path path(output);
   const std::string suffix = path.extension().string();
@@ -128,6 +137,20 @@ std::vector<std::string> raw_outputs(const std::vector<std::string>& outputs) {
   return raw;
 }
 
+absl::Status check_raw_outputs(const std::vector<std::string>& outputs) {
+  const std::vector<std::string> raw_files = raw_outputs(outputs);
+  for (const std::string& raw : raw_files) {
+    const auto is_raw = [&](const std::string& output) {
+      return full_name(output) == full_name(raw);
+    };
+    if (std::any_of(outputs.begin(), outputs.end(), is_raw)) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "-o ", raw, ": --denoise writes the image as rendered to this file; name another one"));
+    }
+  }
+  return check_outputs_writable(raw_files);
+}
+
 absl::StatusOr<std::vector<std::string>> check_image_files(const std::string& scene,
                                                            const std::vector<std::string>& given,
                                                            const std::vector<std::string>& outputs,
@@ -135,7 +158,7 @@ absl::StatusOr<std::vector<std::string>> check_image_files(const std::string& sc
                                                            const ReportOption& report) {
   RETURN_IF_ERROR(check_outputs(scene, given, outputs));
   if (denoiser != Denoiser::kNone) {
-    RETURN_IF_ERROR(check_outputs_writable(raw_outputs(outputs)));
+    RETURN_IF_ERROR(check_raw_outputs(outputs));
   }
   return report_files(report, outputs);
 }

@@ -62,9 +62,14 @@ absl::Status check_denoise(Denoiser denoiser, const RenderSettings& settings, co
 /// which gets the clean image. An EXR file has both images, so it needs no other file.
 std::vector<std::string> raw_outputs(const std::vector<std::string>& outputs);
 
+/// Checks that raw_outputs(outputs) can be written. INVALID_ARGUMENT: one of them is among
+/// `outputs`. Other errors: those of check_outputs_writable.
+absl::Status check_raw_outputs(const std::vector<std::string>& outputs);
+
 /// Checks before an image is rendered that its files can be written: `outputs`, and raw_outputs()
 /// if the noise is removed. `given`: the outputs that the user named; empty: `outputs` are
-/// defaults. Returns the files of the report. Errors: those of check_outputs and of report_files.
+/// defaults. Returns the files of the report. Errors: those of check_outputs, of check_raw_outputs
+/// and of report_files.
 absl::StatusOr<std::vector<std::string>> check_image_files(const std::string& scene,
                                                            const std::vector<std::string>& given,
                                                            const std::vector<std::string>& outputs,

@@ -1,11 +1,12 @@
-// --denoise=oidn, which uses the library OpenImageDenoise. A stand-in takes its place: it computes
-// (color + albedo) / 2 + normal / 4 (tests/support/oidn).
+// The files of --denoise, and --denoise=oidn, which uses the library OpenImageDenoise. A stand-in
+// takes its place: it computes (color + albedo) / 2 + normal / 4 (tests/support/oidn).
 
 #include "coordinator/cli/image/oidn.h"
 
 #include <gmock/gmock.h>
 
 #include "coordinator/cli/image/clean.h"
+#include "tests/support/temp_dir.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -51,6 +52,26 @@ TEST(Oidn, TheReportSaysThatBitsMayDiffer) {
   EXPECT_TRUE(clean_report(clean, Denoiser::kRegression, {"a.png", "b.exr"}).same_bits);
   EXPECT_THAT(clean_report(clean, Denoiser::kRegression, {"a.png", "b.exr"}).raw_outputs,
               testing::ElementsAre("a.raw.png"));
+}
+
+// The image as rendered would replace the clean image that was written there.
+TEST(Clean, NoOutputMayBeTheFileOfTheImageAsRendered) {
+  const test::TempDir folder;
+  const auto check = [&](const std::vector<std::string>& names, Denoiser denoiser) {
+    std::vector<std::string> outputs;
+    for (const std::string& name : names) {
+      outputs.push_back(folder / name);
+    }
+    return check_image_files("a.textproto", outputs, outputs, denoiser, {"none"}).status();
+  };
+  for (const char* raw : {"q.raw.png", "./q.raw.png"}) {
+    const absl::Status refused = check({"q.png", raw}, Denoiser::kRegression);
+    EXPECT_TRUE(absl::IsInvalidArgument(refused)) << refused;
+    EXPECT_THAT(std::string(refused.message()), HasSubstr("q.raw.png: --denoise writes"));
+  }
+  EXPECT_EQ(check({"q.png", "q.raw.png"}, Denoiser::kNone), absl::OkStatus());
+  EXPECT_EQ(check({"q.png", "q.raw.pfm"}, Denoiser::kRegression), absl::OkStatus());
+  EXPECT_EQ(check({"q.exr", "q.raw.exr"}, Denoiser::kRegression), absl::OkStatus());
 }
 
 }  // namespace
