@@ -2,6 +2,8 @@
 
 #include "coordinator/cli/image/comparison.h"
 
+#include <cmath>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "coordinator/cli/base/json.h"
@@ -9,6 +11,32 @@
 #include "renderlib/compare/ssim.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+/// Makes two values equal if one of them is not finite: to the reference's, or to 0 if that is not
+/// finite.
+void leave_out_if_not_finite(float& value, float& reference) {
+  if (!std::isfinite(reference)) {
+    reference = 0;
+    value = 0;
+  } else if (!std::isfinite(value)) {
+    value = reference;
+  }
+}
+
+/// Makes the values equal that are not finite in one of two images of the same size, so that SSIM
+/// and FLIP see no difference there.
+void leave_out_not_finite(Image& image, Image& reference) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    Rgb& a = image.pixels[i];
+    Rgb& b = reference.pixels[i];
+    leave_out_if_not_finite(a.r, b.r);
+    leave_out_if_not_finite(a.g, b.g);
+    leave_out_if_not_finite(a.b, b.b);
+  }
+}
+
+}  // namespace
 
 absl::StatusOr<Comparison> compare_images(const Image& image, const Image& reference) {
   if (image.width != reference.width || image.height != reference.height) {
@@ -16,11 +44,14 @@ absl::StatusOr<Comparison> compare_images(const Image& image, const Image& refer
                                                    image.height, " and ", reference.width, "×",
                                                    reference.height));
   }
-  const bool hdr = beyond_screen(reference);
+  Image seen = image;
+  Image seen_reference = reference;
+  leave_out_not_finite(seen, seen_reference);
+  const bool hdr = beyond_screen(seen_reference);
   return Comparison{.errors = error_metrics(image, reference),
                     .bias = test_bias(image, reference),
-                    .ssim = ssim(image, reference),
-                    .flip = hdr ? hdr_flip(image, reference) : flip(image, reference),
+                    .ssim = ssim(seen, seen_reference),
+                    .flip = hdr ? hdr_flip(seen, seen_reference) : flip(seen, seen_reference),
                     .hdr = hdr};
 }
 

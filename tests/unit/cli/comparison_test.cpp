@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace bandsaw::coordinator {
 namespace {
@@ -43,6 +45,25 @@ TEST(Comparison, NonFiniteValuesAreReported) {
   a.pixels[0].r = std::nanf("");
   EXPECT_THAT(comparison_text(compare_images(a, a).value()),
               testing::HasSubstr("1 values are not finite"));
+}
+
+// SSIM and FLIP see no difference where one of two values is not finite.
+TEST(Comparison, NonFiniteValuesAreLeftOutOfAllMetrics) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const Image good = image(32, 32, 0.5F);
+  Image bad = good;
+  for (std::size_t i = 0; i < 8; ++i) {
+    bad.pixels[100 + i].g = std::nanf("");
+    bad.pixels[200 + i].r = infinity;
+  }
+  for (const auto& [a, b] : {std::pair{bad, good}, {good, bad}, {bad, bad}}) {
+    const Comparison comparison = compare_images(a, b).value();
+    EXPECT_EQ(comparison.errors.not_finite, 16U);
+    EXPECT_EQ(comparison.errors.rmse, 0);
+    EXPECT_NEAR(comparison.ssim, 1, 1e-9);
+    EXPECT_EQ(mean(comparison.flip), 0);
+    EXPECT_FALSE(comparison.hdr);
+  }
 }
 
 TEST(Comparison, DifferentSizesAreAnError) {
