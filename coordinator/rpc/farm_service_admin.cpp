@@ -100,12 +100,14 @@ Unary* FarmService::RotateSecret(grpc::CallbackServerContext* context,
     const auto role =
         request->role() == farm::SECRET_ROLE_WORKER ? link::Role::kWorker : link::Role::kFarm;
     deps_.files.post([this, reactor, reply, role] {
-      const absl::StatusOr<std::string> file = deps_.gate.rotate(role);
-      if (file.ok()) {
-        reply->set_join_file(*file);
-        deps_.streams.stop_those_of(role, void_secret());
+      const absl::StatusOr<RenewedSecret> renewed = deps_.gate.rotate(role);
+      if (!renewed.ok()) {
+        reactor->Finish(link::to_grpc(renewed.status()));
+        return;
       }
-      reactor->Finish(link::to_grpc(file.status()));
+      deps_.streams.stop_those_of(role, void_secret());
+      reply->set_join_file(renewed->join_file);
+      reactor->Finish(link::to_grpc(renewed->written));
     });
     return absl::OkStatus();
   });

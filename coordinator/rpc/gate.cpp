@@ -88,22 +88,25 @@ absl::Status Gate::check_any(const grpc::CallbackServerContext& context) {
   return role_of(context).status();
 }
 
-absl::StatusOr<std::string> Gate::rotate(link::Role role) {
+absl::StatusOr<RenewedSecret> Gate::rotate(link::Role role) {
   if (!renew_) {
     return absl::FailedPreconditionError("this coordinator cannot renew its secrets");
   }
   MutexLock one_at_a_time(rotating_);
   ASSIGN_OR_RETURN(RenewedSecret renewed, renew_(role));
   MutexLock lock(mutex_);
-  identity_ = std::move(renewed.identity);
-  if (!renewed.written.ok()) {
-    return absl::Status(renewed.written.code(),
-                        absl::StrCat("the secret is new, but not in all files (",
-                                     renewed.written.message(), "): rotate it again"));
+  identity_ = renewed.identity;
+  const char* const whose = role == link::Role::kWorker ? "workers'" : "users'";
+  if (renewed.written.ok()) {
+    spdlog::info("a new {} secret; the join string is in {}", whose, renewed.join_file);
+    return renewed;
   }
-  spdlog::info("a new {} secret; the join string is in {}",
-               role == link::Role::kWorker ? "workers'" : "users'", renewed.join_file);
-  return renewed.join_file;
+  renewed.written = absl::Status(
+      renewed.written.code(),
+      absl::StrCat("the ", whose, " secret is new, but not in all files (",
+                   renewed.written.message(), "): start the coordinator again, which writes them"));
+  spdlog::error("{}", std::string(renewed.written.message()));
+  return renewed;
 }
 
 }  // namespace bandsaw::coordinator

@@ -41,11 +41,11 @@ class Gate {
   /// Like check(), for calls that both roles may make.
   absl::Status check_any(const grpc::CallbackServerContext& context) EXCLUDES(mutex_);
 
-  /// Renews a role's secret and returns the path of the file with the new join string. The old
-  /// secret is refused from the moment this returns. FAILED_PRECONDITION: this server cannot renew
-  /// secrets. If the secret is new, but not in all files, the error says so. MUST NOT be called on
-  /// gRPC's threads, because it waits for the disk.
-  absl::StatusOr<std::string> rotate(link::Role role) EXCLUDES(rotating_);
+  /// Renews a role's secret. If it returns OK, the old secret is refused from then on, also if
+  /// RenewedSecret::written is an error; the caller ends the streams that the old secret opened.
+  /// FAILED_PRECONDITION: this server cannot renew secrets. MUST NOT be called on gRPC's threads,
+  /// because it waits for the disk.
+  absl::StatusOr<RenewedSecret> rotate(link::Role role) EXCLUDES(rotating_);
 
  private:
   absl::StatusOr<link::Role> role_of(const grpc::CallbackServerContext& context) EXCLUDES(mutex_);

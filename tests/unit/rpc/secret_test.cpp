@@ -32,7 +32,7 @@ class SecretTest : public FarmTest {
     const auto identity = link::renew_secret(folder_ / "identity", role);
     EXPECT_TRUE(identity.ok()) << identity.status();
     renewed_ = *identity;
-    return RenewedSecret{renewed_, "the file"};
+    return RenewedSecret{renewed_, "the file", written_};
   }
 
   grpc::Status rotate(farm::SecretRole role, farm::RotateSecretReply* reply) {
@@ -60,6 +60,7 @@ class SecretTest : public FarmTest {
   }
 
   link::Identity renewed_;
+  absl::Status written_;  ///< the result of writing the file with the join string
 };
 
 TEST_F(SecretTest, TheOldUsersSecretIsRefusedAndTheNewOneIsNot) {
@@ -81,6 +82,20 @@ TEST_F(SecretTest, WorkersWithTheOldSecretAreDisconnectedAndUsersAreNot) {
   }
   EXPECT_EQ(stream->Finish().error_code(), StatusCode::UNAUTHENTICATED);
   EXPECT_TRUE(list_jobs(identity_.farm_secret).ok());
+}
+
+TEST_F(SecretTest, WorkersAreDisconnectedAlsoIfTheJoinStringIsNotWritten) {
+  written_ = absl::ResourceExhaustedError("cannot write the file");
+  const auto call = context(link::Role::kWorker);
+  const auto stream = work()->Session(call.get());
+  farm::RotateSecretReply reply;
+  const grpc::Status rotated = rotate(farm::SECRET_ROLE_WORKER, &reply);
+  EXPECT_EQ(rotated.error_code(), StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(rotated.error_message(), testing::HasSubstr("secret is new, but not in all files"));
+  farm::ToWorker message;
+  while (stream->Read(&message)) {
+  }
+  EXPECT_EQ(stream->Finish().error_code(), StatusCode::UNAUTHENTICATED);
 }
 
 TEST_F(SecretTest, UploadsOfBandsWithTheOldSecretEnd) {
