@@ -19,7 +19,7 @@ namespace bandsaw::coordinator {
 /// The result of a renewal of a secret, already written to disk.
 struct RenewedSecret {
   link::Identity identity;
-  std::string join_file;  ///< path of the file with the new join string
+  std::string join_file;  ///< path of the file with the new join string; empty: none was written
   /// Status of writing the files beside the identity; the secret is renewed even if this failed.
   absl::Status written = {};
 };

@@ -105,6 +105,17 @@ TEST_F(Administration, TheUsersSecretIsRenewedWithAndWithoutACoordinator) {
   EXPECT_EQ(say({"jobs"}).code, 0);
 }
 
+TEST_F(Administration, AJoinFileThatWasRemovedIsWrittenWithTheNewSecret) {
+  std::filesystem::remove(farm_.join_file());
+  EXPECT_EQ(here({"secret", "rotate", "worker"}).code, 0);
+  farm_.add_worker("new", 1);
+  farm_.coordinator().signal(SIGTERM);
+  farm_.coordinator().wait();
+  std::filesystem::remove(farm_.join_file());
+  const Finished rotated = here({"secret", "rotate", "worker"});
+  EXPECT_NE(rotated.out.find("at its next start"), std::string::npos) << rotated.out;
+}
+
 TEST_F(Administration, ALinkForBrowsersLastsUntilItIsRevokedOrASecretIsRenewed) {
   const auto secret = [&](std::vector<std::string> more = {}) {
     more.insert(more.begin(), "link");

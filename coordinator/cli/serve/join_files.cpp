@@ -48,15 +48,20 @@ absl::Status write_join_file(const std::string& data_folder, const link::JoinStr
   return write(join_file_of(data_folder, join.role), join);
 }
 
-absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role) {
+absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role,
+                                            std::optional<link::JoinString> present) {
   const std::string file = join_file_of(data_folder, role);
-  absl::StatusOr<link::JoinString> join = link::join_string_from(file);
-  ASSIGN_OR_RETURN(link::Identity identity, link::renew_secret(data_folder, role));
-  absl::Status written;
-  if (join.ok()) {
-    join->secret = secret_of(identity, role);
-    written = write(file, *join);
+  if (!present) {
+    if (absl::StatusOr<link::JoinString> in_file = link::join_string_from(file); in_file.ok()) {
+      present = *std::move(in_file);
+    }
   }
+  ASSIGN_OR_RETURN(link::Identity identity, link::renew_secret(data_folder, role));
+  if (!present) {
+    return RenewedSecret{std::move(identity), ""};
+  }
+  present->secret = secret_of(identity, role);
+  const absl::Status written = write(file, *present);
   return RenewedSecret{std::move(identity), file, written};
 }
 

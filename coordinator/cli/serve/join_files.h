@@ -4,6 +4,7 @@
 // rotate`. A join string is a line with the addresses of the farm, the digest of its certificate
 // and the secret of a role (workers or users).
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,12 @@ link::JoinString join_string(link::Role role, const link::Identity& identity,
 absl::Status write_join_file(const std::string& data_folder, const link::JoinString& join);
 
 /// Renews the secret of a role in the farm's identity (its file with certificate and secrets), and
-/// then in the role's join string, if that file exists. Errors: those of link::renew_secret. If
-/// only the join string could not be written, RenewedSecret::written has the error; the next
-/// `serve` writes the file.
-absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role);
+/// then in the role's join string, which it writes to its file. `present`: the join string with the
+/// addresses of the running coordinator; std::nullopt: none runs, and the string in the file is
+/// taken. If that is missing or damaged, no string is written, because the addresses are unknown,
+/// and RenewedSecret::join_file is empty; the next `serve` writes the file. Errors: those of
+/// link::renew_secret. If only the file could not be written, RenewedSecret::written has the error.
+absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role,
+                                            std::optional<link::JoinString> present);
 
 }  // namespace bandsaw::coordinator

@@ -37,20 +37,22 @@ absl::Status give_to_owner(const std::string& folder, const std::string& file) {
 }
 
 /// Renews the secret in the folder and revokes the link for browsers. Returns the file with the new
-/// join string. FAILED_PRECONDITION: a coordinator is using the folder.
+/// join string; empty: `serve` writes it at its next start. FAILED_PRECONDITION: a coordinator is
+/// using the folder.
 absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role role) {
   ASSIGN_OR_RETURN(const DataFolder locked, DataFolder::open(folder));
   RETURN_IF_ERROR(link::remove_browser_link(folder));
-  ASSIGN_OR_RETURN(const RenewedSecret renewed, rotate_secret(folder, role));
+  ASSIGN_OR_RETURN(const RenewedSecret renewed, rotate_secret(folder, role, std::nullopt));
   RETURN_IF_ERROR(give_to_owner(folder, identity_file(folder)));
   RETURN_IF_ERROR(renewed.written);
-  if (file_exists(renewed.join_file)) {
+  if (!renewed.join_file.empty()) {
     RETURN_IF_ERROR(give_to_owner(folder, renewed.join_file));
   }
   return renewed.join_file;
 }
 
-/// Renews the secret and returns the file with the new join string.
+/// Renews the secret. Returns the file with the new join string; empty: `serve` writes it at its
+/// next start.
 absl::StatusOr<std::string> rotate(const std::string& folder, link::Role role) {
   if (!file_exists(identity_file(folder))) {
     return absl::InvalidArgumentError(
@@ -86,8 +88,11 @@ ExitCode run(const RotateOptions& options, Process& process) {
   if (options.verbosity.json) {
     process.console.line(JsonObject().text("event", "rotated").text("join_file", *file).str());
   } else {
-    process.console.line(
-        absl::StrCat("the ", whose, " old join string is void; the new one is in ", *file));
+    process.console.line(absl::StrCat(
+        "the ", whose, " old join string is void; ",
+        file->empty() ? absl::StrCat("`bandsaw serve` writes the new one to ",
+                                     join_file_of(folder, options.role), " at its next start")
+                      : absl::StrCat("the new one is in ", *file)));
   }
   return ExitCode::kDone;
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/data_folder.h"
@@ -20,21 +21,31 @@
 #include "coordinator/rpc/server.h"
 #include "proto/link/identity.h"
 #include "renderlib/base/atomic_file.h"
+#include "renderlib/base/mutex.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
+
+/// The join strings of this run. The mutex is held until start() has written them to their files,
+/// so that a renewal of a secret waits for this.
+struct JoinStrings {
+  Mutex mutex;
+  /// By role, with the secrets of the start.
+  std::map<link::Role, link::JoinString> by_role GUARDED_BY(mutex);
+};
 
 /// All that runs, and what is printed about it.
 struct Serving {
   std::unique_ptr<Engine> engine;
   std::unique_ptr<BrowserAccess> browsers;  // the link for browsers; destroyed after its users
   std::unique_ptr<ServedDashboard> web;     // destroyed before the engine
-  std::unique_ptr<Server> server;           // destroyed before `web`, which it notifies
-  std::string folder;                       // the data folder
-  std::string join;                         // workers' join string
-  std::string line;     // shell line that fetches and starts a worker; may be empty
-  std::string address;  // host:port
+  std::unique_ptr<JoinStrings> joins = std::make_unique<JoinStrings>();
+  std::unique_ptr<Server> server;  // destroyed before `web`, which it notifies
+  std::string folder;              // the data folder
+  std::string join;                // workers' join string
+  std::string line;                // shell line that fetches and starts a worker; may be empty
+  std::string address;             // host:port
 };
 
 absl::Status make_folder(const std::string& folder) {
@@ -45,15 +56,20 @@ absl::Status make_folder(const std::string& folder) {
 }
 
 /// Revokes the link for browsers, and renews the role's secret everywhere: in the identity, in the
-/// join string, in the dashboard's logins and in the link to the dashboard. The server calls it for
-/// `bandsaw secret rotate`.
+/// file with the join string, in the dashboard's logins and in the link to the dashboard. The
+/// server calls it for `bandsaw secret rotate`. UNAVAILABLE: the coordinator could not start.
 absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::Role role,
-                                               const ServedDashboard& web,
+                                               JoinStrings& joins, const ServedDashboard& web,
                                                BrowserAccess& browsers) {
+  MutexLock lock(joins.mutex);
+  const auto present = joins.by_role.find(role);
+  if (present == joins.by_role.end()) {
+    return absl::UnavailableError("the coordinator could not start and is being stopped");
+  }
   // Revokes the link first: a user who has the old secret may have read the link, and a new secret
   // of the workers must exclude every machine that does not get it.
   RETURN_IF_ERROR(browsers.revoke());
-  ASSIGN_OR_RETURN(RenewedSecret renewed, rotate_secret(folder, role));
+  ASSIGN_OR_RETURN(RenewedSecret renewed, rotate_secret(folder, role, present->second));
   if (web.dashboard != nullptr) {
     web.dashboard->renew(renewed.identity);
   }
@@ -99,15 +115,17 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   ASSIGN_OR_RETURN(ServedDashboard web,
                    serve_dashboard(options, *serving.engine, identity, *serving.browsers));
   serving.web = std::make_unique<ServedDashboard>(std::move(web));
+  const MutexLock until_written(serving.joins->mutex);
   ASSIGN_OR_RETURN(serving.server,
                    Server::start(*serving.engine, identity,
                                  {.listen = options.listen,
                                   .insecure = options.insecure,
                                   .reflection = options.reflection,
                                   .renew =
-                                      [folder, web = serving.web.get(),
+                                      [folder, joins = serving.joins.get(), web = serving.web.get(),
                                        browsers = serving.browsers.get()](link::Role role) {
-                                        return renew_everywhere(folder, role, *web, *browsers);
+                                        return renew_everywhere(folder, role, *joins, *web,
+                                                                *browsers);
                                       },
                                   .browsers = serving.browsers.get()}));
   RETURN_IF_ERROR(unless_full(serving.web->write_link(folder, identity)));
@@ -120,6 +138,7 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
     link::JoinString join = join_string(role, identity, addresses, options.insecure);
     join.web = role == link::Role::kFarm ? serving.web->place(options) : "";
     RETURN_IF_ERROR(unless_full(write_join_file(folder, join)));
+    serving.joins->by_role[role] = join;
     if (role == link::Role::kWorker) {
       serving.join = join.text();
     }

@@ -1,0 +1,60 @@
+// The files with the join strings when a secret is renewed, with and without a running coordinator.
+
+#include "coordinator/cli/serve/join_files.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+class JoinFilesTest : public testing::TestWithParam<link::Role> {
+ protected:
+  std::string file() const { return join_file_of(folder_.path(), GetParam()); }
+  /// Returns the join string of the identity as it was at the beginning.
+  link::JoinString first() const {
+    return join_string(GetParam(), identity_, {"host:4780"}, false);
+  }
+  /// Checks that the file has the first join string with the present secret.
+  void expect_new_string(const absl::StatusOr<RenewedSecret>& renewed) const {
+    ASSERT_TRUE(renewed.ok()) << renewed.status();
+    EXPECT_TRUE(renewed->written.ok()) << renewed->written;
+    EXPECT_EQ(renewed->join_file, file());
+    const auto written = link::join_string_from(file());
+    ASSERT_TRUE(written.ok()) << written.status();
+    EXPECT_NE(written->secret, first().secret);
+    EXPECT_EQ(written->text(),
+              join_string(GetParam(), renewed->identity, {"host:4780"}, false).text());
+  }
+
+  test::TempDir folder_;
+  link::Identity identity_ = *link::load_or_make_identity(folder_.path());
+};
+
+TEST_P(JoinFilesTest, ARunningCoordinatorWritesAFileThatIsMissingOrDamaged) {
+  expect_new_string(rotate_secret(folder_.path(), GetParam(), first()));
+  std::ofstream(file(), std::ios::trunc) << "damaged";
+  expect_new_string(rotate_secret(folder_.path(), GetParam(), first()));
+}
+
+TEST_P(JoinFilesTest, WithoutACoordinatorTheAddressesAreThoseOfTheFile) {
+  ASSERT_TRUE(write_join_file(folder_.path(), first()).ok());
+  expect_new_string(rotate_secret(folder_.path(), GetParam(), std::nullopt));
+}
+
+TEST_P(JoinFilesTest, WithoutACoordinatorAMissingFileIsNotNamed) {
+  const auto renewed = rotate_secret(folder_.path(), GetParam(), std::nullopt);
+  ASSERT_TRUE(renewed.ok()) << renewed.status();
+  EXPECT_EQ(renewed->join_file, "");
+  EXPECT_FALSE(std::filesystem::exists(file()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Roles, JoinFilesTest,
+                         testing::Values(link::Role::kWorker, link::Role::kFarm));
+
+}  // namespace
+}  // namespace bandsaw::coordinator
