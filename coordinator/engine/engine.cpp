@@ -295,6 +295,8 @@ void Engine::result(JobId job, FinishedPart part,
 
 MemoryBudget& Engine::images() { return images_; }
 
+MemoryBudget& Engine::bands() { return bands_; }
+
 bool Engine::has_blob(const wire::Digest& digest) const { return blobs_->has(digest); }
 
 std::uint64_t Engine::partial_blob(const wire::Digest& digest) const {
@@ -349,7 +351,8 @@ void Engine::worker_log(SessionId session, std::vector<std::string> lines) {
 
 void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                       double render_s, double cpu_s,
-                      std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser) {
+                      std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser,
+                      std::optional<MemoryBudget::Share> share) {
   IncomingBand incoming{.job = job,
                         .work = work,
                         .instance = std::move(instance),
@@ -360,11 +363,11 @@ void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandP
                         .cpu_s = cpu_s,
                         .answer = Answer<BandOutcome>(std::move(done)),
                         .share = {}};
-  std::optional<MemoryBudget::Share> share =
-      bands_.take(incoming.pixels.sums.size() * sizeof(double));
   if (!share) {
-    incoming.answer(absl::ResourceExhaustedError(
-        "the coordinator holds as many bands in memory as it may; send this one again soon"));
+    share = bands_.take(incoming.pixels.sums.size() * sizeof(double));
+  }
+  if (!share) {
+    incoming.answer(no_memory_for_band());
     return;
   }
   incoming.share = *std::move(share);

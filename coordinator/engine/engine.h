@@ -129,6 +129,10 @@ class Engine {
   /// image.
   MemoryBudget& images();
 
+  /// Returns the budget of the memory for bands that arrive or are on their way to disk and film (2
+  /// GiB).
+  MemoryBudget& bands();
+
   // Blobs. These calls may block on the disk: not for gRPC's own threads.
   class BlobWriter {
    public:
@@ -172,10 +176,12 @@ class Engine {
   /// `work`: hash of the scene and settings that the band was rendered for
   /// (renderlib/render/work_hash.h), 0 if unknown; a band of an earlier job with the same id is not
   /// wanted. `render_s`, `cpu_s`: seconds that the worker rendered it, and CPU seconds of its
-  /// threads. `browser`: a browser sent it.
+  /// threads. `browser`: a browser sent it. `share`: the band's share of bands(); std::nullopt: it
+  /// is taken here.
   void put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                 double render_s, double cpu_s,
-                std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser = false);
+                std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser = false,
+                std::optional<MemoryBudget::Share> share = std::nullopt);
 
   /// Returns the free bytes of the disk with the data folder, 0 if that is unknown. May wait for
   /// the disk.

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "absl/status/status.h"
 #include "coordinator/engine/answer.h"
 #include "coordinator/engine/memory_budget.h"
 #include "coordinator/scheduler/api/job_view.h"
@@ -20,6 +21,12 @@ enum class BandOutcome {
   kDuplicate,  ///< all of its rows were stored already
   kUnwanted    ///< the job is over, or the band is not part of it
 };
+
+/// Returns the error for a band that does not fit into the budget for bands in memory.
+inline absl::Status no_memory_for_band() {
+  return absl::ResourceExhaustedError(
+      "the coordinator holds as many bands in memory as it may; send this one again soon");
+}
 
 struct IncomingBand {
   JobId job = 0;

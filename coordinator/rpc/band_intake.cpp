@@ -1,5 +1,6 @@
 // Assembles a band (the pixels of some rows and samples) from the chunks in which it arrives. The
-// first chunk has the header, whose fields are checked before memory is taken; take() checks the
+// first chunk has the header, whose fields are checked before memory is taken, and the budget for
+// bands before the first byte is kept; take() checks the
 // digest and the values.
 
 #include "coordinator/rpc/band_intake.h"
@@ -45,6 +46,11 @@ absl::Status BandIntake::begin(const farm::BandHeader& header) {
   if (!is_sum(header.counters().render_s()) || !is_sum(header.counters().cpu_s())) {
     return absl::InvalidArgumentError("header.counters: times must be finite and >= 0");
   }
+  std::optional<MemoryBudget::Share> share = memory_->take(header.size());
+  if (!share) {
+    return no_memory_for_band();
+  }
+  share_ = *std::move(share);
   pixels_.width = static_cast<std::uint32_t>(row_bytes / kPixelBytes);
   // Reserves address space; pages are touched only as bytes arrive.
   pixels_.sums.reserve(header.size() / sizeof(double));
@@ -86,11 +92,16 @@ absl::StatusOr<BandPixels> BandIntake::take() {
   return std::move(pixels_);
 }
 
-void put_band(Engine& engine, const farm::BandHeader& header, BandPixels pixels,
-              std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser) {
-  engine.put_band(header.job(), header.work(), header.instance(), std::move(pixels),
-                  header.counters().render_s(), header.counters().cpu_s(), std::move(done),
-                  browser);
+void BandIntake::put(Engine& engine, std::function<void(absl::StatusOr<BandOutcome>)> done,
+                     bool browser) {
+  absl::StatusOr<BandPixels> pixels = take();
+  if (!pixels.ok()) {
+    done(pixels.status());
+    return;
+  }
+  engine.put_band(header_.job(), header_.work(), header_.instance(), *std::move(pixels),
+                  header_.counters().render_s(), header_.counters().cpu_s(), std::move(done),
+                  browser, std::move(share_));
 }
 
 farm::PutBandReply::Outcome to_message(BandOutcome outcome) {

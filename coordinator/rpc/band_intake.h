@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "coordinator/engine/engine.h"
+#include "coordinator/engine/memory_budget.h"
 #include "proto/farm.pb.h"
 #include "proto/wire/digest.h"
 #include "renderlib/render/band.h"
@@ -17,7 +18,12 @@ namespace bandsaw::coordinator {
 
 class BandIntake {
  public:
+  /// `memory`: the budget from which the band's bytes are taken when its header comes. MUST outlive
+  /// the intake.
+  explicit BandIntake(MemoryBudget& memory) : memory_(&memory) {}
+
   /// Adds a chunk. INVALID_ARGUMENT names the field, the allowed range and the value.
+  /// RESOURCE_EXHAUSTED: the budget has no space for the band; send it again.
   absl::Status add(const farm::BandChunk& chunk);
   /// The two parts of add(): begin() takes the header, append() the next bytes of the pixels' sums.
   absl::Status begin(const farm::BandHeader& header);
@@ -33,19 +39,19 @@ class BandIntake {
   /// Returns the pixels of a complete band; callable once. INVALID_ARGUMENT: the bytes do not match
   /// the announced digest, or a sum is not finite and >= 0.
   absl::StatusOr<BandPixels> take();
+  /// Takes a complete band and gives it to the engine, which calls `done` with its answer; callable
+  /// once. `done` also gets the errors of take(). `browser`: a browser sent it.
+  void put(Engine& engine, std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser);
 
  private:
+  MemoryBudget* memory_;
+  MemoryBudget::Share share_;  ///< of the whole band
   bool begun_ = false;
   farm::BandHeader header_;
   BandPixels pixels_;
   std::uint64_t received_ = 0;
   wire::Hasher hasher_;
 };
-
-/// Gives a complete band to the engine, which calls `done` with its answer. `browser`: a browser
-/// sent it.
-void put_band(Engine& engine, const farm::BandHeader& header, BandPixels pixels,
-              std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser);
 
 farm::PutBandReply::Outcome to_message(BandOutcome outcome);
 

@@ -33,11 +33,10 @@ absl::Status PutBandsCall::take(const farm::BandChunk& chunk) {
     read_next();
     return absl::OkStatus();
   }
-  ASSIGN_OR_RETURN(BandPixels pixels, intake_.take());
-  const farm::BandHeader header = std::exchange(intake_, {}).header();
+  BandIntake whole = std::exchange(intake_, BandIntake(deps_.engine.bands()));
   if (hand_over()) {
-    put_band(
-        deps_.engine, header, std::move(pixels),
+    whole.put(
+        deps_.engine,
         [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
           self->answer(outcome);
         },

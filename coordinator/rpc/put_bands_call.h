@@ -9,13 +9,15 @@ namespace bandsaw::coordinator {
 
 /// Serves Work.PutBands, the stream on which a worker sends its finished bands. Flow control: the
 /// next band is read only after the previous one is answered, so a worker's stream needs the memory
-/// of one band. Chunks are copied and hashed on gRPC's thread, which for small bands costs less
-/// than handing them to another thread; the engine writes them to disk.
+/// of one band, which the intake takes from the engine's budget. Chunks are copied and hashed on
+/// gRPC's thread, which for small bands costs less than handing them to another thread; the engine
+/// writes them to disk.
 class PutBandsCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>, PutBandsCall>,
       public LongStream {
  public:
-  explicit PutBandsCall(const ServiceDependencies& deps) : deps_(deps) {}
+  explicit PutBandsCall(const ServiceDependencies& deps)
+      : deps_(deps), intake_(deps.engine.bands()) {}
   void begin();
 
   void OnReadDone(bool ok) override;

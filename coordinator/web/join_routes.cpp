@@ -49,8 +49,10 @@ HttpReply too_many_transfers() {
 
 /// Reads a band from the body: the length of its header, the header, the pixels. PERMISSION_DENIED:
 /// it was not leased to this browser. INVALID_ARGUMENT: it is malformed or cut off.
-absl::StatusOr<BandIntake> read_band(const HttpBody& body, BrowserLeases& leases) {
-  BandIntake intake;
+/// RESOURCE_EXHAUSTED: `memory`, the budget for bands, has no space for it.
+absl::StatusOr<BandIntake> read_band(const HttpBody& body, BrowserLeases& leases,
+                                     MemoryBudget& memory) {
+  BandIntake intake(memory);
   std::string head;
   while (true) {
     ASSIGN_OR_RETURN(const absl::string_view bytes, body());
@@ -91,11 +93,10 @@ absl::StatusOr<BandIntake> read_band(const HttpBody& body, BrowserLeases& leases
 
 absl::StatusOr<farm::PutBandReply> take_band(Engine& engine, BrowserLeases& leases,
                                              const HttpBody& body) {
-  ASSIGN_OR_RETURN(BandIntake intake, read_band(body, leases));
-  ASSIGN_OR_RETURN(BandPixels pixels, intake.take());
+  ASSIGN_OR_RETURN(BandIntake intake, read_band(body, leases, engine.bands()));
   using Outcome = absl::StatusOr<BandOutcome>;
   ASSIGN_OR_RETURN(const BandOutcome outcome, blocking_call<Outcome>([&](auto answer) {
-                     put_band(engine, intake.header(), std::move(pixels), answer, /*browser=*/true);
+                     intake.put(engine, answer, /*browser=*/true);
                    }));
   farm::PutBandReply reply;
   reply.set_outcome(to_message(outcome));

@@ -87,11 +87,12 @@ class Sender {
   }
 
   void leave() {
-    intake_ = {};
+    intake_ = BandIntake(memory_);
     came_.clear();
   }
 
-  BandIntake intake_;
+  MemoryBudget memory_{wire::kBandBytes};
+  BandIntake intake_{memory_};
   std::string band_;  ///< the bytes that a correct worker would send
   std::string came_;  ///< the bytes of this band that were accepted so far
 };
@@ -101,7 +102,8 @@ class Sender {
 void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
   farm::BandChunk message;
   if (message.ParseFromArray(in.data(), static_cast<int>(in.size()))) {
-    BandIntake intake;
+    MemoryBudget memory(wire::kBandBytes);
+    BandIntake intake(memory);
     if (intake.add(message).ok()) {
       BANDSAW_CHECK(
           intake.received() <= intake.header().size() && intake.header().size() <= wire::kBandBytes,

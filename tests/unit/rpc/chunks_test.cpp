@@ -224,6 +224,37 @@ TEST_F(ChunksTest, LimitsHold) {
   expect(put_bands({band}).status, StatusCode::INVALID_ARGUMENT, "header.size");
 }
 
+// The band has 144 bytes.
+TEST_F(ChunksTest, ABandCountsTowardsTheMemoryForBandsFromItsHeaderOn) {
+  const std::int64_t all = engine_->bands().left();
+  const auto wait_until_left = [&](std::int64_t bytes) {
+    while (engine_->bands().left() != bytes) {
+      std::this_thread::yield();
+    }
+  };
+  farm::BandChunk half = band_chunk();
+  half.set_data(half.data().substr(0, 40));
+  const auto call = context(link::Role::kWorker);
+  const auto stream = work()->PutBands(call.get());
+  ASSERT_TRUE(stream->Write(half));
+  wait_until_left(all - 144);
+  {
+    const auto others = engine_->bands().take(static_cast<std::uint64_t>(all - 144));
+    ASSERT_TRUE(others);
+    expect(put_bands({half}).status, StatusCode::RESOURCE_EXHAUSTED, "send this one again");
+  }
+  call->TryCancel();
+  EXPECT_EQ(stream->Finish().error_code(), StatusCode::CANCELLED);
+  wait_until_left(all);
+  {
+    const auto others = engine_->bands().take(static_cast<std::uint64_t>(all - 144));
+    ASSERT_TRUE(others);
+    EXPECT_NE(put_bands({band_chunk()}).status.error_code(), StatusCode::RESOURCE_EXHAUSTED)
+        << "a whole band is counted once";
+  }
+  wait_until_left(all);
+}
+
 TEST_F(ChunksTest, MissingBlobsAreNamed) {
   ASSERT_TRUE(put_blob({whole("here")}).ok());
   farm::MissingBlobsRequest request;
