@@ -22,6 +22,9 @@ static_assert(static_cast<int>(FrameState::kExpected) == farm::FRAME_STATE_EXPEC
 
 namespace {
 
+/// Bytes of the reason of a job or frame in a list of many.
+constexpr std::size_t kListedReasonBytes = 300;
+
 void add_frames(const JobView& job, farm::JobStatus& message) {
   message.set_sequence(job.spec.sequence);
   message.set_frame(job.spec.frame);
@@ -233,13 +236,18 @@ farm::JobStatus to_message(const JobView& job) {
   return message;
 }
 
+farm::JobStatus to_list_entry(const JobView& job) {
+  farm::JobStatus message = to_message(job);
+  message.set_reason(clean_text(job.reason, kListedReasonBytes));
+  return message;
+}
+
 farm::Frame to_message(const FrameView& frame) {
-  constexpr std::size_t kMaxReason = 300;
   farm::Frame message;
   message.set_frame(frame.number);
   message.set_state(static_cast<farm::FrameState>(frame.state));
   message.set_job(frame.job);
-  message.set_reason(clean_text(frame.reason, kMaxReason));
+  message.set_reason(clean_text(frame.reason, kListedReasonBytes));
   message.set_changed(frame.changed);
   return message;
 }

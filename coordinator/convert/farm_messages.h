@@ -20,6 +20,8 @@ farm::ErrorPoint to_message(const ErrorPoint& point);
 ErrorPoint error_point_of(const farm::ErrorPoint& message);
 
 farm::JobStatus to_message(const JobView& job);
+/// Returns the message of a job in a list, whose reason is cut to 300 bytes.
+farm::JobStatus to_list_entry(const JobView& job);
 /// Fields that the message lacks become "unknown". The place of the first bad sample is a text in
 /// the message (bad_sample_at), so the view's counters do not have it.
 JobView job_view_of(const farm::JobStatus& message);

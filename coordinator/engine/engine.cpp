@@ -235,10 +235,9 @@ void Engine::watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> chang
   to_scheduler_.call(&SchedulerThread::watch, job, std::move(changed));
 }
 
-void Engine::jobs(std::function<void(std::vector<JobView>)> done) {
-  to_scheduler_.post([answer = list_answer(std::move(done))](SchedulerThread& scheduler) mutable {
-    answer(scheduler.jobs());
-  });
+void Engine::jobs(std::function<void(std::vector<JobView>)> done, JobPage page) {
+  to_scheduler_.post([page, answer = list_answer(std::move(done))](
+                         SchedulerThread& scheduler) mutable { answer(scheduler.jobs(page)); });
 }
 
 void Engine::workers(std::function<void(std::vector<WorkerView>)> done) {

@@ -108,7 +108,8 @@ class Engine {
   /// once a second, until it returns false or the job is final. The final state is always
   /// delivered. If there is no such job, `changed` is called with NOT_FOUND.
   void watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> changed);
-  void jobs(std::function<void(std::vector<JobView>)> done);
+  /// Lists jobs by their ids, without the jobs of frames, error curves and logs.
+  void jobs(std::function<void(std::vector<JobView>)> done, JobPage page = {});
   void workers(std::function<void(std::vector<WorkerView>)> done);
   /// Returns the last lines of a worker's log. NOT_FOUND: no lines of such a worker.
   void logs(std::string worker, std::function<void(absl::StatusOr<std::vector<std::string>>)> done);

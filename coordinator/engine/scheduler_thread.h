@@ -55,7 +55,9 @@ class SchedulerThread {
   /// NOT_FOUND: no such job. FAILED_PRECONDITION: it is no sequence.
   absl::StatusOr<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
   std::vector<std::string> why(JobId id) const { return scheduler_.why(id, clock_.now()); }
-  std::vector<JobView> jobs() const { return scheduler_.jobs(clock_.now()); }
+  std::vector<JobView> jobs(const JobPage& page) const {
+    return scheduler_.jobs(clock_.now(), page);
+  }
   std::vector<WorkerView> workers() const { return scheduler_.workers(clock_.now()); }
 
   // Workers.

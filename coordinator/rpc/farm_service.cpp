@@ -34,6 +34,31 @@ absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsReques
   return digests;
 }
 
+/// Fills a reply with the first of `jobs`, which were listed for the request. A page ends when half
+/// of a message is full, because a single job may have thousands of workers. RESOURCE_EXHAUSTED:
+/// the request is for all jobs, which do not fit into a message.
+absl::Status fill(const std::vector<JobView>& jobs, const farm::ListJobsRequest& request,
+                  farm::ListJobsReply& reply) {
+  const bool paged = request.most() > 0;
+  std::size_t bytes = 0;
+  for (const JobView& job : jobs) {
+    if (paged && bytes > wire::kMessageBytes / 2) {
+      break;
+    }
+    farm::JobStatus entry = to_list_entry(job);
+    bytes += entry.ByteSizeLong();
+    if (!paged && bytes > wire::kMessageBytes) {
+      return absl::ResourceExhaustedError(
+          absl::StrCat("the list of all ", jobs.size(),
+                       " jobs is too long for one message; a newer bandsaw gets it in parts"));
+    }
+    *reply.add_job() = std::move(entry);
+  }
+  reply.set_more(paged && (static_cast<std::size_t>(reply.job_size()) < jobs.size() ||
+                           jobs.size() == request.most()));
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
@@ -97,15 +122,18 @@ grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::Preview(
                              });
 }
 
-Unary* FarmService::ListJobs(grpc::CallbackServerContext* context, const farm::ListJobsRequest*,
-                             farm::ListJobsReply* reply) {
+Unary* FarmService::ListJobs(grpc::CallbackServerContext* context,
+                             const farm::ListJobsRequest* request, farm::ListJobsReply* reply) {
   return unary(deps_, *context, link::Role::kFarm, [&](Unary* reactor) {
-    deps_.engine.jobs([reactor, reply](const std::vector<JobView>& jobs) {
-      for (const JobView& job : jobs) {
-        *reply->add_job() = to_message(job);
-      }
-      reactor->Finish(grpc::Status::OK);
-    });
+    JobPage page{.after = request->after()};
+    if (request->most() > 0) {
+      page.most = request->most();
+    }
+    deps_.engine.jobs(
+        [reactor, request, reply](const std::vector<JobView>& jobs) {
+          reactor->Finish(link::to_grpc(fill(jobs, *request, *reply)));
+        },
+        page);
     return absl::OkStatus();
   });
 }

@@ -153,7 +153,9 @@ std::vector<Record> Scheduler::snapshot() const { return coordinator::snapshot(c
 
 std::optional<JobView> Scheduler::job(JobId id, Time now) const { return views_.job(id, now); }
 std::vector<std::string> Scheduler::why(JobId id, Time now) const { return views_.why(id, now); }
-std::vector<JobView> Scheduler::jobs(Time now) const { return views_.jobs(now); }
+std::vector<JobView> Scheduler::jobs(Time now, const JobPage& page) const {
+  return views_.jobs(now, page);
+}
 std::optional<std::vector<FrameView>> Scheduler::frames(JobId id, std::uint64_t after) const {
   return views_.frames(id, after);
 }

@@ -18,6 +18,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kConnectTimeout{5'000};
 constexpr milliseconds kCallTimeout{10'000};
+constexpr std::uint32_t kJobsPerCall = 1'000;
 
 }  // namespace
 
@@ -158,13 +159,19 @@ bool FarmClient::wait_for_farm(milliseconds timeout) {
 }
 
 absl::StatusOr<std::vector<Progress>> FarmClient::jobs() {
-  farm::ListJobsReply reply;
-  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
-    return control_->ListJobs(&context, farm::ListJobsRequest(), &reply);
-  }));
   std::vector<Progress> out;
-  for (const farm::JobStatus& status : reply.job()) {
-    out.push_back(progress_of(status));
+  farm::ListJobsRequest request;
+  request.set_most(kJobsPerCall);
+  for (bool more = true; more;) {
+    farm::ListJobsReply reply;
+    RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+      return control_->ListJobs(&context, request, &reply);
+    }));
+    for (const farm::JobStatus& status : reply.job()) {
+      out.push_back(progress_of(status));
+      request.set_after(status.job());
+    }
+    more = reply.more() && reply.job_size() > 0;
   }
   return out;
 }

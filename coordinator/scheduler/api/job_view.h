@@ -2,7 +2,9 @@
 
 // Jobs and workers as commands and the dashboard display them (scheduler/views fills them in).
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,12 @@ struct WorkerShare {
   std::uint64_t samples = 0;  ///< pixel samples
   double cpu_s = 0;           ///< summed over its threads
   friend bool operator==(const WorkerShare&, const WorkerShare&) = default;
+};
+
+/// Selects jobs for a list: those with ids above `after`, of which the lowest `most` are taken.
+struct JobPage {
+  JobId after = 0;
+  std::size_t most = std::numeric_limits<std::size_t>::max();
 };
 
 /// A job, or a sequence with the sums over its frames.

@@ -134,22 +134,28 @@ JobView Views::view(const Job& job, Time now) const {
   return view;
 }
 
-std::vector<JobView> Views::jobs(Time now) const {
+std::vector<JobView> Views::jobs(Time now, const JobPage& page) const {
   std::vector<JobView> views;
-  for (const auto& [id, job] : context_.jobs.all()) {
-    if (context_.sequences.find(job.spec.sequence) != nullptr) {
+  const auto& jobs = context_.jobs.all();
+  for (auto at = jobs.upper_bound(page.after); at != jobs.end() && views.size() < page.most; ++at) {
+    if (context_.sequences.find(at->second.spec.sequence) != nullptr) {
       continue;
     }
-    views.push_back(view(job, now));
+    views.push_back(view(at->second, now));
     views.back().curve.clear();
     views.back().log.clear();
     views.back().shares.clear();
   }
-  for (const auto& [id, sequence] : context_.sequences.all()) {
-    views.push_back(sequence_view(context_, sequence, now));
+  const auto& sequences = context_.sequences.all();
+  std::size_t left = page.most;
+  for (auto at = sequences.upper_bound(page.after); at != sequences.end() && left > 0; ++at) {
+    views.push_back(sequence_view(context_, at->second, now));
+    --left;
   }
   std::sort(views.begin(), views.end(),
             [](const JobView& a, const JobView& b) { return a.id < b.id; });
+  views.erase(views.begin() + static_cast<std::ptrdiff_t>(std::min(views.size(), page.most)),
+              views.end());
   return views;
 }
 

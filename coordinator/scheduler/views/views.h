@@ -25,7 +25,8 @@ class Views {
         sessions_(sessions) {}
 
   std::optional<JobView> job(JobId id, Time now) const;
-  std::vector<JobView> jobs(Time now) const;  ///< by id; without frame jobs
+  /// Returns the jobs and sequences of the page by their ids, without the jobs of frames.
+  std::vector<JobView> jobs(Time now, const JobPage& page = {}) const;
   /// Returns the frames of a sequence that changed after `after`; std::nullopt: no such sequence.
   std::optional<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
   /// Returns all jobs and sequences with the packages and files that must be kept for them.

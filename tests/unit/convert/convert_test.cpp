@@ -127,6 +127,13 @@ TEST(Convert, JobsRoundTrip) {
   EXPECT_EQ(back.log, job.log);
 }
 
+TEST(Convert, AJobInAListHasAShortReason) {
+  JobView job = full_job();
+  job.reason = std::string(2'000, 'x');
+  EXPECT_EQ(to_list_entry(job).reason(), std::string(300, 'x'));
+  EXPECT_EQ(to_message(job).reason(), job.reason);
+}
+
 TEST(Convert, EveryFieldOfAJobIsSet) {
   const farm::JobStatus message = to_message(full_job());
   const google::protobuf::Descriptor* type = message.GetDescriptor();

@@ -48,6 +48,22 @@ class JobsTest : public FarmTest {
     return people()->Why(context(link::Role::kFarm).get(), request, &reply);
   }
 
+  /// Returns the ids of the listed jobs, and whether there may be more.
+  std::pair<std::vector<std::uint64_t>, bool> list(std::uint64_t after, std::uint32_t most) {
+    farm::ListJobsRequest request;
+    request.set_after(after);
+    request.set_most(most);
+    farm::ListJobsReply reply;
+    const grpc::Status status =
+        people()->ListJobs(context(link::Role::kFarm).get(), request, &reply);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    std::vector<std::uint64_t> ids;
+    for (const farm::JobStatus& job : reply.job()) {
+      ids.push_back(job.job());
+    }
+    return {ids, reply.more()};
+  }
+
   farm::JobStatus job_;  ///< the last answer
 };
 
@@ -71,6 +87,16 @@ TEST_F(JobsTest, APriorityIsSetAtTheBeginningAndLater) {
   ASSERT_TRUE(set_priority(job, 1000).ok());
   EXPECT_EQ(job_.priority(), 1000);
   EXPECT_EQ(set_priority(job, 1001).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+TEST_F(JobsTest, TheListComesInParts) {
+  const std::uint64_t first = submit_job(8);
+  const std::uint64_t second = submit_job(8);
+  const std::uint64_t third = submit_job(8);
+  EXPECT_THAT(list(0, 2), testing::Pair(testing::ElementsAre(first, second), true));
+  EXPECT_THAT(list(second, 2), testing::Pair(testing::ElementsAre(third), false));
+  EXPECT_THAT(list(third, 2), testing::Pair(testing::IsEmpty(), false));
+  EXPECT_THAT(list(0, 0), testing::Pair(testing::ElementsAre(first, second, third), false));
 }
 
 TEST_F(JobsTest, WhyIsAnsweredInSentences) {

@@ -136,6 +136,8 @@ TEST(Sequences, AllFramesAreRenderedOnceAsOneJob) {
   const std::vector<JobView> jobs = farm.scheduler.jobs(farm.now);
   ASSERT_EQ(jobs.size(), 1u);
   EXPECT_EQ(jobs.front().id, id);
+  EXPECT_EQ(farm.scheduler.jobs(farm.now, {.after = id - 1, .most = 2}).size(), 1u);
+  EXPECT_THAT(farm.scheduler.jobs(farm.now, {.after = id, .most = 2}), IsEmpty());
   EXPECT_THAT(farm.scheduler.why(id, farm.now), ElementsAre("it is done"));
 }
 
