@@ -11,7 +11,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "proto/wire/limits.h"
-#include "renderlib/base/mapped_file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -24,29 +23,105 @@ constexpr std::size_t kSizeEnd = kBandRecordMagic.size() + sizeof(std::uint64_t)
 /// The largest band that a worker may send, plus the other fields of a record.
 constexpr std::uint64_t kMaxRecordBytes = wire::kBandBytes + 4096;
 
+/// The first read of a record has so many bytes: more than a record without its sums.
+constexpr std::uint64_t kHeadBytes = 4096;
+/// The search for the next record reads so many bytes at a time.
+constexpr std::uint64_t kSearchBytes = 1 << 20;
+/// If bytes cannot be read, they are read again in blocks of this size, so that few are lost.
+constexpr std::uint64_t kBlockBytes = 4096;
+
+/// Reads a log. The file is not mapped: an unreadable sector in a mapping would end the process.
+class LogBytes {
+ public:
+  /// `file` MUST outlive this object.
+  LogBytes(const File& file, std::uint64_t size) : file_(file), size_(size) {}
+  std::uint64_t size() const { return size_; }
+  /// Returns true if the disk could not read some of the bytes.
+  bool unreadable() const { return unreadable_; }
+
+  /// Returns `most` bytes from `offset` on, or fewer at the end of the log. A block that the disk
+  /// cannot read has zeros, so that a record that it hits is damaged, and no other.
+  absl::StatusOr<std::vector<std::byte>> read(std::uint64_t offset, std::uint64_t most) {
+    std::vector<std::byte> bytes(std::min(most, size_ - offset));
+    const absl::Status status = file_.read(offset, absl::MakeSpan(bytes));
+    if (is_unreadable(status)) {
+      unreadable_ = true;
+      RETURN_IF_ERROR(read_blocks(offset, absl::MakeSpan(bytes)));
+      return bytes;
+    }
+    RETURN_IF_ERROR(status);
+    return bytes;
+  }
+
+ private:
+  absl::Status read_blocks(std::uint64_t offset, absl::Span<std::byte> bytes) const {
+    while (!bytes.empty()) {
+      const auto block = bytes.subspan(0, kBlockBytes - offset % kBlockBytes);
+      const absl::Status status = file_.read(offset, block);
+      if (is_unreadable(status)) {
+        std::fill(block.begin(), block.end(), std::byte{0});
+      } else {
+        RETURN_IF_ERROR(status);
+      }
+      offset += block.size();
+      bytes.remove_prefix(block.size());
+    }
+    return absl::OkStatus();
+  }
+
+  const File& file_;
+  const std::uint64_t size_;
+  bool unreadable_ = false;
+};
+
 /// Returns the offset of the next magic at or after `offset`, where a record may begin; the end of
-/// the file if there is none.
-std::uint64_t next_magic(absl::Span<const std::byte> bytes, std::uint64_t offset) {
+/// the log if there is none.
+absl::StatusOr<std::uint64_t> next_magic(LogBytes& log, std::uint64_t offset) {
   const auto* magic = reinterpret_cast<const std::byte*>(kBandRecordMagic.data());
-  const auto found = std::search(bytes.begin() + static_cast<std::ptrdiff_t>(offset), bytes.end(),
-                                 magic, magic + kBandRecordMagic.size());
-  return static_cast<std::uint64_t>(found - bytes.begin());
+  while (offset + kBandRecordMagic.size() <= log.size()) {
+    ASSIGN_OR_RETURN(const std::vector<std::byte> bytes, log.read(offset, kSearchBytes));
+    const auto found =
+        std::search(bytes.begin(), bytes.end(), magic, magic + kBandRecordMagic.size());
+    if (found != bytes.end()) {
+      return offset + static_cast<std::uint64_t>(found - bytes.begin());
+    }
+    offset += bytes.size() - (kBandRecordMagic.size() - 1);  // a magic may begin in the last bytes
+  }
+  return log.size();
+}
+
+/// Returns the record at `offset`. DATA_LOSS, OUT_OF_RANGE: there is no complete record. Other
+/// errors: the log cannot be read.
+absl::StatusOr<DecodedBandRecord> record_at(LogBytes& log, std::uint64_t offset) {
+  ASSIGN_OR_RETURN(const std::vector<std::byte> head, log.read(offset, kHeadBytes));
+  absl::StatusOr<DecodedBandRecord> decoded = decode_band_record(head);
+  if (!absl::IsOutOfRange(decoded.status()) || head.size() < kSizeEnd) {
+    return decoded;
+  }
+  std::uint64_t size = 0;
+  std::memcpy(&size, head.data() + kBandRecordMagic.size(), sizeof size);
+  if (size <= head.size() || size > kMaxRecordBytes || size > log.size() - offset) {
+    return decoded;
+  }
+  ASSIGN_OR_RETURN(const std::vector<std::byte> whole, log.read(offset, size));
+  return decode_band_record(whole);
 }
 
 /// Calls `each` with every complete record and returns the end of the last one.
-std::uint64_t read_records(absl::Span<const std::byte> bytes,
-                           absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
-                           BandLogReport& report) {
+absl::StatusOr<std::uint64_t> read_records(LogBytes& log,
+                                           absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
+                                           BandLogReport& report) {
   std::uint64_t offset = 0;
   std::uint64_t sound_end = 0;
-  while (offset < bytes.size()) {
-    absl::StatusOr<DecodedBandRecord> decoded = decode_band_record(bytes, offset);
-    if (!decoded.ok()) {
-      const std::uint64_t next = next_magic(bytes, offset + 1);
+  while (offset < log.size()) {
+    absl::StatusOr<DecodedBandRecord> decoded = record_at(log, offset);
+    if (absl::IsDataLoss(decoded.status()) || absl::IsOutOfRange(decoded.status())) {
+      ASSIGN_OR_RETURN(const std::uint64_t next, next_magic(log, offset + 1));
       report.damaged_bytes += next - offset;
       offset = next;
       continue;
     }
+    RETURN_IF_ERROR(decoded.status());
     ++report.records;
     each(std::move(decoded->record), offset);
     offset += decoded->size;
@@ -62,18 +137,16 @@ absl::StatusOr<BandLog> BandLog::open(const std::string& folder, const std::stri
                                       BandLogReport& report) {
   ASSIGN_OR_RETURN(File file, File::open(path, O_RDWR | O_CREAT | O_APPEND));
   RETURN_IF_ERROR(sync_folder(folder));
-  std::uint64_t sound_end = 0;
-  std::uint64_t size = 0;
-  {
-    ASSIGN_OR_RETURN(const MappedFile mapped, MappedFile::open(path));
-    size = mapped.bytes().size();
-    sound_end = read_records(mapped.bytes(), each, report);
-  }
-  if (size != sound_end) {
+  ASSIGN_OR_RETURN(std::uint64_t size, file.size());
+  LogBytes log(file, size);
+  ASSIGN_OR_RETURN(const std::uint64_t sound_end, read_records(log, each, report));
+  // What the disk cannot read now it may read at the next start, so it is not cut off.
+  if (size != sound_end && !log.unreadable()) {
     RETURN_IF_ERROR(file.truncate(sound_end));
     RETURN_IF_ERROR(file.sync());
+    size = sound_end;
   }
-  return BandLog(std::move(file), sound_end);
+  return BandLog(std::move(file), size);
 }
 
 absl::StatusOr<std::uint64_t> BandLog::append(const BandRecord& record) {
@@ -116,8 +189,7 @@ absl::Status BandLog::take_back(std::uint64_t size) {
 
 absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offset) {
   ASSIGN_OR_RETURN(const File file, File::open(path, O_RDONLY));
-  // The file is not mapped: an unreadable sector is then an error for one band, whereas in a
-  // mapping it would end the process.
+  // Not mapped, as in LogBytes: an unreadable sector is an error for one band.
   std::array<std::byte, kSizeEnd> head{};
   RETURN_IF_ERROR(file.read(offset, absl::MakeSpan(head)));
   std::uint64_t size = 0;

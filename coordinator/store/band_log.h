@@ -24,8 +24,8 @@ struct BandLogReport {
 class BandLog {
  public:
   /// Opens or creates the log `path` in `folder`, calls `each` with every complete record and its
-  /// byte offset, and truncates the remains of an interrupted append. A damaged record is skipped;
-  /// reading continues at the next complete one.
+  /// byte offset, and truncates the remains of an interrupted append. A record that is damaged, or
+  /// that the disk cannot read, is skipped; reading continues at the next complete one.
   static absl::StatusOr<BandLog> open(const std::string& folder, const std::string& path,
                                       absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
                                       BandLogReport& report);

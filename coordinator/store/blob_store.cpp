@@ -29,6 +29,22 @@ std::string path_of(const std::string& root, const wire::Digest& digest) {
   return absl::StrCat(folder_of(root, digest), "/", digest.hex());
 }
 
+/// Returns the digest of a file's bytes. The file is not mapped: an unreadable sector in a mapping
+/// would end the process.
+absl::StatusOr<wire::Digest> digest_of(const std::string& path) {
+  ASSIGN_OR_RETURN(const File file, File::open_regular(path));
+  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
+  std::vector<std::byte> buffer(std::min<std::uint64_t>(size, 1 << 20));
+  wire::Hasher hasher;
+  for (std::uint64_t at = 0; at < size; at += buffer.size()) {
+    const auto piece =
+        absl::MakeSpan(buffer).first(std::min<std::uint64_t>(buffer.size(), size - at));
+    RETURN_IF_ERROR(file.read(at, piece));
+    hasher.update(piece);
+  }
+  return hasher.finish();
+}
+
 class MappedBlob : public BlobBytes {
  public:
   explicit MappedBlob(MappedFile file) : file_(std::move(file)) {}
@@ -82,19 +98,24 @@ absl::StatusOr<std::unique_ptr<BlobBytes>> BlobStore::get(const wire::Digest& di
     return absl::NotFoundError(absl::StrCat("there is no blob ", digest.hex()));
   }
   RETURN_IF_ERROR(file.status());
-  RETURN_IF_ERROR(check(digest, file->bytes()));
+  RETURN_IF_ERROR(check(digest));
   return std::make_unique<MappedBlob>(*std::move(file));
 }
 
-absl::Status BlobStore::check(const wire::Digest& digest, absl::Span<const std::byte> bytes) {
+absl::Status BlobStore::check(const wire::Digest& digest) {
   {
     MutexLock lock(mutex_);
     if (checked_.contains(digest)) {
       return absl::OkStatus();
     }
   }
-  if (wire::sha256(bytes) != digest) {
-    RETURN_IF_ERROR(remove_file(path_of(folder_, digest)));
+  const std::string path = path_of(folder_, digest);
+  const absl::StatusOr<wire::Digest> found = digest_of(path);
+  if (!found.ok() && !is_unreadable(found.status())) {
+    return found.status();
+  }
+  if (!found.ok() || *found != digest) {
+    RETURN_IF_ERROR(remove_file(path));
     return absl::DataLossError(
         absl::StrCat("the file of blob ", digest.hex(),
                      " was damaged and has been removed; submit the scene again"));

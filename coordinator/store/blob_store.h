@@ -32,8 +32,8 @@ class BlobStore : public BlobSource {
   std::uint64_t partial(const wire::Digest& digest) const { return partials_->size(digest); }
 
   /// Returns the blob, memory-mapped. Its digest is checked at the first call since the process
-  /// started. NOT_FOUND: no such blob. DATA_LOSS: the file is damaged; it was removed, so that the
-  /// blob can be uploaded again.
+  /// started. NOT_FOUND: no such blob. DATA_LOSS: the file is damaged or cannot be read; it was
+  /// removed, so that the blob can be uploaded again.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
 
   struct Stored {
@@ -94,8 +94,8 @@ class BlobStore : public BlobSource {
  private:
   BlobStore(std::string folder, std::unique_ptr<PartialBlobs> partials)
       : folder_(std::move(folder)), partials_(std::move(partials)) {}
-  absl::Status check(const wire::Digest& digest, absl::Span<const std::byte> bytes)
-      EXCLUDES(mutex_);
+  /// Checks the digest of the blob's file, unless it was checked before. DATA_LOSS as get().
+  absl::Status check(const wire::Digest& digest) EXCLUDES(mutex_);
 
   std::string folder_;
   std::unique_ptr<PartialBlobs> partials_;

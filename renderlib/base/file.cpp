@@ -20,6 +20,10 @@ absl::Status errno_status(int error, const std::string& what) {
   return absl::ErrnoToStatus(error, what);
 }
 
+bool is_unreadable(const absl::Status& status) {
+  return absl::IsUnknown(status);  // EIO has no canonical status of its own
+}
+
 absl::StatusOr<File> File::open(const std::string& path, int flags) {
   int fd = -1;
   do {

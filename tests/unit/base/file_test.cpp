@@ -1,10 +1,13 @@
 // Opening files for reading: pipes and folders are refused, links only followed if that is allowed.
+// The error of bytes that the disk cannot read.
 
 #include "renderlib/base/file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include <array>
 
 #include "renderlib/base/mapped_file.h"
 #include "tests/support/temp_dir.h"
@@ -20,6 +23,18 @@ TEST(File, OtherThanRegularFilesAreRefusedAtOnce) {
   EXPECT_EQ(File::open_regular(pipe).status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(MappedFile::open(folder.path()).status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(File::open_regular(folder / "none").status().code(), absl::StatusCode::kNotFound);
+}
+
+// The system cannot read the memory at address 0, and reports it as a disk reports a bad sector.
+TEST(File, BytesThatTheDiskCannotReadAreAnErrorOfTheirOwn) {
+  const auto memory = File::open("/proc/self/mem", O_RDONLY);
+  ASSERT_TRUE(memory.ok()) << memory.status();
+  std::array<std::byte, 1> byte{};
+  EXPECT_TRUE(is_unreadable(memory->read(0, absl::MakeSpan(byte))));
+  const test::TempDir folder;
+  const auto empty = File::open(folder / "empty", O_RDWR | O_CREAT);
+  ASSERT_TRUE(empty.ok()) << empty.status();
+  EXPECT_FALSE(is_unreadable(empty->read(0, absl::MakeSpan(byte))));
 }
 
 TEST(File, ALinkIsFollowedOnlyIfAllowed) {

@@ -11,14 +11,14 @@
 namespace bandsaw::coordinator {
 namespace {
 
-BandRecord sample_band(std::uint32_t row) {
+BandRecord sample_band(std::uint32_t row, std::uint32_t width = 4) {
   BandRecord record{.package_digest = std::string(64, 'c'),
-                    .settings = {.width = 4, .height = 8, .max_depth = 3, .seed = 9},
+                    .settings = {.width = width, .height = 8, .max_depth = 3, .seed = 9},
                     .pixels = {.band = {.samples = {0, 16}, .rows = {row, row + 1}},
-                               .width = 4,
+                               .width = width,
                                .sums = {},
                                .counters = {.rays = row, .bad_samples = 0}}};
-  for (int i = 0; i < 12; ++i) {
+  for (std::uint32_t i = 0; i < 3 * width; ++i) {
     record.pixels.sums.push_back(row + i / 12.0);
   }
   return record;
@@ -33,7 +33,8 @@ class BandLogTest : public testing::Test {
     report_ = {};
     const auto each = [this](BandRecord record, std::uint64_t offset) {
       offsets_.push_back(offset);
-      EXPECT_EQ(record.pixels.sums, sample_band(record.pixels.band.rows.first).pixels.sums);
+      const BandPixels& pixels = record.pixels;
+      EXPECT_EQ(pixels.sums, sample_band(pixels.band.rows.first, pixels.width).pixels.sums);
       rows_.push_back(record.pixels.band.rows.first);
     };
     return BandLog::open(folder_.path(), path_, each, report_);
@@ -103,6 +104,45 @@ TEST_F(BandLogTest, AnyChangedByteLosesItsOwnRecordAlone) {
     ASSERT_TRUE(open().ok());
     EXPECT_EQ(rows_, (Rows{0, 2})) << "byte " << i;
     EXPECT_EQ(report_.damaged_bytes, one);
+  }
+}
+
+// Records of 96 kB and more are read in two pieces, the others in one.
+TEST_F(BandLogTest, ReadsRecordsOfAnySize) {
+  {
+    absl::StatusOr<BandLog> log = open();
+    for (std::uint32_t row = 0; row < 4; ++row) {
+      ASSERT_TRUE(log->append(sample_band(row, row % 2 == 0 ? 4 : 4'000)).ok());
+    }
+    ASSERT_TRUE(log->sync().ok());
+  }
+  ASSERT_TRUE(open().ok());
+  EXPECT_EQ(rows_, (Rows{0, 1, 2, 3}));
+  EXPECT_EQ(report_.damaged_bytes, 0u);
+  std::string damaged = read_all(path_);
+  char& byte = damaged[offsets_[1] + 50'000];
+  byte = static_cast<char>(byte ^ 1);
+  write_all(path_, damaged);
+  const std::uint64_t size = offsets_[2] - offsets_[1];
+  ASSERT_TRUE(open().ok());
+  EXPECT_EQ(rows_, (Rows{0, 2, 3}));
+  EXPECT_EQ(report_.damaged_bytes, size);
+  write_all(path_, damaged.substr(0, damaged.size() - 1));
+  ASSERT_TRUE(open().ok());
+  EXPECT_EQ(rows_, (Rows{0, 2}));
+  ASSERT_TRUE(open().ok());
+  EXPECT_EQ(report_.damaged_bytes, size) << "the end was cut off";
+}
+
+// The search reads 1 MiB at a time. The next record may begin in the last bytes of such a piece.
+TEST_F(BandLogTest, FindsTheRecordAfterManyDamagedBytes) {
+  const std::string whole = make(2);
+  const std::size_t one = whole.size() / 2;
+  for (std::size_t bytes = (1 << 20) - 8; bytes <= (1 << 20) + 2; ++bytes) {
+    write_all(path_, whole.substr(0, one) + std::string(bytes, 'x') + whole.substr(one));
+    ASSERT_TRUE(open().ok());
+    EXPECT_EQ(rows_, (Rows{0, 1})) << bytes;
+    EXPECT_EQ(report_.damaged_bytes, bytes);
   }
 }
 

@@ -196,6 +196,20 @@ TEST_F(BlobStoreTest, ADamagedFileIsDataLossOnceAndCanBeSentAgain) {
   EXPECT_EQ(text_of(*store, digest), text);
 }
 
+// The digest is computed of pieces of 1 MiB.
+TEST_F(BlobStoreTest, DamageAtAnyPlaceIsDataLoss) {
+  const std::string text = long_text('e') + std::string(3 << 20, 'f');
+  const wire::Digest digest = wire::sha256(text);
+  for (const std::size_t at : {std::size_t{0}, text.size() / 2, text.size() - 1}) {
+    ASSERT_TRUE(put(*open(), text).ok());
+    EXPECT_EQ(text_of(*open(), digest), text);
+    std::string damaged = text;
+    damaged[at] = 'x';
+    write_all(file_of(digest), damaged);
+    EXPECT_EQ(open()->get(digest).status().code(), absl::StatusCode::kDataLoss) << "byte " << at;
+  }
+}
+
 TEST_F(BlobStoreTest, AFullDiskIsDetectedBeforeTheUpload) {
   const auto store = open();
   const std::string text(100'000, 'x');
