@@ -7,8 +7,11 @@ example=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+# A library that was built with sanitizers needs programs that were built with them.
+sanitizers=$(sed -n 's/^BANDSAW_SANITIZE:STRING=//p' "$build/CMakeCache.txt")
 cmake --install "$build" --component development --prefix "$work/prefix" >/dev/null
-cmake -G Ninja -S "$example" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_BUILD_TYPE=Release >/dev/null
+cmake -G Ninja -S "$example" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_CXX_FLAGS="${sanitizers:+-fsanitize=$sanitizers}" >/dev/null
 cmake --build "$work/build" >"$work/log" || { cat "$work/log"; exit 1; }
 cd "$work"
 build/ball
