@@ -77,7 +77,13 @@ absl::Status FarmClient::try_once(milliseconds deadline,
   const grpc::Status status = body(context);
   MutexLock lock(mutex_);
   running_ = nullptr;
-  return stopped_ && !status.ok() ? absl::CancelledError("interrupted") : link::from_grpc(status);
+  if (stopped_ && !status.ok()) {
+    return absl::CancelledError("interrupted");
+  }
+  // A coordinator that is being stopped cancels the calls in progress.
+  return status.error_code() == grpc::StatusCode::CANCELLED
+             ? absl::UnavailableError("the farm ended the call before it was answered")
+             : link::from_grpc(status);
 }
 
 absl::Status FarmClient::call(milliseconds deadline,

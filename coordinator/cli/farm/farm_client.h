@@ -162,7 +162,8 @@ class FarmClient {
   absl::Status put_rest(const wire::Digest& digest, absl::Span<const std::byte> bytes,
                         std::uint64_t offset, const std::function<void(std::uint64_t)>& sent)
       EXCLUDES(mutex_);
-  /// Calls `body` once, so that stop() can cancel it.
+  /// Calls `body` once, so that stop() can cancel it. UNAVAILABLE: the farm does not answer, or it
+  /// cancelled the call. CANCELLED: stop() was called. Returns other errors of the farm.
   absl::Status try_once(std::chrono::milliseconds deadline,
                         const std::function<grpc::Status(grpc::ClientContext&)>& body)
       EXCLUDES(mutex_);

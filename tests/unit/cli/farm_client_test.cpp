@@ -1,0 +1,66 @@
+// The errors of FarmClient's calls, on a server of which the test chooses the answers.
+
+#include "coordinator/cli/farm/farm_client.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// A farm that cancels its first calls, as a coordinator does that is being stopped.
+class CancellingFarm : public farm::Farm::Service {
+ public:
+  /// `cancelled`: number of calls that are answered with CANCELLED.
+  explicit CancellingFarm(int cancelled) : cancelled_(cancelled) {
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port_);
+    builder.RegisterService(this);
+    server_ = builder.BuildAndStart();
+  }
+
+  grpc::Status ListJobs(grpc::ServerContext*, const farm::ListJobsRequest*,
+                        farm::ListJobsReply*) override {
+    return cancelled_-- > 0 ? grpc::Status::CANCELLED : grpc::Status::OK;
+  }
+
+  /// Connects to this farm without TLS.
+  std::unique_ptr<FarmClient> connect() const {
+    link::JoinString join;
+    join.role = link::Role::kFarm;
+    join.addresses = {absl::StrCat("127.0.0.1:", port_)};
+    join.secret = std::string(22, 'a');
+    return *FarmClient::connect(join);
+  }
+
+ private:
+  std::atomic<int> cancelled_;
+  int port_ = 0;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+TEST(FarmClient, RepeatsACallThatTheFarmCancelled) {
+  const CancellingFarm farm(1);
+  const absl::Status status = farm.connect()->jobs().status();
+  EXPECT_TRUE(status.ok()) << status;
+}
+
+// CANCELLED would be taken for Ctrl-C: commands would end instead of waiting for the farm.
+TEST(FarmClient, SaysThatAFarmIsUnavailableThatCancelsAllCalls) {
+  const CancellingFarm farm(1000);
+  const absl::Status status = farm.connect()->jobs().status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable) << status;
+}
+
+TEST(FarmClient, IsCancelledByStop) {
+  const CancellingFarm farm(0);
+  const auto client = farm.connect();
+  client->stop();
+  EXPECT_EQ(client->jobs().status().code(), absl::StatusCode::kCancelled);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
