@@ -47,7 +47,8 @@ struct JobView {
   JobState state = JobState::kRunning;
   std::string reason;
   double fraction = 0;  ///< part of the work that is done, [0, 1]
-  /// Since its first lease, without the times between runs of the coordinator.
+  /// Since its first lease, without the times between runs of the coordinator and those in which it
+  /// was paused.
   double elapsed_s = 0;
   double remaining_s = -1;              ///< negative: unknown
   double samples_per_s = 0;             ///< pixel samples, recently; 0 for a final job

@@ -122,6 +122,9 @@ void Context::apply(const record::StateChanged& r) {
   if (job == nullptr || is_final(job->state)) {
     return;
   }
+  if (r.state == JobState::kPaused) {
+    job->stop_clock(clock.wall());
+  }
   Sequence* sequence = sequences.find(job->spec.sequence);
   if (is_final(r.state)) {
     if (jobs.active() == std::set<JobId>{r.job}) {  // it is the last active job

@@ -25,19 +25,27 @@ void LeaseLedger::add(Worker& worker, Job& job, const Pass& pass, Lease lease) {
   worker.leases.push_back(lease.id);
   job.leases.insert(lease.id);
   context_.available.update(worker);
-  if (!job.first_lease_at) {
-    job.first_lease_at = clock.wall();
-    job.throughput.start(clock.wall());
-  }
-  if (Sequence* sequence = context_.sequences.find(job.spec.sequence);
-      sequence != nullptr && !sequence->first_lease_at) {
-    sequence->first_lease_at = clock.wall();
-  }
+  start_clocks(job);
   const auto returned = pass.returned.find({lease.band.samples.first, lease.band.rows.first});
   const std::uint32_t attempt = returned == pass.returned.end() ? 1 : 1 + returned->second;
   context_.act(action::Lease{*worker.session, lease.id, job.id, job.spec.manifest,
                              job.spec.settings, lease.band, pass.tiles_of(lease.band), attempt,
                              lease.audit});
+}
+
+void LeaseLedger::start_clocks(Job& job) {
+  const Time now = context_.clock.wall();
+  if (job.state == JobState::kPaused) {  // a worker that reconnects still holds a lease of it
+    return;
+  }
+  if (!job.first_lease_at) {
+    job.first_lease_at = now;
+    job.throughput.start(now);
+  }
+  if (Sequence* sequence = context_.sequences.find(job.spec.sequence);
+      sequence != nullptr && !sequence->held && !sequence->first_lease_at) {
+    sequence->first_lease_at = now;
+  }
 }
 
 void LeaseLedger::end(LeaseId id, Revoke revoke) {

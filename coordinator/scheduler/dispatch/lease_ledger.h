@@ -24,6 +24,9 @@ class LeaseLedger {
   /// Adds a lease that owns no rows: one of a backup task (a second lease of a late band) or of an
   /// audit.
   void add(Worker& worker, Job& job, const Pass& pass, Lease lease);
+  /// Lets the elapsed times of the job and of its sequence go on, unless they do or are
+  /// paused, because the job has a lease.
+  void start_clocks(Job& job);
   /// Frees the lease's rows, or passes them on to its backup tasks. kYes: also revokes the lease at
   /// its worker.
   void end(LeaseId id, Revoke revoke);

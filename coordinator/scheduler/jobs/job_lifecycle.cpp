@@ -162,8 +162,9 @@ void JobLifecycle::storage_back() {
 
 void JobLifecycle::resume(Job& job) {
   context_.emit(record::StateChanged{job.id, JobState::kRunning, ""});
-  for (const LeaseId id : job.leases) {
+  for (const LeaseId id : job.leases) {  // that workers have kept
     context_.leases.find(id)->advanced_at = context_.clock.timeout_clock();
+    ledger_.start_clocks(job);
   }
   context_.jobs.mark_leasable(job);
   advance(job);

@@ -242,6 +242,12 @@ double Job::elapsed(Time now) const {
   return elapsed_before + (first_lease_at ? std::max(0.0, now - *first_lease_at) : 0.0);
 }
 
+void Job::stop_clock(Time now) {
+  elapsed_before = elapsed(now);
+  first_lease_at.reset();
+  throughput = {};
+}
+
 Audit* Job::audit_under(LeaseId lease) {
   const auto audit =
       std::find_if(audits.begin(), audits.end(), [&](const Audit& a) { return a.lease == lease; });

@@ -96,8 +96,11 @@ class Job {
   double cost_of(const Band& band) const;
   /// Returns the largest number of samples per pixel that its stop rule allows.
   std::uint64_t max_samples() const;
-  /// Returns the time in seconds that it has been worked on, in all epochs.
+  /// Returns the time in seconds that it has been worked on, in all epochs. The time in which it
+  /// was paused does not count.
   double elapsed(Time now) const;
+  /// Stops that time, because the job is paused. It goes on with first_lease_at.
+  void stop_clock(Time now);
   /// Returns the open audit that is rendered under this lease; nullptr: none.
   Audit* audit_under(LeaseId lease);
   bool timed() const { return std::holds_alternative<StopAtTime>(spec.stop); }
@@ -155,8 +158,8 @@ class Job {
   std::optional<record::JobSummary> summary;      ///< for a final job
   std::vector<WorkerShare> final_shares;          ///< for a final job, descending
 
-  std::optional<Time> first_lease_at;  ///< in this epoch
-  double elapsed_before = 0;           ///< seconds, in earlier epochs
+  std::optional<Time> first_lease_at;  ///< since this epoch began or the job was resumed
+  double elapsed_before = 0;           ///< seconds, before that
   double elapsed_noted = 0;            ///< seconds in all epochs, as journalled last
   RecentRate throughput;               ///< pixel samples per second
   CostMap cost;

@@ -105,6 +105,42 @@ TEST(Pause, ByAUserIsNotEndedByTheDiskOrARestart) {
   EXPECT_EQ(next.job(job).state, JobState::kRunning);
 }
 
+TEST(Pause, TakesNothingOfTheTimeOfAJob) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtTime{10, kMaxSamples}));
+  farm.hello(1, "a", 1);
+  farm.pass_time(4, {1});
+  EXPECT_EQ(farm.job(job).elapsed_s, 4);
+  farm.send(input::Pause{job});
+  farm.pass_time(20, {1});
+  EXPECT_EQ(farm.job(job).elapsed_s, 4);
+  EXPECT_LT(farm.job(job).remaining_s, 0) << "unknown";
+  FarmDriver next;
+  for (const Record& record : farm.records) {
+    next.scheduler.replay(record);
+  }
+  next.take(next.scheduler.replayed(next.now));
+  EXPECT_EQ(next.job(job).elapsed_s, 4) << "also after a restart";
+  farm.send(input::Resume{job});
+  farm.pass_time(3, {1});
+  EXPECT_EQ(farm.job(job).elapsed_s, 7);
+  EXPECT_EQ(farm.job(job).remaining_s, 3);
+}
+
+TEST(Pause, ThatALeaseOutlastsLetsTheTimeGoOn) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtTime{10, kMaxSamples}));
+  farm.hello(1, "a", 1);
+  farm.pass_time(4, {1});
+  farm.send(input::Pause{job});
+  farm.pass_time(0.5, {1});
+  ASSERT_TRUE(farm.all<action::Revoke>().empty());
+  farm.send(input::Resume{job});
+  ASSERT_EQ(farm.all<action::Lease>().size(), 1u);
+  farm.pass_time(3, {1});
+  EXPECT_EQ(farm.job(job).elapsed_s, 7);
+}
+
 TEST(Why, StatesWhatAJobWaitsFor) {
   FarmDriver farm;
   const JobId urgent = submit(farm, "r1", 10);
