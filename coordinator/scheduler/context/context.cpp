@@ -106,9 +106,9 @@ void Context::apply(const record::StateChanged& r) {
   };
   if (Sequence* sequence = sequences.find(r.job)) {
     if (is_final(sequence->state)) {  // failed frames are tried again
-      sequence->elapsed_before = sequence->elapsed_noted;
-      sequence->first_lease_at.reset();
-      sequence->done_before = sequence->counts().of(FrameState::kDone);
+      sequence->restart_clock();
+    } else if (r.state == JobState::kPaused) {
+      sequence->stop_clock(clock.wall());
     }
     sequence->state = r.state;
     sequence->reason = r.reason;

@@ -308,8 +308,7 @@ void Sequences::note_times() {
 void Sequences::resume_after_restart() {
   const std::uint32_t here = context_.options.compatibility.pixel_version;
   for (auto& [id, sequence] : context_.sequences.all()) {
-    sequence.elapsed_before = sequence.elapsed_noted;
-    sequence.done_before = sequence.counts().of(FrameState::kDone);
+    sequence.restart_clock();
     if (!is_final(sequence.state) && sequence.pixel_version != here) {
       end(sequence, JobState::kFailed, other_pixel_version(sequence.pixel_version, here));
     }

@@ -73,6 +73,18 @@ double Sequence::elapsed(Time now) const {
              : elapsed_before + (first_lease_at ? std::max(0.0, now - *first_lease_at) : 0.0);
 }
 
+void Sequence::stop_clock(Time now) {
+  elapsed_before = elapsed(now);
+  first_lease_at.reset();
+}
+
+void Sequence::restart_clock() {
+  elapsed_before = elapsed_noted;
+  elapsed_then = elapsed_noted;
+  first_lease_at.reset();
+  done_before = counts_.of(FrameState::kDone);
+}
+
 void Sequence::change(Frame& frame, FrameState to) {
   --counts_.in[static_cast<std::size_t>(frame.state)];
   ++counts_.in[static_cast<std::size_t>(to)];

@@ -52,8 +52,14 @@ class Sequence {
   std::uint64_t changes() const { return changes_; }
   /// Returns the specification of the job of a frame that has a manifest.
   JobSpec job_spec(const Frame& frame) const;
-  /// Returns the seconds for which the sequence has been worked on, in all epochs.
+  /// Returns the seconds for which the sequence has been worked on, in all epochs. The time in
+  /// which a user paused it does not count.
   double elapsed(Time now) const;
+  /// Stops that time, because the sequence is paused. It goes on with first_lease_at.
+  void stop_clock(Time now);
+  /// Begins to measure the pace of the frames: an epoch begins, or failed frames are tried again.
+  /// The elapsed time goes on from what is journalled, with first_lease_at.
+  void restart_clock();
 
   // Only Context::apply calls these three. They do nothing if there is no such frame.
   /// The scene of the frame is known, or the frame is tried again: it waits to be rendered.
@@ -72,9 +78,10 @@ class Sequence {
   bool held = false;                   ///< paused by a user
   std::string reason;                  ///< why the sequence is in its state
   double elapsed_noted = 0;            ///< seconds: the last elapsed() in the journal
-  double elapsed_before = 0;           ///< seconds, in earlier epochs
-  std::optional<Time> first_lease_at;  ///< in this epoch
-  std::size_t done_before = 0;         ///< frames that were done when this epoch began
+  std::optional<Time> first_lease_at;  ///< since restart_clock(), or since it was resumed
+  double elapsed_before = 0;           ///< seconds, before that
+  std::size_t done_before = 0;         ///< frames that were done at the last restart_clock()
+  double elapsed_then = 0;             ///< seconds: elapsed() at that time
   Totals done;                     ///< samples, counters and CPU time of the frames that are done
   double worst_error = -1;         ///< largest error of those frames; negative: unknown
   std::uint32_t workers_used = 0;  ///< largest number of workers of one of those frames

@@ -23,7 +23,9 @@ double rendered_parts(const Context& context, const Sequence& sequence, Time now
   return parts;
 }
 
-/// Returns the remaining time in seconds at the pace of this epoch; negative: unknown.
+/// Returns the remaining time in seconds at the pace since Sequence::restart_clock(); negative:
+/// unknown, also while a user has paused the sequence or the scenes of all frames that are left are
+/// missing.
 double remaining_of(const Sequence& sequence, double parts, Time now) {
   const FrameCounts& counts = sequence.counts();
   const auto left = static_cast<double>(counts.all() - counts.of(FrameState::kDone) -
@@ -34,7 +36,10 @@ double remaining_of(const Sequence& sequence, double parts, Time now) {
   if (is_final(sequence.state)) {
     return 0;
   }
-  const double passed = sequence.first_lease_at ? now - *sequence.first_lease_at : 0;
+  if (sequence.held || counts.of(FrameState::kRendering) + counts.of(FrameState::kWaiting) == 0) {
+    return -1;
+  }
+  const double passed = sequence.elapsed(now) - sequence.elapsed_then;
   // With less than half a frame, the pace is not known well enough.
   return finished > 0.5 && passed > 0 ? left * passed / finished : -1;
 }

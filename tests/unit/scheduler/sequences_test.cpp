@@ -224,6 +224,36 @@ TEST(Sequences, TheRemainingTimeOfARetryCountsOnlyItsFrames) {
   EXPECT_LT(farm.job(id).remaining_s, 0) << "unknown until half of the frame is rendered";
 }
 
+TEST(Sequences, TheRemainingTimeIsUnknownInAPauseAndTheSameAfterIt) {
+  FrameFarm farm;
+  const JobId id = farm.submit_frames(test_sequence("1-20"));
+  farm.join(1);
+  while (farm.in_state(id, FrameState::kDone).size() < 10) {
+    ASSERT_TRUE(farm.work());
+  }
+  const JobView before = farm.job(id);
+  ASSERT_GT(before.remaining_s, 0);
+  farm.send(input::Pause{id});
+  farm.pass_time(100, {1});
+  EXPECT_NEAR(farm.job(id).elapsed_s, before.elapsed_s, 1e-6);
+  EXPECT_LT(farm.job(id).remaining_s, 0);
+  farm.send(input::Resume{id});
+  EXPECT_NEAR(farm.job(id).elapsed_s, before.elapsed_s, 1e-6);
+  EXPECT_NEAR(farm.job(id).remaining_s, before.remaining_s, 1e-6);
+}
+
+TEST(Sequences, TheRemainingTimeIsUnknownWhileScenesAreMissing) {
+  FrameFarm farm;
+  const JobId id = farm.send(input::SubmitSequence{test_sequence("1-4")}).job;
+  farm.add(id, {1, 2});
+  farm.join(1);
+  farm.work_all();
+  ASSERT_THAT(farm.in_state(id, FrameState::kDone), ElementsAre(1, 2));
+  EXPECT_LT(farm.job(id).remaining_s, 0);
+  farm.add(id, {3, 4});
+  EXPECT_GT(farm.job(id).remaining_s, 0);
+}
+
 TEST(Sequences, TheReasonsOfTenFailedFramesAreTold) {
   const auto sentences = [](const std::string& frames) {
     FrameFarm farm;
