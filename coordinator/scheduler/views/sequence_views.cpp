@@ -44,6 +44,20 @@ double remaining_of(const Sequence& sequence, double parts, Time now) {
   return finished > 0.5 && passed > 0 ? left * passed / finished : -1;
 }
 
+/// Returns the first frame job if all are paused although the sequence is not, for example because
+/// the disk is full; nullptr: one of them is not paused, or there is none.
+const Job* first_of_paused(const Context& context, const Sequence& sequence) {
+  const Job* first = nullptr;
+  for (const JobId id : sequence.open_jobs()) {
+    const Job& job = context.jobs.at(id);
+    if (sequence.held || job.state != JobState::kPaused) {
+      return nullptr;
+    }
+    first = first == nullptr ? &job : first;
+  }
+  return first;
+}
+
 void add_workers(const Context& context, const Sequence& sequence, JobView& view) {
   std::set<std::string> named;
   for (const JobId id : sequence.open_jobs()) {
@@ -90,6 +104,11 @@ JobView sequence_view(const Context& context, const Sequence& sequence, Time now
   view.fraction = (over + parts) / static_cast<double>(counts.all());
   view.elapsed_s = sequence.elapsed(now);
   view.remaining_s = remaining_of(sequence, parts, now);
+  if (const Job* paused = first_of_paused(context, sequence)) {
+    view.state = JobState::kPaused;
+    view.reason = paused->reason;
+    view.remaining_s = -1;
+  }
   Totals totals = sequence.done;
   view.workers_used = sequence.workers_used;
   for (const JobId id : sequence.open_jobs()) {

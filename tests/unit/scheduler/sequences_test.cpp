@@ -413,6 +413,28 @@ TEST(Sequences, ArePausedResumedAndCancelledAsOneJob) {
             absl::StatusCode::kFailedPrecondition);
 }
 
+TEST(Sequences, ArePausedWhileAFullDiskPausesAllFrames) {
+  FrameFarm farm;
+  const JobId id = farm.submit_frames(test_sequence("1-20"));
+  farm.join(1);
+  for (int i = 0; i < 10; ++i) {
+    farm.work();
+  }
+  const std::vector<FrameNumber> open = farm.in_state(id, FrameState::kRendering);
+  ASSERT_GT(open.size(), 1u);
+  for (const FrameNumber frame : open) {
+    EXPECT_EQ(farm.job(id).state, JobState::kRunning) << "before frame " << frame;
+    farm.send(input::StorageFailed{farm.job_of(id, frame), "the disk is full"});
+  }
+  ASSERT_EQ(farm.in_state(id, FrameState::kRendering), open);
+  EXPECT_EQ(farm.job(id).state, JobState::kPaused);
+  EXPECT_EQ(farm.job(id).reason, "the disk is full");
+  EXPECT_LT(farm.job(id).remaining_s, 0);
+  farm.send(input::StorageBack{});
+  EXPECT_EQ(farm.job(id).state, JobState::kRunning);
+  EXPECT_EQ(farm.job(id).reason, "");
+}
+
 TEST(Sequences, AreForgottenWithAllTheirFrames) {
   FrameFarm farm;
   const JobId id = farm.submit_frames(test_sequence("1-3"));
