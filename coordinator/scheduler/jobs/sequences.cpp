@@ -145,19 +145,19 @@ void Sequences::retry(const input::RetryFrames& in) {
     context_.emit(record::StateChanged{in.job, JobState::kRunning, ""});
   }
   for (const FrameNumber number : numbers) {
-    try_again(*sequence, number, 0, "");
+    wait_again(*sequence, number, 0, "");
   }
 }
 
-/// Makes the frame wait again, and forgets its failed job. `failures`: number of its jobs that
-/// count as failed.
-void Sequences::try_again(Sequence& sequence, FrameNumber number, std::uint32_t failures,
-                          const std::string& reason) {
+/// Makes the frame wait again, and forgets its job, which has failed or was cancelled. `failures`:
+/// number of its jobs that count as failed.
+void Sequences::wait_again(Sequence& sequence, FrameNumber number, std::uint32_t failures,
+                           const std::string& reason) {
   const Sequence::Frame& frame = *sequence.frame(number);
-  const JobId failed = frame.job;
+  const JobId old = frame.job;
   context_.emit(record::FrameWaits{sequence.id, number, DigestHex(frame.manifest),
                                    frame.package_bytes, failures, std::string(reason)});
-  forget_job(failed);
+  forget_job(old);
 }
 
 void Sequences::forget_job(JobId id) {
@@ -174,13 +174,19 @@ void Sequences::cancel(const input::Cancel& in) {
   }
 }
 
-/// Ends the sequence; jobs of its frames that are not final are cancelled.
+/// Ends the sequence; jobs of its frames that are not final are cancelled. If the sequence is
+/// cancelled, their frames have not failed: they are as if they had no job yet.
 void Sequences::end(Sequence& sequence, JobState state, const std::string& reason) {
   context_.emit(record::TimeSpent{sequence.id, sequence.elapsed(context_.clock.wall())});
   context_.emit(record::StateChanged{sequence.id, state, clean_text(reason, wire::kReasonBytes)});
   const std::set<JobId> open = sequence.open_jobs();
   for (const JobId id : open) {
-    lifecycle_.end(context_.jobs.at(id), JobState::kCancelled, reason);
+    Job& job = context_.jobs.at(id);
+    const FrameNumber frame = job.spec.frame;
+    lifecycle_.end(job, JobState::kCancelled, reason);
+    if (state == JobState::kCancelled) {
+      wait_again(sequence, frame, 0, "");
+    }
   }
 }
 
@@ -266,7 +272,7 @@ void Sequences::advance() {
 /// are added to it.
 void Sequences::advance(Sequence& sequence, std::size_t& open_frames) {
   while (const Sequence::Frame* failed = sequence.next_to_retry()) {
-    try_again(sequence, failed->number, failed->failures + 1, failed->reason);
+    wait_again(sequence, failed->number, failed->failures + 1, failed->reason);
   }
   if (sequence.held) {
     return;

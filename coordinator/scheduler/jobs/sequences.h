@@ -50,8 +50,8 @@ class Sequences {
  private:
   void advance(Sequence& sequence, std::size_t& open_frames);
   void end(Sequence& sequence, JobState state, const std::string& reason);
-  void try_again(Sequence& sequence, FrameNumber number, std::uint32_t failures,
-                 const std::string& reason);
+  void wait_again(Sequence& sequence, FrameNumber number, std::uint32_t failures,
+                  const std::string& reason);
   void forget_job(JobId id);
   Sequence* find_active(JobId id);
 

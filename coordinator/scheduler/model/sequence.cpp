@@ -125,7 +125,8 @@ void Sequence::end(const Job& job) {
   }
   if (job.state != JobState::kDone) {
     const bool cancelled = job.state == JobState::kCancelled;
-    frame->reason = cancelled ? "a user cancelled this frame's job" : job.reason;
+    frame->reason =
+        cancelled && job.reason.empty() ? "a user cancelled this frame's job" : job.reason;
     change(*frame, FrameState::kFailed);
     if (!cancelled && frame->failures + 1 < kTries) {
       to_retry_.insert(frame->number);

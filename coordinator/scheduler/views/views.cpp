@@ -345,13 +345,11 @@ std::vector<std::string> Views::why(JobId id, Time now) const {
 
 /// Returns the sentences about its frames, then those about the first frame that is being rendered.
 std::vector<std::string> Views::why_of_sequence(const Sequence& sequence, Time now) const {
-  if (sequence.state == JobState::kDone) {
-    return {"it is done"};
+  if (sequence.state == JobState::kDone || sequence.state == JobState::kCancelled) {
+    return {sequence.state == JobState::kDone ? "it is done" : "it was cancelled"};
   }
   std::vector<std::string> lines;
-  if (sequence.state == JobState::kCancelled) {
-    lines.emplace_back("it was cancelled");
-  } else if (!sequence.reason.empty()) {
+  if (!sequence.reason.empty()) {
     lines.push_back(sequence.reason);
   }
   for (std::string& line : frame_sentences(sequence)) {

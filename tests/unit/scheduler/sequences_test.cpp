@@ -513,6 +513,36 @@ TEST(Sequences, ARestartKeepsDoneAndFailedFrames) {
   }
 }
 
+TEST(Sequences, ThatAreCancelledDoNotFail) {
+  FrameFarm farm;
+  const JobId id = farm.submit_frames(test_sequence("1-10"));
+  farm.join(1);
+  while (farm.in_state(id, FrameState::kDone).size() < 2) {
+    ASSERT_TRUE(farm.work());
+  }
+  const std::vector<FrameNumber> done = farm.in_state(id, FrameState::kDone);
+  const JobId frame = farm.job_of(id, farm.in_state(id, FrameState::kRendering).front());
+  const Step step = farm.send(input::Cancel{id});
+  EXPECT_FALSE(farm.scheduler.job(frame, farm.now)) << "its job is forgotten";
+  EXPECT_FALSE(in<action::DropJob>(step).empty());
+  const auto expect_right = [&](const Scheduler& scheduler) {
+    const JobView view = *scheduler.job(id, farm.now);
+    EXPECT_EQ(view.state, JobState::kCancelled);
+    EXPECT_EQ(view.frames.of(FrameState::kDone), 2u);
+    EXPECT_EQ(view.frames.of(FrameState::kWaiting), 8u);
+    EXPECT_EQ(view.fraction, 0.2);
+    EXPECT_THAT(scheduler.why(id, farm.now), ElementsAre("it was cancelled"));
+    EXPECT_EQ(scheduler.jobs(farm.now).size(), 1u);
+  };
+  expect_right(farm.scheduler);
+  EXPECT_EQ(farm.in_state(id, FrameState::kDone), done);
+  for (const std::vector<Record>& records : {farm.records, farm.scheduler.snapshot()}) {
+    expect_right(*restarted(records, farm.now));
+  }
+  farm.send(input::Forget{{id}});
+  EXPECT_THAT(farm.scheduler.jobs(farm.now), IsEmpty());
+}
+
 TEST(Sequences, AnotherPixelVersionFailsTheWholeSequence) {
   FrameFarm farm;
   const JobId id = farm.submit_frames(test_sequence("1-3"));
@@ -525,6 +555,7 @@ TEST(Sequences, AnotherPixelVersionFailsTheWholeSequence) {
   other.replayed(farm.now);
   EXPECT_EQ(other.job(id, farm.now)->state, JobState::kFailed);
   EXPECT_THAT(other.job(id, farm.now)->reason, HasSubstr("pixel version"));
+  EXPECT_THAT(other.frames(id, 0)->front().reason, HasSubstr("pixel version"));
   EXPECT_EQ(other.step(input::RetryFrames{id, {}}, farm.now).status.code(),
             absl::StatusCode::kFailedPrecondition);
 }
