@@ -11,6 +11,7 @@
 #include <string>
 
 #include "absl/strings/numbers.h"
+#include "renderlib/base/file.h"
 #include "renderlib/package/package.h"
 
 namespace bandsaw::coordinator {
@@ -58,12 +59,18 @@ std::set<wire::Digest> Collector::known_blobs_of(const KeptJob& job) {
   return blobs_of(job).value_or(std::set<wire::Digest>());
 }
 
-/// Returns when a final job ended, and the size of its files; its frames are included in both.
-Collector::Final Collector::final_job(const KeptJob& kept) const {
+/// Returns when a final job ended, and the size of its files; its frames are included in both. A
+/// job that has no folder, such as a sequence that was cancelled before a frame was done, gets an
+/// empty one, whose age counts from now on.
+Collector::Final Collector::final_job(const KeptJob& kept, double now) const {
   Final job{.id = kept.id};
   add_files_of(kept.id, job);
   for (const JobId frame : kept.frame_jobs) {
     add_files_of(frame, job);
+  }
+  if (job.at == 0) {
+    make_folder(folder_.job(kept.id)).IgnoreError();  // the next collection tries it again
+    job.at = now;
   }
   return job;
 }
@@ -99,7 +106,7 @@ std::vector<JobId> Collector::to_forget(const std::vector<KeptJob>& jobs, double
       ++users[digest];
     }
     if (job.final) {
-      final_jobs.push_back(final_job(job));
+      final_jobs.push_back(final_job(job, now));
       bytes += final_jobs.back().bytes;
     }
   }

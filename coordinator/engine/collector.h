@@ -44,7 +44,7 @@ class Collector {
  private:
   struct Final {
     JobId id = 0;
-    double at = 0;            ///< seconds since 1970; 0: none of its files is left
+    double at = 0;            ///< seconds since 1970
     std::uint64_t bytes = 0;  ///< size of its files
   };
   /// The blobs of the packages of one job, each once.
@@ -52,7 +52,7 @@ class Collector {
     std::size_t packages = 0;  ///< number of packages that were read
     std::set<wire::Digest> blobs;
   };
-  Final final_job(const KeptJob& job) const;
+  Final final_job(const KeptJob& job, double now) const;
   void add_files_of(JobId id, Final& job) const;
   /// Adds the blobs of a package including its manifest; nothing if the manifest is missing or
   /// damaged. Returns false if it exists and cannot be read.

@@ -83,6 +83,15 @@ TEST_F(CollectorTest, ForgetsFinalJobsByAge) {
       ElementsAre(1));
 }
 
+TEST_F(CollectorTest, KeepsJobsWithoutFilesAsLongAsOthers) {
+  const std::vector<KeptJob> jobs = {{1, true, {}, {}}};
+  EXPECT_THAT(collector({}).to_forget(jobs, kNow), IsEmpty());
+  set_time(folder_.job(1), kNow - 29 * kDay);
+  EXPECT_THAT(collector({}).to_forget(jobs, kNow), IsEmpty());
+  set_time(folder_.job(1), kNow - 31 * kDay);
+  EXPECT_THAT(collector({}).to_forget(jobs, kNow), ElementsAre(1));
+}
+
 TEST_F(CollectorTest, ForgetsTheOldestBeyondTheBytes) {
   for (const JobId job : {1, 2, 3}) {
     result(job, 1'000, kNow - static_cast<double>(10 - job) * kDay);
