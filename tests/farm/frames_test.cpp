@@ -18,6 +18,7 @@ namespace bandsaw::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// A glTF file with a triangle that moves to the right for two seconds, before a camera.
 std::string moving_triangle() {
@@ -185,6 +186,28 @@ TEST_F(Frames, ThatWereNotSentAreNamedIfAFileCannotBeWritten) {
   EXPECT_THAT(failed.err, HasSubstr("w.0001.pfm"));
   EXPECT_THAT(failed.err, HasSubstr("-2000 were not sent"));
   EXPECT_THAT(failed.err, HasSubstr("--continue 1"));
+}
+
+// There is no worker, and so many frames that most are not sent when the job is cancelled.
+TEST_F(Frames, AreNotSentAnyMoreWhenTheJobIsCancelled) {
+  Process client = Process::start(
+      submit("1-2000", {"-o", outputs_, "--then", "echo job $BANDSAW_JOB is $BANDSAW_STATE"}));
+  ASSERT_TRUE(client.wait_for("\"event\":\"job\"")) << client.err();
+  expect_success(run(farm_.command({"cancel", "1"})));
+  EXPECT_EQ(client.wait(), 1);
+  EXPECT_THAT(client.out(), HasSubstr("\"event\":\"ended\""));
+  EXPECT_THAT(client.err(), HasSubstr("job 1 cancelled"));
+  EXPECT_THAT(client.err(), HasSubstr("job 1 is cancelled"));  // by --then
+  EXPECT_THAT(client.err(), Not(HasSubstr("were not sent")));
+}
+
+TEST_F(Frames, AreNotSentAnyMoreWhenTheJobOfADetachedSubmitterIsCancelled) {
+  Process client = Process::start(submit("1-2000", {"--detach"}));
+  ASSERT_TRUE(farm_.coordinator().wait_for("frames=2000")) << client.err();
+  expect_success(run(farm_.command({"cancel", "1"})));
+  EXPECT_EQ(client.wait(), 1);
+  EXPECT_THAT(client.err(), HasSubstr("job 1 was cancelled"));
+  EXPECT_THAT(client.err(), Not(HasSubstr("were not sent")));
 }
 
 TEST_F(Frames, HaveAContactSheetAndAFailedCommandOrMissingFfmpegIsReported) {

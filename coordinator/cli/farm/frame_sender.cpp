@@ -35,6 +35,12 @@ absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
                         ImportedPackage& package, ProgressDisplay& display) {
   const absl::Status status = call_with_retries(
       client, [&] { return try_to_send(client, sequence, frame, package, display); });
+  if (absl::IsFailedPrecondition(status)) {
+    const auto progress = call_with_retries(client, [&] { return client.job(sequence); });
+    if (progress.ok() && is_final(progress->job.state)) {
+      return absl::AbortedError(status.message());
+    }
+  }
   return client.stopped() ? absl::CancelledError("interrupted") : status;
 }
 
@@ -81,7 +87,9 @@ void FrameSender::run() {
         status_ =
             absl::Status(status.code(), absl::StrCat("frame ", frame, ": ", status.message()));
       }
-      failed_();
+      if (!absl::IsAborted(status)) {
+        failed_();
+      }
       return;
     }
     MutexLock lock(mutex_);

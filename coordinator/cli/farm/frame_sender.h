@@ -21,8 +21,9 @@
 namespace bandsaw::coordinator {
 
 /// Sends those blobs of the package that the farm lacks, then gives the frame its scene. Waits up
-/// to a minute for a farm that cannot be reached. CANCELLED: client.stop() was called. Returns
-/// other errors of the farm and of the package.
+/// to a minute for a farm that cannot be reached. CANCELLED: client.stop() was called. ABORTED: the
+/// sequence is over, because a user cancelled it. Returns other errors of the farm and of the
+/// package.
 absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
                         ImportedPackage& package, ProgressDisplay& display);
 
@@ -33,7 +34,8 @@ using ImportFrame = std::function<absl::StatusOr<ImportedPackage>(FrameNumber fr
 class FrameSender {
  public:
   /// Starts at once, on a connection of its own to the farm of `client`. If a frame cannot be sent,
-  /// `failed` is called on the sender's thread, and no further frame is sent.
+  /// no further frame is sent, and `failed` is called on the sender's thread, except if the
+  /// sequence is over.
   FrameSender(const FarmClient& client, const Console& console, JobId sequence,
               std::vector<FrameNumber> frames, ImportFrame import, std::function<void()> failed);
   /// Stops and waits for the thread.
@@ -42,7 +44,7 @@ class FrameSender {
   FrameSender& operator=(const FrameSender&) = delete;
 
   /// Waits until all frames are sent, or one of them cannot be sent; returns its error. CANCELLED:
-  /// stop() was called.
+  /// stop() was called. ABORTED: the sequence is over.
   absl::Status wait();
   /// Ends the import or the call that is in progress. Thread-safe.
   void stop();

@@ -119,13 +119,17 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
   }
 }
 
-/// Prints why the sender has ended, and the frames whose scenes were not sent; returns the exit
-/// code. Errors of the import and of the farm have the same type: the codes for which
-/// import_exit_code() has no exit code of its own (kWrong) are treated as errors of the farm.
+/// Prints why the sender has ended, and the frames whose scenes were not sent, unless the job is
+/// over (ABORTED); returns the exit code. Errors of the import and of the farm have the same type:
+/// the codes for which import_exit_code() has no exit code of its own (kWrong) are treated as
+/// errors of the farm.
 ExitCode not_sent(const absl::Status& status, JobId job, const FrameSender& sender,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)
                                                                      : import_exit_code(status);
+  if (absl::IsAborted(status)) {
+    return console.fail(code, std::string(status.message()));
+  }
   return console.fail(
       code == ExitCode::kDone ? ExitCode::kFailed : code,
       absl::StrCat(
