@@ -77,13 +77,14 @@ absl::Status check_files(const SubmitOptions& options, const WatchOptions& watch
 struct Started {
   JobId job = 0;
   std::vector<FrameNumber> left;  ///< frames whose scenes are still to be sent
+  absl::Status sent;              ///< error of sending the first scene, once the job is started
 };
 
 /// Starts or continues the sequence and sends its first scene. On an error of the import, sets
 /// `code` to its exit code; otherwise `code` is unchanged.
 absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options,
                               FrameImporter& importer, Process& process, ExitCode& code) {
-  Started started{options.continued, options.frames};
+  Started started{options.continued, options.frames, absl::OkStatus()};
   if (options.continued != 0) {
     ASSIGN_OR_RETURN(started.left, lacking(client, options));
     if (started.left.empty()) {
@@ -106,8 +107,10 @@ absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options,
   if (started.job == 0) {
     ASSIGN_OR_RETURN(started.job, start_sequence(client, options, package->info(), settings));
   }
-  RETURN_IF_ERROR(send_frame(client, started.job, started.left.front(), *package, display));
-  started.left.erase(started.left.begin());
+  started.sent = send_frame(client, started.job, started.left.front(), *package, display);
+  if (started.sent.ok()) {
+    started.left.erase(started.left.begin());
+  }
   return started;
 }
 
@@ -119,11 +122,11 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
   }
 }
 
-/// Prints why the sender has ended, and the frames whose scenes were not sent, unless the job is
+/// Prints why scenes were not sent, and the frames whose scenes these are, unless the job is
 /// over (ABORTED); returns the exit code. Errors of the import and of the farm have the same type:
 /// the codes for which import_exit_code() has no exit code of its own (kWrong) are treated as
 /// errors of the farm.
-ExitCode not_sent(const absl::Status& status, JobId job, const FrameSender& sender,
+ExitCode not_sent(const absl::Status& status, JobId job, const std::vector<FrameNumber>& frames,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)
                                                                      : import_exit_code(status);
@@ -133,7 +136,7 @@ ExitCode not_sent(const absl::Status& status, JobId job, const FrameSender& send
   return console.fail(
       code == ExitCode::kDone ? ExitCode::kFailed : code,
       absl::StrCat(
-          status.message(), "; the scenes of the frames ", frames_text(sender.unsent()),
+          status.message(), "; the scenes of the frames ", frames_text(frames),
           " were not sent, and the job waits for them; send them with the same command and "
           "--continue ",
           job));
@@ -155,6 +158,9 @@ ExitCode submit_frames(FarmClient& client, const SubmitOptions& options, WatchOp
     return console.fail(code == ExitCode::kDone ? exit_code_of(started.status()) : code,
                         std::string(started.status().message()));
   }
+  if (!started->sent.ok()) {
+    return not_sent(started->sent, started->job, started->left, console);
+  }
   const auto import = [&](FrameNumber frame, const std::atomic<bool>& stop) {
     std::vector<std::string> warnings;  // those of the first frame have been printed
     return importer.import(frame, stop, warnings);
@@ -168,7 +174,7 @@ ExitCode submit_frames(FarmClient& client, const SubmitOptions& options, WatchOp
     const Interrupts::Listener listener(process.interrupts, [&] { sender.stop(); });
     const absl::Status sent = sender.wait();
     say_started(started->job, options.verbosity, console);
-    return sent.ok() ? ExitCode::kDone : not_sent(sent, started->job, sender, console);
+    return sent.ok() ? ExitCode::kDone : not_sent(sent, started->job, sender.unsent(), console);
   }
   watch.job = started->job;
   const WatchedFrames watched = watch_frames(client, watch, process);
@@ -179,7 +185,7 @@ ExitCode submit_frames(FarmClient& client, const SubmitOptions& options, WatchOp
   }
   // The sender's error ends the watch with kInterrupted. With any other code the watch has ended by
   // itself, for example because a file could not be written, and the sender was stopped after it.
-  code = not_sent(sent, started->job, sender, console);
+  code = not_sent(sent, started->job, sender.unsent(), console);
   return watched.code == ExitCode::kInterrupted ? code : watched.code;
 }
 
