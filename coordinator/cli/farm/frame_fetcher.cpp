@@ -172,8 +172,13 @@ absl::Status FrameFetcher::fetch_rest() {
 absl::Status FrameFetcher::feed_video() {
   while (in_video_ < numbers_.size()) {
     const FrameNumber number = numbers_[in_video_];
-    ASSIGN_OR_RETURN(const JobPictures pictures, pictures_of(number, done_.at(number)));
-    RETURN_IF_ERROR(video_->add(pictures.best(), wanted_.display.over(pictures.result.display)));
+    const absl::StatusOr<JobPictures> pictures =
+        call_with_retries(*client_, [&] { return pictures_of(number, done_.at(number)); });
+    if (client_->stopped()) {
+      return absl::CancelledError("interrupted");
+    }
+    RETURN_IF_ERROR(pictures.status());
+    RETURN_IF_ERROR(video_->add(pictures->best(), wanted_.display.over(pictures->result.display)));
     ++in_video_;
   }
   return video_->finish();

@@ -36,7 +36,8 @@ class FrameFetcher {
   /// it up to a minute. CANCELLED: stop() was called. Other errors as update().
   absl::Status fetch_rest();
   /// Writes the contact sheet (one picture that shows all frames) and, if all frames are done, the
-  /// video. Call it last.
+  /// video. Call it last. If the farm cannot be reached, waits for it as fetch_rest() does.
+  /// CANCELLED: stop() was called. Other errors as update().
   absl::Status make_collections();
   /// Cancels the calls to the farm. Thread-safe.
   void stop() { client_->stop(); }

@@ -78,15 +78,19 @@ WatchedFrames watch_frames(FarmClient& client, const WatchOptions& options, Proc
     client.stop();
     fetcher.stop();
   });
+  const std::string how = come_back(options, "NAME.####.png");
   const auto last = follow(client, job, fetcher, display);
   if (!last.ok()) {
     display.clear();
-    const std::string how = come_back(options, "NAME.####.png");
     const std::string otherwise =
         absl::StrCat(last.status().message(), "; the farm keeps the images. ", how);
     return {left_early(last.status(), job, how, otherwise, console), false};
   }
-  absl::Status made = fetcher.make_collections();
+  const absl::Status made = fetcher.make_collections();
+  if (absl::IsCancelled(made) || absl::IsUnavailable(made)) {
+    display.clear();
+    return {left_early(made, job, how, "", console), true};
+  }
   std::vector<std::string> outputs = options.outputs;
   for (const std::string& file : {options.after.contact_sheet, options.after.video}) {
     if (!file.empty()) {
