@@ -16,6 +16,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/string_view.h"
@@ -160,23 +161,25 @@ absl::StatusOr<Shape> shape_of(absl::string_view bytes) {
 }
 
 // A source that never ends: after the last byte of the file it returns line feeds and records that
-// they were read. stb_image 2.27 loops for ever on a Radiance file that ends within a run; line
-// feeds end every header line and every run.
+// they were read. stb_image 2.27 loops for ever on a Radiance file that ends within a run, and does
+// not report that a TGA, BMP or PNM file ends within its pixels. Line feeds end every header line
+// and every run.
 struct Endless {
   absl::string_view rest;
+  const char* ahead = nullptr;  ///< stb_image's own buffer, which its first request fills
   bool overrun = false;
 };
 
 int read_endless(void* user, char* to, int size) {
   auto& source = *static_cast<Endless*>(user);
+  source.ahead = source.ahead == nullptr ? to : source.ahead;
   const std::size_t wanted = static_cast<std::size_t>(size);
   const std::size_t real = std::min(wanted, source.rest.size());
   std::memcpy(to, source.rest.data(), real);
   source.rest.remove_prefix(real);
-  // A request for more than the four bytes of a pixel only fills stb_image's buffer ahead: it may
-  // get fewer bytes. A smaller request must get all.
-  constexpr std::size_t kPixel = 4;
-  if (real == wanted || (real > 0 && wanted > kPixel)) {
+  // A request into stb_image's own buffer reads ahead: it may get fewer bytes than it wants, but
+  // one at least. Any other request must get all.
+  if (real == wanted || (real > 0 && to == source.ahead)) {
     return static_cast<int>(real);
   }
   std::memset(to + real, '\n', wanted - real);
@@ -184,14 +187,27 @@ int read_endless(void* user, char* to, int size) {
   return size;
 }
 
+// Skipping past the end is no overrun: BMP files may end before the padding of their last row.
 void skip_endless(void* user, int size) {
   auto& source = *static_cast<Endless*>(user);
   const std::size_t wanted = static_cast<std::size_t>(std::max(size, 0));
-  source.overrun |= wanted > source.rest.size();
   source.rest.remove_prefix(std::min(wanted, source.rest.size()));
 }
 
-int at_end(void*) { return 0; }
+int at_end(void* user) { return static_cast<const Endless*>(user)->overrun ? 1 : 0; }
+
+constexpr stbi_io_callbacks kEndless{read_endless, skip_endless, at_end};
+
+absl::Status failure(const Endless& source) {
+  return source.overrun ? absl::InvalidArgumentError("is truncated: its last pixels are missing")
+                        : failure();
+}
+
+// Returns true if stb_image handles the end of the file itself: it refuses a PNG file that is cut
+// off, and shows the part of a JPEG file that is there.
+bool is_png_or_jpeg(absl::string_view bytes) {
+  return absl::StartsWith(bytes, "\x89PNG") || absl::StartsWith(bytes, "\xff\xd8");
+}
 
 // Returns an image whose texels stay in the decoder's memory, which is freed with the last
 // reference.
@@ -210,15 +226,11 @@ ImageTexture texture_of(Pixels<T> pixels, const Shape& shape, int channels,
 
 absl::StatusOr<ImageTexture> decode_radiance(absl::string_view bytes) {
   Endless source{bytes};
-  const stbi_io_callbacks callbacks{read_endless, skip_endless, at_end};
   Shape shape;
-  Pixels<float> pixels = owned(stbi_loadf_from_callbacks(&callbacks, &source, &shape.width,
+  Pixels<float> pixels = owned(stbi_loadf_from_callbacks(&kEndless, &source, &shape.width,
                                                          &shape.height, &shape.channels, 3));
-  if (source.overrun) {
-    return absl::InvalidArgumentError("is truncated: its last pixels are missing");
-  }
-  if (pixels == nullptr) {
-    return failure();
+  if (source.overrun || pixels == nullptr) {
+    return failure(source);
   }
   return texture_of(std::move(pixels), shape, 3, ImageTexture::Format::kFloat32);
 }
@@ -230,10 +242,17 @@ absl::StatusOr<Pixels<stbi_uc>> decode_pixels(absl::string_view bytes, int chann
     ASSIGN_OR_RETURN(shape, shape_of(bytes));
     return decode_webp(bytes, channels);
   }
+  Endless source{bytes};
   Pixels<stbi_uc> pixels =
-      owned(stbi_load_from_memory(data_of(bytes), static_cast<int>(bytes.size()), &shape.width,
-                                  &shape.height, &shape.channels, channels));
-  return pixels == nullptr ? failure() : absl::StatusOr<Pixels<stbi_uc>>(std::move(pixels));
+      owned(is_png_or_jpeg(bytes)
+                ? stbi_load_from_memory(data_of(bytes), static_cast<int>(bytes.size()),
+                                        &shape.width, &shape.height, &shape.channels, channels)
+                : stbi_load_from_callbacks(&kEndless, &source, &shape.width, &shape.height,
+                                           &shape.channels, channels));
+  if (source.overrun || pixels == nullptr) {
+    return failure(source);
+  }
+  return pixels;
 }
 
 absl::StatusOr<ImageTexture> decode_bytes(absl::string_view bytes, int channels) {

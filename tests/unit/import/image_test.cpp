@@ -94,6 +94,42 @@ TEST(DecodeImage, ATruncatedRadianceFileIsAnError) {
       HasSubstr("truncated"));
 }
 
+// Returns a TGA file of 3 x 50 pixels with this type and these bytes of pixels.
+std::string tga(char type, const std::string& pixels) {
+  const char header[18] = {0, 0, type, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 50, 0, 24, 0};
+  return std::string(header, sizeof header) + pixels;
+}
+
+// Returns a BMP file of 3 x 50 pixels; its rows have 9 bytes and 3 of padding.
+std::string bmp() {
+  const char header[54] = {'B', 'M', 0, 0, 0, 0, 0, 0,  0, 0, 54, 0, 0, 0,  40,
+                           0,   0,   0, 3, 0, 0, 0, 50, 0, 0, 0,  1, 0, 24, 0};
+  return std::string(header, sizeof header) + std::string(50 * 12, '\x50');
+}
+
+// stb_image alone leaves the missing pixels of such files as they were in memory, or loops for ever
+// on their headers.
+TEST(DecodeImage, AFileWithoutItsLastPixelsIsAnError) {
+  std::string runs;
+  for (int i = 0; i < 50; ++i) {
+    runs += std::string("\x82\x10\x20\x30", 4);
+  }
+  std::vector<std::string> warnings;
+  for (const std::string& whole : {std::string("P6 3 50 255\n") + std::string(450, '\x50'),
+                                   std::string("P5 3 50 65535\n") + std::string(300, '\x50'),
+                                   tga(2, std::string(450, '\x50')), tga(10, runs), bmp()}) {
+    EXPECT_TRUE(decode_image(whole, warnings).ok()) << whole.substr(0, 2);
+    for (std::size_t size = 0; size < whole.size() - 3; ++size) {
+      EXPECT_FALSE(decode_image(whole.substr(0, size), warnings).ok()) << size;
+    }
+    EXPECT_THAT(
+        std::string(decode_image(whole.substr(0, whole.size() - 4), warnings).status().message()),
+        HasSubstr("truncated"));
+  }
+  const std::string whole = bmp();
+  EXPECT_TRUE(decode_image(whole.substr(0, whole.size() - 3), warnings).ok()) << "no padding";
+}
+
 TEST(DecodeImage, ChangedBytesDoNotCrash) {
   std::mt19937_64 random(3);
   std::vector<std::string> warnings;
