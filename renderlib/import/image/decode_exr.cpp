@@ -5,10 +5,12 @@
 
 #include <tinyexr.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include "absl/strings/match.h"
@@ -33,7 +35,30 @@ absl::Status failure(const char* error) {
   return status;
 }
 
-absl::Status check_size(const unsigned char* data, std::size_t size) {
+/// Properties of the header that decide where pixels belong.
+struct Layout {
+  EXRBox2i stored{};    ///< data window: the pixels that the file has
+  EXRBox2i shown{};     ///< display window: the pixels that the image has
+  bool turned = false;  ///< the rows are not stored from the top
+};
+
+std::int64_t width_of(const EXRBox2i& box) { return std::int64_t{box.max_x} - box.min_x + 1; }
+std::int64_t height_of(const EXRBox2i& box) { return std::int64_t{box.max_y} - box.min_y + 1; }
+
+absl::Status check_size(const EXRBox2i& box) {
+  const std::int64_t width = width_of(box);
+  const std::int64_t height = height_of(box);
+  constexpr std::int64_t kMax = kMaxTextureSide;
+  if (width < 1 || height < 1 || width > kMax || height > kMax ||
+      width * height > static_cast<std::int64_t>(kMaxPixels)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("is ", width, " x ", height, " pixels, at most ", kMaxPixels, " are read"));
+  }
+  return absl::OkStatus();
+}
+
+/// Reads the header and checks the size of both windows.
+absl::StatusOr<Layout> read_layout(const unsigned char* data, std::size_t size) {
   EXRVersion version;
   if (ParseEXRVersionFromMemory(&version, data, size) != TINYEXR_SUCCESS) {
     return failure(nullptr);
@@ -47,16 +72,43 @@ absl::Status check_size(const unsigned char* data, std::size_t size) {
   if (ParseEXRHeaderFromMemory(&header, &version, data, size, &error) != TINYEXR_SUCCESS) {
     return failure(error);
   }
-  const std::int64_t width = std::int64_t{header.data_window.max_x} - header.data_window.min_x + 1;
-  const std::int64_t height = std::int64_t{header.data_window.max_y} - header.data_window.min_y + 1;
+  const Layout layout{header.data_window, header.display_window, header.line_order != 0};
   FreeEXRHeader(&header);
-  constexpr std::int64_t kMax = kMaxTextureSide;
-  if (width < 1 || height < 1 || width > kMax || height > kMax ||
-      width * height > static_cast<std::int64_t>(kMaxPixels)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("is ", width, " x ", height, " pixels, at most ", kMaxPixels, " are read"));
+  RETURN_IF_ERROR(check_size(layout.stored));
+  RETURN_IF_ERROR(check_size(layout.shown));
+  return layout;
+}
+
+/// Returns the file with a header that says that its rows are stored from the top. tinyexr mirrors
+/// the image, or each of its tiles, if the header says anything else; but it finds rows and tiles
+/// by their numbers, whose order in the file is of no importance.
+std::string with_rows_from_the_top(absl::string_view bytes) {
+  constexpr absl::string_view kLineOrder("lineOrder\0lineOrder\0\1\0\0\0", 24);
+  std::string out(bytes);
+  const std::size_t at = bytes.find(kLineOrder);
+  if (at != absl::string_view::npos && at + kLineOrder.size() < out.size()) {
+    out[at + kLineOrder.size()] = '\0';
   }
-  return absl::OkStatus();
+  return out;
+}
+
+/// Returns the colours of the pixels that are shown; those that are not stored are black. `rgba`:
+/// the stored pixels, four floats for each.
+std::vector<std::byte> shown_texels(const float* rgba, const Layout& layout) {
+  const EXRBox2i& from = layout.stored;
+  const EXRBox2i& to = layout.shown;
+  constexpr std::size_t kTexel = 3 * sizeof(float);
+  std::vector<std::byte> texels(static_cast<std::size_t>(width_of(to) * height_of(to)) * kTexel);
+  for (std::int64_t y = std::max(from.min_y, to.min_y); y <= std::min(from.max_y, to.max_y); ++y) {
+    for (std::int64_t x = std::max(from.min_x, to.min_x); x <= std::min(from.max_x, to.max_x);
+         ++x) {
+      const std::int64_t source = (y - from.min_y) * width_of(from) + x - from.min_x;
+      const std::int64_t target = (y - to.min_y) * width_of(to) + x - to.min_x;
+      std::memcpy(texels.data() + static_cast<std::size_t>(target) * kTexel, rgba + 4 * source,
+                  kTexel);
+    }
+  }
+  return texels;
 }
 
 }  // namespace
@@ -64,27 +116,27 @@ absl::Status check_size(const unsigned char* data, std::size_t size) {
 bool is_exr(absl::string_view bytes) { return absl::StartsWith(bytes, "\x76\x2f\x31\x01"); }
 
 absl::StatusOr<ImageTexture> decode_exr(absl::string_view bytes) {
-  const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-  RETURN_IF_ERROR(check_size(data, bytes.size()));
+  const auto data = [](absl::string_view of) {
+    return reinterpret_cast<const unsigned char*>(of.data());
+  };
+  ASSIGN_OR_RETURN(const Layout layout, read_layout(data(bytes), bytes.size()));
+  const std::string turned = layout.turned ? with_rows_from_the_top(bytes) : std::string();
+  const absl::string_view file = layout.turned ? absl::string_view(turned) : bytes;
   float* raw = nullptr;
   int width = 0;
   int height = 0;
   const char* error = nullptr;
-  const int result = LoadEXRFromMemory(&raw, &width, &height, data, bytes.size(), &error);
+  const int result = LoadEXRFromMemory(&raw, &width, &height, data(file), file.size(), &error);
   const std::unique_ptr<float, Free> rgba(raw);
-  if (result != TINYEXR_SUCCESS || rgba == nullptr) {
+  if (result != TINYEXR_SUCCESS || rgba == nullptr || width != width_of(layout.stored) ||
+      height != height_of(layout.stored)) {
     return failure(error);
   }
   ImageTexture image;
-  image.width = static_cast<std::uint32_t>(width);
-  image.height = static_cast<std::uint32_t>(height);
+  image.width = static_cast<std::uint32_t>(width_of(layout.shown));
+  image.height = static_cast<std::uint32_t>(height_of(layout.shown));
   image.format = ImageTexture::Format::kFloat32;
-  const std::size_t pixels = std::size_t{image.width} * image.height;
-  std::vector<std::byte> texels(pixels * 3 * sizeof(float));
-  for (std::size_t i = 0; i < pixels; ++i) {
-    std::memcpy(texels.data() + i * 3 * sizeof(float), rgba.get() + i * 4, 3 * sizeof(float));
-  }
-  image.texels = std::move(texels);
+  image.texels = shown_texels(rgba.get(), layout);
   return image;
 }
 

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdint>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "renderlib/import/image/decode_image.h"
 
@@ -12,6 +15,7 @@ namespace bandsaw {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 std::string bytes(std::initializer_list<int> values) {
@@ -89,6 +93,107 @@ TEST(ImageFormats, HdrIsItsMantissasTimesTheirExponent) {
   ASSERT_EQ(image.texels.size(), 24u);
   std::memcpy(values.data(), image.texels.data(), 24);
   EXPECT_THAT(values, ElementsAre(4, 2, 0, 255.0f / 65536, 128.0f / 65536, 1.0f / 65536));
+}
+
+// OpenEXR 2: numbers of 32 bits, the least byte first; attributes of a name, a type, a size and a
+// value; then the place of each row or tile, and the rows or tiles.
+std::string word(std::int32_t value) {
+  return bytes({value & 0xff, value >> 8 & 0xff, value >> 16 & 0xff, value >> 24 & 0xff});
+}
+
+std::string attribute(const std::string& name, const std::string& type, const std::string& value) {
+  return name + '\0' + type + '\0' + word(static_cast<std::int32_t>(value.size())) + value;
+}
+
+/// left, top, right, bottom
+using Window = std::array<int, 4>;
+
+std::string box(const Window& window) {
+  return word(window[0]) + word(window[1]) + word(window[2]) + word(window[3]);
+}
+
+/// An EXR file of one channel of floats that are not compressed. `order`: 0 if its rows are stored
+/// from the top, 1 if they are from the bottom; `more`: further attributes; `chunks`: the rows or
+/// tiles from the top, each with its head.
+std::string exr(bool tiled, char order, const Window& stored, const Window& shown,
+                std::vector<std::string> chunks, const std::string& more = "") {
+  const std::string channel = std::string("Y") + '\0' + word(2) + word(0) + word(1) + word(1);
+  const std::string header = bytes({0x76, 0x2f, 0x31, 0x01, 2, tiled ? 2 : 0, 0, 0}) +
+                             attribute("channels", "chlist", channel + '\0') +
+                             attribute("compression", "compression", bytes({0})) +
+                             attribute("dataWindow", "box2i", box(stored)) +
+                             attribute("displayWindow", "box2i", box(shown)) +
+                             attribute("lineOrder", "lineOrder", std::string(1, order)) +
+                             attribute("pixelAspectRatio", "float", word(0x3f800000)) +
+                             attribute("screenWindowCenter", "v2f", word(0) + word(0)) +
+                             attribute("screenWindowWidth", "float", word(0x3f800000)) + more +
+                             '\0';
+  std::vector<std::string> places(chunks.size());
+  std::string body;
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    const std::size_t chunk = order == 0 ? i : chunks.size() - 1 - i;
+    const std::size_t at = header.size() + 8 * chunks.size() + body.size();
+    places[chunk] = word(static_cast<std::int32_t>(at)) + word(0);
+    body += chunks[chunk];
+  }
+  std::string file = header;
+  for (const std::string& place : places) {
+    file += place;
+  }
+  return file + body;
+}
+
+std::string floats(const std::vector<float>& values) {
+  std::string out(values.size() * sizeof(float), '\0');
+  std::memcpy(out.data(), values.data(), out.size());
+  return word(static_cast<std::int32_t>(out.size())) + out;
+}
+
+/// The first channel of each texel.
+std::vector<float> reds(const ImageTexture& image) {
+  std::vector<float> all(image.texels.size() / sizeof(float));
+  std::memcpy(all.data(), image.texels.data(), image.texels.size());
+  std::vector<float> out;
+  for (std::size_t i = 0; i < all.size(); i += 3) {
+    out.push_back(all[i]);
+  }
+  return out;
+}
+
+TEST(ImageFormats, ExrRowsMayBeStoredFromTheBottom) {
+  const std::vector<std::string> rows{word(0) + floats({1, 2}), word(1) + floats({3, 4}),
+                                      word(2) + floats({5, 6})};
+  for (const char order : {0, 1}) {
+    const ImageTexture image = decoded(exr(false, order, {0, 0, 1, 2}, {0, 0, 1, 2}, rows));
+    EXPECT_THAT(reds(image), ElementsAre(1, 2, 3, 4, 5, 6)) << int{order};
+  }
+}
+
+// Two tiles of 2 x 2 texels, of which the lower has one row only.
+TEST(ImageFormats, ExrTilesMayBeStoredFromTheBottom) {
+  const std::string tiles =
+      attribute("tiles", "tiledesc", word(2) + word(2) + std::string(1, '\0'));
+  const std::vector<std::string> chunks{
+      word(0) + word(0) + word(0) + word(0) + floats({1, 2, 3, 4}),
+      word(0) + word(1) + word(0) + word(0) + floats({5, 6})};
+  for (const char order : {0, 1}) {
+    const ImageTexture image = decoded(exr(true, order, {0, 0, 1, 2}, {0, 0, 1, 2}, chunks, tiles));
+    EXPECT_THAT(reds(image), ElementsAre(1, 2, 3, 4, 5, 6)) << int{order};
+  }
+}
+
+TEST(ImageFormats, ExrIsItsDisplayWindow) {
+  const std::vector<std::string> rows{word(-1) + floats({1, 2}), word(0) + floats({3, 4})};
+  const Window stored{1, -1, 2, 0};
+  const ImageTexture larger = decoded(exr(false, 0, stored, {0, -1, 2, 1}, rows));
+  EXPECT_EQ(larger.width, 3u);
+  EXPECT_THAT(reds(larger), ElementsAre(0, 1, 2, 0, 3, 4, 0, 0, 0));
+  const ImageTexture smaller = decoded(exr(false, 1, stored, {2, 0, 3, 0}, rows));
+  EXPECT_EQ(smaller.height, 1u);
+  EXPECT_THAT(reds(smaller), ElementsAre(4, 0));
+  std::vector<std::string> warnings;
+  const auto huge = decode_image(exr(false, 0, stored, {0, 0, 99999, 99999}, rows), warnings);
+  EXPECT_THAT(std::string(huge.status().message()), HasSubstr("is 100000 x 100000 pixels"));
 }
 
 TEST(ImageFormats, AlphaIsReadOfATga) {
