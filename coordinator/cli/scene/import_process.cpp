@@ -219,9 +219,10 @@ absl::StatusOr<std::string> only_scene(const std::vector<ListedFile>& files) {
     }
     return outermost(std::move(found));
   };
-  for (const auto& found :
-       {named({".textproto"}), named({".pbrt", ".xml"}), named({".glb", ".gltf"}),
-        named({".obj", ".fbx", ".dae", ".3ds", ".ply", ".stl"})}) {
+  // Compressed files of pbrt are mostly parts of a scene, and JSON files beside glTF are its notes.
+  for (const auto& found : {named({".textproto"}), named({".pbrt", ".xml"}), named({".pbrt.gz"}),
+                            named({".glb", ".gltf"}), named({".json"}),
+                            named({".obj", ".fbx", ".dae", ".3ds", ".ply", ".stl"})}) {
     if (found.size() == 1) {
       return found.front();
     }
@@ -231,7 +232,8 @@ absl::StatusOr<std::string> only_scene(const std::vector<ListedFile>& files) {
                        found.size() > 2 ? " among them" : "", "; name one of them"));
     }
   }
-  return absl::InvalidArgumentError("holds no scene: .textproto, .pbrt, .xml, or a model");
+  return absl::InvalidArgumentError(
+      "holds no scene: .textproto, .json, .pbrt, .pbrt.gz, .xml, or a model");
 }
 
 // Unpacks an archive to `to`, an empty folder. Returns the path of the scene in it: `wanted`, or

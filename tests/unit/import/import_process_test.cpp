@@ -189,6 +189,36 @@ TEST(ImportProcess, AListOfAnArchiveMustNotNameFilesThatTheImporterFound) {
   EXPECT_EQ(imported.status().message(), "a.zip: the importer left a broken list of files");
 }
 
+/// Returns which of these files is imported if an archive has them: "reads" and its name, or an
+/// error. `names` are separated by spaces.
+std::string choice_among(const std::string& names) {
+  const TempDir folder;
+  const std::string program =
+      write_text(folder, "importer.sh",
+                 "#!/bin/sh\nif [ \"$1\" != unzip ]; then\n"
+                 "  echo \"INVALID_ARGUMENT: reads ${2##*/}\"\n  exit 1\nfi\n"
+                 "i=0\nfor name in " +
+                     names +
+                     "; do\n  echo \"made $name\" >> \"$3/list\"\n"
+                     "  : > \"$3/$i\"\n  i=$((i + 1))\ndone\n");
+  EXPECT_EQ(chmod(program.c_str(), 0700), 0);
+  ImportLimits in;
+  in.program = program;
+  return std::string(import_in_process(folder / "a.zip", in).status().message());
+}
+
+TEST(ImportProcess, ChoosesTheSceneOfAnArchive) {
+  EXPECT_EQ(choice_among("a.obj s.json b.obj"), "reads s.json");
+  EXPECT_EQ(choice_among("a.glb info.json"), "reads a.glb");
+  EXPECT_EQ(choice_among("parts.pbrt.gz s.pbrt"), "reads s.pbrt");
+  EXPECT_EQ(choice_among("a.ply s.pbrt.gz"), "reads s.pbrt.gz");
+  EXPECT_EQ(choice_among("s.json s.textproto"), "reads s.textproto");
+  EXPECT_EQ(choice_among("models/a.obj b.obj"), "reads b.obj");
+  EXPECT_EQ(choice_among("a.json b.json c.obj"),
+            "a.zip: holds 2 scenes, a.json and b.json; name one of them");
+  EXPECT_THAT(choice_among("a.txt"), HasSubstr("a.zip: holds no scene: .textproto, .json"));
+}
+
 TEST(ImportProcess, AMissingProgramIsAnError) {
   ImportLimits in;
   in.program = "/no/such/bandsaw-import";
