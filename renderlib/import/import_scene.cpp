@@ -286,7 +286,7 @@ absl::Status read_model_alone(const std::string& path, const ImportChoices& choi
   draft.out.scene.media.boundaries.frames = model.frames;
   draft.out.scene.media.boundaries.instances = model.filled;
   draft.out.scene.lights = model.lights;
-  add_cameras(draft.file, model, Transform{}, draft);
+  add_cameras(draft.file, model, Transform{}, Transform{}, draft);
   ASSIGN_OR_RETURN(MovingCamera camera, camera_for_model(real, animation, draft));
   set_camera(std::move(camera), draft.out.scene);
   if (!has_light(draft.out.scene)) {

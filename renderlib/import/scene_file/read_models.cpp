@@ -122,10 +122,12 @@ absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDr
   }
   RETURN_IF_ERROR(place_model(in, {model->frames, model->instances}, placement, keys, material,
                               draft.placed->seen));
-  const Transform to_camera =
-      keys.empty() ? placement : motion_at({kNoFrame, {}, keys}, draft.shutter.open);
-  add_lights(from.file(), *model, to_camera, draft);
-  add_cameras(from.file(), *model, to_camera, draft);
+  const auto placement_at = [&](double time) {
+    return keys.empty() ? placement : motion_at({kNoFrame, {}, keys}, time);
+  };
+  const Transform at_open = placement_at(draft.shutter.open);
+  add_lights(from.file(), *model, at_open, draft);
+  add_cameras(from.file(), *model, at_open, placement_at(draft.shutter.close), draft);
   return absl::OkStatus();
 }
 

@@ -74,17 +74,17 @@ absl::Status set_lens(const Field& in, const scene::Camera& from, PerspectiveCam
 
 }  // namespace
 
-void add_cameras(const std::string& file, const Model& model, const Transform& to_world,
-                 SceneDraft& draft) {
+void add_cameras(const std::string& file, const Model& model, const Transform& at_open,
+                 const Transform& at_close, SceneDraft& draft) {
   const bool is_known = std::any_of(draft.cameras.begin(), draft.cameras.end(),
                                     [&](const FoundCamera& c) { return c.model == file; });
   if (is_known || draft.placed != &draft.world) {
     return;
   }
   for (const ModelCamera& camera : model.cameras) {
-    draft.cameras.push_back({file, camera.name, camera.own_name, placed(camera.camera, to_world)});
-    if (camera.at_close) {
-      draft.cameras.back().at_close = placed(*camera.at_close, to_world);
+    draft.cameras.push_back({file, camera.name, camera.own_name, placed(camera.camera, at_open)});
+    if (camera.at_close || !(at_open == at_close)) {
+      draft.cameras.back().at_close = placed(camera.at_close.value_or(camera.camera), at_close);
     }
   }
 }

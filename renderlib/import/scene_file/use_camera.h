@@ -15,10 +15,11 @@
 
 namespace bandsaw {
 
-/// Adds a model's cameras, transformed by `to_world`, to the draft. Does nothing if cameras of the
-/// same file have been added, or if the model is in a group, which has no place of its own.
-void add_cameras(const std::string& file, const Model& model, const Transform& to_world,
-                 SceneDraft& draft);
+/// Adds a model's cameras to the draft. `at_open`, `at_close`: the placements of the model when the
+/// shutter opens and closes. Does nothing if cameras of the same file have been added, or if the
+/// model is in a group, which has no place of its own.
+void add_cameras(const std::string& file, const Model& model, const Transform& at_open,
+                 const Transform& at_close, SceneDraft& draft);
 
 /// Returns a name for each camera that one of the names above identifies; only the first ones if
 /// there are more than a package can list.

@@ -286,6 +286,22 @@ TEST_F(Sequence, ACameraAtAMovingNodeMovesWithIt) {
   expect_near(view_of(*imported.scene.camera_at_close).position, {1.5, 0, 5});
 }
 
+TEST_F(Sequence, ACameraMovesWithTheKeysOfItsModel) {
+  GltfWriter file = two_nodes();
+  file.root["cameras"] =
+      Json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 1}}])");
+  file.root["nodes"][1]["camera"] = 0;
+  file.root["nodes"][1]["name"] = "eye";
+  file.write(folder_, "m.gltf");
+  const std::string text = R"(camera { use: "eye" } model { file: "m.gltf"
+    key { time: 0 translate: [0, 0, 0] } key { time: 1 translate: [4, 0, 0] } })";
+  const ImportedScene imported = read_text(text, frame(1, 4, 0.5));
+  expect_near(view_of(imported.scene.camera).position, {1, 0, 7});
+  ASSERT_TRUE(imported.scene.camera_at_close.has_value());
+  expect_near(view_of(*imported.scene.camera_at_close).position, {1.5, 0, 7});
+  EXPECT_FALSE(read_text(text, frame(1, 4, 0.0)).scene.camera_at_close.has_value());
+}
+
 TEST_F(Sequence, AWindowHoldsWhileAUsedCameraMoves) {
   GltfWriter file = two_nodes();
   file.root["cameras"] =
