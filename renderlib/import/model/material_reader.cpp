@@ -260,8 +260,15 @@ absl::StatusOr<TextureId> MaterialReader::index_map(Slot slot, double index) {
 }
 
 absl::StatusOr<TextureId> MaterialReader::opacity_map(Slot slot) {
-  const auto in_alpha = textures_.has_alpha(file_of(slot));
-  return map(slot, in_alpha.ok() && *in_alpha ? As::kAlpha : As::kNumber);
+  const std::string file = file_of(slot);
+  const auto see_through = textures_.is_see_through(file);
+  const bool is_color =
+      file == file_of({aiTextureType_DIFFUSE}) || file == file_of({aiTextureType_BASE_COLOR});
+  TextureStore::Use use = use_of(slot);
+  use.linear = true;
+  use.alpha = is_color || (see_through.ok() && *see_through);
+  use.alpha_is_known = true;
+  return find(slot, use);
 }
 
 bool MaterialReader::holds_normals(Slot slot) const {

@@ -5,7 +5,9 @@
 
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "absl/strings/match.h"
@@ -123,10 +125,15 @@ absl::StatusOr<ImageTexture> ModelTextures::decoded(const std::string& file) con
   return decode_image(bytes, unused);
 }
 
-absl::StatusOr<bool> ModelTextures::has_alpha(const std::string& file) const {
+absl::StatusOr<bool> ModelTextures::is_see_through(const std::string& file) const {
   ASSIGN_OR_RETURN(const Source source, source_of(file));
   ASSIGN_OR_RETURN(const std::string bytes, source.bytes(scene_));
-  return image_has_alpha(bytes);
+  if (!image_has_alpha(bytes)) {
+    return false;
+  }
+  ASSIGN_OR_RETURN(const ImageTexture alpha, decode_alpha(bytes));
+  return std::any_of(alpha.texels.begin(), alpha.texels.end(),
+                     [](std::byte texel) { return texel != std::byte{255}; });
 }
 
 }  // namespace bandsaw

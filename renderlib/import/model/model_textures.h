@@ -30,8 +30,9 @@ class ModelTextures {
   /// Returns the decoded image without adding a texture. Errors are those of find().
   absl::StatusOr<ImageTexture> decoded(const std::string& file) const;
 
-  /// Returns true if the image has an alpha channel. Errors are those of find().
-  absl::StatusOr<bool> has_alpha(const std::string& file) const;
+  /// Returns true if the image has an alpha channel that is not 255 everywhere. Errors are those of
+  /// find().
+  absl::StatusOr<bool> is_see_through(const std::string& file) const;
 
  private:
   struct Source {

@@ -82,6 +82,38 @@ TEST_F(Obj, AnOpacityMapIsItsBrightness) {
   EXPECT_EQ(m.alpha.value.factor, 1);
 }
 
+/// Returns a TGA file of two texels with alpha, black and white.
+std::string tga_with_alpha(char alpha_of_black, char alpha_of_white) {
+  const char header[18] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 32, 0x28};
+  const char texels[8] = {0, 0, 0, alpha_of_black, '\xff', '\xff', '\xff', alpha_of_white};
+  return std::string(header, sizeof header) + std::string(texels, sizeof texels);
+}
+
+TEST_F(Obj, AnOpacityMapIsItsAlphaIfThatIsNotOpaque) {
+  const auto opacities = [&](const std::string& text) {
+    const ImportedScene imported = read(text);
+    EXPECT_THAT(imported.info.warnings, IsEmpty());
+    const TextureId map = imported.scene.materials.at(0).alpha.value.texture;
+    const auto at = [&](double u) {
+      return evaluate(imported.scene.textures, map, {{u, 0.5}, {}, {}, {}}).r;
+    };
+    return std::pair(at(0.25), at(0.75));
+  };
+  write_text(folder_, "cut.tga", tga_with_alpha('\xff', 0));
+  write_text(folder_, "full.tga", tga_with_alpha('\xff', '\xff'));
+  write_text(folder_, "grey.pgm", std::string("P5 1 1 255\n") + "\x80");
+  EXPECT_EQ(opacities("Kd 1 1 1\nmap_d cut.tga\n"), std::pair(1.0f, 0.0f));
+  EXPECT_EQ(opacities("Kd 1 1 1\nmap_d full.tga\n"), std::pair(0.0f, 1.0f));
+  EXPECT_EQ(opacities("Kd 1 1 1\nmap_Kd grey.pgm\nmap_d full.tga\n"), std::pair(0.0f, 1.0f));
+}
+
+TEST_F(Obj, AnOpacityMapThatIsTheColoursImageIsItsAlpha) {
+  write_text(folder_, "full.tga", tga_with_alpha('\xff', '\xff'));
+  const ImportedScene imported = read("Kd 1 1 1\nmap_Kd full.tga\nmap_d full.tga\n");
+  const TextureId map = imported.scene.materials.at(0).alpha.value.texture;
+  EXPECT_EQ(evaluate(imported.scene.textures, map, {{0.25, 0.5}, {}, {}, {}}), (Rgb{1, 1, 1}));
+}
+
 TEST_F(Obj, AWeakEmissionIsAddedToTheReflection) {
   const Material m = material("Kd 0.5 0.5 0.5\nKe 0.25 0.125 0\n");
   EXPECT_EQ(m.emission.radiance.factor, (Rgb{0.25f, 0.125f, 0}));
