@@ -6,6 +6,7 @@
 #include <assimp/GltfMaterial.h>
 #include <assimp/ObjMaterial.h>
 #include <assimp/material.h>
+#include <assimp/mesh.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/math/elementary.h"
 #include "renderlib/texture/texture.h"
@@ -162,6 +164,22 @@ double MaterialReader::alpha_of(const char* key) const {
   aiColor4D c(1, 1, 1, 1);
   material_.Get(key, 0, 0, c);
   return std::isfinite(c.a) ? std::clamp(double{c.a}, 0.0, 1.0) : 1;
+}
+
+bool MaterialReader::has_vertex_colors() const {
+  const aiScene& scene = file_.scene;
+  return std::any_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, [&](const aiMesh* mesh) {
+    return mesh->mMaterialIndex == index_ && mesh->HasVertexColors(0);
+  });
+}
+
+bool MaterialReader::is_default_of_obj() const {
+  aiString name;
+  material_.Get(AI_MATKEY_NAME, name);
+  // A material of the file may have the same name.
+  constexpr float kAssimpGray = 0.6f;
+  return kind() == ModelKind::kObj && absl::string_view(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME &&
+         color("$clr.diffuse", 1) == gray(kAssimpGray);
 }
 
 bool MaterialReader::has(Slot slot) const {

@@ -38,6 +38,11 @@ class MaterialReader {
   /// Returns the fourth number of such a colour, in [0, 1]; 1 if there is none.
   double alpha_of(const char* key) const;
 
+  /// Returns true if a mesh of this material has vertex colours.
+  bool has_vertex_colors() const;
+  /// Returns true if Assimp made the material for the parts of an OBJ file that have none.
+  bool is_default_of_obj() const;
+
   /// A texture of the material, by Assimp's kind and its number within the kind.
   struct Slot {
     aiTextureType type;

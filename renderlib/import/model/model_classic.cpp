@@ -55,16 +55,24 @@ double opacity_of(MaterialReader& reader, bool mapped) {
   return opacity;
 }
 
+// Returns the colour that texture and vertex colours are multiplied with. A model without a colour
+// is grey, but this grey MUST NOT dim its texture or vertex colours. For formats without materials
+// Assimp's colour is not used: it is white.
+Rgb base_color(const MaterialReader& reader, bool textured) {
+  const bool painted = textured || reader.has_vertex_colors();
+  const Rgb missing = painted ? Rgb{1, 1, 1} : gray(0.8f);
+  if (reader.kind() == ModelKind::kPlain || (painted && reader.is_default_of_obj())) {
+    return missing;
+  }
+  const Rgb base = reader.color("$clr.diffuse", 1).value_or(missing);
+  // Some exporters write a black Kd to mean "the texture alone".
+  return textured && is_black(base) ? Rgb{1, 1, 1} : base;
+}
+
 Classic read_numbers(MaterialReader& reader) {
   Classic from;
-  // Assimp's default material for formats without materials is white.
-  constexpr float kUnpainted = 0.8f;
-  from.base = reader.kind() == ModelKind::kPlain
-                  ? gray(kUnpainted)
-                  : reader.color("$clr.diffuse", 1).value_or(gray(kUnpainted));
   from.textured = reader.has({aiTextureType_DIFFUSE}) || reader.has({aiTextureType_BASE_COLOR});
-  // Some exporters write a black Kd to mean "the texture alone".
-  from.base = from.textured && is_black(from.base) ? Rgb{1, 1, 1} : from.base;
+  from.base = base_color(reader, from.textured);
   from.exponent = reader.number("$mat.shininess", 0, 1e6).value_or(0);
   if (shines(reader, from.exponent)) {
     const double strength = reader.number("$mat.shinpercent", 0, 1).value_or(1);

@@ -198,6 +198,9 @@ TEST_F(Obj, VertexColoursAreSrgb) {
   ASSERT_EQ(mesh.colors.size(), 3u);
   EXPECT_EQ(mesh.colors[0], (std::array<float, 3>{1, 0, 0}));
   EXPECT_EQ(mesh.colors[1][1], static_cast<float>(srgb_decode(0.5)));
+  const auto& surface = std::get<Diffuse>(imported->scene.materials.at(0).kind);
+  EXPECT_EQ(evaluate(imported->scene.textures, surface.reflectance, {}), (Rgb{1, 1, 1}))
+      << "the grey of an OBJ file without materials does not dim them";
 }
 
 TEST_F(Obj, VertexColoursAreIgnoredIfTheSceneReplacesTheMaterial) {
@@ -228,6 +231,38 @@ TEST(Ply, IsGreyOrHasVertexColours) {
   ASSERT_TRUE(painted.ok()) << painted.status();
   ASSERT_EQ(painted->scene.geometry.meshes[0].colors.size(), 3u);
   EXPECT_NEAR(painted->scene.geometry.meshes[0].colors[1][1], 0.5, 0.005);
+}
+
+/// Returns the reflectance of the first material, a diffuse one, at the middle of its texture.
+Rgb reflectance(const absl::StatusOr<ImportedScene>& imported) {
+  EXPECT_TRUE(imported.ok()) << imported.status();
+  if (!imported.ok()) {
+    return {};
+  }
+  const auto& scene = imported->scene;
+  return evaluate(scene.textures, std::get<Diffuse>(scene.materials.at(0).kind).reflectance,
+                  {{0.5, 0.5}, {}, {}, {}});
+}
+
+TEST(Ply, ItsGreyDoesNotDimItsColours) {
+  const TempDir folder;
+  const auto read = [&](const std::string& text) {
+    return import_scene(write_text(folder, "p.ply", text));
+  };
+  const Rgb white{1, 1, 1};
+  EXPECT_EQ(reflectance(read(ply("", "0 0 0\n1 0 0\n0 1 0\n"))), gray(0.8f));
+  EXPECT_EQ(reflectance(read(ply("property uchar red\nproperty uchar green\nproperty uchar blue\n",
+                                 "0 0 0 255 0 0\n1 0 0 0 188 0\n0 1 0 0 0 255\n"))),
+            white);
+  write_text(folder, "t.ppm", ppm_of(255, 255, 255));
+  std::string textured =
+      ply("property float s\nproperty float t\n", "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n");
+  const std::string format = "format ascii 1.0\n";
+  textured.insert(textured.find(format) + format.size(), "comment TextureFile t.ppm\n");
+  const auto imported = read(textured);
+  EXPECT_EQ(reflectance(imported), white);
+  ASSERT_TRUE(imported.ok());
+  EXPECT_TRUE(std::holds_alternative<ImageTexture>(imported->scene.textures.at(0)));
 }
 
 TEST(Stl, HasATriangleAndItsNormal) {
