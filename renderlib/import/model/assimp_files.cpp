@@ -97,6 +97,9 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
     refused_.missing.push_back(name_of(file));
     return nullptr;
   }
+  if (absl::EndsWithIgnoreCase(*path, ".mtl")) {
+    add_mtl_options(*bytes, mtl_);
+  }
   return std::make_unique<BytesStream>(*std::move(bytes)).release();
 }
 

@@ -11,6 +11,7 @@
 
 #include "absl/strings/string_view.h"
 #include "renderlib/import/files/scene_folder.h"
+#include "renderlib/import/model/mtl_options.h"
 
 namespace bandsaw {
 
@@ -29,10 +30,15 @@ struct ModelSource {
 
 class AssimpFiles : public Assimp::IOSystem {
  public:
-  /// The names of other files than the model are relative to the model's folder. `folder` and
-  /// `refused` MUST outlive this object.
-  AssimpFiles(const SceneFolder& folder, const ModelSource& model, RefusedFiles& refused)
-      : folder_(folder), model_(model), model_folder_(folder_of(model.path)), refused_(refused) {}
+  /// The names of other files than the model are relative to the model's folder. `mtl` gets the
+  /// options of MTL files. `folder`, `refused` and `mtl` MUST outlive this object.
+  AssimpFiles(const SceneFolder& folder, const ModelSource& model, RefusedFiles& refused,
+              MtlOptions& mtl)
+      : folder_(folder),
+        model_(model),
+        model_folder_(folder_of(model.path)),
+        refused_(refused),
+        mtl_(mtl) {}
 
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
@@ -47,6 +53,7 @@ class AssimpFiles : public Assimp::IOSystem {
   ModelSource model_;
   std::string model_folder_;
   RefusedFiles& refused_;
+  MtlOptions& mtl_;
 };
 
 /// A glTF document in memory: its JSON under the name kDocument, its buffer under any other name.

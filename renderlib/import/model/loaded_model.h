@@ -16,6 +16,7 @@
 #include "renderlib/import/animation/animation.h"
 #include "renderlib/import/model/assimp_files.h"
 #include "renderlib/import/model/gltf_extensions.h"
+#include "renderlib/import/model/mtl_options.h"
 
 struct aiScene;
 
@@ -33,6 +34,7 @@ using StillMeshes = std::map<std::tuple<unsigned, bool, unsigned, unsigned>, Sti
 
 struct LoadedModel {
   RefusedFiles refused;
+  MtlOptions mtl;             ///< of the MTL files of an OBJ file
   Assimp::Importer importer;  ///< owns the scene
   const aiScene* scene = nullptr;
   GltfExtensions gltf;  ///< set for a glTF file

@@ -13,8 +13,8 @@
 #include <array>
 #include <cmath>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/string_view.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/math/elementary.h"
 #include "renderlib/texture/texture.h"
@@ -54,6 +54,11 @@ UvTransform uv_transform_of(const aiUVTransform& from) {
   const double mu = 0.5 - 0.5 * (turn.cos - turn.sin);
   const double mv = 0.5 - 0.5 * (turn.sin + turn.cos);
   return {{a, b, mu + from.mTranslation.x, c, d, mv + from.mTranslation.y}};
+}
+
+// Assimp keeps white space at the end of a line of an MTL file.
+std::string without_space(const aiString& name) {
+  return std::string(absl::StripAsciiWhitespace(name.C_Str()));
 }
 
 /// Returns true if the image is 8-bit and its texels look like directions, 0.5 + 0.5 n, that mostly
@@ -173,12 +178,16 @@ bool MaterialReader::has_vertex_colors() const {
   });
 }
 
-bool MaterialReader::is_default_of_obj() const {
+std::string MaterialReader::name() const {
   aiString name;
   material_.Get(AI_MATKEY_NAME, name);
+  return name.C_Str();
+}
+
+bool MaterialReader::is_default_of_obj() const {
   // A material of the file may have the same name.
   constexpr float kAssimpGray = 0.6f;
-  return kind() == ModelKind::kObj && absl::string_view(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME &&
+  return kind() == ModelKind::kObj && name() == AI_DEFAULT_MATERIAL_NAME &&
          color("$clr.diffuse", 1) == gray(kAssimpGray);
 }
 
@@ -232,6 +241,10 @@ TextureStore::Use MaterialReader::use_of(Slot slot) {
     aiUVTransform transform;
     material_.Get(AI_MATKEY_UVTRANSFORM(slot.type, slot.index), transform);
     use.uv_transform = uv_transform_of(transform);
+    const auto& of_mtl = file_.mtl.transforms;
+    if (const auto found = of_mtl.find({name(), without_space(file)}); found != of_mtl.end()) {
+      use.uv_transform = found->second;
+    }
   }
   use.uv_set = uv_set_of(uv_set);
   return use;

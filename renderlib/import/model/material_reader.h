@@ -77,6 +77,7 @@ class MaterialReader {
   ModelMaterial add(const Material& material) const;
 
  private:
+  std::string name() const;  ///< as in the file
   std::string file_of(Slot slot) const;
   TextureStore::Use use_of(Slot slot);
   absl::StatusOr<TextureId> find(Slot slot, const TextureStore::Use& use);

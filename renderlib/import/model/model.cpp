@@ -86,6 +86,9 @@ void warn_of_unused(const std::vector<std::string>& animations, ModelFile& file)
   for (const std::string& extension : file.gltf.ignored) {
     file.warn(absl::StrCat("the extension ", extension, " is left out"));
   }
+  for (const std::string& option : file.mtl.ignored) {
+    file.warn(absl::StrCat("the option ", option, " of its textures is left out"));
+  }
 }
 
 ModelKind kind_of(const std::string& path) {
@@ -213,12 +216,13 @@ void forget_files(Assimp::Importer& importer) {
 /// Reads the file with Assimp; nullptr on failure. For glTF, Assimp reads only the plain document,
 /// whose buffer is freed afterwards.
 const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& folder,
-                              std::optional<gltf::PlainGltf>& plain, RefusedFiles& refused,
-                              Assimp::Importer& importer) {
+                              std::optional<gltf::PlainGltf>& plain, LoadedModel& model) {
+  Assimp::Importer& importer = model.importer;
   // Faces are triangulated; no other post-processing changes the geometry.
   constexpr unsigned kFlags = aiProcess_Triangulate;
   if (!plain || plain->is_first_version) {
-    importer.SetIOHandler(std::make_unique<AssimpFiles>(folder, source, refused).release());
+    importer.SetIOHandler(
+        std::make_unique<AssimpFiles>(folder, source, model.refused, model.mtl).release());
     const aiScene* scene = importer.ReadFile(source.path, kFlags);
     forget_files(importer);
     return scene;
@@ -247,7 +251,7 @@ absl::StatusOr<std::shared_ptr<LoadedModel>> load_model(const ModelSource& sourc
   auto model = std::make_shared<LoadedModel>();
   // No placeholder meshes for the bones of files without meshes.
   model->importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  model->scene = read_by_assimp(source, folder, plain, model->refused, model->importer);
+  model->scene = read_by_assimp(source, folder, plain, *model);
   if (model->scene == nullptr || model->scene->mRootNode == nullptr ||
       !model->refused.outside.empty()) {
     return read_failure(name, model->refused, model->importer.GetErrorString());
@@ -290,6 +294,7 @@ absl::StatusOr<Model> read_source(const ModelSource& source, const AnimationChoi
                  path,
                  kind_of(path),
                  model_file->gltf,
+                 model_file->mtl,
                  model_file->animation,
                  model_file->still_meshes,
                  draft};

@@ -190,6 +190,19 @@ TEST_F(Obj, FindsATextureBesideItByAnyOfItsNames) {
   }
 }
 
+TEST_F(Obj, TexturesAreScaledAndMoved) {
+  write_text(folder_, "t.ppm", test::small_ppm());
+  const ImportedScene imported =
+      read("Kd 1 1 1\nKs 0.5 0.5 0.5\nNs 100\nillum 2\nmap_Kd -s 2 3 1 -o -0.5 0.25 0 t.ppm\n");
+  EXPECT_THAT(imported.info.warnings, IsEmpty());
+  const auto& layers = std::get<MetallicRoughness>(imported.scene.materials.at(0).kind);
+  const auto& image =
+      std::get<ImageTexture>(imported.scene.textures.at(index_of(layers.base_color.texture)));
+  EXPECT_EQ(image.uv_transform.m, (std::array<double, 6>{2, 0, -0.5, 0, 3, 0.25}));
+  EXPECT_THAT(read("Kd 1 1 1\nmap_Kd -mm 0 0.5 t.ppm\n").info.warnings,
+              Contains("m.obj: the option -mm of its textures is left out"));
+}
+
 TEST_F(Obj, VertexColoursAreSrgb) {
   const auto imported = import_scene(
       write_text(folder_, "c.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n"));
