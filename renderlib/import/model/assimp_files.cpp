@@ -16,8 +16,6 @@
 namespace bandsaw {
 namespace {
 
-constexpr std::uint64_t kMaxModelFileBytes = std::uint64_t{8} << 30;
-
 // A stream that reads from bytes in memory. Assimp seeks often, which is fast here, and the file
 // need not stay open.
 class BytesStream : public Assimp::IOStream {

@@ -5,6 +5,7 @@
 
 #include <assimp/IOSystem.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@
 #include "renderlib/import/model/mtl_options.h"
 
 namespace bandsaw {
+
+/// Maximum size of a model's file.
+inline constexpr std::uint64_t kMaxModelFileBytes = std::uint64_t{8} << 30;
 
 /// Files to which a model referred and which it could not open. MUST outlive the Assimp importer,
 /// which owns its AssimpFiles.

@@ -15,6 +15,7 @@
 #include "renderlib/geometry/mesh.h"
 #include "renderlib/import/animation/animation.h"
 #include "renderlib/import/model/assimp_files.h"
+#include "renderlib/import/model/collada_cameras.h"
 #include "renderlib/import/model/gltf_extensions.h"
 #include "renderlib/import/model/mtl_options.h"
 
@@ -35,6 +36,7 @@ using StillMeshes = std::map<std::tuple<unsigned, bool, unsigned, unsigned>, Sti
 struct LoadedModel {
   RefusedFiles refused;
   MtlOptions mtl;             ///< of the MTL files of an OBJ file
+  ColladaLenses lenses;       ///< set for a COLLADA file with cameras
   Assimp::Importer importer;  ///< owns the scene
   const aiScene* scene = nullptr;
   GltfExtensions gltf;  ///< set for a glTF file

@@ -22,10 +22,12 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/gltf/plain_gltf.h"
 #include "renderlib/import/model/assimp_animation.h"
 #include "renderlib/import/model/assimp_files.h"
+#include "renderlib/import/model/collada_cameras.h"
 #include "renderlib/import/model/gltf_extensions.h"
 #include "renderlib/import/model/loaded_model.h"
 #include "renderlib/import/model/model_file.h"
@@ -259,6 +261,10 @@ absl::StatusOr<std::shared_ptr<LoadedModel>> load_model(const ModelSource& sourc
   if (plain) {
     model->gltf = read_gltf_extensions(plain->root);
   }
+  if (is_collada(source.path) && model->scene->mNumCameras > 0) {
+    ASSIGN_OR_RETURN(const std::string text, read_whole_file(source.path, kMaxModelFileBytes));
+    model->lenses = read_collada_lenses(text);
+  }
   RETURN_IF_ERROR(choose_animation(animation, name, plain, *model));
   return model;
 }
@@ -295,6 +301,7 @@ absl::StatusOr<Model> read_source(const ModelSource& source, const AnimationChoi
                  kind_of(path),
                  model_file->gltf,
                  model_file->mtl,
+                 model_file->lenses,
                  model_file->animation,
                  model_file->still_meshes,
                  draft};

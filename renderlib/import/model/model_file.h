@@ -7,6 +7,7 @@
 
 #include "renderlib/import/animation/animation.h"
 #include "renderlib/import/draft/scene_draft.h"
+#include "renderlib/import/model/collada_cameras.h"
 #include "renderlib/import/model/gltf_extensions.h"
 #include "renderlib/import/model/loaded_model.h"
 #include "renderlib/import/model/mtl_options.h"
@@ -25,20 +26,22 @@ enum class ModelKind {
 };
 
 /// A model that is being converted to the draft, the scene that is being read. The references to
-/// the scene, the JSON's values, the options of MTL files, the animation and the still meshes are
-/// those of a LoadedModel (model/loaded_model.h).
+/// the scene, the JSON's values, the options of MTL files, the lenses, the animation and the still
+/// meshes are those of a LoadedModel (model/loaded_model.h).
 struct ModelFile {
   const aiScene& scene;
   const std::string& path;  ///< real path
   ModelKind kind = ModelKind::kOther;
   const GltfExtensions& gltf;                 ///< set for kGltf
   const MtlOptions& mtl;                      ///< set for kObj
+  const ColladaLenses& lenses;                ///< set for COLLADA
   const std::optional<Animation>& animation;  ///< the chosen one; none: the rest pose
   StillMeshes& still_meshes;
   SceneDraft& draft;
   UnsupportedFeatures unsupported = {};
 
   std::string name() const { return name_of(path); }
+  bool is_collada() const { return bandsaw::is_collada(path); }
   void warn(const std::string& what) {
     draft.out.info.warnings.push_back(absl::StrCat(name(), ": ", what));
   }

@@ -30,7 +30,8 @@ Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 struct CameraAtNode {
   const aiCamera* camera = nullptr;
   std::string name = {};                              ///< its own name
-  std::optional<double> vertical_fov = std::nullopt;  ///< as GltfAtNode::vertical_fov
+  std::optional<double> vertical_fov = std::nullopt;  ///< in radians, if the file's is known
+  std::optional<double> height = std::nullopt;        ///< as ColladaLens::height
 };
 
 // Returns the vertical field of view. Assimp's reader of glTF 1 stores the vertical angle times the
@@ -66,12 +67,16 @@ std::optional<Camera> camera_of(const CameraAtNode& found, const Transform& node
     out = OrthographicCamera{view.position, view.look_at, view.up,
                              2 * camera.mOrthographicWidth / aspect};
   }
+  if (found.height) {
+    const double scale = length(view.up) / length(vector_of(camera.mUp));
+    out = OrthographicCamera{view.position, view.look_at, view.up, *found.height * scale};
+  }
   return validate(out).ok() ? std::optional(out) : std::nullopt;
 }
 
 // Cameras of 3DS and similar files look at a target that Assimp does not pass on.
 bool has_usable_cameras(const ModelFile& file) {
-  return file.kind != ModelKind::kOther || absl::EndsWithIgnoreCase(file.path, ".dae") ||
+  return file.kind != ModelKind::kOther || file.is_collada() ||
          absl::EndsWithIgnoreCase(file.path, ".fbx");
 }
 
@@ -123,7 +128,7 @@ class Walk {
     }
     const bool by_name = file.gltf.cameras.empty() && has_usable_cameras(file);
     for (unsigned i = 0; by_name && i < scene.mNumCameras; ++i) {
-      cameras_.emplace(scene.mCameras[i]->mName.C_Str(), scene.mCameras[i]);
+      add_by_name(*scene.mCameras[i]);
     }
     for (unsigned i = 0; file.gltf.lights.empty() && i < scene.mNumLights; ++i) {
       lights_.emplace(scene.mLights[i]->mName.C_Str(), scene.mLights[i]);
@@ -143,6 +148,22 @@ class Walk {
   std::size_t flattened = 0;
 
  private:
+  // A camera of COLLADA is left out if its lens is not known.
+  void add_by_name(const aiCamera& camera) {
+    CameraAtNode at{&camera};
+    if (file_.is_collada()) {
+      const auto lens = file_.lenses.find(camera.mName.C_Str());
+      if (lens == file_.lenses.end()) {
+        file_.warn(absl::StrCat("the camera \"", camera.mName.C_Str(),
+                                "\" is left out: it has no valid lens"));
+        return;
+      }
+      at.vertical_fov = lens->second.vertical_fov;
+      at.height = lens->second.height;
+    }
+    cameras_.emplace(camera.mName.C_Str(), at);
+  }
+
   /// The place of a node for its instances, and its transforms to the model's space at three times
   /// of the shutter interval.
   struct NodePlace {
@@ -212,7 +233,7 @@ class Walk {
     const auto standing = standing_.find(visited_);
     const auto named = cameras_.find(node.mName.C_Str());
     const CameraAtNode found = standing != standing_.end() ? standing->second
-                               : named != cameras_.end()   ? CameraAtNode{named->second}
+                               : named != cameras_.end()   ? named->second
                                                            : CameraAtNode{};
     if (found.camera == nullptr) {
       return;
@@ -243,8 +264,7 @@ class Walk {
   std::size_t visited_ = 0;  ///< number of visited nodes
   std::map<std::size_t, CameraAtNode>
       standing_;  ///< cameras of glTF, keyed by the index of their node
-  std::map<std::string, const aiCamera*>
-      cameras_;  ///< other cameras, keyed by the name of their node
+  std::map<std::string, CameraAtNode> cameras_;  ///< other cameras, keyed by the name of their node
   std::map<std::size_t, const aiLight*> shining_;  ///< lights of glTF, keyed in the same way
   std::multimap<std::string, const aiLight*> lights_;
   std::vector<Entry> stack_;

@@ -126,6 +126,62 @@ TEST_F(ModelCameraNames, ASceneFileSetsItsWindowAndMirrorsIt) {
               HasSubstr("camera.window: must be 4 numbers"));
 }
 
+/// Imports a COLLADA file of a triangle and of a camera with these optics, above it by 5 units,
+/// which are half a metre each.
+absl::StatusOr<ImportedScene> import_collada(const std::string& optics) {
+  const TempDir folder;
+  return import_scene(write_text(folder, "m.dae",
+                                 R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="half" meter="0.5"/><up_axis>Y_UP</up_axis></asset>
+<library_cameras><camera id="lens"><optics><technique_common>)" +
+                                     optics + R"(
+</technique_common></optics></camera></library_cameras>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="9">0 0 0  1 0 0  0 1 0</float_array><technique_common>
+<accessor source="#a" count="3" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node>
+<node id="eye"><translate>0 0 5</translate><instance_camera url="#lens"/></node>
+</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)"));
+}
+
+TEST(ColladaCameras, HaveTheVerticalAngleOfTheFile) {
+  const auto degrees = [](const std::string& angles) {
+    const auto imported = import_collada("<perspective>" + angles + "</perspective>");
+    EXPECT_TRUE(imported.ok()) << imported.status();
+    return imported.ok() ? std::get<PerspectiveCamera>(imported->scene.camera).vertical_fov : 0;
+  };
+  EXPECT_NEAR(degrees("<yfov>40</yfov>"), 40, 1e-9);
+  EXPECT_NEAR(degrees("<xfov>60</xfov><yfov>40</yfov>"), 40, 1e-9);
+  EXPECT_NEAR(degrees("<yfov>40</yfov><aspect_ratio>1.5</aspect_ratio>"), 40, 1e-9);
+  EXPECT_NEAR(degrees("<xfov>60</xfov>"), 60, 1e-9);
+  // tan 45 degrees / sqrt 3 is tan 30 degrees.
+  EXPECT_NEAR(degrees("<xfov>90</xfov><aspect_ratio>1.7320508075688772</aspect_ratio>"), 60, 1e-9);
+}
+
+TEST(ColladaCameras, MayBeOrthographic) {
+  const auto height = [](const std::string& sizes) {
+    const auto imported = import_collada("<orthographic>" + sizes + "</orthographic>");
+    EXPECT_TRUE(imported.ok()) << imported.status();
+    return imported.ok() ? std::get<OrthographicCamera>(imported->scene.camera).height : 0;
+  };
+  EXPECT_NEAR(height("<xmag>6</xmag><aspect_ratio>1.5</aspect_ratio>"), 4, 1e-6);
+  EXPECT_NEAR(height("<xmag>6</xmag><ymag>3</ymag>"), 3, 1e-6);
+}
+
+TEST(ColladaCameras, WithoutALensAreLeftOut) {
+  const auto imported = import_collada("<perspective></perspective>");
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_THAT(imported->info.model_cameras, ::testing::IsEmpty());
+  EXPECT_THAT(imported->info.warnings,
+              ::testing::Contains(HasSubstr("the camera \"eye\" is left out")));
+}
+
 TEST_F(ModelCameraNames, AModelInAGroupHasNoCameras) {
   write_text(folder_, "s.textproto", R"(camera { position: [0, 0, 8] look_at: [0, 0, 0] }
 group { name: "g" model { file: "m.gltf" } } instance { of: "g" })");
