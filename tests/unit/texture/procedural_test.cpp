@@ -229,7 +229,10 @@ TEST(Ramp, StepsAtAGreyThatEqualsTheStop) {
   }
   for (unsigned k = 0; k <= 255; ++k) {
     expect_step(k / 255.0);
-    ImageTexture image{.width = 1, .height = 1, .format = ImageTexture::Format::kLinear8};
+    ImageTexture image;
+    image.width = 1;
+    image.height = 1;
+    image.format = ImageTexture::Format::kLinear8;
     image.texels = std::vector<std::byte>(3, std::byte(k));
     EXPECT_TRUE(steps_at(k / 255.0, image)) << k;
   }
