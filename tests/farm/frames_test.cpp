@@ -210,24 +210,14 @@ TEST_F(Frames, AreNotSentAnyMoreWhenTheJobOfADetachedSubmitterIsCancelled) {
   EXPECT_THAT(client.err(), Not(HasSubstr("were not sent")));
 }
 
-// The coordinator is halted as soon as it has the job, while the environment, 6 MiB, is sent.
-TEST_F(Frames, AreNamedIfASignalComesWhileTheFirstSceneIsSent) {
-  const std::string environment = farm_.path("sky.pfm");
-  std::vector<float> values(std::size_t{1024} * 512 * 3);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = static_cast<float>(i % 7);
-  }
-  std::ofstream(environment, std::ios::binary)
-      << "PF\n1024 512\n-1.0\n"
-      << std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
-  Process client = Process::start(submit("1-3", {"-o", outputs_, "--environment", environment}));
-  ASSERT_TRUE(farm_.coordinator().wait_for("frames=3")) << client.err();
-  farm_.coordinator().signal(SIGSTOP);
-  client.signal(SIGINT);
-  EXPECT_EQ(client.wait(), 130);
-  EXPECT_THAT(client.err(), HasSubstr("3 were not sent"));
-  EXPECT_THAT(client.err(), HasSubstr("--continue 1"));
-  farm_.coordinator().signal(SIGCONT);
+TEST_F(Frames, AreNamedIfTheFirstSceneCannotBeSent) {
+  const std::string blobs = farm_.path("data/blobs");
+  std::filesystem::rename(blobs, farm_.path("away"));
+  const Finished failed = run(submit("1-3", {"-o", outputs_}));
+  EXPECT_EQ(failed.code, 1);
+  EXPECT_THAT(failed.err, HasSubstr("1-3 were not sent"));
+  EXPECT_THAT(failed.err, HasSubstr("--continue 1"));
+  std::filesystem::rename(farm_.path("away"), blobs);
 }
 
 TEST_F(Frames, HaveAContactSheetAndAFailedCommandOrMissingFfmpegIsReported) {
