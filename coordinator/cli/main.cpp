@@ -13,7 +13,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Runs the command. Memory that the standard library cannot get is an error of the command.
+/// Runs the command and returns its exit code. If memory cannot be allocated (std::bad_alloc),
+/// prints this and returns kFailed.
 ExitCode run_command(const Command& command, Process& process) {
   try {
     return std::visit([&](const auto& options) { return run(options, process); }, command);

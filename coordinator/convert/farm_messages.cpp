@@ -22,7 +22,7 @@ static_assert(static_cast<int>(FrameState::kExpected) == farm::FRAME_STATE_EXPEC
 
 namespace {
 
-/// Bytes of the reason of a job or frame in a list of many.
+/// Maximum bytes of the reason in an entry of a list of jobs or frames.
 constexpr std::size_t kListedReasonBytes = 300;
 
 void add_frames(const JobView& job, farm::JobStatus& message) {

@@ -20,14 +20,14 @@ farm::ErrorPoint to_message(const ErrorPoint& point);
 ErrorPoint error_point_of(const farm::ErrorPoint& message);
 
 farm::JobStatus to_message(const JobView& job);
-/// Returns the message of a job in a list, whose reason is cut to 300 bytes.
+/// Returns the job's entry in a list of jobs: to_message(), with the reason cut to 300 bytes.
 farm::JobStatus to_list_entry(const JobView& job);
 /// Fields that the message lacks become "unknown". The place of the first bad sample is a text in
 /// the message (bad_sample_at), so the view's counters do not have it.
 JobView job_view_of(const farm::JobStatus& message);
 
 farm::WorkerStatus to_message(const WorkerView& worker);
-/// A long reason is shortened.
+/// The reason is cut to 300 bytes.
 farm::Frame to_message(const FrameView& frame);
 FrameView frame_view_of(const farm::Frame& message);
 

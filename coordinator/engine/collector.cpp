@@ -59,9 +59,10 @@ std::set<wire::Digest> Collector::known_blobs_of(const KeptJob& job) {
   return blobs_of(job).value_or(std::set<wire::Digest>());
 }
 
-/// Returns when a final job ended, and the size of its files; its frames are included in both. A
-/// job that has no folder, such as a sequence that was cancelled before a frame was done, gets an
-/// empty one, whose age counts from now on.
+/// Returns when a final job ended, and the size of its files; its frames are included in both. If
+/// neither it nor its frames have a folder, as with a sequence that was cancelled before a frame
+/// was done, makes an empty folder for it: the job counts as ended at `now` (seconds since 1970),
+/// and later collections take this time from the folder.
 Collector::Final Collector::final_job(const KeptJob& kept, double now) const {
   Final job{.id = kept.id};
   add_files_of(kept.id, job);

@@ -44,7 +44,7 @@ class Collector {
  private:
   struct Final {
     JobId id = 0;
-    double at = 0;            ///< seconds since 1970
+    double at = 0;            ///< time of its end, seconds since 1970
     std::uint64_t bytes = 0;  ///< size of its files
   };
   /// The blobs of the packages of one job, each once.

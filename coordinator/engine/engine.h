@@ -108,7 +108,8 @@ class Engine {
   /// once a second, until it returns false or the job is final. The final state is always
   /// delivered. If there is no such job, `changed` is called with NOT_FOUND.
   void watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> changed);
-  /// Lists jobs by their ids, without the jobs of frames, error curves and logs.
+  /// Returns the jobs and sequences that `page` selects, ascending by id, without the jobs of
+  /// frames. JobView::curve, log and shares are empty.
   void jobs(std::function<void(std::vector<JobView>)> done, JobPage page = {});
   void workers(std::function<void(std::vector<WorkerView>)> done);
   /// Returns the last lines of a worker's log. NOT_FOUND: no lines of such a worker.
@@ -130,8 +131,8 @@ class Engine {
   /// image.
   MemoryBudget& images();
 
-  /// Returns the budget of the memory for bands that arrive or are on their way to disk and film (2
-  /// GiB).
+  /// Returns the budget of the memory for bands (2 GiB): those that are arriving, and those that
+  /// are not yet on disk and in the film.
   MemoryBudget& bands();
 
   // Blobs. These calls may block on the disk: not for gRPC's own threads.
@@ -177,8 +178,8 @@ class Engine {
   /// `work`: hash of the scene and settings that the band was rendered for
   /// (renderlib/render/work_hash.h), 0 if unknown; a band of an earlier job with the same id is not
   /// wanted. `render_s`, `cpu_s`: seconds that the worker rendered it, and CPU seconds of its
-  /// threads. `browser`: a browser sent it. `share`: the band's share of bands(); std::nullopt: it
-  /// is taken here.
+  /// threads. `browser`: a browser sent it. `share`: the band's share of bands();
+  /// std::nullopt: put_band takes it.
   void put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                 double render_s, double cpu_s,
                 std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser = false,

@@ -22,7 +22,7 @@ enum class BandOutcome {
   kUnwanted    ///< the job is over, or the band is not part of it
 };
 
-/// Returns the error for a band that does not fit into the budget for bands in memory.
+/// Returns RESOURCE_EXHAUSTED, for a band that does not fit into Engine::bands().
 inline absl::Status no_memory_for_band() {
   return absl::ResourceExhaustedError(
       "the coordinator holds as many bands in memory as it may; send this one again soon");

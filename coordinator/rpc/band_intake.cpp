@@ -1,7 +1,6 @@
 // Assembles a band (the pixels of some rows and samples) from the chunks in which it arrives. The
-// first chunk has the header, whose fields are checked before memory is taken, and the budget for
-// bands before the first byte is kept; take() checks the
-// digest and the values.
+// first chunk has the header. begin() checks its fields, then takes the size of the band from the
+// budget for bands, before any byte of the band is kept. take() checks the digest and the values.
 
 #include "coordinator/rpc/band_intake.h"
 

@@ -2,7 +2,7 @@
 
 // Assembles one band (a range of rows and samples that a worker rendered) from the chunks in which
 // it arrives, checks each chunk against the previous ones, and hands the band to the engine. Used
-// for gRPC (put_bands_call.h) and for browsers' WebSockets.
+// for gRPC (put_bands_call.h) and for the HTTP requests of browsers (web/join_routes.cpp).
 
 #include <functional>
 
@@ -18,14 +18,15 @@ namespace bandsaw::coordinator {
 
 class BandIntake {
  public:
-  /// `memory`: the budget from which the band's bytes are taken when its header comes. MUST outlive
-  /// the intake.
+  /// `memory`: the budget for bands. The size of the whole band is taken from it when the header
+  /// comes. MUST outlive the intake.
   explicit BandIntake(MemoryBudget& memory) : memory_(&memory) {}
 
   /// Adds a chunk. INVALID_ARGUMENT names the field, the allowed range and the value.
   /// RESOURCE_EXHAUSTED: the budget has no space for the band; send it again.
   absl::Status add(const farm::BandChunk& chunk);
-  /// The two parts of add(): begin() takes the header, append() the next bytes of the pixels' sums.
+  /// The two parts of add(), with the same errors: begin() takes the header, append() the next
+  /// bytes of the pixels' sums.
   absl::Status begin(const farm::BandHeader& header);
   absl::Status append(absl::string_view data);
   bool begun() const { return begun_; }
@@ -39,8 +40,9 @@ class BandIntake {
   /// Returns the pixels of a complete band; callable once. INVALID_ARGUMENT: the bytes do not match
   /// the announced digest, or a sum is not finite and >= 0.
   absl::StatusOr<BandPixels> take();
-  /// Takes a complete band and gives it to the engine, which calls `done` with its answer; callable
-  /// once. `done` also gets the errors of take(). `browser`: a browser sent it.
+  /// Calls take() and gives the band with its share of the budget to Engine::put_band(), which
+  /// calls `done` with its answer; callable once. `done` also gets the errors of take(). `browser`:
+  /// a browser sent it.
   void put(Engine& engine, std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser);
 
  private:

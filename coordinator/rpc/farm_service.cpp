@@ -34,9 +34,10 @@ absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsReques
   return digests;
 }
 
-/// Fills a reply with the first of `jobs`, which were listed for the request. A page ends when half
-/// of a message is full, because a single job may have thousands of workers. RESOURCE_EXHAUSTED:
-/// the request is for all jobs, which do not fit into a message.
+/// Fills a reply with the first of `jobs`, the jobs that the request selects. If the request limits
+/// their number, the reply also ends when half of a message is full: the other half is for its last
+/// job, which may have thousands of workers. RESOURCE_EXHAUSTED: the request is for all jobs, and
+/// they do not fit into a message.
 absl::Status fill(const std::vector<JobView>& jobs, const farm::ListJobsRequest& request,
                   farm::ListJobsReply& reply) {
   const bool paged = request.most() > 0;

@@ -41,10 +41,10 @@ class Gate {
   /// Like check(), for calls that both roles may make.
   absl::Status check_any(const grpc::CallbackServerContext& context) EXCLUDES(mutex_);
 
-  /// Renews a role's secret. If it returns OK, the old secret is refused from then on, also if
-  /// RenewedSecret::written is an error; the caller ends the streams that the old secret opened.
-  /// FAILED_PRECONDITION: this server cannot renew secrets. MUST NOT be called on gRPC's threads,
-  /// because it waits for the disk.
+  /// Renews a role's secret. If this returns a RenewedSecret, the old secret is refused from then
+  /// on, also if RenewedSecret::written is an error. The caller MUST then end the streams that the
+  /// old secret opened. FAILED_PRECONDITION: this server cannot renew secrets. MUST NOT be called
+  /// on gRPC's threads, because it waits for the disk.
   absl::StatusOr<RenewedSecret> rotate(link::Role role) EXCLUDES(rotating_);
 
  private:

@@ -9,7 +9,7 @@ namespace bandsaw::coordinator {
 
 /// Serves Work.PutBands, the stream on which a worker sends its finished bands. Flow control: the
 /// next band is read only after the previous one is answered, so a worker's stream needs the memory
-/// of one band, which the intake takes from the engine's budget. Chunks are copied and hashed on
+/// of one band, which the BandIntake takes from Engine::bands(). Chunks are copied and hashed on
 /// gRPC's thread, which for small bands costs less than handing them to another thread; the engine
 /// writes them to disk.
 class PutBandsCall final

@@ -69,7 +69,8 @@ class Scheduler {
   std::optional<JobView> job(JobId id, Time now) const;
   /// Returns why a job is not done yet, in sentences, the most important first; empty: no such job.
   std::vector<std::string> why(JobId id, Time now) const;
-  /// Returns the jobs and sequences of the page by their ids, without the jobs of frames.
+  /// Returns the jobs and sequences that `page` selects, ascending by id, without the jobs of
+  /// frames.
   std::vector<JobView> jobs(Time now, const JobPage& page = {}) const;
   /// Returns the frames of a sequence that changed after `after` (FrameView::changed), ascending.
   /// std::nullopt: there is no such sequence.

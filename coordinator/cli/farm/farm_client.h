@@ -102,7 +102,8 @@ class FarmClient {
 
   /// Returns the state of a job, with its error curve and what each worker did of it.
   absl::StatusOr<Progress> job(JobId job);
-  /// Returns the states of all jobs, without these and with reasons of at most 300 bytes.
+  /// Returns the states of all jobs, ascending by id, without error curves and without what each
+  /// worker did. Reasons are cut to 300 bytes.
   absl::StatusOr<std::vector<Progress>> jobs();
   absl::StatusOr<farm::ListWorkersReply> workers();
   // The following four change a job and return its state after that.

@@ -22,8 +22,8 @@ namespace bandsaw::coordinator {
 
 /// Sends those blobs of the package that the farm lacks, then gives the frame its scene. Waits up
 /// to a minute for a farm that cannot be reached. CANCELLED: client.stop() was called. ABORTED: the
-/// sequence is over, because a user cancelled it. Returns other errors of the farm and of the
-/// package.
+/// farm refused the scene, and the sequence is over (cancelled by a user, for example). Returns
+/// other errors of the farm and of the package.
 absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
                         ImportedPackage& package, ProgressDisplay& display);
 
@@ -34,8 +34,8 @@ using ImportFrame = std::function<absl::StatusOr<ImportedPackage>(FrameNumber fr
 class FrameSender {
  public:
   /// Starts at once, on a connection of its own to the farm of `client`. If a frame cannot be sent,
-  /// no further frame is sent, and `failed` is called on the sender's thread, except if the
-  /// sequence is over.
+  /// no further frame is sent. Then `failed` is called on the sender's thread, unless the frame was
+  /// refused because the sequence is over.
   FrameSender(const FarmClient& client, const Console& console, JobId sequence,
               std::vector<FrameNumber> frames, ImportFrame import, std::function<void()> failed);
   /// Stops and waits for the thread.

@@ -77,11 +77,12 @@ absl::Status check_files(const SubmitOptions& options, const WatchOptions& watch
 struct Started {
   JobId job = 0;
   std::vector<FrameNumber> left;  ///< frames whose scenes are still to be sent
-  absl::Status sent;              ///< error of sending the first scene, once the job is started
+  absl::Status sent;              ///< result of sending the first scene; the job is started
 };
 
-/// Starts or continues the sequence and sends its first scene. On an error of the import, sets
-/// `code` to its exit code; otherwise `code` is unchanged.
+/// Starts or continues the sequence and sends its first scene. An error after the job was started
+/// is in Started::sent. On an error of the import, sets `code` to its exit code; otherwise `code`
+/// is unchanged.
 absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options,
                               FrameImporter& importer, Process& process, ExitCode& code) {
   Started started{options.continued, options.frames, absl::OkStatus()};
@@ -122,10 +123,10 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
   }
 }
 
-/// Prints why scenes were not sent, and the frames whose scenes these are, unless the job is
-/// over (ABORTED); returns the exit code. Errors of the import and of the farm have the same type:
-/// the codes for which import_exit_code() has no exit code of its own (kWrong) are treated as
-/// errors of the farm.
+/// Prints why the scenes of `frames` were not sent; returns the exit code. Also names the frames
+/// and the command that sends them, unless the job is over (ABORTED). Errors of the import and of
+/// the farm have the same type: the codes for which import_exit_code() has no exit code of its own
+/// (kWrong) are treated as errors of the farm.
 ExitCode not_sent(const absl::Status& status, JobId job, const std::vector<FrameNumber>& frames,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)

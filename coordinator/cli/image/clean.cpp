@@ -22,8 +22,9 @@ namespace {
 
 bool is_exr(const std::string& output) { return absl::EndsWithIgnoreCase(output, ".exr"); }
 
-/// Returns the absolute name of a file, in a folder without links and "..". The file itself may be
-/// a link, which is replaced when the file is written. Returns `file` if the system reports errors.
+/// Returns the absolute path of a file, so that two names of one file can be compared. Links and
+/// ".." are resolved in the path of its folder only: if the file itself is a link, writing replaces
+/// the link. Returns `file` if the folder cannot be resolved.
 std::filesystem::path full_name(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::path full = std::filesystem::absolute(file, error);

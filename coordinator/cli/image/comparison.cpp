@@ -13,8 +13,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Makes two values equal if one of them is not finite: to the reference's, or to 0 if that is not
-/// finite.
+/// If one of the two values is not finite, sets both to the reference's value, or to 0 if the
+/// reference's value is not finite.
 void leave_out_if_not_finite(float& value, float& reference) {
   if (!std::isfinite(reference)) {
     reference = 0;
@@ -24,8 +24,8 @@ void leave_out_if_not_finite(float& value, float& reference) {
   }
 }
 
-/// Makes the values equal that are not finite in one of two images of the same size, so that SSIM
-/// and FLIP see no difference there.
+/// Calls leave_out_if_not_finite() for all channels of two images of the same size, so that SSIM
+/// and FLIP see no difference where a value is not finite.
 void leave_out_not_finite(Image& image, Image& reference) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     Rgb& a = image.pixels[i];

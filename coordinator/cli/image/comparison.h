@@ -20,8 +20,8 @@ struct Comparison {
   bool hdr = false;  ///< the reference has values above those of a screen, so `flip` is HDR-FLIP
 };
 
-/// Computes all metrics. None of them sees a difference in a channel that is not finite in one of
-/// the images. INVALID_ARGUMENT: the images differ in size.
+/// Computes all metrics. If a channel of a pixel is not finite in one of the images, no metric
+/// counts it as a difference. INVALID_ARGUMENT: the images differ in size.
 absl::StatusOr<Comparison> compare_images(const Image& image, const Image& reference);
 
 /// Formats the metrics in four lines, and a fifth if values are not finite; the last line has no

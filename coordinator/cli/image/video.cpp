@@ -86,7 +86,8 @@ absl::Status Video::start() {
   }
   // Players need yuv420p, which stores colours for two by two pixels, so both sides must be even.
   // ffmpeg converts colours by BT.601 unless it is told to use BT.709. Tags tell the player which
-  // it was; without tags, players take BT.709 for large videos and BT.601 for small ones.
+  // of the two was used; without tags, players take BT.709 for large videos and BT.601 for small
+  // ones.
   for (const char* option :
        {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
         "-pix_fmt", "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc",

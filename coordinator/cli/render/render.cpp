@@ -217,7 +217,7 @@ class LocalRun {
 
   absl::Status write(const Progress& progress, const std::vector<std::string>& outputs,
                      const std::vector<std::string>& reports) const {
-    Image part;  // the rows of --rows
+    Image part;  // with --rows: the picture of the rows; empty: none was written
     if (options_.rows) {
       ASSIGN_OR_RETURN(part, write_part_outputs(bands_, spec_, rows_, outputs, picture_));
     } else {

@@ -219,7 +219,8 @@ absl::StatusOr<std::string> only_scene(const std::vector<ListedFile>& files) {
     }
     return outermost(std::move(found));
   };
-  // Compressed files of pbrt are mostly parts of a scene, and JSON files beside glTF are its notes.
+  // .pbrt.gz files come after .pbrt files, because they are mostly parts of a scene. .json files
+  // come after glTF files, because beside a glTF file they mostly hold notes about it.
   for (const auto& found : {named({".textproto"}), named({".pbrt", ".xml"}), named({".pbrt.gz"}),
                             named({".glb", ".gltf"}), named({".json"}),
                             named({".obj", ".fbx", ".dae", ".3ds", ".ply", ".stl"})}) {

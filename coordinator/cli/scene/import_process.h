@@ -88,10 +88,9 @@ struct SceneFiles {
 /// is missing.
 ///
 /// If `scene_path` is a zip file, imports the scene `choices.inside` in it. If that is empty,
-/// imports the only scene in the zip file. It is searched for among the .textproto files; if there
-/// are none, among .pbrt and .xml files; then among .pbrt.gz files; then among .glb and .gltf
-/// files; then among .json files; then among other models. Only those of them that lie in the
-/// fewest folders count.
+/// imports the only scene in the zip file. It is searched for in the first of these groups that has
+/// a file: .textproto; .pbrt and .xml; .pbrt.gz; .glb and .gltf; .json; other models. Only the
+/// files of the group that lie in the fewest folders count.
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});

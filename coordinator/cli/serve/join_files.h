@@ -27,12 +27,13 @@ link::JoinString join_string(link::Role role, const link::Identity& identity,
 /// the disk is full; the file is unchanged.
 absl::Status write_join_file(const std::string& data_folder, const link::JoinString& join);
 
-/// Renews the secret of a role in the farm's identity (its file with certificate and secrets), and
-/// then in the role's join string, which it writes to its file. `present`: the join string with the
-/// addresses of the running coordinator; std::nullopt: none runs, and the string in the file is
-/// taken. If that is missing or damaged, no string is written, because the addresses are unknown,
-/// and RenewedSecret::join_file is empty; the next `serve` writes the file. Errors: those of
-/// link::renew_secret. If only the file could not be written, RenewedSecret::written has the error.
+/// Renews the secret of a role in the farm's identity (its file with certificate and secrets), then
+/// writes the role's join string with the new secret to its file. `present`: the join string of the
+/// running coordinator, whose secret may be an old one; std::nullopt: none runs, and the string in
+/// the file is used. If this file is missing or damaged, the addresses are unknown: no string is
+/// written, RenewedSecret::join_file is empty, and the next `serve` writes the file. Errors: those
+/// of link::renew_secret. If only the join string could not be written, RenewedSecret::written has
+/// the error.
 absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role,
                                             std::optional<link::JoinString> present);
 

@@ -36,9 +36,9 @@ absl::Status give_to_owner(const std::string& folder, const std::string& file) {
   return absl::OkStatus();
 }
 
-/// Renews the secret in the folder and revokes the link for browsers. Returns the file with the new
-/// join string; empty: `serve` writes it at its next start. FAILED_PRECONDITION: a coordinator is
-/// using the folder.
+/// Renews the secret in the folder and revokes the link for browsers. Returns the path of the file
+/// with the new join string; empty: none was written, and the next `serve` writes it.
+/// FAILED_PRECONDITION: a coordinator is using the folder.
 absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role role) {
   ASSIGN_OR_RETURN(const DataFolder locked, DataFolder::open(folder));
   RETURN_IF_ERROR(link::remove_browser_link(folder));
@@ -51,8 +51,9 @@ absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role ro
   return renewed.join_file;
 }
 
-/// Renews the secret. Returns the file with the new join string; empty: `serve` writes it at its
-/// next start.
+/// Renews the secret, by the coordinator if one is running. Returns the path as rotate_here().
+/// INVALID_ARGUMENT: the folder is no data folder. Other errors: those of the files and of the
+/// farm.
 absl::StatusOr<std::string> rotate(const std::string& folder, link::Role role) {
   if (!file_exists(identity_file(folder))) {
     return absl::InvalidArgumentError(

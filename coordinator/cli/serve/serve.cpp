@@ -27,11 +27,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// The join strings of this run. The mutex is held until start() has written them to their files,
-/// so that a renewal of a secret waits for this.
+/// The join strings of this run. start() holds the mutex until it has written them to their files,
+/// so that a renewal of a secret waits for this. If a role has no string then, start() has failed.
 struct JoinStrings {
   Mutex mutex;
-  /// By role, with the secrets of the start.
+  /// Their secrets are those of the start; a renewal replaces the secret only in the file.
   std::map<link::Role, link::JoinString> by_role GUARDED_BY(mutex);
 };
 
@@ -40,6 +40,7 @@ struct Serving {
   std::unique_ptr<Engine> engine;
   std::unique_ptr<BrowserAccess> browsers;  // the link for browsers; destroyed after its users
   std::unique_ptr<ServedDashboard> web;     // destroyed before the engine
+  // Destroyed after the server, which uses it.
   std::unique_ptr<JoinStrings> joins = std::make_unique<JoinStrings>();
   std::unique_ptr<Server> server;  // destroyed before `web`, which it notifies
   std::string folder;              // the data folder

@@ -34,7 +34,7 @@ struct WorkerShare {
   friend bool operator==(const WorkerShare&, const WorkerShare&) = default;
 };
 
-/// Selects jobs for a list: those with ids above `after`, of which the lowest `most` are taken.
+/// Selects the jobs of a list: those with ids above `after`, at most `most` of them, lowest first.
 struct JobPage {
   JobId after = 0;
   std::size_t most = std::numeric_limits<std::size_t>::max();
@@ -47,8 +47,8 @@ struct JobView {
   JobState state = JobState::kRunning;
   std::string reason;
   double fraction = 0;  ///< part of the work that is done, [0, 1]
-  /// Since its first lease, without the times between runs of the coordinator and those in which it
-  /// was paused.
+  /// Seconds since its first lease. The times between runs of the coordinator do not count, nor do
+  /// those in which it was paused (for a sequence: by a user).
   double elapsed_s = 0;
   double remaining_s = -1;              ///< negative: unknown
   double samples_per_s = 0;             ///< pixel samples, recently; 0 for a final job

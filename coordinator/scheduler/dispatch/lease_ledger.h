@@ -24,8 +24,9 @@ class LeaseLedger {
   /// Adds a lease that owns no rows: one of a backup task (a second lease of a late band) or of an
   /// audit.
   void add(Worker& worker, Job& job, const Pass& pass, Lease lease);
-  /// Lets the elapsed times of the job and of its sequence go on, unless they do or are
-  /// paused, because the job has a lease.
+  /// Lets the elapsed times of the job and of its sequence count from now on. REQUIRES: the job has
+  /// a lease. Does nothing if the job is paused. A time that counts already, and that of a sequence
+  /// that a user paused, are unchanged.
   void start_clocks(Job& job);
   /// Frees the lease's rows, or passes them on to its backup tasks. kYes: also revokes the lease at
   /// its worker.

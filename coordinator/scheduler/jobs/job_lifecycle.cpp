@@ -162,7 +162,7 @@ void JobLifecycle::storage_back() {
 
 void JobLifecycle::resume(Job& job) {
   context_.emit(record::StateChanged{job.id, JobState::kRunning, ""});
-  for (const LeaseId id : job.leases) {  // that workers have kept
+  for (const LeaseId id : job.leases) {  // workers kept these while it was paused
     context_.leases.find(id)->advanced_at = context_.clock.timeout_clock();
     ledger_.start_clocks(job);
   }

@@ -175,7 +175,7 @@ void Sequences::cancel(const input::Cancel& in) {
 }
 
 /// Ends the sequence; jobs of its frames that are not final are cancelled. If the sequence is
-/// cancelled, their frames have not failed: they are as if they had no job yet.
+/// cancelled, these frames do not count as failed: their jobs are forgotten, and they wait.
 void Sequences::end(Sequence& sequence, JobState state, const std::string& reason) {
   context_.emit(record::TimeSpent{sequence.id, sequence.elapsed(context_.clock.wall())});
   context_.emit(record::StateChanged{sequence.id, state, clean_text(reason, wire::kReasonBytes)});

@@ -96,10 +96,11 @@ class Job {
   double cost_of(const Band& band) const;
   /// Returns the largest number of samples per pixel that its stop rule allows.
   std::uint64_t max_samples() const;
-  /// Returns the time in seconds that it has been worked on, in all epochs. The time in which it
-  /// was paused does not count.
+  /// Returns the time in seconds since its first lease, summed over all epochs. The time in which
+  /// it was paused does not count.
   double elapsed(Time now) const;
-  /// Stops that time, because the job is paused. It goes on with first_lease_at.
+  /// Stops elapsed() at `now`, because the job is paused, and forgets the throughput. elapsed()
+  /// goes on when first_lease_at is set again (LeaseLedger::start_clocks).
   void stop_clock(Time now);
   /// Returns the open audit that is rendered under this lease; nullptr: none.
   Audit* audit_under(LeaseId lease);
@@ -158,8 +159,8 @@ class Job {
   std::optional<record::JobSummary> summary;      ///< for a final job
   std::vector<WorkerShare> final_shares;          ///< for a final job, descending
 
-  std::optional<Time> first_lease_at;  ///< since this epoch began or the job was resumed
-  double elapsed_before = 0;           ///< seconds, before that
+  std::optional<Time> first_lease_at;  ///< in this epoch, or since it was last paused
+  double elapsed_before = 0;           ///< seconds: elapsed() up to first_lease_at
   double elapsed_noted = 0;            ///< seconds in all epochs, as journalled last
   RecentRate throughput;               ///< pixel samples per second
   CostMap cost;

@@ -55,10 +55,12 @@ class Sequence {
   /// Returns the seconds for which the sequence has been worked on, in all epochs. The time in
   /// which a user paused it does not count.
   double elapsed(Time now) const;
-  /// Stops that time, because the sequence is paused. It goes on with first_lease_at.
+  /// Stops elapsed() at `now`, because a user paused the sequence. It goes on when first_lease_at
+  /// is set again (LeaseLedger::start_clocks).
   void stop_clock(Time now);
-  /// Begins to measure the pace of the frames: an epoch begins, or failed frames are tried again.
-  /// The elapsed time goes on from what is journalled, with first_lease_at.
+  /// Begins a new measurement of the pace of the frames: an epoch begins, or failed frames of a
+  /// final sequence are rendered again. Sets elapsed() to the journalled time; elapsed() goes on
+  /// when first_lease_at is set again.
   void restart_clock();
 
   // Only Context::apply calls these three. They do nothing if there is no such frame.
@@ -78,10 +80,10 @@ class Sequence {
   bool held = false;                   ///< paused by a user
   std::string reason;                  ///< why the sequence is in its state
   double elapsed_noted = 0;            ///< seconds: the last elapsed() in the journal
-  std::optional<Time> first_lease_at;  ///< since restart_clock(), or since it was resumed
-  double elapsed_before = 0;           ///< seconds, before that
+  std::optional<Time> first_lease_at;  ///< since restart_clock() or stop_clock()
+  double elapsed_before = 0;           ///< seconds: elapsed() up to first_lease_at
   std::size_t done_before = 0;         ///< frames that were done at the last restart_clock()
-  double elapsed_then = 0;             ///< seconds: elapsed() at that time
+  double elapsed_then = 0;             ///< seconds: elapsed() at the last restart_clock()
   Totals done;                     ///< samples, counters and CPU time of the frames that are done
   double worst_error = -1;         ///< largest error of those frames; negative: unknown
   std::uint32_t workers_used = 0;  ///< largest number of workers of one of those frames

@@ -23,9 +23,9 @@ double rendered_parts(const Context& context, const Sequence& sequence, Time now
   return parts;
 }
 
-/// Returns the remaining time in seconds at the pace since Sequence::restart_clock(); negative:
-/// unknown, also while a user has paused the sequence or the scenes of all frames that are left are
-/// missing.
+/// Returns the remaining time in seconds at the pace since Sequence::restart_clock(). Negative: it
+/// is unknown; always so while a user has paused the sequence, and while no frame that is left has
+/// a scene. `parts`: the result of rendered_parts().
 double remaining_of(const Sequence& sequence, double parts, Time now) {
   const FrameCounts& counts = sequence.counts();
   const auto left = static_cast<double>(counts.all() - counts.of(FrameState::kDone) -
@@ -44,8 +44,8 @@ double remaining_of(const Sequence& sequence, double parts, Time now) {
   return finished > 0.5 && passed > 0 ? left * passed / finished : -1;
 }
 
-/// Returns the first frame job if all are paused although the sequence is not, for example because
-/// the disk is full; nullptr: one of them is not paused, or there is none.
+/// Returns the first of the open frame jobs if all of them are paused, for example because the disk
+/// is full, but the sequence is not. nullptr otherwise, and if there is none.
 const Job* first_of_paused(const Context& context, const Sequence& sequence) {
   const Job* first = nullptr;
   for (const JobId id : sequence.open_jobs()) {
