@@ -138,12 +138,12 @@ sigset_t watched_signals() {
   sigemptyset(&set);
   sigaddset(&set, SIGTERM);
   sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGUSR2);  // wakes the thread when it shall end
+  sigaddset(&set, SIGUSR2);  // wakes the thread, so that it can end
   return set;
 }
 
-/// Drains at the first SIGTERM or SIGINT, exits at once at the second. Ignores SIGUSR2 from
-/// outside, which batch systems send as a warning. The signals MUST be blocked in all threads.
+/// Drains at the first SIGTERM or SIGINT, exits at once at the second. Ignores SIGUSR2 from other
+/// processes: batch systems send it as a warning. The signals MUST be blocked in all threads.
 class SignalWatch {
  public:
   explicit SignalWatch(Daemon& daemon) : thread_([this, &daemon] { watch(daemon); }) {}

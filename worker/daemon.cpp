@@ -61,7 +61,8 @@ class Daemon::Impl {
   void write_all(SessionStream& stream, SendQueue& queue);
   /// Sends new lines of the log. Returns false if the stream is broken.
   bool write_log(SessionStream& stream);
-  /// Tells the queue of log lines what a message says of the lines that were sent.
+  /// Updates the queue of log lines. A Welcome puts lines that may be lost back into the queue; any
+  /// other message means that the lines sent so far have arrived.
   void note_log(const farm::ToWorker& message);
   void handle(const farm::ToWorker& message, const std::string& address);
   void log_loss(const absl::Status& status);
@@ -160,7 +161,7 @@ void Daemon::Impl::note_log(const farm::ToWorker& message) {
 }
 
 void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& address) {
-  note_log(message);  // first, because lines are sent as soon as the session is welcome
+  note_log(message);  // before receive(): after a Welcome, that lets write_all() send lines
   const SessionEffects effects = session_.receive(message);
   if (message.has_welcome()) {
     backoff_.reset();

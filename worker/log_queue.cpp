@@ -1,6 +1,6 @@
-// A sink of spdlog that keeps lines until they are sent. Lines are lost on the way if the
-// connection breaks, and afterwards if the coordinator restarts; again() puts the last ones back
-// into the queue.
+// A sink of spdlog that keeps lines until they are sent. Sent lines may be lost: a connection may
+// break before they arrive, and a coordinator that restarts may lose those that it has received.
+// again() puts the last ones back into the queue.
 
 #include "worker/log_queue.h"
 

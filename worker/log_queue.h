@@ -18,11 +18,12 @@ class LogQueue final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   /// Removes and returns the oldest lines, at most `most`. Thread-safe.
   std::vector<std::string> take(std::size_t most);
-  /// Notes that the coordinator has answered: the lines taken so far have arrived. Thread-safe.
+  /// To be called for each message of the coordinator that is not a Welcome: the lines taken so far
+  /// count as arrived. Thread-safe.
   void arrived();
-  /// Puts lines back into the queue because a new connection begins: those taken since arrived(),
-  /// or all if the coordinator has `restarted`, but only the last 50; the others taken since
-  /// arrived() count as dropped. Thread-safe.
+  /// To be called when the coordinator has accepted a new connection. Puts the lines taken since
+  /// arrived() back into the queue, or all taken lines if the coordinator has `restarted`; at most
+  /// the last 50. If more were taken since arrived(), the others count as dropped. Thread-safe.
   void again(bool restarted);
 
  protected:

@@ -13,7 +13,8 @@ bool is_even(const CheckerTexture& checker, const TextureCoordinates& at);
 /// Returns the colour at the point.
 Rgb evaluate(const NoiseTexture& noise, const TextureCoordinates& at);
 
-/// Returns how many times the texture itself repeats, as repetitions() in texture.h.
+/// Returns how many times the texture repeats while the coordinates change by `way`, as
+/// repetitions() in texture.h; textures that it refers to do not count.
 double repetitions(const CheckerTexture& checker, const TextureCoordinates& way);
 double repetitions(const NoiseTexture& noise, const TextureCoordinates& way);
 /// `ramp.over` MUST NOT be kTexture.
@@ -21,8 +22,8 @@ double repetitions(const RampTexture& ramp, const TextureCoordinates& way);
 
 /// Returns the coordinate that the ramp maps to a colour. `ramp.over` MUST NOT be kTexture.
 double coordinate(const RampTexture& ramp, const TextureCoordinates& at);
-/// Returns the ramp's colour at `value`, which is a float if `ramp.over` is kTexture; NaN maps to
-/// the first stop.
+/// Returns the ramp's colour at `value`; NaN maps to the first stop. If `ramp.over` is kTexture,
+/// `value` is a converted float, and the stops of a stepped ramp are rounded to floats.
 Rgb evaluate(const RampTexture& ramp, double value);
 
 }  // namespace bandsaw

@@ -137,10 +137,11 @@ float max_value(absl::Span<const Texture> textures, TextureId id);
 /// they are black everywhere.
 Rgb mean(absl::Span<const Texture> textures, TextureId id);
 
-/// Returns how many times textures[id] repeats, about, on a way along which the coordinates change
-/// by `way`: images repeat themselves, checkers their cells, noise its lattice, marble its veins;
-/// a ramp over a coordinate repeats after the distance from its first to its last stop. Returns the
-/// largest number of itself and the textures that it refers to; 0 for constants.
+/// Returns about how many times textures[id] repeats while the coordinates change by `way`; >= 0,
+/// not rounded. A repetition is a whole image, a cell of a checker, a cell of the lattice of noise,
+/// a vein of marble or, for a ramp over a coordinate, the distance from its first to its last stop.
+/// If the texture refers to others, the result is the largest number among it and them. Constants
+/// give 0.
 double repetitions(absl::Span<const Texture> textures, TextureId id, const TextureCoordinates& way);
 
 /// Returns true if the texture itself uses uv coordinates; textures that it refers to do not count.

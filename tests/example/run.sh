@@ -7,7 +7,7 @@ example=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# A library that was built with sanitizers needs programs that were built with them.
+# If the library was built with sanitizers, a program that uses it must be built with them too.
 sanitizers=$(sed -n 's/^BANDSAW_SANITIZE:STRING=//p' "$build/CMakeCache.txt")
 cmake --install "$build" --component development --prefix "$work/prefix" >/dev/null
 cmake -G Ninja -S "$example" -B "$work/build" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_BUILD_TYPE=Release \

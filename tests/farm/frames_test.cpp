@@ -188,7 +188,7 @@ TEST_F(Frames, ThatWereNotSentAreNamedIfAFileCannotBeWritten) {
   EXPECT_THAT(failed.err, HasSubstr("--continue 1"));
 }
 
-// There is no worker, and so many frames that most are not sent when the job is cancelled.
+// The farm has no worker. When the job is cancelled, most of its many frames are not sent yet.
 TEST_F(Frames, AreNotSentAnyMoreWhenTheJobIsCancelled) {
   Process client = Process::start(
       submit("1-2000", {"-o", outputs_, "--then", "echo job $BANDSAW_JOB is $BANDSAW_STATE"}));
@@ -197,7 +197,7 @@ TEST_F(Frames, AreNotSentAnyMoreWhenTheJobIsCancelled) {
   EXPECT_EQ(client.wait(), 1);
   EXPECT_THAT(client.out(), HasSubstr("\"event\":\"ended\""));
   EXPECT_THAT(client.err(), HasSubstr("job 1 cancelled"));
-  EXPECT_THAT(client.err(), HasSubstr("job 1 is cancelled"));  // by --then
+  EXPECT_THAT(client.err(), HasSubstr("job 1 is cancelled"));  // printed by --then
   EXPECT_THAT(client.err(), Not(HasSubstr("were not sent")));
 }
 

@@ -150,8 +150,8 @@ TEST(ReportOfParts, EqualsThatOfTheWholeExceptForUnknownFields) {
   EXPECT_TRUE(report(path("top.json")).fields().at("error").has_null_value());
 }
 
-// EXR files of 16-bit numbers clip values above 65,504. The lamp has one such channel; it covers
-// the middle of the image, so both parts have some of its pixels.
+// EXR files of 16-bit numbers clip values above 65,504. The lamp's red is above that. The lamp
+// covers the middle of the image, so both parts have some of its pixels.
 TEST(ReportOfParts, CountsTheValuesThatAreClipped) {
   const TempDir folder;
   std::ofstream(folder / "lamp.textproto") << R"(

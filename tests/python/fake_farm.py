@@ -17,8 +17,9 @@ SECRET = "abcdefghijklmnopqrst-_"
 
 
 class FakeFarm:
-    """`seconds`: the time that a job takes; 0: each request for its state completes a quarter of it. Tests may set `refusals`, the HTTP statuses
-    with which the next scenes are refused, `full`, whether its disk is full, and `warnings`, those of every accepted scene. `scenes`, `jobs` and `requests` are what has come."""
+    """`seconds`: the time that a job takes; 0: each request for its state completes a quarter of it. Tests may set three variables. `refusals`: the
+    HTTP statuses with which the next scenes are refused. `full`: True if its disk is full, so that files are refused. `warnings`: those of every
+    accepted scene. `scenes`, `jobs` and `requests` hold all that it has received."""
 
     def __init__(self, seconds=0.0):
         self.seconds, self.refusals, self.warnings, self.full = seconds, [], [], False
@@ -32,7 +33,7 @@ class FakeFarm:
 
             def do_POST(self):
                 if farm.full and self.path == "/api/files":
-                    farm.answer(self, self.rfile.read(1))  # the connection is closed before the rest has come
+                    farm.answer(self, self.rfile.read(1))  # the answer is sent, and the connection closed, before the rest has come
                 else:
                     farm.answer(self, self.rfile.read(int(self.headers.get("Content-Length", 0))))
 

@@ -57,7 +57,8 @@ class LoopbackFarm:
 
 
 def refuse_early(test, farm):
-    """Sends a file that is too large. The coordinator refuses it at once and closes the connection after two seconds."""
+    """Sends a file that is too large. The coordinator refuses it at once and closes the connection after two seconds. Checks that the error has
+    the coordinator's reason, although more bytes were sent."""
     size = 1 << 40
 
     def body():
@@ -147,7 +148,7 @@ class OnAFarm(unittest.TestCase):
         refuse_early(self, self.farm)
 
     def test_a_loopback_address_may_be_a_tunnel(self):
-        # The string does not say that the dashboard there is plain.
+        # The changed string has only the dashboard's port, so it does not say that the dashboard has no TLS.
         places, rest = self.loopback.string.split("+", 1)
         web, rest = rest.split("-", 1)
         self.assertRegex(web, r"^127\.0\.0\.1:\d+$")
@@ -155,7 +156,7 @@ class OnAFarm(unittest.TestCase):
 
 
 class Tunnelled(unittest.TestCase):
-    """The dashboard beyond loopback, so with TLS, at an address that is on loopback: as at the end of a tunnel."""
+    """The dashboard listens on all addresses, so it has TLS. The client connects to it on loopback, as through a tunnel."""
 
     def test_a_loopback_address_may_have_tls(self):
         with tempfile.TemporaryDirectory() as folder:

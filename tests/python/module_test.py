@@ -64,7 +64,8 @@ class NoFarms(unittest.TestCase):
         self.assertIn("bandsaw serve", str(caught.exception))
 
     def answer_with(self, reply, connections=1):
-        """The port of a server that answers so many connections with these bytes. What comes is in `received`."""
+        """Returns the port of a server that answers the first `connections` connections with `reply`. It appends the first bytes that come
+        over each to `self.received`."""
         server = socket.create_server(("127.0.0.1", 0))
         self.addCleanup(server.close)
         self.received = []
@@ -145,7 +146,7 @@ class Files(unittest.TestCase):
         self.assertEqual(sorted(files), ["main.xml", "meshes/b.obj", "sub/a.xml", "sub/c.obj"])
 
     def test_pictures_of_binary_models_are_found(self):
-        # As in an FBX file, which has the length of a text before it, and a 3DS file, whose texts end with a zero byte.
+        # An FBX file has the length of each text before the text. In a 3DS file texts end with a zero byte.
         fbx = 'S\x0e\0\0\0C:\\x\\Wood 1.PNGS\x0d\0\0\0maps\\bump.jpeg R\x01\x02.png\0'
         folder = self.make(**{"in/a__fbx": fbx, "in/Wood 1__PNG": "w", "in/maps/bump__jpeg": "b", "in/other__png": "o",
                               "in/b__3ds": "\0\xa3\x0d\0\0\0stone.tga\0", "in/stone__tga": "s",
@@ -160,7 +161,7 @@ class Files(unittest.TestCase):
         began = time.monotonic()
         _, files = bandsaw._files_of(os.path.join(folder, "a.fbx"))
         self.assertEqual(sorted(files), ["a.fbx", "a.png"])
-        self.assertLess(time.monotonic() - began, 10)  # minutes, if every byte of the line began a search
+        self.assertLess(time.monotonic() - began, 10)  # it would be minutes if a search began at every byte of the line
 
     def test_a_missing_scene_is_named(self):
         with self.assertRaises(bandsaw.BandsawError) as caught:

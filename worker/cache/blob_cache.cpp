@@ -70,8 +70,8 @@ bool is_at(int fd, const std::string& path) {
          open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
 }
 
-/// Returns true if removed files may let the call succeed that gave this errno: the disk has no
-/// bytes or no inodes left, or the user's quota of them is used up.
+/// Returns true if a call that failed with this errno may succeed after files are removed: the disk
+/// or the user's quota has no bytes or no inodes left.
 bool is_full(int error) { return error == ENOSPC || error == EDQUOT; }
 
 /// Removes a file unless it is being downloaded. Otherwise another worker's commit could give the
@@ -151,7 +151,7 @@ absl::StatusOr<int> BlobCache::open_part(const std::string& path) {
     }
     const int error = errno;
     if (error == ENOENT && !is_folder_made) {
-      std::error_code ignored;  // opening the file fails again
+      std::error_code ignored;  // then opening the file fails again
       std::filesystem::create_directories(folder_, ignored);
       is_folder_made = true;
     } else if (!is_full(error) || !give_up_some(1)) {

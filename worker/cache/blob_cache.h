@@ -25,7 +25,7 @@ class BlobCache : public BlobSource {
 
   bool has(const wire::Digest& digest) const;
   /// Returns the blob and marks it as used. NOT_FOUND: the cache does not have it. DATA_LOSS: the
-  /// file was damaged or cannot be read (the digest is checked at each call), and is now removed.
+  /// file was damaged (the digest is checked at each call) or could not be read; it is now removed.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
 
   /// A download in progress. The bytes written so far are kept when it is destroyed, and the next
@@ -38,13 +38,15 @@ class BlobCache : public BlobSource {
     Download& operator=(const Download&) = delete;
 
     std::uint64_t offset() const { return offset_; }  ///< offset of the next byte to fetch
-    /// Appends the next bytes. RESOURCE_EXHAUSTED: the disk is full, or the user's quota of it, and
+    /// Appends the next bytes. RESOURCE_EXHAUSTED: the disk or the user's quota is full, and
     /// nothing is left to evict.
     absl::Status append(absl::Span<const std::byte> bytes);
     /// Publishes the blob under its name. DATA_LOSS: the bytes do not match the digest, or
-    /// cannot be read again; they are deleted.
+    /// cannot be read again; they are deleted. UNAVAILABLE: the partial file cannot be renamed, as
+    /// when a user has removed it.
     absl::Status commit();
-    /// Deletes the bytes written so far, so that the next download begins at byte 0.
+    /// Deletes the partial file, so that the next download begins at byte 0. This one MUST NOT
+    /// continue.
     void discard();
 
    private:
@@ -54,15 +56,15 @@ class BlobCache : public BlobSource {
     std::uint64_t offset_;
   };
   /// Starts or resumes a download. Returns nullptr if another worker of this machine is fetching
-  /// the blob; check again a little later. RESOURCE_EXHAUSTED: as for append(); a new file needs an
-  /// inode.
+  /// the blob; check again a little later. RESOURCE_EXHAUSTED: the disk or the user's quota has no
+  /// inode or no space for a new partial file, and nothing is left to evict.
   absl::StatusOr<std::unique_ptr<Download>> begin(const wire::Digest& digest);
 
  private:
   BlobCache(std::string folder, std::uint64_t max_bytes);
   std::string part_of(const wire::Digest& digest) const;
-  /// Opens a partial file, and creates it, and the folder, if there is none. Errors are those of
-  /// begin().
+  /// Opens the partial file `path` for reading and writing, and returns its descriptor. Creates the
+  /// file and the cache's folder if they are missing. Errors are those of begin().
   absl::StatusOr<int> open_part(const std::string& path) EXCLUDES(mutex_);
   /// Accounts for `added` bytes and evicts the oldest files until the rest fits; keeps `newest`.
   void make_room(std::uint64_t added, const std::string& newest) EXCLUDES(mutex_);

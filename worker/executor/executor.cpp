@@ -21,7 +21,7 @@ double seconds(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Returns the time that has passed since any fixed moment, and the CPU time of this process.
+/// Returns the time since a fixed moment, and the CPU time that this process has used.
 RenderCost time_now() {
   return {.render_s = seconds(CLOCK_MONOTONIC), .cpu_s = seconds(CLOCK_PROCESS_CPUTIME_ID)};
 }

@@ -61,8 +61,9 @@ class Executor {
   void reach(Running& running, Reached reached) EXCLUDES(mutex_);
   /// Waits until every earlier task has reached `reached`. CANCELLED: this task was stopped.
   absl::Status wait_for_earlier(const Running& running, Reached reached) EXCLUDES(mutex_);
-  /// Returns the time, and the CPU time of the process, since `began` or since the last band ended,
-  /// if later. The CPU time may include that of loading the next band's scene.
+  /// Ends a band. Returns the time, and the CPU time of the process, since the later of two
+  /// moments: `began`, when its rendering began, and the previous call. The CPU time may include
+  /// that of loading the next band's scene.
   RenderCost cost_since(const RenderCost& began) EXCLUDES(mutex_);
 
   Pool& pool_;

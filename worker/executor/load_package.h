@@ -20,7 +20,7 @@ namespace bandsaw::worker {
 using TakeBytes = std::function<absl::Status(absl::Span<const std::byte>)>;
 
 /// Passes the blob's bytes from `offset` on to `take`. UNAVAILABLE, DEADLINE_EXCEEDED: try again,
-/// from the last received byte. INVALID_ARGUMENT: the blob has fewer than `offset` bytes.
+/// from the first missing byte. INVALID_ARGUMENT: the blob has fewer than `offset` bytes.
 using TransferBlob = std::function<absl::Status(const wire::Digest& digest, std::uint64_t offset,
                                                 const TakeBytes& take)>;
 

@@ -45,7 +45,7 @@ TEST(AtomicFile, WritesAndReplacesWholeFiles) {
   EXPECT_EQ(files_in(dir.path()), 2u);
 }
 
-TEST(AtomicFile, NamesAFileOfAnotherProgram) {
+TEST(AtomicFile, RenamesAFileThatAnotherProgramHasWritten) {
   const test::TempDir dir;
   std::ofstream(dir / "a.part") << "new";
   std::ofstream(dir / "a") << "old";

@@ -1,5 +1,5 @@
 // Opening files for reading: pipes and folders are refused, links only followed if that is allowed.
-// The error of bytes that the disk cannot read.
+// The error of a bad sector differs from other errors of reading.
 
 #include "renderlib/base/file.h"
 
@@ -25,8 +25,8 @@ TEST(File, OtherThanRegularFilesAreRefusedAtOnce) {
   EXPECT_EQ(File::open_regular(folder / "none").status().code(), absl::StatusCode::kNotFound);
 }
 
-// The system cannot read the memory at address 0, and reports it as a disk reports a bad sector.
-TEST(File, BytesThatTheDiskCannotReadAreAnErrorOfTheirOwn) {
+// Reading /proc/self/mem at address 0 fails with EIO, as reading a bad sector does.
+TEST(File, IsUnreadableIsTrueForEioButNotForAnEmptyFile) {
   const auto memory = File::open("/proc/self/mem", O_RDONLY);
   ASSERT_TRUE(memory.ok()) << memory.status();
   std::array<std::byte, 1> byte{};

@@ -1,4 +1,4 @@
-// The errors of FarmClient's calls, on a server of which the test chooses the answers.
+// Tests the errors of FarmClient's calls with a server whose answers the test chooses.
 
 #include "coordinator/cli/farm/farm_client.h"
 
@@ -11,7 +11,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A farm that cancels its first calls, as a coordinator does that is being stopped.
+/// A farm that cancels its first calls, as a coordinator does while it stops.
 class CancellingFarm : public farm::Farm::Service {
  public:
   /// `cancelled`: number of calls that are answered with CANCELLED.
@@ -48,8 +48,8 @@ TEST(FarmClient, RepeatsACallThatTheFarmCancelled) {
   EXPECT_TRUE(status.ok()) << status;
 }
 
-// CANCELLED would be taken for Ctrl-C: commands would end instead of waiting for the farm.
-TEST(FarmClient, SaysThatAFarmIsUnavailableThatCancelsAllCalls) {
+// Commands take CANCELLED for Ctrl-C: they would end instead of waiting for the farm.
+TEST(FarmClient, ReportsAFarmThatCancelsAllCallsAsUnavailable) {
   const CancellingFarm farm(1000);
   const absl::Status status = farm.connect()->jobs().status();
   EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable) << status;

@@ -1,4 +1,5 @@
-// The files with the join strings when a secret is renewed, with and without a running coordinator.
+// Tests which join string is written to its file when a secret is renewed, with and without a
+// running coordinator.
 
 #include "coordinator/cli/serve/join_files.h"
 
@@ -15,11 +16,11 @@ namespace {
 class JoinFilesTest : public testing::TestWithParam<link::Role> {
  protected:
   std::string file() const { return join_file_of(folder_.path(), GetParam()); }
-  /// Returns the join string of the identity as it was at the beginning.
+  /// Returns the join string with the secret that the test's farm has at the beginning.
   link::JoinString first() const {
     return join_string(GetParam(), identity_, {"host:4780"}, false);
   }
-  /// Checks that the file has the first join string with the present secret.
+  /// Checks that the file has the join string of first(), but with the renewed secret.
   void expect_new_string(const absl::StatusOr<RenewedSecret>& renewed) const {
     ASSERT_TRUE(renewed.ok()) << renewed.status();
     EXPECT_TRUE(renewed->written.ok()) << renewed->written;
@@ -46,7 +47,7 @@ TEST_P(JoinFilesTest, WithoutACoordinatorTheAddressesAreThoseOfTheFile) {
   expect_new_string(rotate_secret(folder_.path(), GetParam(), std::nullopt));
 }
 
-TEST_P(JoinFilesTest, WithoutACoordinatorAMissingFileIsNotNamed) {
+TEST_P(JoinFilesTest, WithoutACoordinatorAMissingFileIsNotWritten) {
   const auto renewed = rotate_secret(folder_.path(), GetParam(), std::nullopt);
   ASSERT_TRUE(renewed.ok()) << renewed.status();
   EXPECT_EQ(renewed->join_file, "");

@@ -1,5 +1,6 @@
-// The files of --denoise, and --denoise=oidn, which uses the library OpenImageDenoise. A stand-in
-// takes its place: it computes (color + albedo) / 2 + normal / 4 (tests/support/oidn).
+// Tests the names of the files of --denoise, and --denoise=oidn, which uses the library
+// OpenImageDenoise. A stand-in replaces the library: it computes (color + albedo) / 2 + normal / 4
+// (tests/support/oidn).
 
 #include "coordinator/cli/image/oidn.h"
 
@@ -54,7 +55,8 @@ TEST(Oidn, TheReportSaysThatBitsMayDiffer) {
               testing::ElementsAre("a.raw.png"));
 }
 
-// The image as rendered would replace the clean image that was written there.
+// --denoise also writes the image as rendered, to q.raw.png for the output q.png. It would replace
+// the clean image if q.raw.png were an output too.
 TEST(Clean, NoOutputMayBeTheFileOfTheImageAsRendered) {
   const test::TempDir folder;
   const auto check = [&](const std::vector<std::string>& names, Denoiser denoiser) {

@@ -1,4 +1,4 @@
-// A video that ffmpeg makes of images.
+// Tests the colours and the size of a video that ffmpeg makes of images.
 
 #include "coordinator/cli/image/video.h"
 
@@ -28,9 +28,9 @@ class Videos : public testing::Test {
   const test::TempDir folder_;
 };
 
-// BT.709 gives pure red the luma 16 + 219 * 0.2126 = 63; BT.601 gives it 81. The sizes are odd, so
-// the video is larger by a black column and a black row.
-TEST_F(Videos, HaveTheColorsThatTheirTagsTell) {
+// BT.709 gives pure red the luma 16 + 219 * 0.2126 = 63; BT.601 gives it 81. Width and height are
+// odd, so the video has one more column and one more row, which are black.
+TEST_F(Videos, HaveTheColorsThatTheirTagsState) {
   constexpr std::uint32_t kWidth = 63;
   constexpr std::uint32_t kHeight = 35;
   const Image red{kWidth, kHeight, std::vector<Rgb>(kWidth * kHeight, Rgb{1, 0, 0})};
@@ -48,13 +48,14 @@ TEST_F(Videos, HaveTheColorsThatTheirTagsTell) {
     EXPECT_EQ(tags.out, "tv,bt709,bt709,bt709\n") << name << tags.err;
     const test::Finished frame = test::run({kFfmpeg, "-v", "error", "-i", file, "-frames:v", "1",
                                             "-f", "rawvideo", "-pix_fmt", "yuv420p", "-"});
-    // One byte for each pixel, then two planes of colours with a byte for each four pixels.
+    // A frame has a byte of luma for each pixel, then two planes of colours with a byte for each
+    // four pixels.
     ASSERT_EQ(frame.out.size(), 64u * 36 * 3 / 2) << name << frame.err;
     for (const std::size_t at : {std::size_t{0}, std::size_t{34 * 64 + 62}}) {
       EXPECT_NEAR(static_cast<unsigned char>(frame.out[at]), 63, 4) << name << " pixel " << at;
     }
   }
-  // Nothing half-written is left.
+  // No partial file is left.
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
     EXPECT_EQ(entry.path().filename().string().find(".part"), std::string::npos) << entry.path();
   }

@@ -213,7 +213,7 @@ TEST(Denoise, ValuesThatAreNotFiniteStayAndHarmNoOthers) {
 
 // In red the parts are 1.1e30 and 0.9e30, so the error of their mean is 0.1e30. The mean of all
 // channels is 1e30 / 3, and the mean of the squared errors is (0.1e30)^2 / 3.
-TEST(Denoise, PixelsTooBrightForTheFiltersCountAsRendered) {
+TEST(Denoise, PixelsTooBrightForTheFiltersStayAndCountInTheError) {
   DenoiseInput input = noisy(flat, 0, 13);
   for (std::size_t i = 0; i < input.mean.pixels.size(); ++i) {
     input.first.pixels[i] = {1.1e30f, 2, 0.5f};
@@ -226,7 +226,7 @@ TEST(Denoise, PixelsTooBrightForTheFiltersCountAsRendered) {
   EXPECT_NEAR(clean.total.relative_clean(), 0.1 * std::sqrt(3.0), 1e-5);
 }
 
-TEST(Denoise, TheErrorIsThatOfTheFinitePixels) {
+TEST(Denoise, TheErrorLeavesOutPixelsThatAreNotFinite) {
   DenoiseInput input = noisy(flat, 0.05f, 14);
   for (std::size_t i = 0; i < input.mean.pixels.size(); i += 2) {
     input.mean.pixels[i] = gray(std::numeric_limits<float>::quiet_NaN());

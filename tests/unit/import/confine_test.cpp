@@ -91,7 +91,7 @@ TEST(Confine, LimitsCoreDumpsFilesAndTime) {
             0);
 }
 
-// A batch system sets such limits, and only privileged users may raise them.
+// Batch systems set limits of CPU time, and only privileged users may raise them.
 TEST(Confine, KeepsLowerLimitsThatItHasInherited) {
   const Folders folders;
   const pid_t pid = fork();

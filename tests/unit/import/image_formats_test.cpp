@@ -95,8 +95,11 @@ TEST(ImageFormats, HdrIsItsMantissasTimesTheirExponent) {
   EXPECT_THAT(values, ElementsAre(4, 2, 0, 255.0f / 65536, 128.0f / 65536, 1.0f / 65536));
 }
 
-// OpenEXR 2: numbers of 32 bits, the least byte first; attributes of a name, a type, a size and a
-// value; then the place of each row or tile, and the rows or tiles.
+// The functions below make files of OpenEXR 2. Numbers have 32 bits, the least significant byte
+// first. After the magic number come attributes, each with a name, a type, a size and a value; then
+// the offset of each row or tile in the file (64 bits); then the rows or tiles.
+
+/// Returns the bytes of a number.
 std::string word(std::int32_t value) {
   return bytes({value & 0xff, value >> 8 & 0xff, value >> 16 & 0xff, value >> 24 & 0xff});
 }
@@ -105,16 +108,17 @@ std::string attribute(const std::string& name, const std::string& type, const st
   return name + '\0' + type + '\0' + word(static_cast<std::int32_t>(value.size())) + value;
 }
 
-/// left, top, right, bottom
+/// Left, top, right and bottom pixel, all inclusive.
 using Window = std::array<int, 4>;
 
 std::string box(const Window& window) {
   return word(window[0]) + word(window[1]) + word(window[2]) + word(window[3]);
 }
 
-/// An EXR file of one channel of floats that are not compressed. `order`: 0 if its rows are stored
-/// from the top, 1 if they are from the bottom; `more`: further attributes; `chunks`: the rows or
-/// tiles from the top, each with its head.
+/// Returns an EXR file of one channel of floats, without compression. `tiled`: the chunks are
+/// tiles, otherwise rows. `order`: 0 if they are stored from the top, 1 if from the bottom.
+/// `stored`, `shown`: the data window and the display window. `chunks`: the rows or tiles from the
+/// top, each with its coordinates and its size. `more`: further attributes.
 std::string exr(bool tiled, char order, const Window& stored, const Window& shown,
                 std::vector<std::string> chunks, const std::string& more = "") {
   const std::string channel = std::string("Y") + '\0' + word(2) + word(0) + word(1) + word(1);
@@ -143,13 +147,14 @@ std::string exr(bool tiled, char order, const Window& stored, const Window& show
   return file + body;
 }
 
+/// Returns the size of the values in bytes, and the values.
 std::string floats(const std::vector<float>& values) {
   std::string out(values.size() * sizeof(float), '\0');
   std::memcpy(out.data(), values.data(), out.size());
   return word(static_cast<std::int32_t>(out.size())) + out;
 }
 
-/// The first channel of each texel.
+/// Returns the first of the three channels of each texel.
 std::vector<float> reds(const ImageTexture& image) {
   std::vector<float> all(image.texels.size() / sizeof(float));
   std::memcpy(all.data(), image.texels.data(), image.texels.size());
@@ -169,7 +174,7 @@ TEST(ImageFormats, ExrRowsMayBeStoredFromTheBottom) {
   }
 }
 
-// Two tiles of 2 x 2 texels, of which the lower has one row only.
+// The image has 2 x 3 texels in two tiles. A tile has 2 x 2 texels; the lower one is cut to a row.
 TEST(ImageFormats, ExrTilesMayBeStoredFromTheBottom) {
   const std::string tiles =
       attribute("tiles", "tiledesc", word(2) + word(2) + std::string(1, '\0'));
@@ -182,7 +187,7 @@ TEST(ImageFormats, ExrTilesMayBeStoredFromTheBottom) {
   }
 }
 
-TEST(ImageFormats, ExrIsItsDisplayWindow) {
+TEST(ImageFormats, AnExrImageHasTheSizeOfItsDisplayWindow) {
   const std::vector<std::string> rows{word(-1) + floats({1, 2}), word(0) + floats({3, 4})};
   const Window stored{1, -1, 2, 0};
   const ImageTexture larger = decoded(exr(false, 0, stored, {0, -1, 2, 1}, rows));

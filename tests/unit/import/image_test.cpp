@@ -94,21 +94,22 @@ TEST(DecodeImage, ATruncatedRadianceFileIsAnError) {
       HasSubstr("truncated"));
 }
 
-// Returns a TGA file of 3 x 50 pixels with this type and these bytes of pixels.
+// Returns a TGA file of 3 x 50 pixels. `type`: 2 without compression, 10 with runs; `pixels`: the
+// bytes after the header.
 std::string tga(char type, const std::string& pixels) {
   const char header[18] = {0, 0, type, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 50, 0, 24, 0};
   return std::string(header, sizeof header) + pixels;
 }
 
-// Returns a BMP file of 3 x 50 pixels; its rows have 9 bytes and 3 of padding.
+// Returns a BMP file of 3 x 50 pixels. Each row has 9 bytes of pixels and 3 bytes of padding.
 std::string bmp() {
   const char header[54] = {'B', 'M', 0, 0, 0, 0, 0, 0,  0, 0, 54, 0, 0, 0,  40,
                            0,   0,   0, 3, 0, 0, 0, 50, 0, 0, 0,  1, 0, 24, 0};
   return std::string(header, sizeof header) + std::string(50 * 12, '\x50');
 }
 
-// stb_image alone leaves the missing pixels of such files as they were in memory, or loops for ever
-// on their headers.
+// For such files, stb_image alone leaves the missing pixels uninitialized, or never ends if the
+// header is cut.
 TEST(DecodeImage, AFileWithoutItsLastPixelsIsAnError) {
   std::string runs;
   for (int i = 0; i < 50; ++i) {

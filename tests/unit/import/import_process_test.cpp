@@ -189,8 +189,8 @@ TEST(ImportProcess, AListOfAnArchiveMustNotNameFilesThatTheImporterFound) {
   EXPECT_EQ(imported.status().message(), "a.zip: the importer left a broken list of files");
 }
 
-/// Returns which of these files is imported if an archive has them: "reads" and its name, or an
-/// error. `names` are separated by spaces.
+/// Imports an archive that has these files (`names`, separated by spaces), with a script as the
+/// importer. Returns "reads" and the name of the file that is chosen as the scene, or the error.
 std::string choice_among(const std::string& names) {
   const TempDir folder;
   const std::string program =

@@ -126,8 +126,8 @@ TEST_F(ModelCameraNames, ASceneFileSetsItsWindowAndMirrorsIt) {
               HasSubstr("camera.window: must be 4 numbers"));
 }
 
-/// Imports a COLLADA file of a triangle and of a camera with these optics, above it by 5 units,
-/// which are half a metre each.
+/// Imports a COLLADA file with a triangle, and a camera with these optics 5 units in front of it. A
+/// unit is half a metre.
 absl::StatusOr<ImportedScene> import_collada(const std::string& optics) {
   const TempDir folder;
   return import_scene(write_text(folder, "m.dae",

@@ -82,14 +82,14 @@ TEST_F(Obj, AnOpacityMapIsItsBrightness) {
   EXPECT_EQ(m.alpha.value.factor, 1);
 }
 
-/// Returns a TGA file of two texels with alpha, black and white.
+/// Returns a TGA file of a black texel and, to the right of it, a white one, with these alphas.
 std::string tga_with_alpha(char alpha_of_black, char alpha_of_white) {
   const char header[18] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 32, 0x28};
   const char texels[8] = {0, 0, 0, alpha_of_black, '\xff', '\xff', '\xff', alpha_of_white};
   return std::string(header, sizeof header) + std::string(texels, sizeof texels);
 }
 
-TEST_F(Obj, AnOpacityMapIsItsAlphaIfThatIsNotOpaque) {
+TEST_F(Obj, AnOpacityMapIsReadFromItsAlphaUnlessThatIsOpaque) {
   const auto opacities = [&](const std::string& text) {
     const ImportedScene imported = read(text);
     EXPECT_THAT(imported.info.warnings, IsEmpty());
@@ -107,7 +107,7 @@ TEST_F(Obj, AnOpacityMapIsItsAlphaIfThatIsNotOpaque) {
   EXPECT_EQ(opacities("Kd 1 1 1\nmap_Kd grey.pgm\nmap_d full.tga\n"), std::pair(0.0f, 1.0f));
 }
 
-TEST_F(Obj, AnOpacityMapThatIsTheColoursImageIsItsAlpha) {
+TEST_F(Obj, AnOpacityMapThatIsAlsoTheColourMapIsReadFromItsAlpha) {
   write_text(folder_, "full.tga", tga_with_alpha('\xff', '\xff'));
   const ImportedScene imported = read("Kd 1 1 1\nmap_Kd full.tga\nmap_d full.tga\n");
   const TextureId map = imported.scene.materials.at(0).alpha.value.texture;
@@ -257,7 +257,7 @@ Rgb reflectance(const absl::StatusOr<ImportedScene>& imported) {
                   {{0.5, 0.5}, {}, {}, {}});
 }
 
-TEST(Ply, ItsGreyDoesNotDimItsColours) {
+TEST(Ply, TheDefaultGreyDoesNotDimItsColours) {
   const TempDir folder;
   const auto read = [&](const std::string& text) {
     return import_scene(write_text(folder, "p.ply", text));

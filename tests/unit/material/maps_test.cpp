@@ -90,8 +90,8 @@ TEST(AlphaMask, IsOpaqueWhereAlphaEqualsTheCutoff) {
   }
 }
 
-/// The point (x, y) of a quad in the plane z = 0 that begins at the origin and has sides of length
-/// `side`.
+/// Returns the point (x, y) of a square in the plane z = 0, which has a corner at the origin and
+/// sides of length `side` along x and y.
 SurfacePoint on_quad(double side, double x, double y) {
   SurfacePoint p = point(x / side);
   p.position = {x, y, 0};
@@ -101,7 +101,8 @@ SurfacePoint on_quad(double side, double x, double y) {
   return p;
 }
 
-/// A height map of 64 waves along u, of 16 texels each, which is repeated `scale` times.
+/// Returns a height map that repeats `scale` times while u increases by 1. It has 64 waves along u,
+/// each of 16 texels.
 ImageTexture waves(double scale) {
   ImageTexture map;
   map.width = 1024;
@@ -119,9 +120,10 @@ ImageTexture waves(double scale) {
 }
 
 // A repetition of the map is one unit long on each of the quads, so they have the same relief. The
-// points are away from the middles of texels, where the slope jumps. The tolerance is for heights
-// in float (difference_step in shading_normal.cpp): 2^-11 of the height of 0.005, tenfold.
-TEST(HeightMap, IsTheSameHoweverOftenItRepeats) {
+// slope jumps in the middles of texels, and no point is there. The tolerance allows for the
+// rounding of heights to float (difference_step in shading_normal.cpp): it is ten times 2^-11 of
+// the height, which is 0.005.
+TEST(HeightMap, GivesTheSameReliefHoweverOftenItRepeats) {
   for (const double x : {0.3, 0.54, 0.78}) {
     const std::vector<Texture> once{waves(1)};
     const Vec3 expected = displaced_normal(on_quad(1, x, 0.3), once, TextureId{0}, 0.005);
@@ -134,9 +136,9 @@ TEST(HeightMap, IsTheSameHoweverOftenItRepeats) {
   }
 }
 
-// The relief is that of the noise in space, whatever the size of the quad that it is on. The
-// tolerance is for heights in float: 2^-11 of the height of 0.02 for each of 12 cells in a unit,
-// fourfold.
+// The size of a quad does not change the relief of a noise in space. The tolerance allows for the
+// rounding of heights to float: it is four times 2^-11 of the height, 0.02, for each of the 12
+// cells in a unit.
 TEST(HeightMap, InSpaceDoesNotDependOnTheSizeOfTheQuad) {
   const std::vector<Texture> textures{NoiseTexture{.scale = 12}};
   constexpr double kHeight = 0.02;
@@ -155,7 +157,8 @@ TEST(HeightMap, InSpaceDoesNotDependOnTheSizeOfTheQuad) {
   }
 }
 
-// The height rises by 2 over a ramp of 0.001 units, on a quad of 4000 units.
+// The ramp rises by 2 within 0.001 units. The scale of 0.0005 makes that a slope of 1. The quad has
+// sides of 4000 units.
 TEST(HeightMap, FollowsAShortRamp) {
   RampTexture ramp;
   ramp.over = RampTexture::Over::kX;

@@ -225,7 +225,7 @@ TEST_F(ChunksTest, LimitsHold) {
 }
 
 // The band has 144 bytes.
-TEST_F(ChunksTest, ABandCountsTowardsTheMemoryForBandsFromItsHeaderOn) {
+TEST_F(ChunksTest, ABandTakesItsBytesOfTheMemoryForBandsWhenItsHeaderComes) {
   const std::int64_t all = engine_->bands().left();
   const auto wait_until_left = [&](std::int64_t bytes) {
     while (engine_->bands().left() != bytes) {

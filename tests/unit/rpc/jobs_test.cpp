@@ -48,7 +48,8 @@ class JobsTest : public FarmTest {
     return people()->Why(context(link::Role::kFarm).get(), request, &reply);
   }
 
-  /// Returns the ids of the listed jobs, and whether there may be more.
+  /// Lists at most `most` jobs (0: all) with ids above `after`. Returns their ids, and true if
+  /// there may be more.
   std::pair<std::vector<std::uint64_t>, bool> list(std::uint64_t after, std::uint32_t most) {
     farm::ListJobsRequest request;
     request.set_after(after);

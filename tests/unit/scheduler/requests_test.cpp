@@ -105,7 +105,7 @@ TEST(Pause, ByAUserIsNotEndedByTheDiskOrARestart) {
   EXPECT_EQ(next.job(job).state, JobState::kRunning);
 }
 
-TEST(Pause, TakesNothingOfTheTimeOfAJob) {
+TEST(Pause, DoesNotCountAsTimeOfTheJob) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtTime{10, kMaxSamples}));
   farm.hello(1, "a", 1);
@@ -127,7 +127,7 @@ TEST(Pause, TakesNothingOfTheTimeOfAJob) {
   EXPECT_EQ(farm.job(job).remaining_s, 3);
 }
 
-TEST(Pause, ThatALeaseOutlastsLetsTheTimeGoOn) {
+TEST(Pause, TheTimeCountsAgainAfterOneThatALeaseOutlasts) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtTime{10, kMaxSamples}));
   farm.hello(1, "a", 1);

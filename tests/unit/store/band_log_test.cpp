@@ -107,7 +107,8 @@ TEST_F(BandLogTest, AnyChangedByteLosesItsOwnRecordAlone) {
   }
 }
 
-// Records of 96 kB and more are read in two pieces, the others in one.
+// A record with 4 pixels is read at once. One with 4,000 pixels has 96 kB of sums and is read
+// twice: first its head, which has its size, then the whole record.
 TEST_F(BandLogTest, ReadsRecordsOfAnySize) {
   {
     absl::StatusOr<BandLog> log = open();

@@ -196,7 +196,7 @@ TEST_F(BlobStoreTest, ADamagedFileIsDataLossOnceAndCanBeSentAgain) {
   EXPECT_EQ(text_of(*store, digest), text);
 }
 
-// The digest is computed of pieces of 1 MiB.
+// The file is read in pieces of 1 MiB to compute its digest.
 TEST_F(BlobStoreTest, DamageAtAnyPlaceIsDataLoss) {
   const std::string text = long_text('e') + std::string(3 << 20, 'f');
   const wire::Digest digest = wire::sha256(text);

@@ -209,8 +209,8 @@ TEST(Ramp, AppliesToATextureAndToEachCoordinate) {
   EXPECT_EQ(evaluate(Textures{ramp}, id(0), at).g, 8);
 }
 
-// The stops are doubles, and the greys are floats: of a constant, of an image of 8 bits, and the
-// greatest one below the stop.
+// Stops are doubles, and greys are floats. The grey nearest to a stop has its colour, as a constant
+// and as a texel of 8 bits; the next smaller float does not.
 TEST(Ramp, StepsAtAGreyThatEqualsTheStop) {
   RampTexture ramp;
   ramp.texture = id(0);
@@ -324,7 +324,8 @@ TEST(Textures, CountTheirRepetitions) {
   EXPECT_EQ(along({.object_position = {0, 2, 1}}), (Counts{0, 0, 0, 24, 0, 0, 0, 24, 0, 0}));
   const Counts in_space = along({.position = {0, 0, 8}});
   EXPECT_EQ(in_space[2], 64);
-  // Its phase turns by 6 * 8 from the axis, and by about 3 for each of 2 cells of the turbulence.
+  // The phase of the marble grows by 6 * 8 along its axis, and by about 3 for each of the 2 cells
+  // of its turbulence.
   EXPECT_NEAR(in_space[6], 54 / (2 * 3.14159265358979), 1e-9);
   EXPECT_EQ(along({.position = {8, 0, 0}})[6], 2);
 }

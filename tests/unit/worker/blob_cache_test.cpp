@@ -20,10 +20,10 @@ std::vector<std::byte> bytes_of(char fill, std::size_t size = 1000) {
   return std::vector<std::byte>(size, static_cast<std::byte>(fill));
 }
 
-/// A small disk in memory at `folder`, which is unmounted at the end.
+/// A small disk in memory, mounted at `folder`, which is created. The destructor unmounts it.
 class SmallDisk {
  public:
-  /// `options`: those of tmpfs, which limit the disk.
+  /// `options`: tmpfs's mount options, which limit the disk, such as "size=256k".
   SmallDisk(std::string folder, const char* options) : folder_(std::move(folder)) {
     std::filesystem::create_directory(folder_);
     is_mounted_ = ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, options) == 0;
@@ -193,8 +193,8 @@ TEST_F(BlobCacheTest, FreesSpaceOnAFullDisk) {
             absl::StatusCode::kResourceExhausted);
 }
 
-// A page of a hole cannot be mapped on a full disk, and is read as zeros. So a mapped blob would
-// end the process here, as it would on a bad sector.
+// A hole in a file can be read on a full disk, as zeros. But access to a hole in a mapped file ends
+// the process there, as access to a bad sector does.
 TEST_F(BlobCacheTest, RemovesABlobThatCannotBeMapped) {
   const SmallDisk disk(folder_ / "cache", "size=256k");
   if (!disk.is_mounted()) {
@@ -210,7 +210,7 @@ TEST_F(BlobCacheTest, RemovesABlobThatCannotBeMapped) {
   EXPECT_FALSE(cache->has(digest));
 }
 
-// The folder itself has one of the four inodes.
+// The folder itself takes one of the four inodes.
 TEST_F(BlobCacheTest, FreesInodesOnAFullDisk) {
   const SmallDisk disk(folder_ / "cache", "nr_inodes=4");
   if (!disk.is_mounted()) {

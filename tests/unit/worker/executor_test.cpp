@@ -25,7 +25,7 @@ Task task(TaskId id, std::uint32_t first_row, std::uint32_t rows, char scene = '
                    .rows = {.first = first_row, .last = first_row + rows}}};
 }
 
-/// Returns the CPU time of this process.
+/// Returns the CPU time that this process has used, in seconds.
 double cpu_s() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -133,7 +133,7 @@ TEST_F(ExecutorTest, RendersTheSamePixelsAsRenderBand) {
   }
 }
 
-// The process has used CPU time before, at least for its start.
+// The process has used CPU time before the band, at least for its start.
 TEST_F(ExecutorTest, CountsTheCpuTimeOfRenderingOnly) {
   start();
   executor_->add(task(1, 0, 1));

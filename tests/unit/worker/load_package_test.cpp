@@ -108,7 +108,7 @@ TEST_F(LoadPackageTest, FetchesADamagedBlobAgain) {
   EXPECT_TRUE(load(*open(), manifest_).ok());
 }
 
-TEST_F(LoadPackageTest, FetchesABlobAgainWhosePartIsTooLong) {
+TEST_F(LoadPackageTest, FetchesABlobAgainIfItsPartialFileIsTooLong) {
   const auto cache = open();
   const std::string part = folder_ / ("cache/" + manifest_.hex() + ".part");
   std::ofstream(part) << std::string(farm_.all().at(manifest_).size() + 1, 'x');

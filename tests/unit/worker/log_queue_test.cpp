@@ -1,6 +1,6 @@
-// LogQueue: the lines of a worker's log that wait to be sent to the coordinator. At most 500 wait,
-// and the last 50 that were taken can be returned again, after a lost connection or for a
-// coordinator that restarted.
+// LogQueue: the lines of a worker's log that wait to be sent to the coordinator. At most 500 wait.
+// The last 50 that were taken can be returned again, after a lost connection or for a coordinator
+// that restarted.
 
 #include "worker/log_queue.h"
 
@@ -46,7 +46,7 @@ TEST(LogQueue, ReturnsTheLastLinesAgainBeforeNewOnes) {
   EXPECT_EQ(again.back(), "info new\n");
 }
 
-TEST(LogQueue, ReturnsLinesAgainThatMayNotHaveArrived) {
+TEST(LogQueue, ReturnsAgainLinesThatMayNotHaveArrived) {
   Logging log;
   log.logger.info("one");
   log.logger.info("two");
