@@ -138,12 +138,14 @@ sigset_t watched_signals() {
   sigemptyset(&set);
   sigaddset(&set, SIGTERM);
   sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGUSR1);
   sigaddset(&set, SIGUSR2);  // wakes the thread, so that it can end
   return set;
 }
 
-/// Drains at the first SIGTERM or SIGINT, exits at once at the second. Ignores SIGUSR2 from other
-/// processes: batch systems send it as a warning. The signals MUST be blocked in all threads.
+/// Drains at the first SIGTERM or SIGINT, exits at once at the second. Ignores SIGUSR1 and
+/// SIGUSR2 from other processes: batch systems send them as warnings. The signals MUST be blocked
+/// in all threads.
 class SignalWatch {
  public:
   explicit SignalWatch(Daemon& daemon) : thread_([this, &daemon] { watch(daemon); }) {}
@@ -162,7 +164,7 @@ class SignalWatch {
     while (!ending_) {
       int signal = 0;
       sigwait(&set, &signal);
-      if (signal == SIGUSR2) {
+      if (signal == SIGUSR1 || signal == SIGUSR2) {
         continue;
       }
       if (is_draining) {

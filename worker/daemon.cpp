@@ -155,7 +155,7 @@ void Daemon::Impl::note_log(const farm::ToWorker& message) {
   }
   if (message.has_welcome()) {
     options_.log->again(message.welcome().epoch() != epoch_);
-  } else {
+  } else if (!message.has_refused()) {  // a refusal begins a stream, on which nothing was sent
     options_.log->arrived();
   }
 }

@@ -40,6 +40,7 @@ absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsReques
 /// they do not fit into a message.
 absl::Status fill(const std::vector<JobView>& jobs, const farm::ListJobsRequest& request,
                   farm::ListJobsReply& reply) {
+  constexpr std::size_t kEntryHead = 8;  // at least the bytes of an entry's tag and length
   const bool paged = request.most() > 0;
   std::size_t bytes = 0;
   for (const JobView& job : jobs) {
@@ -47,7 +48,7 @@ absl::Status fill(const std::vector<JobView>& jobs, const farm::ListJobsRequest&
       break;
     }
     farm::JobStatus entry = to_list_entry(job);
-    bytes += entry.ByteSizeLong();
+    bytes += entry.ByteSizeLong() + kEntryHead;
     if (!paged && bytes > wire::kMessageBytes) {
       return absl::ResourceExhaustedError(
           absl::StrCat("the list of all ", jobs.size(),

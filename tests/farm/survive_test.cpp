@@ -85,7 +85,8 @@ TEST_F(Survive, ADrainedWorker) {
   farm_.add_worker("staying", 1);
   Process client = job_.submit();
   job_.wait_until_stored("leaving", 2);
-  farm_.worker("leaving").signal(SIGUSR2);  // batch systems send it as a warning; it is ignored
+  farm_.worker("leaving").signal(SIGUSR1);  // a warning of batch systems, which is ignored
+  farm_.worker("leaving").signal(SIGUSR2);  // as well
   farm_.worker("leaving").signal(SIGTERM);
   EXPECT_EQ(farm_.worker("leaving").wait(), 0);
   // A drained worker has delivered all that it rendered.

@@ -89,7 +89,11 @@ WatchedFrames watch_frames(FarmClient& client, const WatchOptions& options, Proc
   const absl::Status made = fetcher.make_collections();
   if (absl::IsCancelled(made) || absl::IsUnavailable(made)) {
     display.clear();
-    return {left_early(made, job, how, "", console), true};
+    return {console.fail(
+                exit_code_of(made),
+                absl::StrCat(made.message(), "; job ", job,
+                             " is over, but its video or contact sheet is not complete. ", how)),
+            true};
   }
   std::vector<std::string> outputs = options.outputs;
   for (const std::string& file : {options.after.contact_sheet, options.after.video}) {

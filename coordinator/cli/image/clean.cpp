@@ -28,6 +28,9 @@ bool is_exr(const std::string& output) { return absl::EndsWithIgnoreCase(output,
 std::filesystem::path full_name(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::path full = std::filesystem::absolute(file, error);
+  if (error) {
+    return file;
+  }
   const auto folder = std::filesystem::weakly_canonical(full.parent_path(), error);
   return error ? file : folder / full.filename();
 }

@@ -49,8 +49,9 @@ class RecentRate {
     return sum / std::clamp(now - since_, 1.0, static_cast<double>(kSeconds));
   }
 
-  /// Makes the time count from `now` on instead of from the first amount.
+  /// Forgets all amounts, and makes the time count from `now` on instead of from the first amount.
   void start(Time now) {
+    *this = {};
     started_ = true;
     since_ = now;
     newest_ = std::floor(now);

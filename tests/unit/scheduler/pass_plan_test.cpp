@@ -172,6 +172,13 @@ TEST(RecentRate, CoversTheLastTenSeconds) {
   EXPECT_EQ(t.per_second(140), 0);
 }
 
+TEST(RecentRate, ForgetsAllAmountsWhenItIsStarted) {
+  RecentRate t;
+  t.add(100, 5);
+  t.start(120);
+  EXPECT_EQ(t.per_second(120), 0);
+}
+
 TEST(SchedulerClock, NeverGoesBackAndLimitsTheTimeoutStepOfOneInput) {
   SchedulerClock clock(1);
   clock.advance(50);
