@@ -5,7 +5,7 @@ data=$scratch/farm
 pids=()
 stop() {
   kill "${pids[@]}" 2>/dev/null || true
-  # A worker that holds bands waits for the coordinator, which has ended. A second signal ends it at once.
+  # A worker that holds bands would wait for the coordinator, which ends too. A second signal ends the worker at once.
   while kill "${pids[@]:1}" 2>/dev/null; do sleep 0.1; done
   wait 2>/dev/null || true
   rm -rf "$scratch"

@@ -23,24 +23,26 @@ constexpr std::size_t kSizeEnd = kBandRecordMagic.size() + sizeof(std::uint64_t)
 /// The largest band that a worker may send, plus the other fields of a record.
 constexpr std::uint64_t kMaxRecordBytes = wire::kBandBytes + 4096;
 
-/// The first read of a record has so many bytes: more than a record without its sums.
+/// Bytes of the first read of a record: more than a record has without its sums.
 constexpr std::uint64_t kHeadBytes = 4096;
-/// The search for the next record reads so many bytes at a time.
+/// Bytes of each read in the search for the next record.
 constexpr std::uint64_t kSearchBytes = 1 << 20;
-/// If bytes cannot be read, they are read again in blocks of this size, so that few are lost.
+/// After a failed read, the same bytes are read again in blocks of this size, so that few are lost.
 constexpr std::uint64_t kBlockBytes = 4096;
 
-/// Reads a log. The file is not mapped: an unreadable sector in a mapping would end the process.
+/// The bytes of a log. The file is not mapped, because an access to an unreadable sector of a
+/// mapping would end the process.
 class LogBytes {
  public:
-  /// `file` MUST outlive this object.
+  /// `file` MUST outlive this object; `size` is the size of the file.
   LogBytes(const File& file, std::uint64_t size) : file_(file), size_(size) {}
   std::uint64_t size() const { return size_; }
-  /// Returns true if the disk could not read some of the bytes.
+  /// Returns true if the disk could not read some bytes in any call of read().
   bool unreadable() const { return unreadable_; }
 
-  /// Returns `most` bytes from `offset` on, or fewer at the end of the log. A block that the disk
-  /// cannot read has zeros, so that a record that it hits is damaged, and no other.
+  /// Returns `most` bytes from `offset` (<= size()) on, or fewer at the end of the log. A block
+  /// that the disk cannot read is returned as zeros, so that only records in this block are
+  /// damaged. Other errors are those of File::read.
   absl::StatusOr<std::vector<std::byte>> read(std::uint64_t offset, std::uint64_t most) {
     std::vector<std::byte> bytes(std::min(most, size_ - offset));
     const absl::Status status = file_.read(offset, absl::MakeSpan(bytes));
@@ -54,6 +56,7 @@ class LogBytes {
   }
 
  private:
+  /// Fills `bytes` block by block, with zeros for each block that the disk cannot read.
   absl::Status read_blocks(std::uint64_t offset, absl::Span<std::byte> bytes) const {
     while (!bytes.empty()) {
       const auto block = bytes.subspan(0, kBlockBytes - offset % kBlockBytes);
@@ -90,8 +93,8 @@ absl::StatusOr<std::uint64_t> next_magic(LogBytes& log, std::uint64_t offset) {
   return log.size();
 }
 
-/// Returns the record at `offset`. DATA_LOSS, OUT_OF_RANGE: there is no complete record. Other
-/// errors: the log cannot be read.
+/// Returns the record at `offset`. DATA_LOSS or OUT_OF_RANGE: no complete record begins there.
+/// Other errors: the log cannot be read.
 absl::StatusOr<DecodedBandRecord> record_at(LogBytes& log, std::uint64_t offset) {
   ASSIGN_OR_RETURN(const std::vector<std::byte> head, log.read(offset, kHeadBytes));
   absl::StatusOr<DecodedBandRecord> decoded = decode_band_record(head);
@@ -107,7 +110,8 @@ absl::StatusOr<DecodedBandRecord> record_at(LogBytes& log, std::uint64_t offset)
   return decode_band_record(whole);
 }
 
-/// Calls `each` with every complete record and returns the end of the last one.
+/// Calls `each` with every complete record and its offset, counts in `report`, and returns the end
+/// of the last complete record. Fails only if the log cannot be read.
 absl::StatusOr<std::uint64_t> read_records(LogBytes& log,
                                            absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
                                            BandLogReport& report) {
@@ -140,7 +144,7 @@ absl::StatusOr<BandLog> BandLog::open(const std::string& folder, const std::stri
   ASSIGN_OR_RETURN(std::uint64_t size, file.size());
   LogBytes log(file, size);
   ASSIGN_OR_RETURN(const std::uint64_t sound_end, read_records(log, each, report));
-  // What the disk cannot read now it may read at the next start, so it is not cut off.
+  // If the disk could not read some bytes, nothing is cut off: it may read them at the next start.
   if (size != sound_end && !log.unreadable()) {
     RETURN_IF_ERROR(file.truncate(sound_end));
     RETURN_IF_ERROR(file.sync());
@@ -189,7 +193,7 @@ absl::Status BandLog::take_back(std::uint64_t size) {
 
 absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offset) {
   ASSIGN_OR_RETURN(const File file, File::open(path, O_RDONLY));
-  // Not mapped, as in LogBytes: an unreadable sector is an error for one band.
+  // The file is not mapped, as in LogBytes, so that an unreadable sector is an error of one band.
   std::array<std::byte, kSizeEnd> head{};
   RETURN_IF_ERROR(file.read(offset, absl::MakeSpan(head)));
   std::uint64_t size = 0;

@@ -17,7 +17,8 @@ namespace bandsaw::coordinator {
 /// Result of reading a log.
 struct BandLogReport {
   std::uint64_t records = 0;  ///< complete records, passed to the callback
-  /// Bytes that belong to no record: skipped, or truncated if they are at the end.
+  /// Bytes that belong to no complete record: skipped, or truncated if they are at the end (but see
+  /// BandLog::open).
   std::uint64_t damaged_bytes = 0;
 };
 
@@ -25,7 +26,8 @@ class BandLog {
  public:
   /// Opens or creates the log `path` in `folder`, calls `each` with every complete record and its
   /// byte offset, and truncates the remains of an interrupted append. A record that is damaged, or
-  /// that the disk cannot read, is skipped; reading continues at the next complete one.
+  /// that the disk cannot read, is skipped; reading continues at the next complete one. Nothing is
+  /// truncated if the disk could not read some bytes.
   static absl::StatusOr<BandLog> open(const std::string& folder, const std::string& path,
                                       absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
                                       BandLogReport& report);

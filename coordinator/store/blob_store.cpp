@@ -29,8 +29,8 @@ std::string path_of(const std::string& root, const wire::Digest& digest) {
   return absl::StrCat(folder_of(root, digest), "/", digest.hex());
 }
 
-/// Returns the digest of a file's bytes. The file is not mapped: an unreadable sector in a mapping
-/// would end the process.
+/// Returns the digest of a file's bytes. Errors are those of File. The file is not mapped, because
+/// an access to an unreadable sector of a mapping would end the process.
 absl::StatusOr<wire::Digest> digest_of(const std::string& path) {
   ASSIGN_OR_RETURN(const File file, File::open_regular(path));
   ASSIGN_OR_RETURN(const std::uint64_t size, file.size());

@@ -94,7 +94,7 @@ class BlobStore : public BlobSource {
  private:
   BlobStore(std::string folder, std::unique_ptr<PartialBlobs> partials)
       : folder_(std::move(folder)), partials_(std::move(partials)) {}
-  /// Checks the digest of the blob's file, unless it was checked before. DATA_LOSS as get().
+  /// Checks the digest of the blob's file, unless it was checked before. DATA_LOSS: as for get().
   absl::Status check(const wire::Digest& digest) EXCLUDES(mutex_);
 
   std::string folder_;

@@ -48,7 +48,7 @@ class Scenes {
       : engine_(engine), import_scene_(std::move(import_scene)) {}
 
   /// Imports the scene and submits its job; returns the job and the importer's warnings. Errors of
-  /// ImportScene and Engine::submit; UNAVAILABLE: kAtOnce others are being imported.
+  /// ImportScene and Engine::submit; UNAVAILABLE: kAtOnce other scenes are being imported.
   absl::StatusOr<web::Submitted> submit(const std::string& path, const SceneRequest& wanted);
   /// Stops current imports and refuses later ones.
   void stop() { stop_ = true; }

@@ -146,9 +146,10 @@ class Farm:
     # ---- requests ----
 
     def _connect(self, address, timeout):
-        """Returns an open connection, over which nothing was sent. It is plain if the farm has no certificate, and to the dashboard that the
-        string names on loopback. Another loopback address may be the end of a tunnel to either kind of dashboard, so TLS is tried first.
-        Raises OSError, or NoFarm: another farm."""
+        """Returns an open connection, over which nothing was sent. `timeout`: seconds. The connection is plain HTTP if the farm has no
+        certificate, or if `address` is on loopback and is the dashboard's address in the string. Any other loopback address may be the
+        end of a tunnel to a dashboard with or without TLS: there TLS is tried first, then plain HTTP. All others use TLS. Raises OSError
+        if the connection fails, NoFarm if the certificate is that of another farm."""
         host, port = address
         loopback = _is_loopback(host)
         if self._join.certificate is not None and not (loopback and address == self._join.web):
@@ -248,7 +249,7 @@ class Farm:
                 answer = json.loads(self.request("POST", path, json.dumps(message).encode(), timeout=600))
                 return Job(self, int(answer["job"]), answer.get("warning", []))
             except Refused as refused:
-                # 409: the coordinator has just removed an unused file; 503: it is reading other scenes. A full disk has 429.
+                # 409: the coordinator has just removed an unused file; 503: it is reading other scenes. 429, a full disk, is not tried again.
                 if refused.status not in (409, 503) or again == 0:
                     raise
                 time.sleep(0.5)
@@ -290,8 +291,8 @@ class Farm:
 
 
 def _early_reply(connection):
-    """Returns the answer of a coordinator that has refused a body before it came to its end, and then closed the connection;
-    None: there is none."""
+    """Returns the answer of a coordinator that refused a request before its whole body was sent, and closed the connection;
+    None if it sent no answer."""
     try:
         return connection.getresponse()
     except (OSError, http.client.HTTPException):
@@ -309,7 +310,8 @@ def _reason(error):
 
 
 def _refusal(status, answer):
-    """Returns the error that a coordinator's answer is; None if it is none. Raises NoFarm if another program has answered."""
+    """Returns the error, WrongString or Refused, that a coordinator's answer stands for; None if the HTTP status is below 300. Raises
+    NoFarm if the answer is not that of a coordinator."""
     if status < 300:
         return None
     try:
@@ -331,12 +333,13 @@ _REFERENCES = {
     ".textproto": rb'"([^"\n]+)"', ".json": rb'"([^"\n]+)"', ".gltf": rb'"uri"\s*:\s*"([^"\n]+)"',
     ".pbrt": rb'"([^"\n]+)"', ".xml": rb'"([^"\n]+)"',
 }
-# In binary files and in quotes: a picture's name. It begins after a control character or a quote, so that each byte is looked at once.
+# In these files, text or binary, a picture's name begins after a control character or a quote. The pattern begins only there, because
+# otherwise the search would begin again at every byte.
 _REFERENCES[".fbx"] = _REFERENCES[".3ds"] = (
     rb'(?i)(?<![^\x00-\x1f"])([^\x00-\x1f"]+?\.(?:png|jpe?g|tga|bmp|tiff?|exr|hdr|webp|dds|gif))')
 _ALSO_QUOTED = {".textproto": rb"'([^'\n]+)'"}  # a second pattern
-_SCENES = (".textproto", ".json", ".pbrt", ".xml")  # the others are models
-_NAMES_FROM_THE_TOP = (".pbrt", ".xml")  # an included file names files relative to the folder of the scene that includes it
+_SCENES = (".textproto", ".json", ".pbrt", ".xml")  # scene files; files with other suffixes belong to models
+_NAMES_FROM_THE_TOP = (".pbrt", ".xml")  # an included file names files relative to the folder of the scene; its own folder is tried too
 
 
 def _files_of(scene):
@@ -365,8 +368,8 @@ def _files_of(scene):
 
 def _below(folder, beside, found, or_last_part):
     """Returns the name, relative to `folder`, of the file that `found` names in a file in the folder `beside`, in a list;
-    nothing if there is no such file below the folder. `or_last_part`: else that of the file with the last part of the name,
-    because models name pictures by their paths on another machine."""
+    nothing if there is no such file below the folder. `or_last_part`: if there is none, a file in `beside` with the last part of that
+    name is taken too, because models name pictures by their paths on another machine."""
     try:
         text = found.decode("utf-8")
     except UnicodeDecodeError:

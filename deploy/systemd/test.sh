@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Checks that a worker stops before the coordinator of its machine, which services the packages restart, that systemd accepts the units, and
-# that it rates their confinement as safe. Exit status 77: systemd-analyze is not installed.
+# Checks the units and the packages' script: a worker stops before the coordinator of its machine; a new or upgraded package restarts the
+# right services; systemd accepts the units and rates their confinement as safe. Exit status 77: systemd-analyze is not installed, so the
+# last two were not checked.
 # Usage: deploy/systemd/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -11,8 +12,8 @@ grep -q '^After=.*\bbandsaw\.service\b' "$here/bandsaw-worker.service" || {
 }
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-# restarts PACKAGE OLD-VERSION SERVICE...: the script of the installed package (no old version) or the upgraded one restarts these services,
-# and succeeds although systemctl fails, as it does for a masked unit.
+# restarts PACKAGE OLD-VERSION SERVICE...: checks that the script of the package restarts exactly these services, in this order, and
+# succeeds although systemctl fails to restart them, as it does for a masked unit. An empty old version: a new installation.
 mkdir "$dir/bin"
 printf '#!/bin/sh\necho "$*" >>"%s"\n[ "$1" = daemon-reload ]\n' "$dir/calls" >"$dir/bin/systemctl"
 chmod +x "$dir/bin/systemctl"

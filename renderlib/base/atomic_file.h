@@ -17,9 +17,10 @@ namespace bandsaw {
 /// the target is unchanged, unless only the sync of the folder failed.
 absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes);
 
-/// Does the same for a file that another program has written: syncs `part`, a file in the folder of
-/// `path`, renames it to `path`, and syncs the folder. Returns the system's error. `part` remains
-/// on an error, unless only the sync of the folder failed.
+/// Gives a file that another program has written its final name: syncs `part`, which is in the
+/// folder of `path`, renames it to `path`, replacing a file there, and syncs the folder. Returns
+/// the system's error. After an error `part` is still there, unless only the sync of the folder
+/// failed.
 absl::Status name_file(const std::string& part, const std::string& path);
 
 /// Returns OK if write_file_atomically() could begin: the folder exists and is writable, and the

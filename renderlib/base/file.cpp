@@ -21,7 +21,7 @@ absl::Status errno_status(int error, const std::string& what) {
 }
 
 bool is_unreadable(const absl::Status& status) {
-  return absl::IsUnknown(status);  // EIO has no canonical status of its own
+  return absl::IsUnknown(status);  // the canonical status of EIO
 }
 
 absl::StatusOr<File> File::open(const std::string& path, int flags) {

@@ -20,7 +20,7 @@ namespace bandsaw {
 /// RESOURCE_EXHAUSTED, …; the message is "what: strerror".
 absl::Status errno_status(int error, const std::string& what);
 
-/// Returns true for the error of a read that failed because the disk cannot read a sector (EIO).
+/// Returns true if `status`, that of a File, says that the disk cannot read a sector (EIO).
 bool is_unreadable(const absl::Status& status);
 
 /// An open file descriptor that closes itself.

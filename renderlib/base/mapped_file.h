@@ -18,7 +18,7 @@ class MappedFile {
   /// `flags` and errors are those of File::open_regular: NOT_FOUND if the file does not exist,
   /// INVALID_ARGUMENT if it is not a regular file.
   static absl::StatusOr<MappedFile> open(const std::string& path, int flags = 0);
-  /// Maps an open file, which may be closed then.
+  /// Maps the whole of an open file, which may be closed afterwards. Returns the system's error.
   static absl::StatusOr<MappedFile> map(const File& file);
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;

@@ -1,6 +1,6 @@
 // parallel_for() puts a range of indices into a list. Threads take one index after the other from
-// the oldest range; the caller waits until the last index is done. A range whose body has thrown is
-// taken off the list.
+// the oldest range; the caller waits until the last index is done. If a call throws, its range is
+// removed from the list, and the caller rethrows the exception when the running calls are done.
 
 #include "renderlib/base/pool.h"
 
@@ -21,7 +21,7 @@ struct Pool::Range {
 
 namespace {
 
-/// Calls body(index) and returns what it throws, or null.
+/// Calls body(index) and returns the exception that it threw; null if it threw none.
 std::exception_ptr call(absl::FunctionRef<void(std::int64_t)> body, std::int64_t index) {
   try {
     body(index);

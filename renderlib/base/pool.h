@@ -42,8 +42,8 @@ class Pool {
   int threads() const { return static_cast<int>(threads_.size()); }
 
   /// Calls body(i) once for each i in [0, count), in any order, from the pool's threads; returns
-  /// when all calls have returned. MUST NOT be called from within a body. If a body throws, throws
-  /// the first exception when the running calls have returned; no further calls are made.
+  /// when all calls have returned. If a call throws, no further calls begin; when the running ones
+  /// have returned, the first exception is rethrown. MUST NOT be called from within a body.
   void parallel_for(std::int64_t count, absl::FunctionRef<void(std::int64_t)> body)
       EXCLUDES(mutex_);
 

@@ -34,8 +34,9 @@ float channel(const Rgb& color, std::size_t c) {
   return c == 0 ? color.r : c == 1 ? color.g : color.b;
 }
 
-/// Returns true if the means of both parts of a pixel's samples are finite. That of the second is
-/// not finite if that of the first or that of all samples is not.
+/// Returns true if the means of both parts of a pixel's samples exist and are finite. Only the
+/// second mean is checked: it is computed from the first and from the mean of all samples, and is
+/// not finite if one of these is not.
 bool has_finite_parts(const DenoiseInput& input, std::size_t at) {
   const float share = input.first_share[at];
   bool finite = share > 0 && share < 1;
@@ -48,11 +49,11 @@ bool has_finite_parts(const DenoiseInput& input, std::size_t at) {
 
 /// Sums over all channels and over the pixels of a row that have finite parts.
 struct RowSums {
-  std::uint64_t pixels = 0;
-  double value = 0;
-  double raw = 0;       ///< estimated squared errors as rendered
-  double clean = 0;     ///< estimated squared errors of the result
-  double variance = 0;  ///< the parts of `clean` that are noise
+  std::uint64_t pixels = 0;  ///< number of these pixels
+  double value = 0;          ///< values as rendered
+  double raw = 0;            ///< estimated squared errors as rendered
+  double clean = 0;          ///< estimated squared errors of the result
+  double variance = 0;       ///< the parts of `clean` that are noise
 
   void add(const RowSums& other) {
     pixels += other.pixels;
@@ -119,8 +120,8 @@ class Selection {
   /// Returns half `h` of the result at a pixel, for channel `c`.
   float mixed(int x, int y, std::size_t h, std::size_t c) const;
   Rgb value_of(int x, int y) const;
-  /// Adds a pixel to the sums if it has finite parts. One that is too bright for the filters is
-  /// added as it was rendered.
+  /// Adds a pixel to the sums if it has finite parts. If the filters did not use it, because it is
+  /// negative or too bright, it is added as it was rendered.
   void add_pixel(int x, int y, RowSums& sums) const;
 
   const Strip& strip_;
@@ -273,6 +274,7 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
   }
 }
 
+/// Returns the errors of the image from the sums of all its rows.
 CleanError total_of(const std::vector<RowSums>& rows) {
   RowSums all;
   for (const RowSums& row : rows) {

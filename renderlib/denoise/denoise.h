@@ -22,8 +22,9 @@ struct DenoiseInput {
   Image shape;   ///< guide: normal and distance, by the integrator kGuideShape
 };
 
-/// Estimated errors over all channels of all pixels whose values are finite; zeros if there are
-/// none. "Raw" is the image as rendered, "clean" the result.
+/// Estimated errors over all channels of those pixels whose values, also of both parts of the
+/// samples, are finite; zeros if there is no such pixel. "Raw" is the image as rendered, "clean"
+/// the result.
 struct CleanError {
   double mean = 0;        ///< mean value of the image
   double rmse_raw = 0;    ///< RMSE of the image as rendered
@@ -52,11 +53,11 @@ struct Denoised {
 
 /// Removes the noise. `fit` is that of any kernel (render/kernel.h). The result has the same bits
 /// for any number of threads and any kernel. Where the estimated error of the filtered value is not
-/// below that of the rendered one, and where a value is not finite or above 1e15, the pixel stays
-/// as it was rendered. The image is filtered in strips of `strip_rows` rows, an even number; 0: as
-/// many as have about a quarter of a megapixel. In addition to input and result, this needs less
-/// than 350 bytes for each pixel of a strip and of the rows around it. The bits do not depend on
-/// `strip_rows`.
+/// below that of the rendered one, and where a value is negative, above 1e15 or not finite, the
+/// pixel stays as it was rendered. The image is filtered in strips of `strip_rows` rows, an even
+/// number; 0: as many as have about a quarter of a megapixel. In addition to input and result, this
+/// needs less than 350 bytes for each pixel of a strip and of the rows around it. The bits do not
+/// depend on `strip_rows`.
 Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int strip_rows = 0);
 
 }  // namespace bandsaw

@@ -58,7 +58,8 @@ inline double opacity(const Material& material, absl::Span<const Texture> textur
   const Rgb texel = look_up(textures, alpha.value.texture, point);
   const auto value = [&](float part) { return std::clamp(alpha.value.factor * part, 0.0, 1.0); };
   if (alpha.mode == AlphaMode::kMask) {
-    // Texels are floats, so a cutoff of 0.7 is the float nearest to 0.7.
+    // Both sides are compared as floats, because texels are floats: a texel of 0.7 must reach a
+    // cutoff of 0.7.
     const double part = value(alpha.luminance ? luminance_exact_for_grays(texel) : texel.r);
     return static_cast<float>(part) >= static_cast<float>(alpha.cutoff) ? 1 : 0;
   }

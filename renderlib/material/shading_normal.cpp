@@ -48,10 +48,11 @@ UvSet set_of(absl::Span<const Texture> textures, TextureId map) {
   return image == nullptr ? UvSet::kFirst : image->uv_set;
 }
 
-/// Returns the step, in lengths of `way`, of a central difference of a height map: 2^-14, or 2^-14
-/// repetitions of the map if it repeats along `way`. So the difference spans at most a texel of
-/// images of up to 8192 texels. Heights are floats: their rounding is an error of the slope of
-/// about 2^-11 of the height per repetition, which is not visible; shorter steps would increase it.
+/// Returns the step, in lengths of `way`, of a central difference of the height map `map`: 2^-14,
+/// or 2^-14 of a repetition if the map repeats more than once along `way`. So the difference spans
+/// at most one texel of an image with a side of up to 8192 texels. Heights are rounded to floats,
+/// which changes the slope by about 2^-11 of the height per repetition. This is not visible, but
+/// shorter steps would increase it.
 double difference_step(absl::Span<const Texture> textures, TextureId map,
                        const TextureCoordinates& way) {
   return 0x1p-14 / std::max(1.0, repetitions(textures, map, way));

@@ -12,8 +12,8 @@
 namespace bandsaw {
 
 /// Returns the digest of the first `size` bytes of an open file; `path` is for errors. Returns
-/// DATA_LOSS if the disk cannot read the bytes or the file is shorter. (The file is not mapped for
-/// it, because a process that touches a bad sector of a mapped file is killed by SIGBUS.)
+/// DATA_LOSS if the bytes cannot be read or the file is shorter. The file is not mapped, because
+/// SIGBUS ends a process that reads a bad sector of a mapped file.
 absl::StatusOr<wire::Digest> digest_of_file(int fd, std::uint64_t size, const std::string& path);
 
 /// Each call of get() hashes the file and maps it; nothing is cached. Thread-safe.

@@ -343,7 +343,9 @@ std::vector<std::string> Views::why(JobId id, Time now) const {
   return lines;
 }
 
-/// Returns the sentences about its frames, then those about the first frame that is being rendered.
+/// Returns the sequence's reason, if any, the sentences about its frames, then those about the
+/// first frame that is being rendered. If the sequence is done or cancelled, returns one sentence
+/// that says so.
 std::vector<std::string> Views::why_of_sequence(const Sequence& sequence, Time now) const {
   if (sequence.state == JobState::kDone || sequence.state == JobState::kCancelled) {
     return {sequence.state == JobState::kDone ? "it is done" : "it was cancelled"};

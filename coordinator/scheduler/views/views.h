@@ -25,7 +25,7 @@ class Views {
         sessions_(sessions) {}
 
   std::optional<JobView> job(JobId id, Time now) const;
-  /// Returns the jobs and sequences of the page by their ids, without the jobs of frames.
+  /// Returns the jobs and sequences of the page, sorted by id; frames of sequences are left out.
   std::vector<JobView> jobs(Time now, const JobPage& page = {}) const;
   /// Returns the frames of a sequence that changed after `after`; std::nullopt: no such sequence.
   std::optional<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;

@@ -154,8 +154,8 @@ constexpr bool kShadowMemory = false;
 constexpr bool kShadowMemory = false;
 #endif
 
-// Limits the resource to `most`, or to the hard limit that this process has inherited if that is
-// lower: only privileged users may raise a hard limit.
+// Limits the resource to `most`, or to the inherited hard limit if that is lower: only privileged
+// users may raise a hard limit. `what` begins the message of an error.
 absl::Status limit(__rlimit_resource resource, std::uint64_t most, const char* what) {
   rlimit inherited{};
   if (getrlimit(resource, &inherited) != 0) {

@@ -35,16 +35,18 @@ absl::Status failure(const char* error) {
   return status;
 }
 
-/// Properties of the header that decide where pixels belong.
+/// Properties of the header that determine where the pixels of the file lie in the image.
 struct Layout {
   EXRBox2i stored{};    ///< data window: the pixels that the file has
   EXRBox2i shown{};     ///< display window: the pixels that the image has
-  bool turned = false;  ///< the rows are not stored from the top
+  bool turned = false;  ///< the line order is another one than from the top
 };
 
+// Both limits of a box belong to it.
 std::int64_t width_of(const EXRBox2i& box) { return std::int64_t{box.max_x} - box.min_x + 1; }
 std::int64_t height_of(const EXRBox2i& box) { return std::int64_t{box.max_y} - box.min_y + 1; }
 
+/// Returns INVALID_ARGUMENT if the box is empty or has more pixels than are read.
 absl::Status check_size(const EXRBox2i& box) {
   const std::int64_t width = width_of(box);
   const std::int64_t height = height_of(box);
@@ -57,7 +59,8 @@ absl::Status check_size(const EXRBox2i& box) {
   return absl::OkStatus();
 }
 
-/// Reads the header and checks the size of both windows.
+/// Reads the header and checks the size of both windows. Returns INVALID_ARGUMENT if a size is
+/// wrong, or if the file is damaged or of a kind that is not read.
 absl::StatusOr<Layout> read_layout(const unsigned char* data, std::size_t size) {
   EXRVersion version;
   if (ParseEXRVersionFromMemory(&version, data, size) != TINYEXR_SUCCESS) {
@@ -79,9 +82,9 @@ absl::StatusOr<Layout> read_layout(const unsigned char* data, std::size_t size) 
   return layout;
 }
 
-/// Returns the file with a header that says that its rows are stored from the top. tinyexr mirrors
-/// the image, or each of its tiles, if the header says anything else; but it finds rows and tiles
-/// by their numbers, whose order in the file is of no importance.
+/// Returns a copy of the file whose header has the line order "from the top". With any other order,
+/// tinyexr mirrors the image, or each of its tiles. This is wrong, because it finds rows and tiles
+/// by their numbers, in whatever order they are stored.
 std::string with_rows_from_the_top(absl::string_view bytes) {
   constexpr absl::string_view kLineOrder("lineOrder\0lineOrder\0\1\0\0\0", 24);
   std::string out(bytes);
@@ -92,8 +95,8 @@ std::string with_rows_from_the_top(absl::string_view bytes) {
   return out;
 }
 
-/// Returns the colours of the pixels that are shown; those that are not stored are black. `rgba`:
-/// the stored pixels, four floats for each.
+/// Returns the pixels of the display window, three floats for each; those outside of the data
+/// window are black. `rgba`: the pixels of the data window, four floats for each.
 std::vector<std::byte> shown_texels(const float* rgba, const Layout& layout) {
   const EXRBox2i& from = layout.stored;
   const EXRBox2i& to = layout.shown;

@@ -177,8 +177,8 @@ int read_endless(void* user, char* to, int size) {
   const std::size_t real = std::min(wanted, source.rest.size());
   std::memcpy(to, source.rest.data(), real);
   source.rest.remove_prefix(real);
-  // A request into stb_image's own buffer reads ahead: it may get fewer bytes than it wants, but
-  // one at least. Any other request must get all.
+  // A request into stb_image's own buffer reads ahead: it may get fewer bytes than it wants, but at
+  // least one. Any other request must get all bytes.
   if (real == wanted || (real > 0 && to == source.ahead)) {
     return static_cast<int>(real);
   }
@@ -187,7 +187,7 @@ int read_endless(void* user, char* to, int size) {
   return size;
 }
 
-// Skipping past the end is no overrun: BMP files may end before the padding of their last row.
+// A skip past the end is no overrun: BMP files may end before the padding of their last row.
 void skip_endless(void* user, int size) {
   auto& source = *static_cast<Endless*>(user);
   const std::size_t wanted = static_cast<std::size_t>(std::max(size, 0));
@@ -198,13 +198,14 @@ int at_end(void* user) { return static_cast<const Endless*>(user)->overrun ? 1 :
 
 constexpr stbi_io_callbacks kEndless{read_endless, skip_endless, at_end};
 
+// Returns the error of a decoding that failed or read past the end of the file.
 absl::Status failure(const Endless& source) {
   return source.overrun ? absl::InvalidArgumentError("is truncated: its last pixels are missing")
                         : failure();
 }
 
-// Returns true if stb_image handles the end of the file itself: it refuses a PNG file that is cut
-// off, and shows the part of a JPEG file that is there.
+// Returns true for the formats in which stb_image itself handles a file that is cut off: it refuses
+// a PNG file, and decodes the part of a JPEG file that is there.
 bool is_png_or_jpeg(absl::string_view bytes) {
   return absl::StartsWith(bytes, "\x89PNG") || absl::StartsWith(bytes, "\xff\xd8");
 }

@@ -5,7 +5,7 @@
 #define STBI_NO_GIF
 #define STBI_NO_PIC
 #define STBI_NO_STDIO
-// Memory is cleared, so that the pixels of a damaged file do not depend on what was there before.
+// New memory is cleared, so that the pixels of a damaged file do not depend on its old contents.
 #define STBI_MALLOC(size) std::calloc(1, size)
 #define STBI_REALLOC(pointer, size) std::realloc(pointer, size)
 #define STBI_FREE(pointer) std::free(pointer)

@@ -16,7 +16,7 @@
 
 namespace bandsaw {
 
-/// Maximum size of a model's file.
+/// Maximum size of each file of a model, in bytes.
 inline constexpr std::uint64_t kMaxModelFileBytes = std::uint64_t{8} << 30;
 
 /// Files to which a model referred and which it could not open. MUST outlive the Assimp importer,
@@ -34,8 +34,9 @@ struct ModelSource {
 
 class AssimpFiles : public Assimp::IOSystem {
  public:
-  /// The names of other files than the model are relative to the model's folder. `mtl` gets the
-  /// options of MTL files. `folder`, `refused` and `mtl` MUST outlive this object.
+  /// The names of other files than the model are relative to the model's folder. The options of MTL
+  /// files that Assimp opens are added to `mtl`. `folder`, `refused` and `mtl` MUST outlive this
+  /// object.
   AssimpFiles(const SceneFolder& folder, const ModelSource& model, RefusedFiles& refused,
               MtlOptions& mtl)
       : folder_(folder),

@@ -1,4 +1,4 @@
-// Finds the nodes with an instance of a camera, and the optics of that camera.
+// Finds the nodes that have an instance of a camera, and reads the optics of that camera.
 
 #include "renderlib/import/model/collada_cameras.h"
 
@@ -12,13 +12,14 @@
 namespace bandsaw {
 namespace {
 
-// Returns the number of a child; 0 if there is none, or if it is not above 0.
+// Returns the number in the child element `name`; 0 if there is none, or if it is not above 0.
 double number(const pugi::xml_node& in, const char* name) {
   const double value = in.child(name).text().as_double();
   return value > 0 ? value : 0;
 }
 
-// Angles are in degrees. Without an aspect ratio the image is taken as square.
+// Returns the angle in radians; std::nullopt if the file has none. The angles in the file are in
+// degrees; xfov counts only without yfov. `aspect`: width / height.
 std::optional<double> vertical_fov(const pugi::xml_node& perspective, double aspect) {
   const double vertical = number(perspective, "yfov");
   const double horizontal = number(perspective, "xfov");
@@ -29,13 +30,16 @@ std::optional<double> vertical_fov(const pugi::xml_node& perspective, double asp
   return 2 * atan2(half.sin, half.cos * aspect);
 }
 
-// xmag and ymag are half of the width and of the height.
+// Returns the whole height; std::nullopt if the file has none. ymag and xmag are half of the height
+// and of the width; xmag counts only without ymag. `aspect`: width / height.
 std::optional<double> height(const pugi::xml_node& orthographic, double aspect) {
   const double vertical = number(orthographic, "ymag");
   const double half = vertical > 0 ? vertical : number(orthographic, "xmag") / aspect;
   return half > 0 ? std::optional(2 * half) : std::nullopt;
 }
 
+// Returns the lens of a <camera>; an empty one if it has no valid size or angle. Without an aspect
+// ratio the image is taken as square.
 ColladaLens lens_of(const pugi::xml_node& camera) {
   const pugi::xml_node common = camera.child("optics").child("technique_common");
   const auto aspect = [](const pugi::xml_node& in) {

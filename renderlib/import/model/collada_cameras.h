@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads the lenses of the cameras of a COLLADA file from its XML: Assimp 5.2 takes the size of an
-// orthographic camera as an angle, and computes wrong angles of some perspective cameras.
+// Reads the lenses of the cameras of a COLLADA file from its XML, because Assimp 5.2 takes the size
+// of an orthographic camera for an angle, and computes wrong angles for some perspective cameras.
 
 #include <map>
 #include <optional>
@@ -11,17 +11,20 @@
 
 namespace bandsaw {
 
+/// The lens of a camera; at most one field is set.
 struct ColladaLens {
   std::optional<double> vertical_fov;  ///< in radians, of a perspective camera
   std::optional<double> height;        ///< of an orthographic camera, in units of its node
 };
 
+/// Returns true if the name ends with .dae, in upper or lower case.
 bool is_collada(absl::string_view path);
 
 /// Lenses keyed by the names that Assimp gives their nodes: a node's id, or its sid.
 using ColladaLenses = std::map<std::string, ColladaLens>;
 
-/// Returns the lenses in the text of a file; those without a valid size or angle are left out.
+/// Returns the lenses in the XML `text` of a file. A lens without a valid size or angle is left
+/// out, and so is each one that cannot be found because the XML is damaged.
 ColladaLenses read_collada_lenses(absl::string_view text);
 
 }  // namespace bandsaw

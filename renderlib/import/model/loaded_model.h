@@ -36,7 +36,7 @@ using StillMeshes = std::map<std::tuple<unsigned, bool, unsigned, unsigned>, Sti
 struct LoadedModel {
   RefusedFiles refused;
   MtlOptions mtl;             ///< of the MTL files of an OBJ file
-  ColladaLenses lenses;       ///< set for a COLLADA file with cameras
+  ColladaLenses lenses;       ///< of the cameras of a COLLADA file
   Assimp::Importer importer;  ///< owns the scene
   const aiScene* scene = nullptr;
   GltfExtensions gltf;  ///< set for a glTF file

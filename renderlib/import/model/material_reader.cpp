@@ -56,7 +56,8 @@ UvTransform uv_transform_of(const aiUVTransform& from) {
   return {{a, b, mu + from.mTranslation.x, c, d, mv + from.mTranslation.y}};
 }
 
-// Assimp keeps white space at the end of a line of an MTL file.
+// Returns the name without white space around it: Assimp keeps that at the end of a line of an MTL
+// file.
 std::string without_space(const aiString& name) {
   return std::string(absl::StripAsciiWhitespace(name.C_Str()));
 }
@@ -185,7 +186,7 @@ std::string MaterialReader::name() const {
 }
 
 bool MaterialReader::is_default_of_obj() const {
-  // A material of the file may have the same name.
+  // A material of the file may have the same name, so its colour is compared too.
   constexpr float kAssimpGray = 0.6f;
   return kind() == ModelKind::kObj && name() == AI_DEFAULT_MATERIAL_NAME &&
          color("$clr.diffuse", 1) == gray(kAssimpGray);

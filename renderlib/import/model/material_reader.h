@@ -58,8 +58,8 @@ class MaterialReader {
   /// `factor`; a white texture if has() is false. Errors name the material.
   absl::StatusOr<TextureId> map(Slot slot, As as, const Rgb& factor = {1, 1, 1});
   absl::StatusOr<TextureId> white() const { return file_.draft.textures.constant({1, 1, 1}); }
-  /// Returns an opacity map: the alpha of the image; or its brightness, if the image is opaque
-  /// everywhere and is not also that of the colour.
+  /// Returns an opacity map: the brightness of the image if its alpha is 1 everywhere and it is not
+  /// also the colour texture; otherwise its alpha.
   absl::StatusOr<TextureId> opacity_map(Slot slot);
   /// Returns the normal map of a height map.
   absl::StatusOr<TextureId> bump_map(Slot slot);

@@ -215,8 +215,9 @@ void forget_files(Assimp::Importer& importer) {
   importer.SetIOHandler(std::make_unique<Assimp::DefaultIOSystem>().release());
 }
 
-/// Reads the file with Assimp; nullptr on failure. For glTF, Assimp reads only the plain document,
-/// whose buffer is freed afterwards.
+/// Reads the file with the importer of `model`; returns nullptr on failure. Sets `refused` and
+/// `mtl` of `model`. For glTF, Assimp reads only the plain document, whose buffer is freed
+/// afterwards.
 const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& folder,
                               std::optional<gltf::PlainGltf>& plain, LoadedModel& model) {
   Assimp::Importer& importer = model.importer;

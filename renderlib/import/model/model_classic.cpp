@@ -55,9 +55,10 @@ double opacity_of(MaterialReader& reader, bool mapped) {
   return opacity;
 }
 
-// Returns the colour that texture and vertex colours are multiplied with. A model without a colour
-// is grey, but this grey MUST NOT dim its texture or vertex colours. For formats without materials
-// Assimp's colour is not used: it is white.
+// Returns the colour with which the texture and vertex colours are multiplied. A model without a
+// colour is grey, or white if it has a texture or vertex colours, which grey would darken. In
+// formats without materials Assimp's colour is ignored, because it is always white. `textured`: the
+// colour has a texture.
 Rgb base_color(const MaterialReader& reader, bool textured) {
   const bool painted = textured || reader.has_vertex_colors();
   const Rgb missing = painted ? Rgb{1, 1, 1} : gray(0.8f);

@@ -30,7 +30,7 @@ Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 struct CameraAtNode {
   const aiCamera* camera = nullptr;
   std::string name = {};                              ///< its own name
-  std::optional<double> vertical_fov = std::nullopt;  ///< in radians, if the file's is known
+  std::optional<double> vertical_fov = std::nullopt;  ///< in radians; none: use Assimp's angle
   std::optional<double> height = std::nullopt;        ///< as ColladaLens::height
 };
 
@@ -148,7 +148,8 @@ class Walk {
   std::size_t flattened = 0;
 
  private:
-  // A camera of COLLADA is left out if its lens is not known.
+  /// Adds a camera under the name of its node. A camera of COLLADA whose lens is not known is left
+  /// out, with a warning.
   void add_by_name(const aiCamera& camera) {
     CameraAtNode at{&camera};
     if (file_.is_collada()) {

@@ -31,7 +31,7 @@ class ModelTextures {
   absl::StatusOr<ImageTexture> decoded(const std::string& file) const;
 
   /// Returns true if the image has an alpha channel that is not 255 everywhere. Errors are those of
-  /// find().
+  /// find() and of decoding.
   absl::StatusOr<bool> is_see_through(const std::string& file) const;
 
  private:

@@ -1,5 +1,5 @@
-// Scans the lines of an MTL file: newmtl begins a material; in lines of textures, options and their
-// arguments stand before the name of the image.
+// Reads an MTL file line by line. A line "newmtl NAME" begins a material. In the line of a texture,
+// options and their arguments stand between the keyword and the name of the image.
 
 #include "renderlib/import/model/mtl_options.h"
 
@@ -15,7 +15,8 @@
 namespace bandsaw {
 namespace {
 
-// Removes the next word of the line and the white space around it.
+// Removes the next word and the white space around it from the line, and returns the word; "" at
+// the end of the line.
 absl::string_view take_word(absl::string_view& line) {
   line = absl::StripAsciiWhitespace(line);
   const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
@@ -24,7 +25,7 @@ absl::string_view take_word(absl::string_view& line) {
   return word;
 }
 
-// Removes the next words of the line that are numbers, at most three.
+// Removes the numbers with which the line begins, at most three, and returns them.
 std::vector<double> take_numbers(absl::string_view& line) {
   std::vector<double> numbers;
   while (numbers.size() < 3) {
@@ -39,11 +40,12 @@ std::vector<double> take_numbers(absl::string_view& line) {
   return numbers;
 }
 
+// `keyword`: in lower case.
 bool is_texture(const std::string& keyword) {
   return absl::StartsWith(keyword, "map_") || keyword == "bump" || keyword == "norm";
 }
 
-// Reads the rest of a texture's line, after its keyword.
+// Adds the options of one texture. `line`: the rest of its line, after the keyword.
 void read_texture(const std::string& material, absl::string_view line, MtlOptions& to) {
   UvTransform transform;
   while (absl::StartsWith(line, "-")) {

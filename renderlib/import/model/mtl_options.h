@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the options of textures in MTL files that Assimp skips.
+// Reads options of textures from MTL files, because Assimp skips them.
 
 #include <map>
 #include <set>
@@ -12,13 +12,16 @@
 
 namespace bandsaw {
 
+/// Options of the textures of a model.
 struct MtlOptions {
-  /// Scale and offset (-s, -o) of textures, keyed by the names of the material and of the image.
+  /// Scale and offset (-s, -o) of textures, keyed by the name of the material and the name of the
+  /// image in the file. A texture that has neither is left out.
   std::map<std::pair<std::string, std::string>, UvTransform> transforms;
-  std::set<std::string> ignored;  ///< options that have no effect, such as "-mm"
+  std::set<std::string> ignored;  ///< options that are not supported, such as "-mm"
 };
 
-/// Adds the options of an MTL file. A number that is missing keeps its default.
+/// Adds the options in the text of an MTL file. A missing number of -s is 1, and of -o is 0. Lines
+/// that are not understood are skipped.
 void add_mtl_options(absl::string_view text, MtlOptions& to);
 
 }  // namespace bandsaw

@@ -15,9 +15,9 @@
 
 namespace bandsaw {
 
-/// Adds a model's cameras to the draft. `at_open`, `at_close`: the placements of the model when the
-/// shutter opens and closes. Does nothing if cameras of the same file have been added, or if the
-/// model is in a group, which has no place of its own.
+/// Adds a model's cameras to the draft. `at_open`, `at_close`: the transforms from the model to the
+/// world when the shutter opens and when it closes. Does nothing if cameras of the same file have
+/// been added, or if the model is in a group, which has no place of its own.
 void add_cameras(const std::string& file, const Model& model, const Transform& at_open,
                  const Transform& at_close, SceneDraft& draft);
 
