@@ -15,6 +15,7 @@
 #include "renderlib/base/file.h"
 #include "renderlib/base/mapped_file.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/package/blob_folder.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -27,22 +28,6 @@ std::string folder_of(const std::string& root, const wire::Digest& digest) {
 }
 std::string path_of(const std::string& root, const wire::Digest& digest) {
   return absl::StrCat(folder_of(root, digest), "/", digest.hex());
-}
-
-/// Returns the digest of a file's bytes. Errors are those of File. The file is not mapped, because
-/// an access to an unreadable sector of a mapping would end the process.
-absl::StatusOr<wire::Digest> digest_of(const std::string& path) {
-  ASSIGN_OR_RETURN(const File file, File::open_regular(path));
-  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
-  std::vector<std::byte> buffer(std::min<std::uint64_t>(size, 1 << 20));
-  wire::Hasher hasher;
-  for (std::uint64_t at = 0; at < size; at += buffer.size()) {
-    const auto piece =
-        absl::MakeSpan(buffer).first(std::min<std::uint64_t>(buffer.size(), size - at));
-    RETURN_IF_ERROR(file.read(at, piece));
-    hasher.update(piece);
-  }
-  return hasher.finish();
 }
 
 class MappedBlob : public BlobBytes {
@@ -93,29 +78,27 @@ absl::Status BlobStore::remove(const wire::Digest& digest) {
 }
 
 absl::StatusOr<std::unique_ptr<BlobBytes>> BlobStore::get(const wire::Digest& digest) {
-  absl::StatusOr<MappedFile> file = MappedFile::open(path_of(folder_, digest));
+  const absl::StatusOr<File> file = File::open_regular(path_of(folder_, digest));
   if (absl::IsNotFound(file.status())) {
     return absl::NotFoundError(absl::StrCat("there is no blob ", digest.hex()));
   }
   RETURN_IF_ERROR(file.status());
-  RETURN_IF_ERROR(check(digest));
-  return std::make_unique<MappedBlob>(*std::move(file));
+  RETURN_IF_ERROR(check(digest, *file));
+  ASSIGN_OR_RETURN(MappedFile mapped, MappedFile::map(*file));
+  return std::make_unique<MappedBlob>(std::move(mapped));
 }
 
-absl::Status BlobStore::check(const wire::Digest& digest) {
+absl::Status BlobStore::check(const wire::Digest& digest, const File& file) {
   {
     MutexLock lock(mutex_);
     if (checked_.contains(digest)) {
       return absl::OkStatus();
     }
   }
-  const std::string path = path_of(folder_, digest);
-  const absl::StatusOr<wire::Digest> found = digest_of(path);
-  if (!found.ok() && !is_unreadable(found.status())) {
-    return found.status();
-  }
+  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
+  const absl::StatusOr<wire::Digest> found = digest_of_file(file.fd(), size, file.path());
   if (!found.ok() || *found != digest) {
-    RETURN_IF_ERROR(remove_file(path));
+    RETURN_IF_ERROR(remove_file(file.path()));
     return absl::DataLossError(
         absl::StrCat("the file of blob ", digest.hex(),
                      " was damaged and has been removed; submit the scene again"));

@@ -15,6 +15,7 @@
 #include "coordinator/store/partial_blobs.h"
 #include "coordinator/store/staged_file.h"
 #include "proto/wire/digest.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/mutex.h"
 #include "renderlib/package/blob_source.h"
 
@@ -94,8 +95,9 @@ class BlobStore : public BlobSource {
  private:
   BlobStore(std::string folder, std::unique_ptr<PartialBlobs> partials)
       : folder_(std::move(folder)), partials_(std::move(partials)) {}
-  /// Checks the digest of the blob's file, unless it was checked before. DATA_LOSS: as for get().
-  absl::Status check(const wire::Digest& digest) EXCLUDES(mutex_);
+  /// Checks the digest of the blob's open file, unless it was checked before. DATA_LOSS: as for
+  /// get().
+  absl::Status check(const wire::Digest& digest, const File& file) EXCLUDES(mutex_);
 
   std::string folder_;
   std::unique_ptr<PartialBlobs> partials_;

@@ -39,6 +39,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -327,9 +328,13 @@ absl::Status run_without_exceptions(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     rlimit memory{};
     getrlimit(RLIMIT_AS, &memory);
-    return absl::ResourceExhaustedError(
-        absl::StrCat(name_of(argv[2]), ": needs more memory than the ", memory.rlim_cur,
-                     " bytes that reading a file may take"));
+    std::uint64_t most = memory.rlim_cur;
+    if (std::uint64_t given = 0; absl::SimpleAtoi(argv[5], &given)) {
+      most = std::min(most, given);
+    }
+    return absl::ResourceExhaustedError(absl::StrCat(name_of(argv[2]),
+                                                     ": needs more memory than the ", most,
+                                                     " bytes that reading a file may take"));
   } catch (const std::exception& error) {
     return absl::InvalidArgumentError(
         absl::StrCat(name_of(argv[2]), ": cannot be read: ", error.what()));

@@ -242,6 +242,8 @@ class Walk {
     const bool gltf = file_.kind == ModelKind::kGltf;
     const auto camera = camera_of(found, place.at_open, gltf);
     if (!camera) {
+      file_.warn(absl::StrCat("the camera \"", node.mName.C_Str(),
+                              "\" is left out: its lens or its place is not valid"));
       return;
     }
     model.cameras.push_back({node.mName.C_Str(), found.name, *camera});

@@ -174,12 +174,14 @@ TEST(ColladaCameras, MayBeOrthographic) {
   EXPECT_NEAR(height("<xmag>6</xmag><ymag>3</ymag>"), 3, 1e-6);
 }
 
-TEST(ColladaCameras, WithoutALensAreLeftOut) {
-  const auto imported = import_collada("<perspective></perspective>");
-  ASSERT_TRUE(imported.ok()) << imported.status();
-  EXPECT_THAT(imported->info.model_cameras, ::testing::IsEmpty());
-  EXPECT_THAT(imported->info.warnings,
-              ::testing::Contains(HasSubstr("the camera \"eye\" is left out")));
+TEST(ColladaCameras, WithoutAValidLensAreLeftOut) {
+  for (const std::string angle : {"", "<yfov>200</yfov>"}) {
+    const auto imported = import_collada("<perspective>" + angle + "</perspective>");
+    ASSERT_TRUE(imported.ok()) << imported.status();
+    EXPECT_THAT(imported->info.model_cameras, ::testing::IsEmpty());
+    EXPECT_THAT(imported->info.warnings,
+                ::testing::Contains(HasSubstr("the camera \"eye\" is left out")));
+  }
 }
 
 TEST_F(ModelCameraNames, AModelInAGroupHasNoCameras) {
