@@ -109,20 +109,20 @@ Image equirectangular(const Sky& sky, const Transform& to_light) {
 
 double illuminance_of(const Sky& sky) {
   constexpr int kRings = 256;
-  constexpr int kAround = 512;
+  constexpr int kPerRing = 512;
   double total = 0;
   for (int i = 0; i < kRings; ++i) {
     // Directions distributed as the cosine: each stands for pi / count.
     const double cosine = std::sqrt((i + 0.5) / kRings);
     const double sine = std::sqrt(1 - cosine * cosine);
-    for (int k = 0; k < kAround; ++k) {
-      const SinCos around = sincos_turns((k + 0.5) / kAround);
+    for (int k = 0; k < kPerRing; ++k) {
+      const SinCos around = sincos_turns((k + 0.5) / kPerRing);
       double sum[3] = {};
       add_lookup(sky, {sine * around.cos, sine * around.sin, cosine}, sum);
       total += spectrum::luminance({sum[0], sum[1], sum[2]});
     }
   }
-  return std::max(total * kPi / (kRings * kAround), 1e-12);
+  return std::max(total * kPi / (kRings * kPerRing), 1e-12);
 }
 
 }  // namespace bandsaw::pbrt
