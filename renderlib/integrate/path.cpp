@@ -420,9 +420,10 @@ void trace_path(const PathContext& context, std::uint32_t depth, PathState& path
       add_background(context, path);
       return;
     }
-    // A hidden lamp does not stop light, and light sampling ignores it as well. Passing it counts
-    // as a scattering; emission beyond it is added even at the maximum depth.
+    // A hidden lamp does not stop light, and light sampling ignores it as well. Passing it is no
+    // scattering that counts.
     if (context.scene.features().alpha && is_hidden_lamp(context.scene.material(hit->material))) {
+      path.uncounted += path.uncounted < kMaxUncounted ? 1 : 0;
       path.ray = spawn_ray(*hit, path.ray.direction);
       continue;
     }

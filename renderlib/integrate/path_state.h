@@ -30,7 +30,8 @@ struct PathState {
   /// divides it out, because it is no loss of energy.
   double compression = 1;
   PreviousVertex previous = {};
-  /// Number of scatterings that do not count towards `max_depth` (BsdfSample::counts).
+  /// Number of scatterings that do not count towards `max_depth` (BsdfSample::counts), and of
+  /// hidden lamps that the path has passed.
   std::uint32_t uncounted = 0;
   /// For photon maps (integrate/caustics.h, which defines casters and receivers): the number of
   /// casters since the last receiver; kNoChain if the path had another scattering since then or has

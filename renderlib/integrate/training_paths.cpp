@@ -106,6 +106,7 @@ void trace_and_remember(const PathContext& context, TrainingPath& path) {
       return;
     }
     if (scene.features().alpha && is_hidden_lamp(scene.material(hit->material))) {
+      state.uncounted += state.uncounted < kMaxUncounted ? 1 : 0;
       state.ray = spawn_ray(*hit, state.ray.direction);
       continue;
     }

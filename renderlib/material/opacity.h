@@ -21,8 +21,11 @@ inline constexpr double kMinRefraction = 1e-6;
 
 /// Returns true for glass with the same index as its surroundings and for panes that reflect
 /// nothing: light goes straight through both. It is false for glass with a priority, which may have
-/// an effect because it excludes other glass.
+/// an effect because it excludes other glass, and for surfaces that emit.
 inline bool bends_nothing(const Material& material) {
+  if (!is_black(material.emission.radiance.factor)) {
+    return false;
+  }
   if (const auto* pane = std::get_if<ThinDielectric>(&material.kind)) {
     return pane->transmission == Rgb{1, 1, 1} &&
            std::abs(pane->index_of_refraction - 1) < kMinRefraction;

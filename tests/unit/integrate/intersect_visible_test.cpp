@@ -284,5 +284,45 @@ TEST(NestedGlass, ScatteringBeforeAHiddenBoundaryIsStillInTheGlass) {
   EXPECT_LE(seen.standard_error(), 0.01);
 }
 
+// A mirror shows a white wall. A faint hidden lamp between them takes none of the two scatterings.
+TEST(HiddenLamps, TakeNoScatteringOfTheMaximumDepth) {
+  const auto seen = [](bool with_lamp) {
+    SceneMaker maker = white_sky();
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.metal(1, 0));
+    maker.quad({-5, -5, 4}, {0, 10, 0}, {10, 0, 0}, maker.diffuse(0.5f));
+    if (with_lamp) {
+      const MaterialId lamp = maker.lamp(1e-6f);
+      std::get<Emissive>(maker.scene.materials[index_of(lamp)].kind).hidden = true;
+      maker.quad({-1, -1, 2}, {2, 0, 0}, {0, 2, 0}, lamp);
+    }
+    const auto scene = maker.build();
+    PathCounts counts;
+    const PathOptions options{.max_depth = 2};
+    Moments light;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+      const Ray ray{.origin = {0, 0, 1}, .direction = {0, 0, -1}};
+      light.add(path_radiance(*scene, ray, PixelSampler(7, i, 3), 0, options, counts).g);
+    }
+    return light;
+  };
+  const Moments without = seen(false);
+  const Moments with = seen(true);
+  EXPECT_GT(without.mean(), 0.3);
+  EXPECT_NEAR(with.mean(), without.mean(), 5 * with.standard_error() + 1e-5);
+}
+
+// A ray that crosses a ball of glass that does not refract sees its emission twice, and the sky.
+TEST(GlassThatDoesNotRefract, EmitsAsOtherGlass) {
+  SceneMaker maker = white_sky();
+  Material glass = Dielectric{1};
+  glass.emission.radiance = {TextureId{0}, {2, 3, 4}};
+  maker.sphere({0, 0, 0}, 1, maker.material(glass));
+  const auto scene = maker.build();
+  PathCounts counts;
+  const Ray ray{.origin = {0.1, 0.2, 3}, .direction = {0, 0, -1}};
+  const Rgb light = path_radiance(*scene, ray, PixelSampler(7, 1, 3), 0, {.max_depth = 8}, counts);
+  EXPECT_EQ(light, (Rgb{5, 7, 9}));
+}
+
 }  // namespace
 }  // namespace bandsaw
