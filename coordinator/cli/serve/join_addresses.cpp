@@ -85,6 +85,9 @@ std::vector<std::string> join_addresses(const std::string& host, int port,
   }
   std::vector<LocalAddress> sorted = local;
   std::erase_if(sorted, [&](const LocalAddress& address) { return address.ipv6 && !every; });
+  if (sorted.empty()) {  // no interface is up, not even loopback, which may come up later
+    return {absl::StrCat("127.0.0.1:", port)};
+  }
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const LocalAddress& a, const LocalAddress& b) { return rank(a) < rank(b); });
   if (sorted.size() > kMaxAddresses) {

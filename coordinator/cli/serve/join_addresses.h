@@ -25,7 +25,8 @@ absl::StatusOr<std::vector<LocalAddress>> local_addresses();
 /// Returns at most 8 addresses HOST:PORT for a join string, the best one first. `host` is what the
 /// coordinator listens on. If it is 0.0.0.0, the result is every IPv4 address in `local`; if it is
 /// [::], every address in `local`. These begin with real interfaces; those of containers and
-/// bridges follow, and loopback is last. Any other host is the only one in the result.
+/// bridges follow, and loopback is last. If there is none, the result is 127.0.0.1. Any other host
+/// is the only one in the result.
 std::vector<std::string> join_addresses(const std::string& host, int port,
                                         const std::vector<LocalAddress>& local);
 

@@ -38,6 +38,12 @@ TEST(JoinAddresses, AreAtMostEight) {
   EXPECT_EQ(addresses.back(), "127.0.0.1:7");
 }
 
+TEST(JoinAddresses, WithoutAnInterfaceItIsLoopback) {
+  EXPECT_THAT(join_addresses("0.0.0.0", 7, {}), ElementsAre("127.0.0.1:7"));
+  EXPECT_THAT(join_addresses("[::]", 7, {}), ElementsAre("127.0.0.1:7"));
+  EXPECT_THAT(join_addresses("0.0.0.0", 7, {kLocal[3]}), ElementsAre("127.0.0.1:7"));
+}
+
 TEST(JoinAddresses, ThisMachineHasLoopback) {
   const auto local = local_addresses();
   ASSERT_TRUE(local.ok()) << local.status();
