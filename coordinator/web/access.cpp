@@ -83,7 +83,7 @@ bool is_open(const HttpRequest& request) {
 
 }  // namespace
 
-bool is_own_host(const std::string& host, const std::string& machine) {
+bool is_own_host(const std::string& host, const std::string& machine, const std::string& named) {
   std::string name = absl::AsciiStrToLower(host);
   if (const std::size_t end = name.find(']'); absl::StartsWith(name, "[")) {
     in6_addr address{};
@@ -94,7 +94,8 @@ bool is_own_host(const std::string& host, const std::string& machine) {
   in_addr address{};
   const std::string own = absl::AsciiStrToLower(machine);
   return inet_pton(AF_INET, name.c_str(), &address) == 1 || name == "localhost" ||
-         (!own.empty() && (name == own || name == own + ".local"));
+         (!own.empty() && (name == own || name == own + ".local")) ||
+         (!name.empty() && name == absl::AsciiStrToLower(named));
 }
 
 bool is_of_this_site(const HttpRequest& request) {
@@ -109,8 +110,9 @@ std::string bearer_secret(const HttpRequest& request) {
   return absl::StartsWith(authorization, kScheme) ? authorization.substr(sizeof(kScheme) - 1) : "";
 }
 
-Access::Access(link::Identity identity, bool secure)
+Access::Access(link::Identity identity, bool secure, std::string host)
     : secure_(secure),
+      host_(std::move(host)),
       identity_(std::move(identity)),
       pass_(pass_of(identity_.farm_secret)),
       failures_(wire::kWrongSecretsPerMinute) {}
@@ -124,9 +126,10 @@ bool Access::renew(link::Identity identity) {
 }
 
 absl::Status Access::check(const HttpRequest& request) {
-  if (!is_own_host(request.header("Host"), machine_name())) {
+  if (!is_own_host(request.header("Host"), machine_name(), host_)) {
     return absl::PermissionDeniedError(
-        "the dashboard answers under this machine's address or name only");
+        "the dashboard answers under this machine's address or name only; to use another name, "
+        "give it to the coordinator: --web NAME:PORT");
   }
   if (request.method == "POST") {
     RETURN_IF_ERROR(check_post(request));

@@ -20,8 +20,9 @@ inline constexpr char kOurHeader[] = "X-Bandsaw";
 /// Thread-safe.
 class Access {
  public:
-  /// `secure`: browsers send the cookie over TLS only.
-  Access(link::Identity identity, bool secure);
+  /// `secure`: browsers send the cookie over TLS only. `host`: what the dashboard listens on; a
+  /// name is accepted in requests, as this machine's own name is.
+  Access(link::Identity identity, bool secure, std::string host);
 
   /// Invalidates logins with earlier secrets. Returns true if the users' secret has changed.
   bool renew(link::Identity identity) EXCLUDES(mutex_);
@@ -49,6 +50,7 @@ class Access {
   std::string cookie(const HttpRequest& request, const std::string& value, long seconds) const;
 
   const bool secure_;
+  const std::string host_;  ///< what the dashboard listens on
   Mutex mutex_;
   link::Identity identity_ GUARDED_BY(mutex_);
   std::string pass_ GUARDED_BY(mutex_);  ///< value of the cookie, derived from the users' secret
@@ -62,9 +64,10 @@ bool is_of_this_site(const HttpRequest& request);
 /// Returns the secret of the header "Authorization: Bearer SECRET"; empty: there is none.
 std::string bearer_secret(const HttpRequest& request);
 
-/// Returns true if `host`, the header Host of a request, has an IP address, localhost or this
-/// machine's own name `machine`. Requests of a foreign page whose name resolves to this machine
-/// (DNS rebinding) have that foreign name.
-bool is_own_host(const std::string& host, const std::string& machine);
+/// Returns true if `host`, the header Host of a request, has an IP address, localhost, this
+/// machine's own name `machine`, or the name `named` that the user has given to the dashboard.
+/// Requests of a foreign page whose name resolves to this machine (DNS rebinding) have that foreign
+/// name.
+bool is_own_host(const std::string& host, const std::string& machine, const std::string& named);
 
 }  // namespace bandsaw::coordinator

@@ -37,7 +37,7 @@ class Dashboard::Impl {
   Impl(Engine& engine, const link::Identity& identity, TlsContext tls,
        const DashboardOptions& options)
       : secure_(tls != nullptr),
-        access_(identity, secure_),
+        access_(identity, secure_, options.host),
         pictures_(engine),
         clean_pictures_(engine),
         report_(options.report),

@@ -24,7 +24,7 @@ using namespace bandsaw::coordinator;
 HttpReply answer(Access& access, const HttpRequest& request, const HttpBody& body) {
   access.check(request).IgnoreError();
   access.logged_in(request);
-  is_own_host(request.header("Host"), "desk");
+  is_own_host(request.header("Host"), "desk", "farm.example.org");
   bandsaw::web::Login login;
   HttpReply done = text_reply("0123456789", "text/plain");
   if (const absl::Status status = read_json(body, login); !status.ok()) {
@@ -85,7 +85,7 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
                         .certificate_digest = {},
                         .worker_secret = std::string(22, 'w'),
                         .farm_secret = std::string(22, 'f')},
-                       true);
+                       true, "farm.example.org");
   as_lines(access, input);
   over_a_connection(access, input);
 }

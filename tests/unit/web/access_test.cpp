@@ -22,13 +22,21 @@ int status_of(const std::optional<test::HttpAnswer>& result) {
 TEST(OwnHost, IsAnAddressLocalhostOrTheMachinesName) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:8787", "192.168.1.5:80", "[::1]:8787", "[::1]",
                            "localhost:8787", "LOCALHOST", "desk", "desk.local:8787"}) {
-    EXPECT_TRUE(is_own_host(host, "desk")) << host;
+    EXPECT_TRUE(is_own_host(host, "desk", "127.0.0.1")) << host;
   }
   for (const char* host : {"", "evil.example", "evil.example:8787", "127.0.0.1.evil.example",
                            "[evil]", "[", "desk.evil.example", "localhost.evil.example"}) {
-    EXPECT_FALSE(is_own_host(host, "desk")) << host;
+    EXPECT_FALSE(is_own_host(host, "desk", "127.0.0.1")) << host;
   }
-  EXPECT_FALSE(is_own_host("", ""));
+  EXPECT_FALSE(is_own_host("", "", ""));
+}
+
+TEST(OwnHost, IsTheNameThatTheUserHasGiven) {
+  EXPECT_TRUE(is_own_host("desk.example.org:8787", "desk", "desk.example.org"));
+  EXPECT_TRUE(is_own_host("desk.example.org", "desk", "Desk.Example.org"));
+  EXPECT_TRUE(is_own_host("desk", "desk", "desk.example.org"));
+  EXPECT_FALSE(is_own_host("evil.example:8787", "desk", "desk.example.org"));
+  EXPECT_FALSE(is_own_host("", "desk", ""));
 }
 
 TEST_F(AccessTest, OnlyThePageNeedsNoLogin) {
@@ -71,7 +79,7 @@ TEST_F(AccessTest, AWrongSecretAndTheWorkersSecretDoNotLogIn) {
 }
 
 TEST_F(AccessTest, ManyWrongSecretsAreLimited) {
-  Access access(identity_, false);
+  Access access(identity_, false, "127.0.0.1");
   HttpRequest request;
   request.remote_address = "10.0.0.7";
   HttpReply reply;
@@ -104,6 +112,17 @@ TEST_F(AccessTest, OtherSitesCannotAct) {
 TEST_F(AccessTest, AForeignNameForThisMachineIsRefused) {
   headers_.emplace("Host", "evil.example");
   EXPECT_EQ(status_of(get("/")), 403);
+}
+
+TEST_F(AccessTest, TheNameThatTheDashboardListensOnIsAccepted) {
+  Access access(identity_, true, "desk.example.org");
+  HttpRequest request;
+  request.method = "GET";
+  request.path = "/";
+  request.headers = {{"Host", "desk.example.org:8787"}};
+  EXPECT_TRUE(access.check(request).ok());
+  request.headers = {{"Host", "evil.example:8787"}};
+  EXPECT_TRUE(absl::IsPermissionDenied(access.check(request)));
 }
 
 TEST_F(AccessTest, ANewSecretInvalidatesLogins) {
