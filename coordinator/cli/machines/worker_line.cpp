@@ -28,13 +28,14 @@ std::string choice_of_digest(const WorkerDigests& programs) {
 std::string worker_line(const std::string& url, const std::optional<wire::Digest>& public_key,
                         const WorkerDigests& programs, const std::string& join) {
   // The certificate is the farm's own and not signed by an authority, so only its key is checked.
-  // The file gets its name when it is complete, because a program of that name may be running.
+  // The file gets its name when it is complete, because a program of that name may be running. A
+  // proxy of the environment is not used, because the worker does not use one either.
   const std::string trust = public_key ? absl::StrCat(" -k --pinnedpubkey sha256//",
                                                       absl::Base64Escape(public_key->raw()))
                                        : "";
   const std::string file = kWorkerProgram;
-  return absl::StrCat(choice_of_digest(programs), " && curl -fsS", trust, " ", url, "/", file,
-                      "/$(uname -m) -o ", file, ".new && echo \"$d  ", file,
+  return absl::StrCat(choice_of_digest(programs), " && curl --noproxy '*' -fsS", trust, " ", url,
+                      "/", file, "/$(uname -m) -o ", file, ".new && echo \"$d  ", file,
                       ".new\" | sha256sum -c - && chmod +x ", file, ".new && mv ", file, ".new ",
                       file, " && ./", file, " --join ", join);
 }

@@ -36,9 +36,9 @@ class WorkerLine : public ::testing::Test {
       write(absl::StrCat("program-", other_machine_name(machine)), program(machine));
       digests_[machine] = wire::sha256(program(machine));
     }
-    // Copies the file that the last part of the URL names: curl -fsS URL -o FILE.
-    write("bin/curl", "#!/bin/sh\necho \"$2\" >>" + folder_.path() + "/downloaded\ncp \"" +
-                          folder_.path() + "/program-${2##*/}\" \"$4\"\n");
+    // Copies the file that the last part of the URL names: curl --noproxy '*' -fsS URL -o FILE.
+    write("bin/curl", "#!/bin/sh\necho \"$4\" >>" + folder_.path() + "/downloaded\ncp \"" +
+                          folder_.path() + "/program-${4##*/}\" \"$6\"\n");
   }
   void write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name) << text;
@@ -69,6 +69,15 @@ TEST_F(WorkerLine, EachArchitectureGetsItsProgramByEitherName) {
                   HasSubstr(absl::StrCat(machine_name(machine), " started --join JOIN")));
     }
   }
+}
+
+TEST_F(WorkerLine, TheDownloadUsesNoProxy) {
+  write("bin/curl", "#!/bin/sh\nprintf '%s\\n' \"$1 $2\" >" + folder_.path() + "/downloaded\n");
+  paste("x86_64\n");
+  std::ifstream file(folder_ / "downloaded");
+  std::string arguments;
+  std::getline(file, arguments);
+  EXPECT_EQ(arguments, "--noproxy *");
 }
 
 TEST_F(WorkerLine, TheProgramOfAnotherArchitectureIsNotStarted) {
