@@ -68,6 +68,26 @@ TEST_F(Invite, ASecondInvitationReplacesTheFirst) {
   EXPECT_EQ(dismiss({"desk"}).code, 0);
 }
 
+TEST_F(Invite, AHomeFolderThatMachinesShareHasOneWorker) {
+  std::filesystem::create_directories(machines_.home("desk"));
+  std::filesystem::create_directory_symlink(machines_.home("desk"), machines_.home("laptop"));
+  for (const std::string host : {"desk", "laptop"}) {
+    machines_.replace(host, "uname",
+                      "[ $1 = -n ] && echo " + host + " || exec /usr/bin/uname $@\n");
+  }
+  ASSERT_EQ(invite({"desk"}).code, 0);
+  const Finished second = invite({"laptop"});
+  EXPECT_EQ(second.code, 1) << second.out;
+  EXPECT_THAT(second.err, HasSubstr("laptop: this home folder is shared with desk"));
+  const Finished wrong = dismiss({"laptop"});
+  EXPECT_EQ(wrong.code, 1) << wrong.out;
+  EXPECT_THAT(wrong.err, HasSubstr("laptop: this home folder is shared with desk"));
+  EXPECT_EQ(dismiss({"desk"}).code, 0);
+  EXPECT_FALSE(has_files("desk"));
+  EXPECT_EQ(invite({"laptop"}).code, 0);
+  EXPECT_EQ(dismiss({"laptop"}).code, 0);
+}
+
 TEST_F(Invite, UsesSystemdIfTheUserHasIt) {
   machines_.add_systemd("desk");
   const Finished invited = invite({"desk"});

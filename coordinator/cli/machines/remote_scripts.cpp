@@ -18,6 +18,17 @@ unit=${XDG_CONFIG_HOME:-$HOME/.config}/systemd/user/bandsaw-worker.service
 XDG_RUNTIME_DIR=${XDG_RUNTIME_DIR:-/run/user/$(id -u)}
 export XDG_RUNTIME_DIR
 
+here=$(uname -n)
+
+# Fails if another machine, whose home folder is the same, has a worker in it. Sets shared to the
+# message.
+is_ours() {
+  host=$(cat "$dir/host" 2>/dev/null)
+  shared="this home folder is shared with $host, which has a worker in it: dismiss $host first"
+  shared="$shared (if that is this machine's former name, remove $dir/host there)"
+  [ "${host:-$here}" = "$here" ]
+}
+
 # Sets pid to the process of a worker that runs without systemd. Fails if there is none, or if the id was
 # reused by another program.
 own_pid() {
@@ -67,7 +78,7 @@ mkdir -p "$dir" || result failed "cannot make $dir"
 free=$(df -Pk "$dir" | awk 'NR == 2 { print $4 }')
 need=$((size * 2 / 1024))
 [ "$free" -ge "$need" ] || result failed "no space: $free KiB are free in $dir, $need are needed"
-new=$dir/bandsaw-worker.new
+new=$dir/bandsaw-worker.new.$here
 cat >"$new" || { rm -f "$new"; result failed "cannot write $new"; }
 [ "$(sha256sum <"$new" | cut -c 1-64)" = "$digest" ] || { rm -f "$new"; result failed "what arrived is damaged"; }
 chmod 700 "$new"
@@ -79,6 +90,9 @@ said=$("$new" --version 2>&1) || {
   result failed "the worker does not run there: $said"
 }
 
+# With noclobber, only one of the machines that share the folder makes this file.
+(set -C; printf '%s\n' "$here" >"$dir/host") 2>/dev/null
+is_ours || { rm -f "$new"; result failed "$shared"; }
 end_worker 10
 mv "$new" "$dir/bandsaw-worker"
 printf '%s\n' "$join" >"$dir/join"
@@ -89,6 +103,7 @@ if systemctl --user show-environment >/dev/null 2>&1; then
   cat >"$unit" <<END
 [Unit]
 Description=Bandsaw worker, by invitation
+ConditionHost=$here
 [Service]
 ExecStart="$dir/bandsaw-worker" --join "$dir/join" --cache "$dir/cache"
 StandardOutput=append:$dir/log
@@ -136,6 +151,7 @@ result failed "it runs, but has not reached the farm yet: $(tail -n 1 "$dir/log"
 // Needs the variable drain. Ends the worker and removes all that kInvite has made.
 constexpr char kDismiss[] = R"sh(
 [ -d "$dir" ] || [ -f "$unit" ] || result ok "there was none"
+is_ours || result failed "$shared"
 end_worker "$drain"
 if [ -f "$unit" ]; then
   systemctl --user disable --quiet bandsaw-worker 2>/dev/null
