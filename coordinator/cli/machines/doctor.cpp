@@ -18,17 +18,18 @@ std::vector<Check> all_checks(const DoctorOptions& options, const std::string& f
   std::vector<Check> checks = {check_data_folder(folder), check_memory(), check_import_program(),
                                check_worker_programs()};
   const auto join = doctor_join(options.farm, folder);
-  std::vector<Check> of_farm;
+  FarmChecks of_farm;
   std::vector<std::string> own;
   if (join.ok()) {
     of_farm = check_farm(*join);
-    own = of_farm.front().ok ? join->addresses : own;
+    own = join->addresses;
   } else {
     // Having no farm is not an error: this may be the machine that will have one.
-    of_farm = {{"farm", absl::IsNotFound(join.status()), std::string(join.status().message())}};
+    of_farm.checks = {
+        {"farm", absl::IsNotFound(join.status()), std::string(join.status().message())}};
   }
-  checks.push_back(check_port(options.listen, own));
-  checks.insert(checks.end(), of_farm.begin(), of_farm.end());
+  checks.push_back(check_port(options.listen, of_farm.answered, own));
+  checks.insert(checks.end(), of_farm.checks.begin(), of_farm.checks.end());
   return checks;
 }
 

@@ -47,6 +47,12 @@ std::string existing_part(std::string folder) {
   return folder;
 }
 
+/// Returns true if the host of `address` (HOST:PORT) is this machine: it can listen there on a free
+/// port. Returns false if `address` is empty.
+bool is_here(const std::string& address) {
+  return !address.empty() && check_can_listen(address.substr(0, address.rfind(':')) + ":0").ok();
+}
+
 }  // namespace
 
 Check disk_space_check(const std::string& name, const std::string& where,
@@ -113,15 +119,18 @@ Check check_worker_programs() {
               : absl::StrCat("a worker program to hand out for ", absl::StrJoin(found, ", "))};
 }
 
-Check check_port(const std::string& listen, const std::vector<std::string>& own) {
+Check check_port(const std::string& listen, const std::string& answered,
+                 const std::vector<std::string>& own) {
   const absl::Status free = check_can_listen(listen);
   if (free.ok()) {
     return {"port", true, absl::StrCat(listen, " is free for a coordinator")};
   }
-  const std::string port = listen.substr(listen.rfind(':'));
-  const bool ours = std::any_of(own.begin(), own.end(), [&](const std::string& address) {
-    return address.substr(address.rfind(':')) == port;
-  });
+  const std::size_t colon = listen.rfind(':');
+  const std::string host = listen.substr(0, colon);
+  const bool everywhere = host == "0.0.0.0" || host == "[::]";
+  const bool ours = is_here(answered) &&
+                    answered.substr(answered.rfind(':')) == listen.substr(colon) &&
+                    (everywhere || std::find(own.begin(), own.end(), listen) != own.end());
   return ours ? Check{"port", true, absl::StrCat(listen, " is the farm's own")}
               : problem("port", std::string(free.message()));
 }

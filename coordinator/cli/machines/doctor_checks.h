@@ -20,6 +20,12 @@ struct Check {
   std::string found;  ///< what was found and, for a problem, the remedy; one line
 };
 
+/// The results of the checks of a farm.
+struct FarmChecks {
+  std::vector<Check> checks;
+  std::string answered;  ///< HOST:PORT at which the farm answered; empty: at none
+};
+
 // Checks of this machine.
 
 /// Checks that the coordinator's data folder (or its nearest existing parent) can be written and
@@ -33,9 +39,11 @@ Check check_import_program();
 /// missing program is not a problem. A program that cannot be handed out (damaged, or of another
 /// version or architecture) is a problem.
 Check check_worker_programs();
-/// Checks that the port of `listen` (HOST:PORT) is free, or taken by the farm that uses the
-/// addresses `own`.
-Check check_port(const std::string& listen, const std::vector<std::string>& own);
+/// Checks that the port of `listen` (HOST:PORT) is free, or taken by the farm. `answered`: the
+/// address at which the farm answers; empty: at none. `own`: all addresses of its join string. The
+/// farm has the port if it answers on this machine, and listens on all addresses or on `listen`.
+Check check_port(const std::string& listen, const std::string& answered,
+                 const std::vector<std::string>& own);
 
 // Checks of the farm.
 
@@ -46,7 +54,7 @@ Check check_port(const std::string& listen, const std::vector<std::string>& own)
 absl::StatusOr<link::JoinString> doctor_join(const FarmOption& option, const std::string& folder);
 /// Checks the connection, the certificate, the secret, versions, clocks and the coordinator's disk.
 /// If the farm cannot be reached, the result is a single check that has failed.
-std::vector<Check> check_farm(const link::JoinString& join);
+FarmChecks check_farm(const link::JoinString& join);
 
 // Pure parts of these checks. Times are in seconds since 1970, sizes in bytes.
 

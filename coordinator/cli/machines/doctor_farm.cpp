@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -60,13 +61,14 @@ absl::StatusOr<link::JoinString> doctor_join(const FarmOption& option, const std
   return link::join_string_from(text);
 }
 
-std::vector<Check> check_farm(const link::JoinString& join) {
+FarmChecks check_farm(const link::JoinString& join) {
   const auto client = FarmClient::connect(join);
   if (!client.ok()) {
-    return {failed("farm", client.status(),
-                   absl::IsUnavailable(client.status())
-                       ? "; does bandsaw serve run there, and does a firewall let its port through?"
-                       : "; take the new join string from the coordinator's data folder")};
+    const std::string cure =
+        absl::IsUnavailable(client.status())
+            ? "; does bandsaw serve run there, and does a firewall let its port through?"
+            : "; take the new join string from the coordinator's data folder";
+    return {.checks = {failed("farm", client.status(), cure)}, .answered = ""};
   }
   std::vector<Check> checks;
   if (join.certificate) {
@@ -79,7 +81,7 @@ std::vector<Check> check_farm(const link::JoinString& join) {
   const double after = unix_seconds();
   if (!about.ok()) {
     checks.push_back(failed("farm", about.status(), secret_cure(about.status())));
-    return checks;
+    return {.checks = std::move(checks), .answered = (*client)->address()};
   }
   checks.insert(checks.begin(),
                 Check{"farm", true,
@@ -89,7 +91,7 @@ std::vector<Check> check_farm(const link::JoinString& join) {
   checks.push_back(versions_check(*about));
   checks.push_back(clock_check(before, about->unix_s(), after));
   checks.push_back(disk_space_check("farm's disk", "at the coordinator", about->free_bytes()));
-  return checks;
+  return {.checks = std::move(checks), .answered = (*client)->address()};
 }
 
 }  // namespace bandsaw::coordinator

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "coordinator/cli/machines/doctor_checks.h"
 #include "proto/wire/versions.h"
@@ -53,6 +56,32 @@ TEST(Doctor, ADiskNeedsRoom) {
 TEST(Doctor, AMissingFolderIsCheckedByItsParent) {
   const test::TempDir folder;
   EXPECT_THAT(check_data_folder(folder / "a/b").found, HasSubstr("does not exist yet"));
+}
+
+// A program listens on a port of 127.0.0.1, and perhaps the farm is this program.
+TEST(Doctor, ATakenPortIsTheFarmsIfTheFarmListensThere) {
+  const int taken = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  ASSERT_EQ(bind(taken, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(listen(taken, 1), 0);
+  ASSERT_EQ(getsockname(taken, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const std::string port = ":" + std::to_string(ntohs(address.sin_port));
+  const std::string here = "127.0.0.1" + port;
+  const std::string also_here = "127.0.0.2" + port;
+  const std::string elsewhere = "192.0.2.77" + port;  // an address for documentation
+
+  EXPECT_TRUE(check_port(here, here, {here}).ok);
+  EXPECT_TRUE(check_port("0.0.0.0" + port, here, {here}).ok);
+  EXPECT_TRUE(check_port(here, also_here, {also_here, here}).ok) << "the farm has all addresses";
+  EXPECT_FALSE(check_port(here, "", {here}).ok) << "the farm does not answer";
+  EXPECT_FALSE(check_port(here, also_here, {also_here}).ok) << "the farm has another address";
+  EXPECT_FALSE(check_port(here, elsewhere, {elsewhere, here}).ok) << "the farm is elsewhere";
+  EXPECT_FALSE(check_port("0.0.0.0" + port, elsewhere, {elsewhere, here}).ok);
+  EXPECT_FALSE(check_port(here, "127.0.0.1:1", {"127.0.0.1:1"}).ok);
+  close(taken);
 }
 
 TEST(Doctor, NoFarmIsNotFoundAndAWrongOneIsReported) {
