@@ -58,6 +58,17 @@ absl::StatusOr<wire::Digest> digest_of_der(unsigned char* der, int size) {
   return wire::sha256(bytes);
 }
 
+/// Returns the day in UTC, such as 2026-11-26.
+std::string day_of(double unix_s) {
+  const auto seconds = static_cast<std::time_t>(unix_s);
+  std::tm utc{};
+  char text[32] = "";
+  if (gmtime_r(&seconds, &utc) != nullptr) {
+    std::strftime(text, sizeof(text), "%Y-%m-%d", &utc);
+  }
+  return text;
+}
+
 bool add_extension(X509* certificate, int nid, const std::string& value) {
   const Extension extension(X509V3_EXT_conf_nid(nullptr, nullptr, nid, value.c_str()),
                             &X509_EXTENSION_free);
@@ -141,6 +152,20 @@ absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem
     return unreadable();
   }
   return Validity{static_cast<double>(timegm(&from)), static_cast<double>(timegm(&until))};
+}
+
+absl::Status check_clock(const std::string& certificate_pem) {
+  const absl::StatusOr<Validity> validity = certificate_validity(certificate_pem);
+  if (!validity.ok()) {
+    return absl::UnavailableError(validity.status().message());
+  }
+  const auto now = static_cast<double>(std::time(nullptr));
+  if (now < validity->from || now > validity->until) {
+    return absl::UnavailableError(absl::StrCat(
+        "this machine's clock says ", day_of(now), ", but the farm's certificate is valid from ",
+        day_of(validity->from), " to ", day_of(validity->until), ": set the clock"));
+  }
+  return absl::OkStatus();
 }
 
 absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem) {

@@ -34,6 +34,10 @@ struct Validity {
 /// INVALID_ARGUMENT: not a certificate.
 absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem);
 
+/// Checks that the machine's clock is within the certificate's validity. UNAVAILABLE: it is not, or
+/// this is not a certificate.
+absl::Status check_clock(const std::string& certificate_pem);
+
 /// Checks that the key belongs to the certificate. INVALID_ARGUMENT: not a private key, or of
 /// another certificate.
 absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem);

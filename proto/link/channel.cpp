@@ -68,6 +68,10 @@ absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Di
         "it has another certificate than the join string names: another farm, or one whose data "
         "folder was created again");
   }
+  // gRPC checks the dates too, but tells only that the verification failed.
+  if (absl::Status status = check_clock(*pem); !status.ok()) {
+    return status;
+  }
   grpc::SslCredentialsOptions options;
   options.pem_root_certs = *std::move(pem);
   return open_channels(address, grpc::SslCredentials(options), true);

@@ -27,8 +27,9 @@ struct Connected {
 
 /// Tries the addresses in order, each for at most `timeout` (a refused connection fails at once).
 /// Verifies the server's identity only; a wrong secret or role is detected by the first call.
-/// UNAVAILABLE: no address answered (the message gives the reason for each). UNAUTHENTICATED: a
-/// server answered with another certificate.
+/// UNAVAILABLE: no address answered, or this machine's clock is outside the certificate's validity
+/// (the message gives the reason for each address). UNAUTHENTICATED: a server answered with another
+/// certificate.
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout);
 
 /// Fetches the certificate that a server presents, as PEM, without trusting it. UNAVAILABLE: no

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <openssl/err.h>
+#include <openssl/pem.h>
+#include <openssl/x509.h>
 
 #include "proto/farm.grpc.pb.h"
 #include "proto/link/certificate.h"
@@ -59,6 +61,23 @@ JoinString join_to(int port, std::optional<wire::Digest> digest) {
   join.certificate = digest;
   join.secret = "abcdefghijklmnopqrstuv";
   return join;
+}
+
+/// Makes the identity's certificate valid from `seconds` after now on, and signs it again.
+void make_valid_from(Identity& identity, long seconds) {
+  const std::unique_ptr<BIO, decltype(&BIO_free_all)> bio(BIO_new(BIO_s_mem()), &BIO_free_all);
+  BIO_puts(bio.get(), (identity.certificate_pem + identity.key_pem).c_str());
+  const std::unique_ptr<X509, decltype(&X509_free)> certificate(
+      PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr), &X509_free);
+  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
+      PEM_read_bio_PrivateKey(bio.get(), nullptr, nullptr, nullptr), &EVP_PKEY_free);
+  X509_gmtime_adj(X509_getm_notBefore(certificate.get()), seconds);
+  X509_sign(certificate.get(), key.get(), EVP_sha256());
+  PEM_write_bio_X509(bio.get(), certificate.get());
+  char* text = nullptr;
+  const long size = BIO_get_mem_data(bio.get(), &text);
+  identity.certificate_pem.assign(text, static_cast<std::size_t>(size));
+  identity.certificate_digest = *certificate_digest(identity.certificate_pem);
 }
 
 /// Expects that calls on both channels arrive with the secret of the join string.
@@ -127,6 +146,16 @@ TEST_F(ConnectTest, ReportsAPlaintextServer) {
   const absl::Status status =
       connect(join_to(server.port, identity_.certificate_digest), milliseconds(3'000)).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
+}
+
+TEST_F(ConnectTest, TellsThatTheClockIsWrong) {
+  make_valid_from(identity_, 48 * 60 * 60);
+  const EchoServer server(tls(identity_));
+  const absl::Status status =
+      connect(join_to(server.port, identity_.certificate_digest), milliseconds(10'000)).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("this machine's clock says 2"));
+  EXPECT_THAT(std::string(status.message()), HasSubstr("set the clock"));
 }
 
 TEST_F(ConnectTest, FetchingACertificateNeitherReadsNorLeavesErrorsOfOpenSsl) {
