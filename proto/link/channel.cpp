@@ -3,12 +3,10 @@
 
 #include "proto/link/channel.h"
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "proto/link/certificate.h"
 #include "proto/link/identity.h"
-#include "proto/link/socket.h"
 #include "proto/wire/limits.h"
 
 namespace bandsaw::link {
@@ -54,8 +52,8 @@ Connected open_channels(const std::string& address,
 }
 
 absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Digest& expected,
-                                      std::chrono::milliseconds timeout) {
-  absl::StatusOr<std::string> pem = fetch_certificate_pem(address, timeout);
+                                      Socket& socket, Deadline deadline) {
+  absl::StatusOr<std::string> pem = fetch_certificate_pem(socket, deadline);
   if (!pem.ok()) {
     return pem.status();
   }
@@ -79,10 +77,6 @@ absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Di
 
 absl::StatusOr<Connected> connect_plain(const std::string& address,
                                         std::chrono::milliseconds timeout) {
-  const Deadline deadline = std::chrono::steady_clock::now() + timeout;
-  if (absl::StatusOr<Socket> socket = Socket::connect(address, deadline); !socket.ok()) {
-    return socket.status();
-  }
   Connected connected = open_channels(address, grpc::InsecureChannelCredentials(), false);
   if (!connected.control->WaitForConnected(std::chrono::system_clock::now() + timeout)) {
     return absl::UnavailableError(
@@ -97,19 +91,26 @@ absl::StatusOr<Connected> connect_plain(const std::string& address,
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout) {
   std::vector<std::string> reasons;
   std::size_t wrong = 0;  // number of addresses that presented another certificate
-  // One of these addresses is not on loopback. A wrong certificate on loopback is no proof that the
-  // farm is another one: the join string names loopback too, and this machine may run another farm.
+  // One of these addresses is on another machine. A wrong certificate on this machine is no proof
+  // that the farm is another one: the join string names addresses that every machine has (loopback,
+  // those of bridges for containers), and this machine may run another farm.
   bool wrong_elsewhere = false;
   for (const std::string& address : join.addresses) {
-    absl::StatusOr<Connected> connected = join.certificate
-                                              ? connect_tls(address, *join.certificate, timeout)
-                                              : connect_plain(address, timeout);
+    const Deadline deadline = std::chrono::steady_clock::now() + timeout;
+    absl::StatusOr<Socket> socket = Socket::connect(address, deadline);
+    if (!socket.ok()) {
+      reasons.push_back(absl::StrCat(address, ": ", socket.status().message()));
+      continue;
+    }
+    absl::StatusOr<Connected> connected =
+        join.certificate ? connect_tls(address, *join.certificate, *socket, deadline)
+                         : connect_plain(address, timeout);
     if (connected.ok()) {
       return connected;
     }
     if (absl::IsUnauthenticated(connected.status())) {
       ++wrong;
-      wrong_elsewhere |= !absl::StartsWith(address, "127.");
+      wrong_elsewhere |= !socket->is_to_this_machine();
     }
     reasons.push_back(absl::StrCat(address, ": ", connected.status().message()));
   }

@@ -12,6 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "proto/link/join.h"
+#include "proto/link/socket.h"
 
 namespace bandsaw::link {
 
@@ -29,13 +30,16 @@ struct Connected {
 /// Verifies the server's identity only; a wrong secret or role is detected by the first call.
 /// UNAVAILABLE: no address answered, or this machine's clock is outside the certificate's validity
 /// (the message gives the reason for each address). UNAUTHENTICATED: a server answered with another
-/// certificate.
+/// certificate, on another machine or at all addresses.
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout);
 
 /// Fetches the certificate that a server presents, as PEM, without trusting it. UNAVAILABLE: no
 /// answer in time, or no TLS there; the message says which.
 absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
                                                   std::chrono::milliseconds timeout);
+
+/// The same through a connection that is open already. The connection is of no other use then.
+absl::StatusOr<std::string> fetch_certificate_pem(Socket& socket, Deadline deadline);
 
 /// Sets the secret and the deadline on a call's context. A deadline of zero means none (for long
 /// streams).

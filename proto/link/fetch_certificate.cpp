@@ -70,6 +70,10 @@ absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
   if (!socket.ok()) {
     return socket.status();
   }
+  return fetch_certificate_pem(*socket, deadline);
+}
+
+absl::StatusOr<std::string> fetch_certificate_pem(Socket& socket, Deadline deadline) {
   const Context context(SSL_CTX_new(TLS_client_method()), &SSL_CTX_free);
   const Session session(context == nullptr ? nullptr : SSL_new(context.get()), &SSL_free);
   if (session == nullptr) {
@@ -82,7 +86,7 @@ absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
   static constexpr unsigned char kAlpn[] = {2, 'h', '2'};
   SSL_set_alpn_protos(session.get(), kAlpn, sizeof(kAlpn));
   while (true) {
-    absl::StatusOr<bool> over = advance(session.get(), *socket, deadline);
+    absl::StatusOr<bool> over = advance(session.get(), socket, deadline);
     if (!over.ok()) {
       return over.status();
     }

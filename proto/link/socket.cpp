@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <netdb.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -96,6 +97,23 @@ Socket::~Socket() {
   if (fd_ >= 0) {
     close(fd_);
   }
+}
+
+bool Socket::is_to_this_machine() const {
+  sockaddr_storage peer{};
+  socklen_t size = sizeof(peer);
+  if (getpeername(fd_, reinterpret_cast<sockaddr*>(&peer), &size) != 0) {
+    return false;
+  }
+  if (peer.ss_family == AF_INET) {
+    reinterpret_cast<sockaddr_in&>(peer).sin_port = 0;  // any free port
+  } else if (peer.ss_family == AF_INET6) {
+    reinterpret_cast<sockaddr_in6&>(peer).sin6_port = 0;
+  }
+  // Only an address of this machine can be bound. The address of the connection's own end does not
+  // tell: a connection to 127.0.0.2 comes from 127.0.0.1.
+  const Socket probe(::socket(peer.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  return bind(probe.fd_, reinterpret_cast<const sockaddr*>(&peer), size) == 0;
 }
 
 absl::Status Socket::send(const std::string& bytes, Deadline deadline) {

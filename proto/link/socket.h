@@ -22,6 +22,9 @@ class Socket {
   Socket& operator=(Socket&&) = delete;
   ~Socket();
 
+  /// Returns whether the other end is on this machine: the connection went to loopback or to
+  /// another of the machine's own addresses.
+  bool is_to_this_machine() const;
   /// Sends all bytes. UNAVAILABLE: the connection is broken, or not all were sent in time.
   absl::Status send(const std::string& bytes, Deadline deadline);
   /// Returns at least one byte. UNAVAILABLE: closed by the other side, or no answer in time.
