@@ -3,7 +3,6 @@
 #include "proto/link/socket.h"
 
 #include <fcntl.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -80,10 +79,20 @@ absl::StatusOr<Socket> Socket::connect(const std::string& address, Deadline dead
     return absl::UnavailableError(absl::AsciiStrToLower(gai_strerror(error)));
   }
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> list(found, &freeaddrinfo);
+  return connect(list.get(), deadline);
+}
+
+absl::StatusOr<Socket> Socket::connect(const addrinfo* list, Deadline deadline) {
+  int left = 0;
+  for (const addrinfo* info = list; info != nullptr; info = info->ai_next) {
+    ++left;
+  }
   absl::Status last = absl::UnavailableError("no such host");
-  for (const addrinfo* info = list.get(); info != nullptr; info = info->ai_next) {
+  for (const addrinfo* info = list; info != nullptr; info = info->ai_next, --left) {
+    const auto now = std::chrono::steady_clock::now();
     Socket socket(::socket(info->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-    last = socket.fd_ < 0 ? unavailable(errno) : connect_one(socket.fd_, *info, deadline);
+    last = socket.fd_ < 0 ? unavailable(errno)
+                          : connect_one(socket.fd_, *info, now + (deadline - now) / left);
     if (last.ok()) {
       return socket;
     }

@@ -3,6 +3,8 @@
 // A TCP connection with deadlines, used to see which server answers at an address before gRPC
 // connects.
 
+#include <netdb.h>
+
 #include <chrono>
 #include <string>
 
@@ -18,6 +20,9 @@ class Socket {
   /// Connects to `address`, HOST:PORT or [IPv6]:PORT. UNAVAILABLE: nobody accepts the connection,
   /// or there is no such host. INVALID_ARGUMENT: the address has no port.
   static absl::StatusOr<Socket> connect(const std::string& address, Deadline deadline);
+  /// The same with the addresses of a resolved name, in order. Each gets an equal part of the time
+  /// that its predecessors have left.
+  static absl::StatusOr<Socket> connect(const addrinfo* list, Deadline deadline);
   Socket(Socket&& other) noexcept;
   Socket& operator=(Socket&&) = delete;
   ~Socket();

@@ -1,0 +1,59 @@
+// Connections to a name that has several addresses.
+
+#include "proto/link/socket.h"
+
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <vector>
+
+namespace bandsaw::link {
+namespace {
+
+/// A loopback address on which a socket listens, as one that getaddrinfo has found.
+struct Listener {
+  const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
+  sockaddr_in address{};
+  addrinfo info{};
+
+  explicit Listener(int backlog) {
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    auto* any = reinterpret_cast<sockaddr*>(&address);
+    EXPECT_EQ(bind(fd, any, size), 0);
+    EXPECT_EQ(listen(fd, backlog), 0);
+    EXPECT_EQ(getsockname(fd, any, &size), 0);
+    info.ai_family = AF_INET;
+    info.ai_addr = any;
+    info.ai_addrlen = size;
+  }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+  ~Listener() { close(fd); }
+};
+
+TEST(Socket, AnAddressThatDoesNotAnswerLeavesTimeForTheNext) {
+  // Linux answers no further connections while a queue of length 0 has one.
+  Listener silent(0);
+  std::vector<int> waiting;
+  for (int i = 0; i < 3; ++i) {
+    waiting.push_back(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
+    ::connect(waiting.back(), silent.info.ai_addr, silent.info.ai_addrlen);
+  }
+  Listener answers(1);
+  silent.info.ai_next = &answers.info;
+  const Deadline deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+  EXPECT_TRUE(Socket::connect(&silent.info, deadline).ok());
+  const int accepted = accept(answers.fd, nullptr, nullptr);
+  EXPECT_GE(accepted, 0) << "the second address was reached";
+  close(accepted);
+  for (const int fd : waiting) {
+    close(fd);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::link
