@@ -68,12 +68,12 @@ class NoFarms(unittest.TestCase):
         over each to `self.received`."""
         server = socket.create_server(("127.0.0.1", 0))
         self.addCleanup(server.close)
-        self.received = []
+        self.received = received = []
 
         def serve():
-            while len(self.received) < connections:
+            while len(received) < connections:
                 connection, _ = server.accept()
-                self.received.append(connection.recv(4096))
+                received.append(connection.recv(4096))
                 connection.sendall(reply)
                 connection.close()
 
