@@ -55,7 +55,10 @@ TEST_P(JoinFilesTest, WithoutACoordinatorAMissingFileIsNotWritten) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Roles, JoinFilesTest,
-                         testing::Values(link::Role::kWorker, link::Role::kFarm));
+                         testing::Values(link::Role::kWorker, link::Role::kFarm),
+                         [](const testing::TestParamInfo<link::Role>& role) {
+                           return role.param == link::Role::kWorker ? "Worker" : "Farm";
+                         });
 
 }  // namespace
 }  // namespace bandsaw::coordinator
