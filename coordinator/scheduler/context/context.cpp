@@ -108,7 +108,7 @@ void Context::apply(const record::StateChanged& r) {
     if (is_final(sequence->state)) {  // failed frames are tried again
       sequence->restart_clock();
     } else if (r.state == JobState::kPaused) {
-      sequence->stop_clock(clock.wall());
+      sequence->clock.stop(clock.wall());
     }
     sequence->state = r.state;
     sequence->reason = r.reason;

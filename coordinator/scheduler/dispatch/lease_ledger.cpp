@@ -38,13 +38,13 @@ void LeaseLedger::start_clocks(Job& job) {
   if (job.state == JobState::kPaused) {  // a worker that reconnects still holds a lease of it
     return;
   }
-  if (!job.first_lease_at) {
-    job.first_lease_at = now;
+  if (!job.clock.runs()) {
+    job.clock.start(now);
     job.throughput.start(now);
   }
   if (Sequence* sequence = context_.sequences.find(job.spec.sequence);
-      sequence != nullptr && !sequence->held && !sequence->first_lease_at) {
-    sequence->first_lease_at = now;
+      sequence != nullptr && !sequence->held) {
+    sequence->clock.start(now);
   }
 }
 

@@ -184,7 +184,7 @@ void JobLifecycle::revoke_from_held_jobs() {
 
 void JobLifecycle::note_time(const Job& job) {
   const double spent = job.elapsed(context_.clock.wall());
-  if (job.first_lease_at && spent - job.elapsed_noted >= std::max(1.0, job.elapsed_noted / 50)) {
+  if (job.clock.runs() && spent - job.elapsed_noted >= std::max(1.0, job.elapsed_noted / 50)) {
     context_.emit(record::TimeSpent{job.id, spent});
   }
 }

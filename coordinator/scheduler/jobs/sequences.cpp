@@ -304,7 +304,7 @@ void Sequences::note_times() {
   for (const JobId id : context_.sequences.active()) {
     const Sequence& sequence = context_.sequences.at(id);
     const double spent = sequence.elapsed(context_.clock.wall());
-    if (sequence.first_lease_at &&
+    if (sequence.clock.runs() &&
         spent - sequence.elapsed_noted >= std::max(1.0, sequence.elapsed_noted / 50)) {
       context_.emit(record::TimeSpent{id, spent});
     }

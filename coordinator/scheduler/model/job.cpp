@@ -239,12 +239,11 @@ double Job::elapsed(Time now) const {
   if (is_final(state)) {
     return summary ? summary->elapsed_s : 0;
   }
-  return elapsed_before + (first_lease_at ? std::max(0.0, now - *first_lease_at) : 0.0);
+  return clock.elapsed(now);
 }
 
 void Job::stop_clock(Time now) {
-  elapsed_before = elapsed(now);
-  first_lease_at.reset();
+  clock.stop(now);
   throughput = {};
 }
 

@@ -20,6 +20,7 @@
 #include "coordinator/scheduler/model/pass.h"
 #include "coordinator/scheduler/model/rates.h"
 #include "coordinator/scheduler/model/row_costs.h"
+#include "coordinator/scheduler/model/work_clock.h"
 #include "renderlib/render/tile_schedule.h"
 
 namespace bandsaw::coordinator {
@@ -99,8 +100,7 @@ class Job {
   /// Returns the time in seconds since its first lease, summed over all epochs. The time in which
   /// it was paused does not count.
   double elapsed(Time now) const;
-  /// Stops elapsed() at `now`, because the job is paused, and forgets the throughput. elapsed()
-  /// goes on when first_lease_at is set again (LeaseLedger::start_clocks).
+  /// Stops elapsed() at `now`, because the job is paused, and forgets the throughput.
   void stop_clock(Time now);
   /// Returns the open audit that is rendered under this lease; nullptr: none.
   Audit* audit_under(LeaseId lease);
@@ -159,10 +159,9 @@ class Job {
   std::optional<record::JobSummary> summary;      ///< for a final job
   std::vector<WorkerShare> final_shares;          ///< for a final job, descending
 
-  std::optional<Time> first_lease_at;  ///< in this epoch, or since it was last paused
-  double elapsed_before = 0;           ///< seconds: elapsed() up to first_lease_at
-  double elapsed_noted = 0;            ///< seconds in all epochs, as journalled last
-  RecentRate throughput;               ///< pixel samples per second
+  WorkClock clock;           ///< runs since the first lease in this epoch, or after a pause
+  double elapsed_noted = 0;  ///< seconds in all epochs, as journalled last
+  RecentRate throughput;     ///< pixel samples per second
   CostMap cost;
   RowTimes row_times;
   bool alone = false;  ///< a frame job that one worker is to render (dispatch/frame_chooser.h)

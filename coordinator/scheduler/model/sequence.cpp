@@ -68,20 +68,12 @@ JobSpec Sequence::job_spec(const Frame& frame) const {
 }
 
 double Sequence::elapsed(Time now) const {
-  return is_final(state)
-             ? elapsed_noted
-             : elapsed_before + (first_lease_at ? std::max(0.0, now - *first_lease_at) : 0.0);
-}
-
-void Sequence::stop_clock(Time now) {
-  elapsed_before = elapsed(now);
-  first_lease_at.reset();
+  return is_final(state) ? elapsed_noted : clock.elapsed(now);
 }
 
 void Sequence::restart_clock() {
-  elapsed_before = elapsed_noted;
+  clock.set(elapsed_noted);
   elapsed_then = elapsed_noted;
-  first_lease_at.reset();
   done_before = counts_.of(FrameState::kDone);
 }
 

@@ -15,6 +15,7 @@
 #include "coordinator/scheduler/model/job.h"
 #include "coordinator/scheduler/model/rates.h"
 #include "coordinator/scheduler/model/row_costs.h"
+#include "coordinator/scheduler/model/work_clock.h"
 
 namespace bandsaw::coordinator {
 
@@ -55,12 +56,8 @@ class Sequence {
   /// Returns the seconds for which the sequence has been worked on, in all epochs. The time in
   /// which a user paused it does not count.
   double elapsed(Time now) const;
-  /// Stops elapsed() at `now`, because a user paused the sequence. It goes on when first_lease_at
-  /// is set again (LeaseLedger::start_clocks).
-  void stop_clock(Time now);
   /// Begins a new measurement of the pace of the frames: an epoch begins, or failed frames of a
-  /// final sequence are rendered again. Sets elapsed() to the journalled time; elapsed() goes on
-  /// when first_lease_at is set again.
+  /// final sequence are rendered again. Stops the clock at the journalled time.
   void restart_clock();
 
   // Only Context::apply calls these three. They do nothing if there is no such frame.
@@ -77,13 +74,12 @@ class Sequence {
   std::uint32_t pixel_version = 0;
   JobState state = JobState::kRunning;  ///< never kFinishing
   std::int32_t priority = 0;
-  bool held = false;                   ///< paused by a user
-  std::string reason;                  ///< why the sequence is in its state
-  double elapsed_noted = 0;            ///< seconds: the last elapsed() in the journal
-  std::optional<Time> first_lease_at;  ///< since restart_clock() or stop_clock()
-  double elapsed_before = 0;           ///< seconds: elapsed() up to first_lease_at
-  std::size_t done_before = 0;         ///< frames that were done at the last restart_clock()
-  double elapsed_then = 0;             ///< seconds: elapsed() at the last restart_clock()
+  bool held = false;               ///< paused by a user
+  std::string reason;              ///< why the sequence is in its state
+  double elapsed_noted = 0;        ///< seconds: the last elapsed() in the journal
+  WorkClock clock;                 ///< runs since the first lease after restart_clock() or a pause
+  std::size_t done_before = 0;     ///< frames that were done at the last restart_clock()
+  double elapsed_then = 0;         ///< seconds: elapsed() at the last restart_clock()
   Totals done;                     ///< samples, counters and CPU time of the frames that are done
   double worst_error = -1;         ///< largest error of those frames; negative: unknown
   std::uint32_t workers_used = 0;  ///< largest number of workers of one of those frames

@@ -76,7 +76,7 @@ void Restart::resume(Job& job) {
   planner_.plan_first(job);
   bands_.note_missing_audited(job);
   job.throughput = {};
-  job.elapsed_before = job.elapsed_noted;
+  job.clock.set(job.elapsed_noted);
   if (job.held) {
     if (job.state != JobState::kPaused) {
       context_.emit(record::StateChanged{job.id, JobState::kPaused, kPausedByUser});

@@ -107,7 +107,7 @@ double remaining_s(const Context& context, const Job& job, Time now) {
     return 0;
   }
   if (const auto* rule = std::get_if<StopAtTime>(&job.spec.stop); rule && !job.fixed_samples) {
-    return job.first_lease_at ? std::max(0.0, rule->seconds - job.elapsed(now)) : -1;
+    return job.clock.runs() ? std::max(0.0, rule->seconds - job.elapsed(now)) : -1;
   }
   if (job.complete()) {
     return 0;
