@@ -13,7 +13,6 @@
 #include "absl/strings/str_cat.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/file.h"
-#include "renderlib/base/mapped_file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/package/blob_folder.h"
 
@@ -29,15 +28,6 @@ std::string folder_of(const std::string& root, const wire::Digest& digest) {
 std::string path_of(const std::string& root, const wire::Digest& digest) {
   return absl::StrCat(folder_of(root, digest), "/", digest.hex());
 }
-
-class MappedBlob : public BlobBytes {
- public:
-  explicit MappedBlob(MappedFile file) : file_(std::move(file)) {}
-  absl::Span<const std::byte> bytes() const override { return file_.bytes(); }
-
- private:
-  MappedFile file_;
-};
 
 }  // namespace
 
@@ -84,8 +74,7 @@ absl::StatusOr<std::unique_ptr<BlobBytes>> BlobStore::get(const wire::Digest& di
   }
   RETURN_IF_ERROR(file.status());
   RETURN_IF_ERROR(check(digest, *file));
-  ASSIGN_OR_RETURN(MappedFile mapped, MappedFile::map(*file));
-  return std::make_unique<MappedBlob>(std::move(mapped));
+  return map_blob(*file);
 }
 
 absl::Status BlobStore::check(const wire::Digest& digest, const File& file) {

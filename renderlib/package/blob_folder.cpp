@@ -12,7 +12,6 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "renderlib/base/file.h"
 #include "renderlib/base/mapped_file.h"
 #include "renderlib/base/status_macros.h"
 
@@ -48,6 +47,11 @@ absl::StatusOr<wire::Digest> digest_of_file(int fd, std::uint64_t size, const st
   return hasher.finish();
 }
 
+absl::StatusOr<std::unique_ptr<BlobBytes>> map_blob(const File& file) {
+  ASSIGN_OR_RETURN(MappedFile mapped, MappedFile::map(file));
+  return std::make_unique<MappedBytes>(std::move(mapped));
+}
+
 absl::StatusOr<std::unique_ptr<BlobBytes>> BlobFolder::get(const wire::Digest& digest) {
   const std::string path = path_of(digest);
   absl::StatusOr<File> opened = File::open_regular(path, O_NOFOLLOW);
@@ -64,8 +68,7 @@ absl::StatusOr<std::unique_ptr<BlobBytes>> BlobFolder::get(const wire::Digest& d
     return absl::DataLossError(absl::StrCat(
         "blob ", path, " is damaged: its bytes do not have the digest that names it; remove it"));
   }
-  ASSIGN_OR_RETURN(MappedFile mapped, MappedFile::map(file));
-  return std::make_unique<MappedBytes>(std::move(mapped));
+  return map_blob(file);
 }
 
 }  // namespace bandsaw

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "renderlib/base/file.h"
 #include "renderlib/package/blob_source.h"
 
 namespace bandsaw {
@@ -15,6 +16,10 @@ namespace bandsaw {
 /// DATA_LOSS if the bytes cannot be read or the file is shorter. The file is not mapped, because
 /// SIGBUS ends a process that reads a bad sector of a mapped file.
 absl::StatusOr<wire::Digest> digest_of_file(int fd, std::uint64_t size, const std::string& path);
+
+/// Returns the bytes of an open file, mapped into memory; the file may be closed then. Errors are
+/// those of MappedFile.
+absl::StatusOr<std::unique_ptr<BlobBytes>> map_blob(const File& file);
 
 /// Each call of get() hashes the file and maps it; nothing is cached. Thread-safe.
 class BlobFolder : public BlobSource {
