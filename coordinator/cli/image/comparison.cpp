@@ -36,6 +36,13 @@ void leave_out_not_finite(Image& image, Image& reference) {
   }
 }
 
+/// Sets the metrics of what a viewer sees: Comparison::ssim, flip and hdr.
+void add_seen_differences(const Image& image, const Image& reference, Comparison& to) {
+  to.hdr = beyond_screen(reference);
+  to.ssim = ssim(image, reference);
+  to.flip = to.hdr ? hdr_flip(image, reference) : flip(image, reference);
+}
+
 }  // namespace
 
 absl::StatusOr<Comparison> compare_images(const Image& image, const Image& reference) {
@@ -44,15 +51,18 @@ absl::StatusOr<Comparison> compare_images(const Image& image, const Image& refer
                                                    image.height, " and ", reference.width, "×",
                                                    reference.height));
   }
+  Comparison out;
+  out.errors = error_metrics(image, reference);
+  out.bias = test_bias(image, reference);
+  if (out.errors.not_finite == 0) {
+    add_seen_differences(image, reference, out);
+    return out;
+  }
   Image seen = image;
   Image seen_reference = reference;
   leave_out_not_finite(seen, seen_reference);
-  const bool hdr = beyond_screen(seen_reference);
-  return Comparison{.errors = error_metrics(image, reference),
-                    .bias = test_bias(image, reference),
-                    .ssim = ssim(seen, seen_reference),
-                    .flip = hdr ? hdr_flip(seen, seen_reference) : flip(seen, seen_reference),
-                    .hdr = hdr};
+  add_seen_differences(seen, seen_reference, out);
+  return out;
 }
 
 std::string comparison_text(const Comparison& comparison) {
