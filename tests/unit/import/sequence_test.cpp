@@ -151,6 +151,16 @@ GltfWriter two_nodes() {
   return file;
 }
 
+/// The same with a camera at node 1, which is named "eye".
+GltfWriter with_camera() {
+  GltfWriter file = two_nodes();
+  file.root["cameras"] =
+      Json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 1}}])");
+  file.root["nodes"][1]["camera"] = 0;
+  file.root["nodes"][1]["name"] = "eye";
+  return file;
+}
+
 void add_channel(GltfWriter& file, Json& animation, int node, const char* path,
                  const std::vector<float>& times, const std::vector<float>& values, int components,
                  const char* interpolation = "LINEAR") {
@@ -273,10 +283,7 @@ TEST_F(Sequence, AnAnimationIsChosenByName) {
 }
 
 TEST_F(Sequence, ACameraAtAMovingNodeMovesWithIt) {
-  GltfWriter file = two_nodes();
-  file.root["cameras"] =
-      Json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 1}}])");
-  file.root["nodes"][1]["camera"] = 0;
+  GltfWriter file = with_camera();
   Json walk = empty_animation("walk");
   add_channel(file, walk, 0, "translation", {0, 1}, {0, 0, 5, 4, 0, 5}, 3);
   file.root["animations"] = Json::array({walk});
@@ -287,11 +294,7 @@ TEST_F(Sequence, ACameraAtAMovingNodeMovesWithIt) {
 }
 
 TEST_F(Sequence, ACameraMovesWithTheKeysOfItsModel) {
-  GltfWriter file = two_nodes();
-  file.root["cameras"] =
-      Json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 1}}])");
-  file.root["nodes"][1]["camera"] = 0;
-  file.root["nodes"][1]["name"] = "eye";
+  GltfWriter file = with_camera();
   file.write(folder_, "m.gltf");
   const std::string text = R"(camera { use: "eye" } model { file: "m.gltf"
     key { time: 0 translate: [0, 0, 0] } key { time: 1 translate: [4, 0, 0] } })";
@@ -303,11 +306,7 @@ TEST_F(Sequence, ACameraMovesWithTheKeysOfItsModel) {
 }
 
 TEST_F(Sequence, AWindowHoldsWhileAUsedCameraMoves) {
-  GltfWriter file = two_nodes();
-  file.root["cameras"] =
-      Json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 1}}])");
-  file.root["nodes"][1]["camera"] = 0;
-  file.root["nodes"][1]["name"] = "eye";
+  GltfWriter file = with_camera();
   Json walk = empty_animation("walk");
   add_channel(file, walk, 0, "translation", {0, 1}, {0, 0, 5, 4, 0, 5}, 3);
   file.root["animations"] = Json::array({walk});
