@@ -210,6 +210,13 @@ bool is_png_or_jpeg(absl::string_view bytes) {
   return absl::StartsWith(bytes, "\x89PNG") || absl::StartsWith(bytes, "\xff\xd8");
 }
 
+// Returns true for a binary PNM file with 16 bits for each value. stb_image converts such a file to
+// another number of channels as if it had 8 bits, and reads beyond the end of its pixels.
+bool is_deep_pnm(absl::string_view bytes) {
+  return (absl::StartsWith(bytes, "P5") || absl::StartsWith(bytes, "P6")) &&
+         stbi_is_16_bit_from_memory(data_of(bytes), static_cast<int>(bytes.size())) != 0;
+}
+
 // Returns an image whose texels stay in the decoder's memory, which is freed with the last
 // reference.
 template <class T>
@@ -242,6 +249,10 @@ absl::StatusOr<Pixels<stbi_uc>> decode_pixels(absl::string_view bytes, int chann
   if (is_webp(bytes)) {
     ASSIGN_OR_RETURN(shape, shape_of(bytes));
     return decode_webp(bytes, channels);
+  }
+  if (is_deep_pnm(bytes)) {
+    return absl::InvalidArgumentError(
+        "is a PNM file with two bytes for each value, which is not supported; save it as PNG");
   }
   Endless source{bytes};
   Pixels<stbi_uc> pixels =

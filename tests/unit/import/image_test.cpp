@@ -108,6 +108,15 @@ std::string bmp() {
   return std::string(header, sizeof header) + std::string(50 * 12, '\x50');
 }
 
+TEST(DecodeImage, ADeepPnmFileIsAnError) {
+  std::vector<std::string> warnings;
+  for (const std::string& whole : {std::string("P6 3 50 65535\n") + std::string(900, '\x50'),
+                                   std::string("P5 3 50 65535\n") + std::string(300, '\x50')}) {
+    EXPECT_THAT(std::string(decode_image(whole, warnings).status().message()),
+                HasSubstr("save it as PNG"));
+  }
+}
+
 // For such files, stb_image alone leaves the missing pixels uninitialized, or never ends if the
 // header is cut.
 TEST(DecodeImage, AFileWithoutItsLastPixelsIsAnError) {
@@ -117,7 +126,7 @@ TEST(DecodeImage, AFileWithoutItsLastPixelsIsAnError) {
   }
   std::vector<std::string> warnings;
   for (const std::string& whole : {std::string("P6 3 50 255\n") + std::string(450, '\x50'),
-                                   std::string("P5 3 50 65535\n") + std::string(300, '\x50'),
+                                   std::string("P5 3 50 255\n") + std::string(150, '\x50'),
                                    tga(2, std::string(450, '\x50')), tga(10, runs), bmp()}) {
     EXPECT_TRUE(decode_image(whole, warnings).ok()) << whole.substr(0, 2);
     for (std::size_t size = 0; size < whole.size() - 3; ++size) {
