@@ -1,0 +1,62 @@
+#pragma once
+
+// Random points on surfaces, uniform by area: where photons start (photon_start.h and
+// indirect_photons.h).
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "renderlib/geometry/placement.h"
+#include "renderlib/geometry/surface.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+
+/// A random point on a surface.
+struct SurfaceSample {
+  SurfacePoint point;
+  double pdf = 0;  ///< by area, > 0
+};
+
+/// Samples points on a list of primitives.
+class SurfaceSampler {
+ public:
+  /// Appends a primitive of the scene. Returns false, and leaves it out, if its area in the middle
+  /// of the shutter, or the sum of the areas, is not finite. A primitive without area is left out
+  /// as well; that returns true.
+  bool add(const Scene& scene, PrimitiveId id);
+
+  bool empty() const { return primitives_.empty(); }
+
+  /// Returns a point of one of the primitives at this time: first a primitive is chosen by its
+  /// area, then a place on it. All numbers are in [0, 1). There MUST be primitives, and all of them
+  /// MUST be of this scene. Returns std::nullopt if the point or its pdf is not finite.
+  std::optional<SurfaceSample> sample(const Scene& scene, double primitive, double u, double v,
+                                      double time) const;
+
+ private:
+  struct Primitive {
+    PrimitiveId id;
+    double area_up_to = 0;  ///< sum of the areas of the primitives up to this one
+  };
+  std::vector<Primitive> primitives_;
+};
+
+/// Calls visit(id, material) for each primitive of the scene: first the loose ones, then those of
+/// each instance.
+template <class Visit>
+void visit_primitives(const Geometry& geometry, const Visit& visit) {
+  for (std::uint32_t instance = 0; instance <= geometry.instances.size(); ++instance) {
+    const Instance* placed = instance == 0 ? nullptr : &geometry.instances[instance - 1];
+    const std::size_t count =
+        placed == nullptr ? geometry.size() : primitives_of(geometry, *placed);
+    for (std::uint32_t primitive = 0; primitive < count; ++primitive) {
+      visit(PrimitiveId{instance, primitive},
+            placed == nullptr ? material_of(static_cast<const Shapes&>(geometry), primitive)
+                              : material_of(geometry, *placed, primitive));
+    }
+  }
+}
+
+}  // namespace bandsaw
