@@ -40,18 +40,18 @@ void GuidingCache::clear() {
   maps_.clear();
 }
 
-GuidingCache::Map GuidingCache::get_map(const PhotonMapKey& key, absl::FunctionRef<Map()> make) {
+GuidingCache::Maps GuidingCache::get_maps(const PhotonMapKey& key, absl::FunctionRef<Maps()> make) {
   const MutexLock lock(mutex_);
-  Map map = get_or_make(maps_, key, make);
+  Maps maps = get_or_make(maps_, key, make);
   std::size_t bytes = 0;
   for (const MapEntry& entry : maps_) {
-    bytes += entry.made->map.bytes();
+    bytes += entry.made->bytes();
   }
   while (maps_.size() > 1 && bytes > kMaxMapBytes) {
-    bytes -= maps_.front().made->map.bytes();
+    bytes -= maps_.front().made->bytes();
     maps_.pop_front();
   }
-  return map;
+  return maps;
 }
 
 }  // namespace bandsaw

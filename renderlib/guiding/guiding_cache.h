@@ -16,7 +16,7 @@
 
 namespace bandsaw {
 
-class Casters;  // renderlib/integrate/casters.h
+struct PhotonSources;  // renderlib/integrate/photon_sources.h
 
 /// The field of a scene depends on the shape of the image and the length of the paths. It does not
 /// depend on the seed: images of all seeds use the same field.
@@ -37,41 +37,47 @@ struct TrainedGuiding {
   std::uint64_t paths = 0;    ///< training paths from the camera
   std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
   std::uint64_t rays = 0;     ///< rays of both, of pilots and of the first photon map
-  /// The casters (surfaces that cast caustics) whose caustics are taken from photon maps
-  /// (integrate/caustics.h); null: there are none, or maps do not pay.
-  std::shared_ptr<const Casters> casters;
+  /// What photon maps are made of; null: no light comes from maps.
+  std::shared_ptr<const PhotonSources> sources;
 };
 
-/// The parameters of a photon map, besides the scene.
+/// The parameters of photon maps, besides the scene and the sources.
 struct PhotonMapKey {
   std::uint64_t seed = 0;
   std::uint32_t number = 0;   ///< maps of higher numbers have smaller disks of photons
-  std::uint64_t photons = 0;  ///< number of photons that are started
+  std::uint64_t photons = 0;  ///< number of photons of caustics that are started
+  GuidingKey field = {};      ///< the field with which the sources were decided
   friend bool operator==(const PhotonMapKey&, const PhotonMapKey&) = default;
 };
 
-/// A photon map and what is known from its making.
-struct TracedMap {
-  PhotonMap map;
-  /// Mean solid angle in steradians of the lamps as seen from where their photons start, weighted
-  /// by power.
+/// The photon maps that some samples use, and what is known from their making.
+struct TracedMaps {
+  PhotonMap caustics;  ///< empty if caustics are left to paths
+  PhotonMap indirect;  ///< light that receivers scattered (integrate/indirect_photons.h)
+  /// A path takes indirect light from the map if it has come at least as far since the last
+  /// receiver; 0: never.
+  double gather_distance = 0;
+  /// Mean solid angle in steradians of the lamps as seen from where photons of caustics start,
+  /// weighted by power.
   double lamp_angle = 0;
   std::uint64_t rays = 0;
+
+  std::size_t bytes() const { return caustics.bytes() + indirect.bytes(); }
 };
 
 /// Thread-safe.
 class GuidingCache {
  public:
   using Trained = std::shared_ptr<const TrainedGuiding>;
-  using Map = std::shared_ptr<const TracedMap>;
+  using Maps = std::shared_ptr<const TracedMaps>;
 
   /// Returns the field of `key`. If it is not kept yet, calls `make`; other threads that call get()
   /// wait meanwhile. If `make` returns nullptr (it was stopped), returns that and keeps nothing.
   Trained get(const GuidingKey& key, absl::FunctionRef<Trained()> make) EXCLUDES(mutex_);
   /// Forgets all fields and maps, so that the next image makes its own. For measurements.
   void clear() EXCLUDES(mutex_);
-  /// The same as get() for the map of `key`.
-  Map get_map(const PhotonMapKey& key, absl::FunctionRef<Map()> make) EXCLUDES(mutex_);
+  /// The same as get() for the photon maps of `key`.
+  Maps get_maps(const PhotonMapKey& key, absl::FunctionRef<Maps()> make) EXCLUDES(mutex_);
 
  private:
   /// Number of fields that are kept. When there are more, the oldest one is dropped.
@@ -85,7 +91,7 @@ class GuidingCache {
   };
   struct MapEntry {
     PhotonMapKey key;
-    Map made;
+    Maps made;
   };
   Mutex mutex_;
   std::deque<FieldEntry> fields_ GUARDED_BY(mutex_);

@@ -62,9 +62,9 @@ struct Box {
   }
 };
 
-Box box_of(absl::Span<const CausticPhoton> photons) {
+Box box_of(absl::Span<const StoredPhoton> photons) {
   Box box;
-  for (const CausticPhoton& photon : photons) {
+  for (const StoredPhoton& photon : photons) {
     box.add(photon.position, photon.position);
   }
   return box;
@@ -96,7 +96,7 @@ struct Place {
 /// Divides the photons at this part of the longest side of their box. Returns the first photon of
 /// the second half; std::nullopt if there are at most kPhotonsOfLeaf photons, if they are all at
 /// one point, or at the maximum depth.
-std::optional<std::uint32_t> divide(std::vector<CausticPhoton>& photons, std::uint32_t first,
+std::optional<std::uint32_t> divide(std::vector<StoredPhoton>& photons, std::uint32_t first,
                                     std::uint32_t last, int depth, const Box& box,
                                     float part = 0.5f) {
   const std::size_t axis = box.longest_axis();
@@ -107,16 +107,16 @@ std::optional<std::uint32_t> divide(std::vector<CausticPhoton>& photons, std::ui
   const auto half = std::stable_partition(
       photons.begin() + static_cast<std::ptrdiff_t>(first),
       photons.begin() + static_cast<std::ptrdiff_t>(last),
-      [&](const CausticPhoton& photon) { return photon.position[axis] < middle; });
+      [&](const StoredPhoton& photon) { return photon.position[axis] < middle; });
   return static_cast<std::uint32_t>(half - photons.begin());
 }
 
 /// Adds the place of photons [first, last) and its descendants, in depth-first order, and sorts the
 /// photons accordingly. `area` is that of the parent. Where a place is divided is random, by
 /// `seed`: radii jump there, and over several maps the jumps must not add up to a line.
-void add_places(std::vector<CausticPhoton>& photons, std::uint32_t first, std::uint32_t last,
+void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::uint32_t last,
                 int depth, double area, std::uint64_t seed, std::vector<Place>& places) {
-  const absl::Span<const CausticPhoton> own(photons.data() + first, last - first);
+  const absl::Span<const StoredPhoton> own(photons.data() + first, last - first);
   const Box box = box_of(own);
   Place place{.first = first, .last = last, .area = area, .normal = {}};
   if (own.size() >= kEnough) {
@@ -140,7 +140,7 @@ void add_places(std::vector<CausticPhoton>& photons, std::uint32_t first, std::u
                  2 * std::abs(a.power - part * place.power) <=
                      kDeviations * std::sqrt(place.squares) + kSlope * place.power;
   } else {
-    for (const CausticPhoton& photon : own) {
+    for (const StoredPhoton& photon : own) {
       const double power = luminance(photon.power);
       place.power += power;
       place.squares += power * power;
@@ -155,9 +155,9 @@ void add_places(std::vector<CausticPhoton>& photons, std::uint32_t first, std::u
 /// Returns one of the photons, chosen with a probability in proportion to its power, and gives it
 /// the power of all. It stands for all of them where they are close together compared with their
 /// disks.
-CausticPhoton stand_in(absl::Span<const CausticPhoton> photons, std::uint64_t seed) {
+StoredPhoton stand_in(absl::Span<const StoredPhoton> photons, std::uint64_t seed) {
   double total = 0;
-  for (const CausticPhoton& photon : photons) {
+  for (const StoredPhoton& photon : photons) {
     total += luminance(photon.power);
   }
   double left = NumberStream(seed).next() * total;
@@ -166,20 +166,20 @@ CausticPhoton stand_in(absl::Span<const CausticPhoton> photons, std::uint64_t se
     left -= luminance(photons[chosen].power);
     ++chosen;
   }
-  CausticPhoton one = photons[chosen];
+  StoredPhoton one = photons[chosen];
   one.power = one.power * static_cast<float>(total / luminance(one.power));
   return one;
 }
 
 /// Sets the radii of the photons. Where photons are close together compared with their disks, one
 /// of them replaces them.
-std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double radius_factor,
-                                      std::uint64_t seed) {
+std::vector<StoredPhoton> with_disks(std::vector<StoredPhoton> photons, double radius_factor,
+                                     std::uint64_t seed) {
   std::vector<Place> places;
   // One tree for each main direction of the normals, so that the walls of a corner are apart.
   auto from = photons.begin();
   for (std::uint32_t side = 0; side < 6 && from != photons.end(); ++side) {
-    const auto to = std::stable_partition(from, photons.end(), [&](const CausticPhoton& photon) {
+    const auto to = std::stable_partition(from, photons.end(), [&](const StoredPhoton& photon) {
       return side_of(vec3(photon.normal)) == side;
     });
     if (from != to) {
@@ -191,7 +191,7 @@ std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double
   const Box all = box_of(photons);
   const double largest =
       kLargestDisk * radius_factor * length(Vec3{all.extent(0), all.extent(1), all.extent(2)});
-  std::vector<CausticPhoton> out;
+  std::vector<StoredPhoton> out;
   const auto radius_of = [&](double area) {
     const double wanted = radius_factor * std::sqrt(area / kPi);
     return std::max(std::min(wanted, largest), 1e-6 * largest);
@@ -215,7 +215,7 @@ std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double
     }
     const auto radius =
         static_cast<float>(even ? even_radius : radius_of(PhotonMap::kPhotonsOfDisk * place.area));
-    const absl::Span<const CausticPhoton> own(photons.data() + place.first, place.count());
+    const absl::Span<const StoredPhoton> own(photons.data() + place.first, place.count());
     const std::size_t first = out.size();
     if (even && place.count() <= together) {
       out.push_back(stand_in(own, seed + place.first));
@@ -232,14 +232,12 @@ std::vector<CausticPhoton> with_disks(std::vector<CausticPhoton> photons, double
 
 }  // namespace
 
-PhotonMap::PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, std::uint64_t seed,
-                     Pool& pool, absl::FunctionRef<double(const CausticPhoton&)> share_on_surface) {
+PhotonMap::PhotonMap(std::vector<StoredPhoton> photons, double radius_factor, std::uint64_t seed,
+                     Pool& pool, absl::FunctionRef<double(StoredPhoton&)> share_on_surface) {
   if (photons.empty()) {
     return;
   }
   photons_ = with_disks(std::move(photons), radius_factor, seed);
-  split(0, static_cast<std::uint32_t>(photons_.size()), 0);
-  set_boxes();
   constexpr std::size_t kRun = 1024;  // photons that a thread takes at a time
   const std::size_t runs = (photons_.size() + kRun - 1) / kRun;
   pool.parallel_for(static_cast<std::int64_t>(runs), [&](std::int64_t run) {
@@ -248,6 +246,8 @@ PhotonMap::PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, s
       photons_[i].power = photons_[i].power * static_cast<float>(1 / share_on_surface(photons_[i]));
     }
   });
+  split(0, static_cast<std::uint32_t>(photons_.size()), 0);
+  set_boxes();
 }
 
 void PhotonMap::split(std::uint32_t first, std::uint32_t last, int depth) {
@@ -270,7 +270,7 @@ void PhotonMap::set_boxes() {
     Node& node = nodes_[i];
     Box box;
     for (std::uint32_t at = node.first; at < node.last; ++at) {
-      const CausticPhoton& photon = photons_[at];
+      const StoredPhoton& photon = photons_[at];
       Float3 low = photon.position;
       Float3 high = photon.position;
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -19,7 +19,7 @@
 namespace bandsaw {
 
 /// A photon that arrived at a surface.
-struct CausticPhoton {
+struct StoredPhoton {
   Float3 position{};
   float radius = 0;         ///< of its disk; set by PhotonMap
   Float3 normal{};          ///< geometric normal of the surface, unit, on the side of arrival
@@ -28,7 +28,7 @@ struct CausticPhoton {
   Rgb power{};
 };
 
-/// Immutable after construction. integrate/caustic_maps.h makes the maps of a scene.
+/// Immutable after construction. integrate/make_photon_maps.h makes the maps of a scene.
 class PhotonMap {
  public:
   /// A disk is as large as the area of about this many photons, if the radius factor is 1. Where
@@ -40,9 +40,10 @@ class PhotonMap {
   /// parts whose photons have disks of one radius. `share_on_surface` is called for each photon,
   /// when its radius is known, on the threads of the pool. It returns the share of the photon's
   /// power, in (0, 1], that falls on the surface and not beyond an edge. The power is divided by
-  /// this share. The map depends on its arguments and the order of the photons, not on the threads.
-  PhotonMap(std::vector<CausticPhoton> photons, double radius_factor, std::uint64_t seed,
-            Pool& pool, absl::FunctionRef<double(const CausticPhoton&)> share_on_surface);
+  /// this share. It may also reduce the radius. The map depends on its arguments and the order of
+  /// the photons, not on the threads.
+  PhotonMap(std::vector<StoredPhoton> photons, double radius_factor, std::uint64_t seed, Pool& pool,
+            absl::FunctionRef<double(StoredPhoton&)> share_on_surface);
 
   /// Calls visit(photon, density) for each photon whose disk contains the point. `normal` is the
   /// unit normal of the point's surface, on the side whose irradiance is wanted. The irradiance is
@@ -51,10 +52,10 @@ class PhotonMap {
   void visit(const Vec3& position, const Vec3& normal, const Visit& visit) const;
 
   std::size_t size() const { return photons_.size(); }
-  absl::Span<const CausticPhoton> photons() const { return photons_; }
+  absl::Span<const StoredPhoton> photons() const { return photons_; }
   /// Returns the memory of the map in bytes.
   std::size_t bytes() const {
-    return photons_.size() * sizeof(CausticPhoton) + nodes_.size() * sizeof(Node);
+    return photons_.size() * sizeof(StoredPhoton) + nodes_.size() * sizeof(Node);
   }
 
  private:
@@ -71,14 +72,14 @@ class PhotonMap {
   /// Computes the boxes of all nodes.
   void set_boxes();
 
-  std::vector<CausticPhoton> photons_;
+  std::vector<StoredPhoton> photons_;
   std::vector<Node> nodes_;
 };
 
 /// Returns the density of a photon's power at a point, in 1 / area: Epanechnikov's kernel over the
 /// disk. It is 0 for points farther from the disk's plane than a quarter of the radius, and for
 /// normals that differ by more than 60 degrees, because those are of other surfaces.
-inline float density_at(const CausticPhoton& photon, const Float3& position, const Float3& normal) {
+inline float density_at(const StoredPhoton& photon, const Float3& position, const Float3& normal) {
   const float x = position[0] - photon.position[0];
   const float y = position[1] - photon.position[1];
   const float z = position[2] - photon.position[2];

@@ -32,7 +32,7 @@ bool receives_caustics(const Bsdf& bsdf) {
          !has_pdf_behind(bsdf);
 }
 
-std::uint32_t CausticMaps::number_of(std::uint64_t sample) {
+std::uint32_t PhotonMaps::number_of(std::uint64_t sample) {
   // Samples with `unit` in [2^octave, 2^(octave + 1)) have maps of `root` units each; `first` is
   // the number of the first of these maps.
   const std::uint64_t unit = sample / kMinSamplesOfMap;
@@ -45,7 +45,7 @@ std::uint32_t CausticMaps::number_of(std::uint64_t sample) {
   return static_cast<std::uint32_t>(first + (unit - (std::uint64_t{1} << octave)) / root);
 }
 
-const PhotonMap& CausticMaps::of_sample(std::uint64_t sample) const {
+const TracedMaps& PhotonMaps::of_sample(std::uint64_t sample) const {
   if (for_all_ != nullptr) {
     return *for_all_;
   }
@@ -57,18 +57,18 @@ const PhotonMap& CausticMaps::of_sample(std::uint64_t sample) const {
   return *found->second;
 }
 
-Rgb caustic_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf& bsdf,
-                     const Vec3& wo, std::uint32_t longest) {
+Rgb photon_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf& bsdf,
+                    const Vec3& wo, std::uint32_t longest) {
   const Vec3 normal = facing_normal(point, wo);
   Rgb sum;
   const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
   if (diffuse != nullptr && diffuse->normal.shading == diffuse->normal.geometric) {
-    map.visit(point.position, normal, [&](const CausticPhoton& photon, float density) {
+    map.visit(point.position, normal, [&](const StoredPhoton& photon, float density) {
       sum += photon.chain <= longest ? photon.power * density : Rgb{};
     });
     return sum * diffuse->reflectance * static_cast<float>(1 / kPi);
   }
-  map.visit(point.position, normal, [&](const CausticPhoton& photon, float density) {
+  map.visit(point.position, normal, [&](const StoredPhoton& photon, float density) {
     if (photon.chain > longest) {
       return;
     }

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "renderlib/guiding/photon_map.h"
+#include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/integrate/casters.h"
 #include "renderlib/material/bsdf.h"
 
@@ -40,7 +40,7 @@ inline CausticRole caustic_role(const Casters& casters, MaterialId material, con
 }
 
 /// The photon maps of some samples of an image. Consecutive samples share a map.
-class CausticMaps {
+class PhotonMaps {
  public:
   /// Number of samples that share one of the first maps.
   static constexpr std::uint64_t kMinSamplesOfMap = 16;
@@ -50,25 +50,25 @@ class CausticMaps {
   /// samples, and a band of many samples must not need more maps than a worker can keep.
   static std::uint32_t number_of(std::uint64_t sample);
 
-  explicit CausticMaps(const Casters& casters) : casters_(&casters) {}
-  /// Adds map `number`, larger than that of all maps so far. It MUST outlive this object.
-  void add(std::uint32_t number, const PhotonMap& map) { maps_.push_back({number, &map}); }
-  /// Uses this map for all samples.
-  void use_for_all(const PhotonMap& map) { for_all_ = &map; }
+  explicit PhotonMaps(const Casters& casters) : casters_(&casters) {}
+  /// Adds the maps `number`, larger than that of all maps so far. They MUST outlive this object.
+  void add(std::uint32_t number, const TracedMaps& maps) { maps_.push_back({number, &maps}); }
+  /// Uses these maps for all samples.
+  void use_for_all(const TracedMaps& maps) { for_all_ = &maps; }
 
   const Casters& casters() const { return *casters_; }
-  /// Returns the map of a sample; one that was not added is a bug of the caller.
-  const PhotonMap& of_sample(std::uint64_t sample) const;
+  /// Returns the maps of a sample; if they were not added, that is a bug of the caller.
+  const TracedMaps& of_sample(std::uint64_t sample) const;
 
  private:
   const Casters* casters_;
-  std::vector<std::pair<std::uint32_t, const PhotonMap*>> maps_;
-  const PhotonMap* for_all_ = nullptr;
+  std::vector<std::pair<std::uint32_t, const TracedMaps*>> maps_;
+  const TracedMaps* for_all_ = nullptr;
 };
 
 /// Returns the radiance that a receiver scatters towards `wo`. It comes from the photons of the map
 /// around the point; those with a chain of more than `longest` casters are left out.
-Rgb caustic_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf& bsdf,
-                     const Vec3& wo, std::uint32_t longest);
+Rgb photon_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf& bsdf,
+                    const Vec3& wo, std::uint32_t longest);
 
 }  // namespace bandsaw

@@ -29,6 +29,11 @@ constexpr double kRareLight = 1.5;
 constexpr double kMinShareOfMaps = 0.08;
 constexpr double kMinShareOfPhotons = 0.2;
 
+/// Photon maps of indirect light are tried if the variance is above kHard, and used if they reduce
+/// variance times rays by this factor.
+constexpr double kHard = 0.3;
+constexpr double kMinGainOfGathering = 1.7;
+
 /// The second moment of the light of photons is at least this many times the one that their cells
 /// hold: a cone is wider than the lamp that is seen in it.
 constexpr double kMomentOfLamp = 2;
@@ -40,6 +45,7 @@ struct PixelStatistics {
   double by_paths = 0;    ///< of the variances that GuidingGain::by_paths is about
   double by_photons = 0;  ///< the same for GuidingGain::by_photons
   double expected = 0;    ///< of the luminances that the cells predict
+  std::uint64_t rays = 0;
 };
 
 /// Adds what the cells at a surface predict. `reflected`: the path's luminance for an irradiance of
@@ -95,6 +101,7 @@ PixelStatistics statistics_of(const Scene& scene, const RayGenerator& camera, co
   const PixelSampler sampler(kSeed, pixel, 1);
   PixelStatistics of;
   PathCounts counts;
+  std::uint64_t rays_to_cells = 0;
   for (std::uint64_t sample = 0; sample < kSamples; ++sample) {
     const Sample4 at = sampler.group(sample, kGroupCamera);
     const double when = scene.features().motion ? sampler.group(sample, kGroupTime)[0] : 0;
@@ -104,8 +111,9 @@ PixelStatistics statistics_of(const Scene& scene, const RayGenerator& camera, co
       of.sum += value;
       of.squares += value * value;
     }
-    follow({scene, sampler, sample, options, counts.rays}, field, ray, of);
+    follow({scene, sampler, sample, options, rays_to_cells}, field, ray, of);
   }
+  of.rays = counts.rays;
   return of;
 }
 
@@ -120,6 +128,12 @@ bool GuidingGain::paths_pay() const {
 bool GuidingGain::maps_pay() const { return share_of(by_photons) > kMinShareOfMaps; }
 
 bool GuidingGain::photons_pay() const { return share_of(by_photons) > kMinShareOfPhotons; }
+
+bool GuidingGain::is_hard() const { return variance > kHard; }
+
+bool gathering_pays(const GuidingGain& before, const GuidingGain& with) {
+  return before.variance * before.rays > kMinGainOfGathering * with.variance * with.rays;
+}
 
 std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& key,
                                          const GuidingField& field, const PathOptions& options,
@@ -139,6 +153,7 @@ std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& k
   }
   GuidingGain gain;
   for (const PixelStatistics& pixel : pixels) {
+    gain.rays += static_cast<double>(pixel.rays) / kAll / kPixels;
     const double of_pixel = pixel.sum / kAll;
     // The brightness to which the pixel's errors are relative.
     const double unit = std::max({of_pixel, pixel.expected / kAll, kDarkest * mean});

@@ -22,6 +22,7 @@ namespace bandsaw {
 struct GuidingGain {
   /// Measured without guiding. Too low where light is so rare that the few samples miss it.
   double variance = 0;
+  double rays = 0;  ///< mean number of rays of a sample
   /// Predicted by the field, so that rare light counts as well. Each may exceed `variance`.
   double by_paths = 0;    ///< part that the cells of paths would remove
   double by_photons = 0;  ///< part of the caustics, which photon maps or cells of photons remove
@@ -32,7 +33,13 @@ struct GuidingGain {
   bool paths_pay() const;    ///< guiding by the cells of paths
   bool maps_pay() const;     ///< photon maps
   bool photons_pay() const;  ///< guiding by the cells of photons
+  /// Returns true if there is so much noise that photon maps of indirect light are worth a trial.
+  bool is_hard() const;
 };
+
+/// Returns true if photon maps of indirect light pay: variance times rays was `before` without and
+/// is `with` with them, and that is much less.
+bool gathering_pays(const GuidingGain& before, const GuidingGain& with);
 
 /// Measures the variance with 8 samples in each of 512 pixels. Estimates the parts from the cells
 /// of `field` at the first surface of each sample that can be guided: they hold the irradiance, and

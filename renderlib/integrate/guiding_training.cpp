@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "renderlib/integrate/casters.h"
-#include "renderlib/integrate/caustic_maps.h"
 #include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/find_portals.h"
 #include "renderlib/integrate/guiding_gain.h"
+#include "renderlib/integrate/make_photon_maps.h"
 #include "renderlib/integrate/training_paths.h"
 #include "renderlib/integrate/training_photons.h"
 
@@ -28,6 +28,9 @@ constexpr std::uint64_t kMinTrainingPixels = 1 << 15;
 constexpr std::uint64_t kMaxTrainingPixels = 1 << 18;
 /// The pilot, from which the gain of guiding is estimated, is trained like an image of this many.
 constexpr std::uint64_t kPilotPixels = 1 << 13;
+/// Number of photons (PhotonMapKey::photons) of the maps with indirect light that the pilot and the
+/// training use.
+constexpr std::uint64_t kPilotPhotons = 1 << 16;
 
 /// Runs the chunks of a round of `count` paths or photons, appends their records in order, and fits
 /// the field to all records. Returns false if stopped.
@@ -56,7 +59,7 @@ std::optional<TrainedGuiding> train(const Scene& scene, const GuidingKey& key, s
     trained.photons = 2 * pixels / kChunks * kChunks;
     const auto photons = [&](const TrainingChunk& chunk) {
       return training_photons(scene, *casters, key, chunk, trained.photons,
-                              options.caustics != nullptr);
+                              options.maps != nullptr && !options.maps->casters().empty());
     };
     if (!add_round(0, trained.photons, preparation, records, trained, photons)) {
       return std::nullopt;
@@ -92,62 +95,153 @@ std::optional<GuidingGain> pilot(const Scene& scene, const GuidingKey& key, cons
   return expected_gain(scene, key, trained->field, options, preparation);
 }
 
+/// Photon maps for the training, and what they are made of. Without sources there are none.
+struct Mapping {
+  std::shared_ptr<const PhotonSources> sources;
+  std::shared_ptr<const TracedMaps> maps;
+  std::optional<PhotonMaps> of_paths;  ///< holds the maps for all samples
+};
+
+/// Makes the maps of these sources with this number of photons; std::nullopt if stopped. Adds to
+/// `rays`.
+std::optional<Mapping> make_mapping(const Scene& scene, PhotonSources sources,
+                                    std::uint64_t photons, const Preparation& preparation,
+                                    std::uint64_t& rays) {
+  constexpr std::uint64_t kSeed = 0x5bd1e9a74c3f2d86;  // arbitrary, for the maps of the training
+  Mapping mapping;
+  mapping.sources = std::make_shared<const PhotonSources>(std::move(sources));
+  mapping.maps =
+      make_photon_maps(scene, *mapping.sources, {.seed = kSeed, .photons = photons}, preparation);
+  if (mapping.maps == nullptr) {
+    return std::nullopt;
+  }
+  rays += mapping.maps->rays;
+  mapping.of_paths.emplace(mapping.sources->casters).use_for_all(*mapping.maps);
+  return mapping;
+}
+
+/// The decisions about a scene: the light that comes from photon maps, and whether a field is
+/// trained. Each function returns false if it was stopped.
+class Decisions {
+ public:
+  Decisions(const Scene& scene, const GuidingKey& key, const Portals& portals,
+            const Preparation& preparation)
+      : scene_(scene), key_(key), portals_(portals), preparation_(preparation), casters_(scene) {
+    options_.max_depth = key.max_depth;
+    options_.portals = portals.empty() ? nullptr : &portals;
+  }
+
+  /// Measures the gain of maps and of a field, if it decides what is used.
+  bool measure() {
+    if (key_.only_if_it_pays) {
+      gain_ = pilot(scene_, key_, casters_, options_, preparation_, rays_);
+    }
+    return gain_ || !key_.only_if_it_pays;
+  }
+
+  /// Decides whether caustics come from maps. If so, measures the gain for the rest of the light.
+  bool decide_on_caustics() {
+    if ((gain_ && !gain_->maps_pay()) || !can_have_caustic_maps(scene_, casters_)) {
+      return true;
+    }
+    std::optional<Mapping> mapping =
+        make_mapping(scene_, {casters_, std::nullopt, portals_, key_.max_depth},
+                     photons_of_map(key_.width, key_.height), preparation_, rays_);
+    if (!mapping) {
+      return false;
+    }
+    if (!caustics_pay(*mapping->maps)) {
+      return true;
+    }
+    use(*std::move(mapping));
+    return measure();
+  }
+
+  /// Decides whether indirect light comes from maps, with the caustics as decided before.
+  bool decide_on_indirect_light() {
+    const Casters casters = mapping_.sources != nullptr ? casters_ : Casters::none(scene_);
+    if (gain_ && !gain_->is_hard()) {
+      return true;
+    }
+    std::optional<SurfaceSampler> surfaces = surfaces_of_indirect_light(scene_, casters);
+    if (!surfaces) {
+      return true;
+    }
+    std::optional<Mapping> mapping =
+        make_mapping(scene_, {casters, std::move(surfaces), portals_, key_.max_depth},
+                     kPilotPhotons, preparation_, rays_);
+    if (!mapping) {
+      return false;
+    }
+    const std::optional<GuidingGain> before = gain_;
+    Mapping without = mapping_;
+    use(*std::move(mapping));
+    if (!measure()) {
+      return false;
+    }
+    if (before && !gathering_pays(*before, *gain_)) {
+      gain_ = before;
+      use(std::move(without));
+    }
+    return true;
+  }
+
+  /// Trains the field if that pays; std::nullopt if stopped.
+  std::optional<TrainedGuiding> trained() const {
+    std::optional<TrainedGuiding> trained = TrainedGuiding();
+    const bool with_photons = !gain_ || gain_->photons_pay();
+    if (with_photons || gain_->paths_pay()) {
+      const std::uint64_t pixels = std::clamp(std::uint64_t{key_.width} * key_.height,
+                                              kMinTrainingPixels, kMaxTrainingPixels);
+      trained =
+          train(scene_, key_, pixels, with_photons ? &casters_ : nullptr, options_, preparation_);
+    }
+    if (trained) {
+      trained->rays += rays_;
+      trained->portals = portals_;
+      trained->sources = mapping_.sources;
+    }
+    return trained;
+  }
+
+ private:
+  /// Lets paths use these maps.
+  void use(Mapping mapping) {
+    mapping_ = std::move(mapping);
+    options_.maps = mapping_.of_paths ? &*mapping_.of_paths : nullptr;
+  }
+
+  const Scene& scene_;
+  const GuidingKey& key_;
+  const Portals& portals_;
+  const Preparation& preparation_;
+  Casters casters_;
+  PathOptions options_;
+  Mapping mapping_;
+  std::optional<GuidingGain> gain_;
+  std::uint64_t rays_ = 0;
+};
+
 }  // namespace
 
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
                                                     const Preparation& preparation,
-                                                    bool caustic_maps) {
-  const auto casters = std::make_shared<const Casters>(scene);
+                                                    bool photon_maps) {
   std::uint64_t rays = 0;
   const std::optional<Portals> portals = find_portals(scene, key, preparation, rays);
   if (!portals) {
     return nullptr;
   }
-  PathOptions options{.max_depth = key.max_depth,
-                      .portals = portals->empty() ? nullptr : &*portals};
-  std::optional<GuidingGain> gain;  // set if the gain decides what is used
-  if (key.only_if_it_pays) {
-    gain = pilot(scene, key, *casters, options, preparation, rays);
-    if (!gain) {
-      return nullptr;
-    }
+  Decisions decisions(scene, key, *portals, preparation);
+  if (!decisions.measure() ||
+      (photon_maps && !(decisions.decide_on_caustics() && decisions.decide_on_indirect_light()))) {
+    return nullptr;
   }
-  std::shared_ptr<const TracedMap> map;
-  std::optional<CausticMaps> caustics;
-  if (caustic_maps && (!gain || gain->maps_pay()) && can_have_caustic_maps(scene, *casters)) {
-    constexpr std::uint64_t kSeed = 0x5bd1e9a74c3f2d86;  // arbitrary, for the map of the training
-    map = make_caustic_map(scene, *casters,
-                           {.seed = kSeed, .photons = photons_of_map(key.width, key.height)},
-                           preparation);
-    if (map == nullptr) {
-      return nullptr;
-    }
-    rays += map->rays;
-    if (pays(*map)) {
-      caustics.emplace(*casters).use_for_all(map->map);
-    }
-  }
-  options.caustics = caustics ? &*caustics : nullptr;
-  if (gain && caustics) {  // the gain of a field for the light that is not in the maps
-    gain = pilot(scene, key, *casters, options, preparation, rays);
-    if (!gain) {
-      return nullptr;
-    }
-  }
-  std::optional<TrainedGuiding> trained = TrainedGuiding();
-  const bool with_photons = !gain || gain->photons_pay();
-  if (with_photons || gain->paths_pay()) {
-    const std::uint64_t pixels =
-        std::clamp(std::uint64_t{key.width} * key.height, kMinTrainingPixels, kMaxTrainingPixels);
-    trained =
-        train(scene, key, pixels, with_photons ? casters.get() : nullptr, options, preparation);
-    if (!trained) {
-      return nullptr;
-    }
+  std::optional<TrainedGuiding> trained = decisions.trained();
+  if (!trained) {
+    return nullptr;
   }
   trained->rays += rays;
-  trained->portals = *portals;
-  trained->casters = caustics ? casters : nullptr;
   return std::make_shared<const TrainedGuiding>(*std::move(trained));
 }
 

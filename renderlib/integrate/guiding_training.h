@@ -24,12 +24,12 @@ namespace bandsaw {
 /// which take at most 2 x 93 MB during the training.
 ///
 /// With key.only_if_it_pays, a small training decides first whether a field and photon maps pay; if
-/// not, the field is empty. With `caustic_maps` and where they pay, the paths of the training take
-/// caustics from a photon map (caustics.h), so the field does not learn them. Then
-/// TrainedGuiding::casters is set, and all paths that use the field MUST have photon maps too.
+/// not, the field is empty. With `photon_maps` and where they pay, the paths of the training take
+/// caustics (caustics.h) and indirect light (indirect_photons.h) from photon maps. Then
+/// TrainedGuiding::sources is set, and all paths that use the field MUST have photon maps too.
 /// Returns nullptr if it was stopped.
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
                                                     const Preparation& preparation,
-                                                    bool caustic_maps = false);
+                                                    bool photon_maps = false);
 
 }  // namespace bandsaw

@@ -88,7 +88,7 @@ struct CompetingStrategies {
 /// Returns true if photons find the light that emissive surfaces send to this caster, before which
 /// the path met `casters` casters since the last receiver of caustics (PathState::chain).
 bool is_left_to_photons(const PathContext& context, std::uint32_t casters) {
-  return context.options.caustics != nullptr && casters != kNoChain && casters < kMaxCausticChain;
+  return context.options.maps != nullptr && casters != kNoChain && casters < kMaxCausticChain;
 }
 
 /// Returns true if photons find the emission at `light`, which the path hit from a caster. Photons
@@ -284,12 +284,11 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
   return bsdf_at(material, scene.textures(), point, wo, outside_index);
 }
 
-/// Returns the light of caustics that a receiver of caustics scatters along the path. Beyond an
-/// earlier receiver they are looked up in every second sample of a pixel and count twice: they are
-/// a small part of the light there, and looking them up takes longer than the rest of the
-/// scattering.
-Rgb caustics_at(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
-                std::uint32_t depth, const PathState& path) {
+/// Returns the light of caustics that a receiver scatters along the path. Beyond an earlier
+/// receiver they are looked up in every second sample of a pixel and count twice: they are a small
+/// part of the light there, and looking them up takes longer than the rest of the scattering.
+Rgb caustics_at(const PathContext& context, const PhotonMap& map, const SurfacePoint& point,
+                const Bsdf& bsdf, std::uint32_t depth, const PathState& path) {
   constexpr std::uint64_t kOneOf = 2;
   std::uint64_t counts = 1;
   if (path.after_receiver) {
@@ -300,9 +299,27 @@ Rgb caustics_at(const PathContext& context, const SurfacePoint& point, const Bsd
     }
     counts = kOneOf;
   }
-  return caustic_radiance(context.options.caustics->of_sample(context.sample), point, bsdf,
-                          -path.ray.direction, context.scatterings_left(path, depth)) *
+  return photon_radiance(map, point, bsdf, -path.ray.direction,
+                         context.scatterings_left(path, depth)) *
          static_cast<float>(counts);
+}
+
+/// Adds the light of photon maps that a receiver scatters along the path. Returns true if that
+/// includes all indirect light, so that the path ends at the next receiver.
+bool add_photons(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
+                 std::uint32_t depth, PathState& path) {
+  const TracedMaps& maps = context.options.maps->of_sample(context.sample);
+  if (maps.caustics.size() > 0) {
+    path.radiance +=
+        path.throughput * caustics_at(context, maps.caustics, point, bsdf, depth, path);
+  }
+  if (!path.after_receiver || maps.indirect.size() == 0 || path.reach < maps.gather_distance) {
+    return false;
+  }
+  path.radiance +=
+      path.throughput * photon_radiance(maps.indirect, point, bsdf, -path.ray.direction,
+                                        context.scatterings_left(path, depth));
+  return true;
 }
 
 bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
@@ -316,11 +333,16 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   const bool both_sides = is_diffuse_behind(bsdf);
   // Local shading ends here; the sampled direction only collects the environment.
   const bool is_last = options.local && has_pdf(bsdf) && !is_metal(material);
-  const CausticRole role = options.caustics == nullptr
+  const CausticRole role = options.maps == nullptr
                                ? CausticRole::kOther
-                               : caustic_role(options.caustics->casters(), point.material, bsdf);
-  if (role == CausticRole::kReceiver) {
-    path.radiance += path.throughput * caustics_at(context, point, bsdf, depth, path);
+                               : caustic_role(options.maps->casters(), point.material, bsdf);
+  bool gathers = false;
+  if (options.maps != nullptr) {
+    if (role == CausticRole::kReceiver && path.ends_at_receiver) {
+      return false;
+    }
+    path.reach += length(point.position - path.ray.origin);
+    gathers = role == CausticRole::kReceiver && add_photons(context, point, bsdf, depth, path);
   }
 
   const Portals* const portals =
@@ -372,7 +394,11 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   path.chain = role == CausticRole::kReceiver && !next->delta           ? 0
                : role == CausticRole::kCaster && path.chain != kNoChain ? path.chain + 1
                                                                         : kNoChain;
-  path.after_receiver = path.after_receiver || (role == CausticRole::kReceiver && !next->delta);
+  if (role == CausticRole::kReceiver && !next->delta) {
+    path.after_receiver = true;
+    path.reach = 0;
+    path.ends_at_receiver = gathers;
+  }
   if (is_last && !next->delta) {
     if (scene.background().environment) {
       path.radiance +=

@@ -16,7 +16,7 @@
 
 namespace bandsaw {
 
-class CausticMaps;   // renderlib/integrate/caustics.h
+class PhotonMaps;    // renderlib/integrate/caustics.h
 class GuidingField;  // renderlib/guiding/guiding_field.h
 class Portals;       // renderlib/guiding/portals.h
 
@@ -44,9 +44,10 @@ struct PathOptions {
   /// If not null, directions at surfaces are sampled from this field as well as from the BSDF
   /// (integrate/guided_bsdf.h), which changes no expected value. MUST outlive the paths.
   const GuidingField* guiding = nullptr;
-  /// If not null, caustics come from these photon maps and not from paths (integrate/caustics.h),
+  /// If not null, caustics (integrate/caustics.h) and the indirect light beyond the first receiver
+  /// (integrate/indirect_photons.h) come from these photon maps where they are not empty,
   /// and `branches` MUST be 1. MUST outlive the paths.
-  const CausticMaps* caustics = nullptr;
+  const PhotonMaps* maps = nullptr;
   /// If not null, the background is also sampled through these portals at surfaces, which changes
   /// no expected value. MUST outlive the paths.
   const Portals* portals = nullptr;

@@ -37,7 +37,10 @@ struct PathState {
   /// casters since the last receiver; kNoChain if the path had another scattering since then or has
   /// met no receiver yet.
   std::uint32_t chain = kNoChain;
-  bool after_receiver = false;     ///< a receiver of caustics has scattered the path
+  bool after_receiver = false;  ///< a receiver of caustics has scattered the path
+  /// The light of the next receiver comes from a photon map of indirect light: the path ends there.
+  bool ends_at_receiver = false;
+  double reach = 0;                ///< length of the path since the last receiver that scattered it
   bool truncated = false;          ///< see PathCounts::truncated
   NestedDielectrics nesting = {};  ///< glasses that contain the path
 };

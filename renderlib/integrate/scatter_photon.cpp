@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderlib/base/check.h"
 #include "renderlib/material/bsdf.h"
 #include "renderlib/material/fresnel.h"
 #include "renderlib/material/shading_normal.h"
@@ -121,6 +120,15 @@ std::optional<PhotonScattering> scatter_specular(const Scene& scene, const Surfa
   return numbers[3] < 0.5 ? by_shading : by_geometric;
 }
 
+/// Returns the scattering into a delta direction at a surface with a smooth coat or at a pane. Such
+/// ways are the same in both directions, except for the cosines at the shading normal. (Where that
+/// sends light to the wrong side of the surface, a path would take another way; this is ignored.)
+PhotonScattering scatter_by_delta(const SurfacePoint& point, const Vec3& in,
+                                  const BsdfSample& next) {
+  const double cosines = dot(next.wi, point.geometric_normal) / dot(in, point.geometric_normal);
+  return {next.wi, next.weight * static_cast<float>(std::abs(cosines) / next.compression)};
+}
+
 /// Samples a direction from one of two BSDFs seen from `in`, with the pdf of both together. Both
 /// are needed where the two normals differ: a BSDF bends or replaces its shading normal by the
 /// direction from which it is seen, so one of them would not reach all directions of paths.
@@ -128,10 +136,16 @@ std::optional<PhotonScattering> scatter_by_both(const Scene& scene, const Surfac
                                                 const Bsdf& about_shading,
                                                 const Bsdf& about_geometric, const Vec3& in,
                                                 const Sample4& numbers) {
-  const Bsdf& chosen = numbers[3] < kGeometricPart ? about_geometric : about_shading;
-  const auto next = sample(chosen, numbers[0], numbers[1], numbers[2]);
-  if (!next) {
+  const bool geometric = numbers[3] < kGeometricPart;
+  const auto next =
+      sample(geometric ? about_geometric : about_shading, numbers[0], numbers[1], numbers[2]);
+  if (!next || (next->delta && geometric)) {
     return std::nullopt;
+  }
+  if (next->delta) {
+    PhotonScattering way = scatter_by_delta(point, in, *next);
+    way.factor = way.factor * static_cast<float>(1 / (1 - kGeometricPart));
+    return way;
   }
   const double pdf = kGeometricPart * evaluate(about_geometric, next->wi).pdf +
                      (1 - kGeometricPart) * evaluate(about_shading, next->wi).pdf;
@@ -181,7 +195,9 @@ std::optional<PhotonScattering> scatter_photon(const Scene& scene, const Surface
   if (!next) {
     return std::nullopt;
   }
-  BANDSAW_CHECK(!next->delta, "a caster with delta directions that is no mirror and no glass");
+  if (next->delta) {
+    return scatter_by_delta(point, in, *next);
+  }
   return path_value(scene, point, in, next->wi, next->pdf);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Scattering of a photon at a caster (casters.h), as the opposite of what a path does there.
+// Scattering of a photon at a surface, as the opposite of what a path does there.
 
 #include <optional>
 
@@ -17,7 +17,7 @@ struct PhotonScattering {
   Rgb factor;  ///< of its power
 };
 
-/// Samples the direction in which a photon leaves a caster at `point`. It comes from `in`, a unit
+/// Samples the direction in which a photon leaves a surface at `point`. It comes from `in`, a unit
 /// vector that points away from the surface. The power changes by the BSDF of the opposite way, in
 /// which paths travel: neither refraction nor shading normals are symmetric (Veach 1997, section
 /// 5.3). Returns std::nullopt if the photon is absorbed. The factor can be zero or not finite.

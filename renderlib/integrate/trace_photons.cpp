@@ -64,24 +64,6 @@ double receiving_part(const Scene& scene, const Casters& casters, MaterialId id,
              : 0;
 }
 
-/// Adds the photon, which arrived from direction `from`, to `out`. Paths look up photons only where
-/// the receiver is present, so the photon's power is that which arrives whether or not it is.
-void store(const Scene& scene, const Casters& casters, const SurfacePoint& hit, const Vec3& from,
-           std::uint32_t chain, const Photon& photon, TracedPhotons& out) {
-  Rgb power = photon.power;
-  if (scene.features().alpha || scene.features().mixtures) {
-    const MaterialId whole = material_of(scene.geometry(), hit.id);
-    power = power * static_cast<float>(1 / receiving_part(scene, casters, whole, hit, from));
-  }
-  out.photons.push_back({.position = float3(hit.position),
-                         .normal = float3(facing_normal(hit, from)),
-                         .chain = chain,
-                         .from = float3(from),
-                         .power = power});
-  out.power += luminance(power);
-  out.power_by_angle += luminance(power) * photon.angle;
-}
-
 /// Returns the photon that leaves a random point of a caster; std::nullopt if no emissive surface
 /// lights the point or the photon is absorbed. `photons`: their number, which share the power.
 std::optional<Photon> start(const Scene& scene, const Casters& casters, const Numbers& numbers,
@@ -133,7 +115,10 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
         caustic_role(casters, hit->material,
                      bsdf_at(scene.material(hit->material), scene.textures(), *hit, from));
     if (role == CausticRole::kReceiver) {
-      store(scene, casters, *hit, from, chain, photon, out);
+      out.photons.push_back(stored_photon(scene, casters, *hit, from, chain, photon.power));
+      const double power = luminance(out.photons.back().power);
+      out.power += power;
+      out.power_by_angle += power * photon.angle;
       return;
     }
     if (role != CausticRole::kCaster ||
@@ -147,7 +132,7 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
 /// opaque stands between it and the photon. Close means at most a quarter of the radius below the
 /// disk's plane: lower surfaces do not get the photon's light (density_at() in
 /// guiding/photon_map.h).
-bool is_on_surface(const Scene& scene, const CausticPhoton& photon, const Vec3& to) {
+bool is_on_surface(const Scene& scene, const StoredPhoton& photon, const Vec3& to) {
   const Vec3 lift = vec3(photon.normal) * (photon.radius / 8.0);
   const Vec3 start = vec3(photon.position) + lift;
   const double time = middle_of(shutter_of(scene.camera()));
@@ -158,6 +143,19 @@ bool is_on_surface(const Scene& scene, const CausticPhoton& photon, const Vec3& 
 }
 
 }  // namespace
+
+StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const SurfacePoint& hit,
+                           const Vec3& from, std::uint32_t chain, Rgb power) {
+  if (scene.features().alpha || scene.features().mixtures) {
+    const MaterialId whole = material_of(scene.geometry(), hit.id);
+    power = power * static_cast<float>(1 / receiving_part(scene, casters, whole, hit, from));
+  }
+  return {.position = float3(hit.position),
+          .normal = float3(facing_normal(hit, from)),
+          .chain = chain,
+          .from = float3(from),
+          .power = power};
+}
 
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk) {
   // The random numbers are those of a pixel outside of the largest image, whose sides have 2^16
@@ -174,7 +172,7 @@ TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const Ph
   return out;
 }
 
-double share_on_surface(const Scene& scene, const CausticPhoton& photon) {
+double share_on_surface(const Scene& scene, const StoredPhoton& photon) {
   constexpr int kAtRim = 4;                          // points at the rim of the disk
   constexpr int kAllOver = 16;                       // points all over the disk
   constexpr double kGoldenTurn = 0.381966011250105;  // the golden angle, as a part of a turn

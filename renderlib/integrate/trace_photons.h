@@ -16,7 +16,7 @@ namespace bandsaw {
 /// Some of the photons of a map: those with numbers in [first, last).
 struct PhotonChunk {
   std::uint64_t seed = 0;
-  std::uint32_t map = 0;      ///< number of the map (CausticMaps::number_of)
+  std::uint32_t map = 0;      ///< number of the map (PhotonMaps::number_of)
   std::uint64_t photons = 0;  ///< number of photons that are started for the whole map
   std::uint64_t first = 0;
   std::uint64_t last = 0;
@@ -24,9 +24,9 @@ struct PhotonChunk {
 
 /// The photons of a chunk.
 struct TracedPhotons {
-  std::vector<CausticPhoton> photons;  ///< those that arrived at a receiver, in order
-  std::uint64_t rays = 0;              ///< rays that were traced
-  double power = 0;                    ///< sum of the luminance of their power
+  std::vector<StoredPhoton> photons;  ///< those that arrived at a receiver, in order
+  std::uint64_t rays = 0;             ///< rays that were traced
+  double power = 0;                   ///< sum of the luminance of their power
   /// Sum of luminance times solid angle. The angle is that of the lamp as seen from the caster
   /// where the photon started, taken as 1 / the pdf of light sampling there.
   double power_by_angle = 0;
@@ -37,9 +37,15 @@ struct TracedPhotons {
 /// surface. `casters` MUST be complete (Casters::complete).
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk);
 
+/// Returns the photon of this power as a map holds it: it arrived at the receiver `hit` from
+/// direction `from` after `chain` scatterings. Paths look up photons only where the receiver is
+/// present, so the power is the one that arrives whether or not it is.
+StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const SurfacePoint& hit,
+                           const Vec3& from, std::uint32_t chain, Rgb power);
+
 /// Returns the share, in (0, 1], of the photon's disk that lies on surfaces. It is estimated by
 /// short rays, first at the rim and, if some miss, all over the disk. PhotonMap divides the power
 /// by it; otherwise a photon near an edge would lose the power that falls beyond the edge.
-double share_on_surface(const Scene& scene, const CausticPhoton& photon);
+double share_on_surface(const Scene& scene, const StoredPhoton& photon);
 
 }  // namespace bandsaw

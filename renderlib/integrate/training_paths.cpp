@@ -59,7 +59,7 @@ bool scatter_and_remember(const PathContext& context, const SurfacePoint& point,
   const Vec3 wo = -state.ray.direction;
   const GuidingCones cones = cones_at(context, point, bsdf, wo);
   const bool goes_on = scatter(context, point, bsdf, cones, depth, state);
-  if (!can_be_guided(bsdf) || (goes_on && state.previous.delta) ||
+  if (!can_be_guided(bsdf) || (goes_on && state.previous.delta) || state.ends_at_receiver ||
       path.vertices.size() == kMaxVertices) {
     return goes_on;
   }

@@ -19,7 +19,7 @@ float visibility(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
        hit = scene.accel().closest_after(ray, hit)) {
     const SurfacePoint point = surface_at(scene.geometry(), ray, hit);
     share *= 1 - opacity(scene.materials(), point.material, scene.textures(), point);
-    ++rays;
+    rays += share > 0 ? 1 : 0;
   }
   return static_cast<float>(share);
 }

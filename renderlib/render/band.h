@@ -88,7 +88,8 @@ struct Counters {
   static constexpr std::uint32_t kPathGuiding = 1;
   static constexpr std::uint32_t kPhotonMaps = 2;
   static constexpr std::uint32_t kPortals = 4;
-  static constexpr std::uint32_t kAllTechniques = 7;
+  static constexpr std::uint32_t kIndirectMaps = 8;
+  static constexpr std::uint32_t kAllTechniques = 15;
   /// Rays of the training of guiding and of its pilots. The same in all bands of an image, so add()
   /// does not sum it.
   std::uint64_t training_rays = 0;

@@ -30,8 +30,8 @@ std::vector<std::uint32_t> maps_of(const BandPart& part) {
     if (samples.samples() == 0) {
       return;
     }
-    const std::uint32_t last = CausticMaps::number_of(samples.last - 1);
-    for (std::uint32_t map = CausticMaps::number_of(samples.first); map <= last; ++map) {
+    const std::uint32_t last = PhotonMaps::number_of(samples.last - 1);
+    for (std::uint32_t map = PhotonMaps::number_of(samples.first); map <= last; ++map) {
       maps.push_back(map);
     }
   };
@@ -69,7 +69,7 @@ std::pair<BandPart, BandPart> halves_of(const BandPart& part, std::uint32_t widt
     Halves halves{all, {}};
     if (all.blocks() > 1) {
       halves = split(all);
-    } else if (single && CausticMaps::number_of(all.first) >= middle) {
+    } else if (single && PhotonMaps::number_of(all.first) >= middle) {
       halves = {{}, all};
     }
     left[2 * i] = static_cast<std::uint32_t>(halves.left.first);

@@ -19,7 +19,7 @@ struct BandPart {
   TileSamples tiles;
 };
 
-/// Returns the numbers of the maps that the part needs (CausticMaps::number_of), in ascending
+/// Returns the numbers of the maps that the part needs (PhotonMaps::number_of), in ascending
 /// order, each once.
 std::vector<std::uint32_t> maps_of(const BandPart& part);
 

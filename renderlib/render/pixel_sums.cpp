@@ -30,11 +30,12 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
       options_{.max_depth = settings.max_depth,
                .technique = technique_of(settings.integrator),
                .local = settings.integrator == Integrator::kDirect,
-               .branches = settings.integrator == Integrator::kDirect || uses.portals != nullptr
+               .branches = settings.integrator == Integrator::kDirect || uses.portals != nullptr ||
+                                   uses.maps != nullptr
                                ? 1
                                : branches_for(scene),
                .guiding = uses.guiding,
-               .caustics = uses.caustics,
+               .maps = uses.maps,
                .portals = uses.portals},
       camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height),
               scene.camera_at_close()),

@@ -8,9 +8,10 @@
 
 #include "renderlib/base/status_macros.h"
 #include "renderlib/guiding/guiding_cache.h"
-#include "renderlib/integrate/caustic_maps.h"
 #include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/guiding_training.h"
+#include "renderlib/integrate/make_photon_maps.h"
+#include "renderlib/integrate/photon_sources.h"
 #include "renderlib/integrate/preparation.h"
 #include "renderlib/render/band_parts.h"
 #include "renderlib/render/kernel_code.h"
@@ -94,14 +95,20 @@ struct Render {
   const TrainedGuiding* guiding;  ///< null: without guiding
 };
 
+/// Returns the flags (Counters::techniques) of the photon maps that are used.
+std::uint32_t maps_used(const TrainedGuiding& guiding) {
+  return (guiding.sources->casters.empty() ? 0 : Counters::kPhotonMaps) |
+         (guiding.sources->surfaces ? Counters::kIndirectMaps : 0);
+}
+
 absl::Status stopped() { return absl::CancelledError("the render was stopped"); }
 
 /// Renders a part with these photon maps, null if there are none.
 absl::StatusOr<BandPixels> render_part(const Render& render, const BandPart& part,
-                                       const CausticMaps* caustics, const RowsDone& progress) {
+                                       const PhotonMaps* maps, const RowsDone& progress) {
   const RenderSettings& settings = render.settings;
   const Band& band = part.band;
-  PathOptions uses{.caustics = caustics};
+  PathOptions uses{.maps = maps};
   if (render.guiding != nullptr) {
     uses.guiding = render.guiding->field.cells() > 0 ? &render.guiding->field : nullptr;
     uses.portals = render.guiding->portals.empty() ? nullptr : &render.guiding->portals;
@@ -114,7 +121,7 @@ absl::StatusOr<BandPixels> render_part(const Render& render, const BandPart& par
       .sums = std::vector<double>(std::size_t{band.rows.count()} * settings.width * 3),
       .counters = {.dropped_primitives = render.scene.dropped_primitives(),
                    .techniques = (uses.guiding != nullptr ? Counters::kPathGuiding : 0) |
-                                 (uses.caustics != nullptr ? Counters::kPhotonMaps : 0) |
+                                 (uses.maps != nullptr ? maps_used(*render.guiding) : 0) |
                                  (uses.portals != nullptr ? Counters::kPortals : 0),
                    .training_rays = render.guiding != nullptr ? render.guiding->rays : 0}};
   std::vector<Counters> counters(static_cast<std::size_t>(units.count()));
@@ -151,9 +158,14 @@ Preparation preparation_of(Pool& pool, const std::atomic<bool>& stop, const Rows
   return {pool, stop, progress ? [&progress] { progress(0); } : std::function<void()>()};
 }
 
+GuidingKey field_key(const RenderSettings& settings) {
+  return {settings.width, settings.height, settings.max_depth,
+          settings.integrator == Integrator::kPath};
+}
+
 /// Maximum number of photon maps that are in use at the same time for a band.
 constexpr std::size_t kMaxMaps = 8;
-static_assert(CausticMaps::kMinSamplesOfMap % kBlockSamples == 0, "a block has one photon map");
+static_assert(PhotonMaps::kMinSamplesOfMap % kBlockSamples == 0, "a block has one photon map");
 
 /// Renders a part with its photon maps: at once, or in halves if there are too many maps.
 absl::StatusOr<BandPixels> render_with_maps(const Render& render, const BandPart& part,
@@ -171,22 +183,23 @@ absl::StatusOr<BandPixels> render_with_maps(const Render& render, const BandPart
     pixels.counters.add(more.counters);
     return pixels;
   }
-  const Casters& casters = *render.guiding->casters;
+  const PhotonSources& sources = *render.guiding->sources;
   const RenderSettings& settings = render.settings;
-  CausticMaps caustics(casters);
-  std::vector<GuidingCache::Map> maps;
+  PhotonMaps maps(sources.casters);
+  std::vector<GuidingCache::Maps> kept;
   for (const std::uint32_t number : numbers) {
-    const PhotonMapKey key{settings.seed, number, photons_of_map(settings.width, settings.height)};
-    maps.push_back(render.scene.guiding().get_map(key, [&] {
-      return make_caustic_map(render.scene, casters, key,
+    const PhotonMapKey key{settings.seed, number, photons_of_map(settings.width, settings.height),
+                           field_key(settings)};
+    kept.push_back(render.scene.guiding().get_maps(key, [&] {
+      return make_photon_maps(render.scene, sources, key,
                               preparation_of(render.pool, render.stop, progress));
     }));
-    if (maps.back() == nullptr) {
+    if (kept.back() == nullptr) {
       return stopped();
     }
-    caustics.add(number, maps.back()->map);
+    maps.add(number, *kept.back());
   }
-  return render_part(render, part, &caustics, progress);
+  return render_part(render, part, &maps, progress);
 }
 
 }  // namespace
@@ -199,8 +212,7 @@ absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
   RETURN_IF_ERROR(validate(band, settings));
   std::shared_ptr<const TrainedGuiding> guiding;
   if (settings.integrator == Integrator::kPathGuided || settings.integrator == Integrator::kPath) {
-    const GuidingKey key{settings.width, settings.height, settings.max_depth,
-                         settings.integrator == Integrator::kPath};
+    const GuidingKey key = field_key(settings);
     guiding = scene.guiding().get(
         key, [&] { return train_guiding(scene, key, preparation_of(pool, stop, progress), true); });
     if (guiding == nullptr) {
@@ -209,7 +221,7 @@ absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
   }
   const Render render{scene, settings, pool, stop, guiding.get()};
   const BandPart whole{band, tiles.of(band.rows)};
-  return guiding != nullptr && guiding->casters != nullptr
+  return guiding != nullptr && guiding->sources != nullptr
              ? render_with_maps(render, whole, progress)
              : render_part(render, whole, nullptr, progress);
 }

@@ -24,8 +24,9 @@ enum class Integrator {
   kAmbientOcclusion = 5,
   kPathLights = 6,      ///< kPathPlain with light sampling alone, where a BSDF has a pdf
   kPathScattering = 7,  ///< kPathPlain with BSDF sampling alone
-  /// Path tracing with path guiding (integrate/guiding_training.h), and caustics from photon maps
-  /// where the lamps are small (integrate/caustics.h).
+  /// Path tracing with path guiding (integrate/guiding_training.h). Caustics of small lamps
+  /// (integrate/caustics.h) and indirect light (integrate/indirect_photons.h) come from photon
+  /// maps.
   kPathGuided = 8,
   kPathPlain = 9,  ///< path tracing without guiding and photon maps
 };

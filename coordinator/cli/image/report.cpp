@@ -70,6 +70,7 @@ JsonObject work_json(const JobView& job) {
       .whole("rays", job.counters.rays)
       .flag("path_guiding", (techniques & Counters::kPathGuiding) != 0)
       .flag("photon_maps", (techniques & Counters::kPhotonMaps) != 0)
+      .flag("indirect_photon_maps", (techniques & Counters::kIndirectMaps) != 0)
       .flag("portals", (techniques & Counters::kPortals) != 0)
       .whole("training_rays", job.counters.training_rays);
 }

@@ -17,11 +17,11 @@ namespace {
 constexpr Vec3 kAbove{0, 0, 1};
 
 /// For PhotonMap: the whole disk of each photon lies on the surface.
-double whole(const CausticPhoton&) { return 1; }
+double whole(const StoredPhoton&) { return 1; }
 
 /// Photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4.
-std::vector<CausticPhoton> on_floor(std::uint64_t count) {
-  std::vector<CausticPhoton> photons;
+std::vector<StoredPhoton> on_floor(std::uint64_t count) {
+  std::vector<StoredPhoton> photons;
   const PixelSampler sampler(1, 2, 3);
   for (std::uint64_t i = 0; i < count; ++i) {
     const Sample4 at = sampler.group(i, 0);
@@ -38,12 +38,12 @@ std::vector<CausticPhoton> on_floor(std::uint64_t count) {
 double irradiance(const PhotonMap& map, const Vec3& position, const Vec3& normal = kAbove) {
   double sum = 0;
   map.visit(position, normal,
-            [&](const CausticPhoton& photon, float density) { sum += photon.power.g * density; });
+            [&](const StoredPhoton& photon, float density) { sum += photon.power.g * density; });
   return sum;
 }
 
 TEST(PhotonMap, TheDensityOfAPhotonIntegratesToOne) {
-  const CausticPhoton photon{.position = {1, 2, 3}, .radius = 0.5f, .normal = float3(kAbove)};
+  const StoredPhoton photon{.position = {1, 2, 3}, .radius = 0.5f, .normal = float3(kAbove)};
   constexpr int kSteps = 400;
   double sum = 0;
   for (int i = 0; i < kSteps; ++i) {
@@ -67,7 +67,7 @@ TEST(PhotonMap, FindsThePhotonsThatAnExhaustiveSearchFinds) {
     const Sample4 at = sampler.group(i, 0);
     const Vec3 point{at[0], at[1], 0};
     double expected = 0;
-    for (const CausticPhoton& photon : map.photons()) {
+    for (const StoredPhoton& photon : map.photons()) {
       expected += photon.power.g * density_at(photon, float3(point), float3(kAbove));
     }
     EXPECT_NEAR(irradiance(map, point), expected, 1e-5 * expected);
@@ -81,7 +81,7 @@ struct Totals {
 };
 Totals totals_of(const PhotonMap& map, double from = 0, double to = 1) {
   Totals sum;
-  for (const CausticPhoton& photon : map.photons()) {
+  for (const StoredPhoton& photon : map.photons()) {
     if (photon.position[0] >= from && photon.position[0] < to) {
       sum.power += photon.power.g;
       sum.radius += double{photon.power.g} * photon.radius;
@@ -117,8 +117,8 @@ TEST(PhotonMap, EstimatesTheDensityAndAdaptsTheDisks) {
 }
 
 TEST(PhotonMap, KeepsAnEdgeOfLight) {
-  std::vector<CausticPhoton> photons = on_floor(100'000);
-  std::erase_if(photons, [](const CausticPhoton& photon) { return photon.position[0] > 0.25f; });
+  std::vector<StoredPhoton> photons = on_floor(100'000);
+  std::erase_if(photons, [](const StoredPhoton& photon) { return photon.position[0] > 0.25f; });
   Pool pool(1);
   const PhotonMap map(photons, 1, 0, pool, whole);
   const double lit = static_cast<double>(photons.size()) * 4;
@@ -136,7 +136,7 @@ TEST(PhotonMap, TheFactorScalesTheDisks) {
 TEST(PhotonMap, DividesByTheShareOnTheSurface) {
   Pool pool(3);
   const PhotonMap map(on_floor(3000), 1, 0, pool,
-                      [](const CausticPhoton& photon) { return photon.radius > 0 ? 0.25 : 1; });
+                      [](const StoredPhoton& photon) { return photon.radius > 0 ? 0.25 : 1; });
   EXPECT_NEAR(totals_of(map).power, 12'000, 1);
 }
 
@@ -156,8 +156,8 @@ TEST(PhotonMap, DependsNotOnThreads) {
 // at the same places in all maps. Here, twice as many photons lie on one half of the floor.
 TEST(PhotonMap, TheSeedDecidesWhereRadiiJump) {
   Pool pool(1);
-  std::vector<CausticPhoton> photons = on_floor(4000);
-  std::erase_if(photons, [](const CausticPhoton& photon) {
+  std::vector<StoredPhoton> photons = on_floor(4000);
+  std::erase_if(photons, [](const StoredPhoton& photon) {
     return photon.position[0] < 0.5f && photon.position[1] < 0.5f;
   });
   const auto radius_at = [&](std::uint64_t seed, const Float3& position) {
@@ -179,8 +179,8 @@ TEST(PhotonMap, TheSeedDecidesWhereRadiiJump) {
 TEST(PhotonMap, MayBeEmptyOrHaveAllPhotonsAtOnePoint) {
   EXPECT_EQ(irradiance(PhotonMap(), {}), 0);
   Pool pool(1);
-  std::vector<CausticPhoton> photons = on_floor(100);
-  for (CausticPhoton& photon : photons) {
+  std::vector<StoredPhoton> photons = on_floor(100);
+  for (StoredPhoton& photon : photons) {
     photon.position = {1, 1, 0};
   }
   const PhotonMap map(photons, 1, 0, pool, whole);

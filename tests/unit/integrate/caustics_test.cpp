@@ -13,9 +13,10 @@
 #include <cmath>
 #include <vector>
 
-#include "renderlib/integrate/caustic_maps.h"
 #include "renderlib/integrate/guiding_training.h"
+#include "renderlib/integrate/make_photon_maps.h"
 #include "renderlib/integrate/path.h"
+#include "renderlib/integrate/photon_sources.h"
 #include "renderlib/integrate/trace_photons.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -30,11 +31,11 @@ using test::SceneMaker;
 const std::atomic<bool> kGoOn = false;
 
 /// Makes the map of this number; the maps of an image have different photons.
-std::shared_ptr<const TracedMap> map_of(const Scene& scene, const Casters& casters,
-                                        std::uint32_t number, std::uint64_t photons,
-                                        int threads = 2) {
+std::shared_ptr<const TracedMaps> map_of(const Scene& scene, const Casters& casters,
+                                         std::uint32_t number, std::uint64_t photons,
+                                         int threads = 2) {
   Pool pool(threads);
-  return make_caustic_map(scene, casters, {.seed = 3, .number = number, .photons = photons},
+  return make_photon_maps(scene, {casters}, {.seed = 3, .number = number, .photons = photons},
                           {pool, kGoOn});
 }
 
@@ -52,10 +53,10 @@ void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expe
   std::vector<test::Moments> moments(expected.size());
   for (std::uint64_t seed = 0; seed < 48; ++seed) {
     const auto map =
-        make_caustic_map(scene, casters, {.seed = seed, .photons = 1 << 15}, {pool, kGoOn});
-    CausticMaps caustics(casters);
-    caustics.use_for_all(map->map);
-    const PathOptions options{.max_depth = 2, .caustics = &caustics};
+        make_photon_maps(scene, {casters}, {.seed = seed, .photons = 1 << 15}, {pool, kGoOn});
+    PhotonMaps caustics(casters);
+    caustics.use_for_all(*map);
+    const PathOptions options{.max_depth = 2, .maps = &caustics};
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const Ray ray{.origin = eye, .direction = normalize(expected[i].point - eye)};
       PathCounts counts;
@@ -167,7 +168,7 @@ TEST(Caustics, NoPowerIsLostAtEdges) {
   for (int i = 0; i < kSteps; ++i) {
     for (int j = 0; j < kSteps; ++j) {
       const Vec3 at{-2 + 4 * (i + 0.5) / kSteps, -2 + 4 * (j + 0.5) / kSteps, -2};
-      map->map.visit(at, {0, 0, 1}, [&](const CausticPhoton& photon, float density) {
+      map->caustics.visit(at, {0, 0, 1}, [&](const StoredPhoton& photon, float density) {
         sum += photon.power.g * density * 16 / (kSteps * kSteps);
       });
     }
@@ -178,7 +179,7 @@ TEST(Caustics, NoPowerIsLostAtEdges) {
   EXPECT_NEAR(sum, expected, 0.05 * expected);
   double raw = 0;
   double lost = 0;
-  for (const CausticPhoton& photon : map->map.photons()) {
+  for (const StoredPhoton& photon : map->caustics.photons()) {
     const bool on_floor = photon.normal[2] > 0.5f;
     raw += on_floor ? photon.power.g * share_on_surface(*scene, photon) : 0;
     lost += on_floor ? photon.power.g * (1 - share_on_surface(*scene, photon)) : 0;
@@ -194,7 +195,7 @@ TEST(Caustics, TheShareOnTheSurfaceKnowsEdges) {
   maker.quad({0, 0, 0}, {0, 4, 0}, {0, 0, 4}, wall);  // a wall at x = 0; the other edges are free
   maker.camera({3, 3, 3}, {0, 0, 0}, 60);
   const auto scene = maker.build();
-  CausticPhoton photon{.position = {2, 2, 0}, .radius = 0.5f, .normal = {0, 0, 1}};
+  StoredPhoton photon{.position = {2, 2, 0}, .radius = 0.5f, .normal = {0, 0, 1}};
   EXPECT_EQ(share_on_surface(*scene, photon), 1);
   photon.position = {0.001f, 2, 0};
   EXPECT_NEAR(share_on_surface(*scene, photon), 0.5, 0.1);
@@ -211,7 +212,7 @@ TEST(Caustics, TheShareOnTheSurfaceIgnoresTransparentSurfaces) {
   hole.alpha = {AlphaMode::kMask, {TextureId{0}, 0}};
   maker.quad({1.9, 0, -1}, {0, 4, 0}, {0, 0, 4}, maker.material(hole));
   maker.camera({3, 3, 3}, {0, 0, 0}, 60);
-  const CausticPhoton photon{.position = {2, 2, 0}, .radius = 0.5f, .normal = {0, 0, 1}};
+  const StoredPhoton photon{.position = {2, 2, 0}, .radius = 0.5f, .normal = {0, 0, 1}};
   EXPECT_EQ(share_on_surface(*maker.build(), photon), 1);
 }
 
@@ -220,8 +221,8 @@ TEST(Caustics, TheShareOnTheSurfaceIgnoresTransparentSurfaces) {
 TEST(Caustics, PathsLeaveOutJustTheLightOfThePhotons) {
   const auto scene = lamp_in_glass(1.5, 0.2).build();
   const Casters casters(*scene);
-  const PhotonMap empty;
-  CausticMaps caustics(casters);
+  const TracedMaps empty;
+  PhotonMaps caustics(casters);
   caustics.use_for_all(empty);
   const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{1.2, 1.0, -1.5})};
   const Ray to_lamp{.origin = {0, 0, 1.9}, .direction = {0, 0, -1}};
@@ -229,12 +230,12 @@ TEST(Caustics, PathsLeaveOutJustTheLightOfThePhotons) {
   double plain = 0;
   for (std::uint32_t i = 0; i < 5000; ++i) {
     const PixelSampler sampler(5, i, 0);
-    const PathOptions options{.max_depth = 12, .caustics = &caustics};
+    const PathOptions options{.max_depth = 12, .maps = &caustics};
     ASSERT_EQ(path_radiance(*scene, ray, sampler, 0, options, counts), Rgb{});
     plain += path_radiance(*scene, ray, sampler, 0, {.max_depth = 12}, counts).g;
     // The camera sees the lamp itself as before.
     ASSERT_EQ(
-        path_radiance(*scene, to_lamp, sampler, 0, {.max_depth = 2, .caustics = &caustics}, counts),
+        path_radiance(*scene, to_lamp, sampler, 0, {.max_depth = 2, .maps = &caustics}, counts),
         path_radiance(*scene, to_lamp, sampler, 0, {.max_depth = 2}, counts));
   }
   EXPECT_GT(plain, 0);
@@ -242,12 +243,12 @@ TEST(Caustics, PathsLeaveOutJustTheLightOfThePhotons) {
 
 // Maps follow each other, each takes an aligned range of a power of two of samples, and their
 // number grows with the root of the number of samples.
-TEST(CausticMaps, TakeAlignedRangesOfSamples) {
-  constexpr std::uint64_t kStep = CausticMaps::kMinSamplesOfMap;
+TEST(PhotonMaps, TakeAlignedRangesOfSamples) {
+  constexpr std::uint64_t kStep = PhotonMaps::kMinSamplesOfMap;
   std::uint64_t first = 0;
   for (std::uint64_t sample = 1; sample <= 1 << 16; ++sample) {
-    const std::uint32_t before = CausticMaps::number_of(sample - 1);
-    const std::uint32_t number = CausticMaps::number_of(sample);
+    const std::uint32_t before = PhotonMaps::number_of(sample - 1);
+    const std::uint32_t number = PhotonMaps::number_of(sample);
     if (number == before) {
       continue;
     }
@@ -258,10 +259,10 @@ TEST(CausticMaps, TakeAlignedRangesOfSamples) {
     ASSERT_EQ(first % length, 0u) << first;
     first = sample;
   }
-  EXPECT_EQ(CausticMaps::number_of(4 * kStep - 1), 3u);
+  EXPECT_EQ(PhotonMaps::number_of(4 * kStep - 1), 3u);
   for (const std::uint64_t samples : {64, 256, 1024, 4096, 16384, 65536}) {
     const double root = std::sqrt(static_cast<double>(samples / kStep));
-    EXPECT_EQ(CausticMaps::number_of(samples), 3 * root - 2) << samples;
+    EXPECT_EQ(PhotonMaps::number_of(samples), 3 * root - 2) << samples;
   }
 }
 
@@ -276,9 +277,9 @@ void expect_same_mean(const Scene& scene, const Ray& ray, std::uint32_t max_dept
   PathCounts counts;
   for (std::uint32_t number = 0; number < 32; ++number) {
     const auto map = map_of(scene, casters, number, 1 << 14);
-    CausticMaps caustics(casters);
-    caustics.use_for_all(map->map);
-    const PathOptions mapped{.max_depth = max_depth, .caustics = &caustics};
+    PhotonMaps caustics(casters);
+    caustics.use_for_all(*map);
+    const PathOptions mapped{.max_depth = max_depth, .maps = &caustics};
     const PathOptions guided{.max_depth = max_depth, .guiding = &guiding->field};
     test::Moments of_map;
     for (std::uint32_t i = 0; i < 1000; ++i) {
@@ -332,11 +333,11 @@ TEST(Caustics, MapsDependNeitherOnThreadsNorOnChunks) {
   const Casters casters(*scene);
   const auto one = map_of(*scene, casters, 2, 1 << 12, 1);
   const auto three = map_of(*scene, casters, 2, 1 << 12, 3);
-  ASSERT_EQ(one->map.size(), three->map.size());
-  ASSERT_GT(one->map.size(), 100u);
-  for (std::size_t i = 0; i < one->map.size(); ++i) {
-    const CausticPhoton& a = one->map.photons()[i];
-    const CausticPhoton& b = three->map.photons()[i];
+  ASSERT_EQ(one->caustics.size(), three->caustics.size());
+  ASSERT_GT(one->caustics.size(), 100u);
+  for (std::size_t i = 0; i < one->caustics.size(); ++i) {
+    const StoredPhoton& a = one->caustics.photons()[i];
+    const StoredPhoton& b = three->caustics.photons()[i];
     ASSERT_TRUE(a.position == b.position && a.radius == b.radius && a.power == b.power);
   }
   const auto trace = [&](std::uint64_t first, std::uint64_t last) {
@@ -346,7 +347,7 @@ TEST(Caustics, MapsDependNeitherOnThreadsNorOnChunks) {
   };
   const auto whole = trace(0, 1000);
   auto parts = trace(0, 333);
-  for (const CausticPhoton& photon : trace(333, 1000)) {
+  for (const StoredPhoton& photon : trace(333, 1000)) {
     parts.push_back(photon);
   }
   ASSERT_EQ(whole.size(), parts.size());
@@ -368,16 +369,18 @@ TEST(Caustics, MapsOfOtherSeedsAndNumbersDiffer) {
   EXPECT_NE(first(1, 0), first(1, 1));
 }
 
-// train_guiding() returns casters if its pilot, a few paths, shows that photon maps pay.
+// train_guiding() lets caustics come from photon maps if its pilot, a few paths, shows that this
+// pays.
 TEST(Caustics, PayForSmallLampsOnly) {
   Pool pool(1);
-  const auto casters_of = [&](const Scene& scene) {
-    return train_guiding(scene, {16, 16, 8}, {pool, kGoOn}, true)->casters;
+  const auto come_from_maps = [&](const Scene& scene) {
+    const auto trained = train_guiding(scene, {16, 16, 8}, {pool, kGoOn}, true);
+    return trained->sources != nullptr && !trained->sources->casters.empty();
   };
-  EXPECT_NE(casters_of(*lamp_in_glass(1.5, 0.05).build()), nullptr);
-  EXPECT_EQ(casters_of(*lamp_in_glass(1.5, 0.4).build()), nullptr);
-  EXPECT_EQ(casters_of(*test::cornell_box().build()), nullptr);
-  EXPECT_EQ(train_guiding(*lamp_in_glass(1.5, 0.05).build(), {16, 16, 8}, {pool, kGoOn})->casters,
+  EXPECT_TRUE(come_from_maps(*lamp_in_glass(1.5, 0.05).build()));
+  EXPECT_FALSE(come_from_maps(*lamp_in_glass(1.5, 0.4).build()));
+  EXPECT_FALSE(come_from_maps(*test::cornell_box().build()));
+  EXPECT_EQ(train_guiding(*lamp_in_glass(1.5, 0.05).build(), {16, 16, 8}, {pool, kGoOn})->sources,
             nullptr);
 }
 

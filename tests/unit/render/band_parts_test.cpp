@@ -1,5 +1,5 @@
 // Division of a band (a range of samples by a range of rows) into parts that need one photon map
-// each. A map is made for a range of samples (CausticMaps::number_of): the first four maps have two
+// each. A map is made for a range of samples (PhotonMaps::number_of): the first four maps have two
 // blocks of samples each, later ones more.
 
 #include "renderlib/render/band_parts.h"
@@ -13,7 +13,7 @@ namespace {
 
 using Maps = std::vector<std::uint32_t>;
 /// Number of samples of each of the first four maps.
-constexpr std::uint64_t kOfMap = CausticMaps::kMinSamplesOfMap;
+constexpr std::uint64_t kOfMap = PhotonMaps::kMinSamplesOfMap;
 static_assert(kOfMap == 2 * kBlockSamples);
 
 TEST(BandParts, AWholeBandNeedsTheMapsOfItsNode) {

@@ -128,6 +128,7 @@ TEST(Band, CountersAddUpExceptThoseOfTheScene) {
   sum.add({.techniques = Counters::kPathGuiding, .training_rays = 5});
   sum.add({.techniques = Counters::kPhotonMaps, .training_rays = 5});
   sum.add({.techniques = Counters::kPortals, .training_rays = 5});
+  sum.add({.techniques = Counters::kIndirectMaps, .training_rays = 5});
   EXPECT_EQ(sum.techniques, Counters::kAllTechniques);
   EXPECT_EQ(sum.training_rays, 5u);
 }

@@ -8,6 +8,7 @@
 #include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/integrate/casters.h"
 #include "renderlib/integrate/guiding_training.h"
+#include "renderlib/integrate/photon_sources.h"
 #include "renderlib/render/render_band.h"
 #include "tests/support/scenes.h"
 
@@ -43,7 +44,9 @@ BandPixels render(const Scene& scene, const Band& band, int threads,
 TEST(CausticBand, HasPhotonMaps) {
   Pool pool(2);
   for (const bool closed : {true, false}) {
-    EXPECT_NE(train_guiding(*scene(closed), {21, 18, 6}, {pool, kGoOn}, true)->casters, nullptr);
+    const auto trained = train_guiding(*scene(closed), {21, 18, 6}, {pool, kGoOn}, true);
+    EXPECT_FALSE(trained->sources->casters.empty());
+    EXPECT_TRUE(trained->sources->surfaces);
   }
 }
 

@@ -1,0 +1,157 @@
+#include "renderlib/integrate/indirect_photons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "renderlib/integrate/intersect_visible.h"
+#include "renderlib/integrate/path_steps.h"
+#include "renderlib/integrate/scatter_photon.h"
+#include "renderlib/material/opacity.h"
+#include "renderlib/math/constants.h"
+#include "renderlib/sampling/basis.h"
+#include "renderlib/sampling/warp.h"
+
+namespace bandsaw {
+namespace {
+
+/// The random numbers of origins and of photons are those of pixels outside of the largest image,
+/// whose sides have 2^16 pixels; those of caustics use pixel 2^24.
+constexpr std::uint32_t kBeyondImages = 1u << 24;
+
+PixelSampler sampler_of_origins(const PhotonChunk& chunk) {
+  return {chunk.seed, kBeyondImages + 1, kBeyondImages + chunk.map};
+}
+PixelSampler sampler_of_photons(const PhotonChunk& chunk) {
+  return {chunk.seed, kBeyondImages + 2, kBeyondImages + chunk.map};
+}
+
+/// A random point of a receiver, and a direction.
+struct Place {
+  SurfacePoint point;
+  Vec3 normal;     ///< geometric normal of one side, each with probability 1/2
+  Vec3 direction;  ///< unit, on that side; its pdf is that of the cosine
+  double pdf = 0;  ///< pdf of the point by area, > 0
+};
+
+/// Returns a direction on the side of the normal, by the cosine; std::nullopt if it grazes.
+std::optional<Vec3> direction_from(const Vec3& normal, double u, double v) {
+  const Vec3 direction =
+      normalize(orthonormal_basis(normal).to_world(sample_cosine_hemisphere(u, v)));
+  return dot(direction, normal) > 0 ? std::optional(direction) : std::nullopt;
+}
+
+/// Returns the place of this number; std::nullopt if its primitive has no area there.
+std::optional<Place> place_of(const Scene& scene, const PhotonSources& sources,
+                              const PixelSampler& sampler, std::uint64_t number) {
+  const Sample4 where = sampler.group(number, kGroupCamera);
+  const Sample4 more = sampler.group(number, kGroupTime);
+  const double time = middle_of(shutter_of(scene.camera()));
+  std::optional<SurfaceSample> at =
+      sources.surfaces->sample(scene, where[0] + more[3] * 0x1p-32, where[1], where[2], time);
+  if (!at) {
+    return std::nullopt;
+  }
+  at->point.time = time;
+  add_directions(scene, at->point);
+  const Vec3 normal = where[3] < 0.5 ? at->point.geometric_normal : -at->point.geometric_normal;
+  const std::optional<Vec3> direction = direction_from(normal, more[0], more[1]);
+  return direction ? std::optional(Place{at->point, normal, *direction, at->pdf}) : std::nullopt;
+}
+
+/// Follows the photon, which has left an origin, and adds it to `out` at each receiver.
+void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler& sampler,
+            std::uint64_t number, Ray ray, Rgb power, TracedPhotons& out) {
+  NestedDielectrics nesting;
+  for (std::uint32_t chain = 1; chain < sources.max_depth; ++chain) {
+    const std::optional<SurfacePoint> hit =
+        intersect_visible(scene, ray, sampler, number, chain, nesting, out.rays);
+    if (!hit || std::holds_alternative<Emissive>(scene.material(hit->material).kind)) {
+      return;
+    }
+    const Vec3 from = -ray.direction;
+    const Bsdf bsdf = bsdf_at(scene.material(hit->material), scene.textures(), *hit, from);
+    if (caustic_role(sources.casters, hit->material, bsdf) == CausticRole::kReceiver) {
+      out.photons.push_back(stored_photon(scene, sources.casters, *hit, from, chain, power));
+    }
+    const std::optional<PhotonScattering> next =
+        scatter_photon(scene, *hit, from, sampler.group(number, group_bsdf(chain)));
+    if (!next) {
+      return;
+    }
+    // Russian roulette: what is absorbed ends photons, and the others keep their power.
+    const Rgb scattered = power * next->factor;
+    const double survival = std::min(1.0, double{max_component(scattered)} / max_component(power));
+    if (!(sampler.group(number, group_light(chain))[0] < survival) || !is_finite(scattered)) {
+      return;
+    }
+    power = scattered * static_cast<float>(1 / survival);
+    ray = spawn_ray(*hit, next->out);
+  }
+}
+
+}  // namespace
+
+PhotonOrigins find_origins(const Scene& scene, const PhotonSources& sources, const PhotonMaps& maps,
+                           const PhotonChunk& chunk) {
+  const PixelSampler sampler = sampler_of_origins(chunk);
+  const PathOptions options{.max_depth = sources.max_depth,
+                            .maps = &maps,
+                            .portals = sources.portals.empty() ? nullptr : &sources.portals};
+  PhotonOrigins out;
+  for (std::uint64_t number = chunk.first; number < chunk.last; ++number) {
+    const std::optional<Place> place = place_of(scene, sources, sampler, number);
+    if (!place) {
+      continue;
+    }
+    const SurfacePoint& point = place->point;
+    const PathContext context{scene, sampler, number, options, out.rays};
+    PathState path({.origin = point.position + place->direction,
+                    .direction = -place->direction,
+                    .time = point.time});
+    const std::optional<Bsdf> bsdf = make_bsdf(context, point, 0, path);
+    if (!bsdf || caustic_role(sources.casters, point.material, *bsdf) != CausticRole::kReceiver) {
+      continue;
+    }
+    if (scatter(context, point, *bsdf, {}, 0, path)) {
+      path.ends_at_receiver = true;
+      trace_path(context, 1, path);
+    }
+    // Radiance times cosine over its pdf is pi times radiance. Factor 2, because one of the two
+    // sides was chosen.
+    const double weight = 2 * kPi / (place->pdf * static_cast<double>(chunk.photons)) *
+                          opacity(scene.material(point.material), scene.textures(), point);
+    const Rgb power = path.radiance * static_cast<float>(weight);
+    if (luminance(power) > 0 && is_finite(power)) {
+      out.items.push_back({number, power, std::holds_alternative<DiffuseBsdf>(*bsdf)});
+    }
+  }
+  return out;
+}
+
+TracedPhotons trace_indirect_photons(const Scene& scene, const PhotonSources& sources,
+                                     absl::Span<const PhotonOrigin> origins,
+                                     absl::Span<const double> luminance_up_to,
+                                     const PhotonChunk& chunk) {
+  const PixelSampler of_origins = sampler_of_origins(chunk);
+  const PixelSampler sampler = sampler_of_photons(chunk);
+  const double each = luminance_up_to.back() / static_cast<double>(chunk.photons);
+  const double shift = sampler.group(0, kGroupTime)[0];
+  TracedPhotons out;
+  for (std::uint64_t number = chunk.first; number < chunk.last; ++number) {
+    const double wanted = (static_cast<double>(number) + shift) * each;
+    const auto found = std::upper_bound(luminance_up_to.begin(), luminance_up_to.end() - 1, wanted);
+    const PhotonOrigin& origin = origins[static_cast<std::size_t>(found - luminance_up_to.begin())];
+    const std::optional<Place> place = place_of(scene, sources, of_origins, origin.number);
+    const Sample4 toward = sampler.group(number, kGroupCamera);
+    const std::optional<Vec3> direction =
+        origin.diffuse ? direction_from(place->normal, toward[0], toward[1]) : place->direction;
+    if (direction) {
+      follow(scene, sources, sampler, number, spawn_ray(place->point, *direction),
+             origin.power * static_cast<float>(each / luminance(origin.power)), out);
+    }
+  }
+  return out;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,60 @@
+#pragma once
+
+// Photons of indirect light, for final gathering (Jensen 1996, "Global Illumination Using Photon
+// Maps", section 4): where a path from the camera has left a receiver (caustics.h) and arrives at
+// another one, the light that receivers scattered to that point is estimated from photons, and the
+// path ends at the next receiver that it meets.
+//
+// All light that a receiver scatters is thus divided into two parts. The one that arrives from
+// lamps without meeting another receiver, directly or over mirrors, glass and other surfaces, is
+// found by paths (and its caustics by their own photon map). The one that arrives from other
+// receivers is that of the photons.
+//
+// A photon starts at a random point of a receiver, in a random direction. Its power is the radiance
+// that the point scatters in that direction out of the first part, and a path measures it that is
+// traced as if the camera were there. So lamps, environments, portals and caustics light the
+// starting points exactly as they light the paths of the image. From there on the photon is
+// scattered as paths are, and it is stored at every receiver that it meets.
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/types/span.h"
+#include "renderlib/integrate/caustics.h"
+#include "renderlib/integrate/photon_sources.h"
+#include "renderlib/integrate/trace_photons.h"
+
+namespace bandsaw {
+
+/// A point and a direction in which photons start.
+struct PhotonOrigin {
+  std::uint64_t number = 0;  ///< determines the point and the direction
+  Rgb power;
+  /// True if the point scatters the same radiance in all directions, so that each photon that
+  /// starts there can have a direction of its own.
+  bool diffuse = false;
+};
+
+/// The origins of a chunk that have power, in order.
+struct PhotonOrigins {
+  std::vector<PhotonOrigin> items;
+  std::uint64_t rays = 0;  ///< rays that were traced
+};
+
+/// Finds origins of photons; here `chunk.photons` is the number of points that are tried, and
+/// [first, last) are numbers of points. Each origin is a pure function of the scene, the sources,
+/// the seed, the map and its number. `sources.surfaces` MUST be set and not empty; `maps` has the
+/// photon map of caustics that is used for all samples.
+PhotonOrigins find_origins(const Scene& scene, const PhotonSources& sources, const PhotonMaps& maps,
+                           const PhotonChunk& chunk);
+
+/// Traces photons from the origins, which are chosen in proportion to the luminance of their power
+/// and evenly (systematic sampling), so that all photons of a map start with the same luminance.
+/// `luminance_up_to`: for each origin, the sum of the luminances up to it; not empty. Sets only
+/// `photons` and `rays` of the result.
+TracedPhotons trace_indirect_photons(const Scene& scene, const PhotonSources& sources,
+                                     absl::Span<const PhotonOrigin> origins,
+                                     absl::Span<const double> luminance_up_to,
+                                     const PhotonChunk& chunk);
+
+}  // namespace bandsaw

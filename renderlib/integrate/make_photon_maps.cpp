@@ -1,0 +1,229 @@
+// make_photon_maps() traces the photons in chunks, on all threads, and builds the maps from them.
+// The other functions exclude scenes in which photons and paths would not find the same light.
+
+#include "renderlib/integrate/make_photon_maps.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "renderlib/base/split_mix.h"
+#include "renderlib/integrate/caustics.h"
+#include "renderlib/integrate/indirect_photons.h"
+#include "renderlib/integrate/trace_photons.h"
+#include "renderlib/material/interiors.h"
+#include "renderlib/material/opacity.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+/// Number of parts in which photons are traced. It is fixed, so that the sums over the parts have
+/// the same bits with any number of threads.
+constexpr std::uint32_t kChunks = 64;
+
+/// Largest mean solid angle of the lamps as seen from the casters, in steradians, for which photon
+/// maps pay. Paths hit larger lamps often enough, so that their caustics have little noise anyway.
+constexpr double kLargestLamp = 0.5;
+
+/// Number of points that are tried for one indirect photon.
+constexpr std::uint64_t kOriginsPerPhoton = 4;
+
+/// A path takes indirect light from the map if it has come this many times the radius of a disk:
+/// the mean radius, weighted by power. So the disks of the map are small as seen from the surface
+/// that gathers the light.
+constexpr double kGatherRadii = 3;
+
+/// Minimum number of points at which indirect photons may start, so that disks are small even if
+/// the image is.
+constexpr std::uint64_t kMinOrigins = 1 << 17;
+
+/// The disk of an indirect photon is halved up to this many times where it reaches an edge or a
+/// wall. Otherwise it would shine into a dark room behind a thin wall.
+constexpr int kMaxHalvings = 3;
+
+/// Maximum number of primitives at which indirect photons start.
+constexpr std::size_t kMaxPrimitives = std::size_t{1} << 21;
+
+/// Returns chunk `i` of a map.
+PhotonChunk chunk_of(const PhotonMapKey& key, std::uint64_t photons, std::uint64_t i) {
+  return {.seed = key.seed,
+          .map = key.number,
+          .photons = photons,
+          .first = photons * i / kChunks,
+          .last = photons * (i + 1) / kChunks};
+}
+
+/// Builds the map of the photons. Each photon spreads its power over a disk. Knaus and Zwicker
+/// multiply the area of the disks of map n = 0, 1, … by about (n + 1)^(alpha - 1), here with alpha
+/// = 2/3. So the factor of the area is (n + 1)^(-1/3), and that of the radius is its root, (n +
+/// 1)^(-1/6). `kind` makes the division of space differ between
+/// maps of one number; `max_halvings`: see kMaxHalvings.
+PhotonMap map_of(const Scene& scene, std::vector<StoredPhoton> photons, const PhotonMapKey& key,
+                 std::uint64_t kind, int max_halvings, const Preparation& preparation) {
+  const double factor = pow(key.number + 1.0, -1.0 / 6);
+  return {std::move(photons), factor, split_mix(key.seed ^ key.number ^ kind << 32),
+          preparation.pool, [&](StoredPhoton& photon) {
+            double share = preparation.stopped() ? 1 : share_on_surface(scene, photon);
+            for (int i = 0; i < max_halvings && share < 1; ++i) {
+              photon.radius /= 2;
+              share = share_on_surface(scene, photon);
+            }
+            return share;
+          }};
+}
+
+/// Moves the photons of the chunks, in order, into one list, and adds their rays to the maps.
+std::vector<StoredPhoton> joined(std::vector<TracedPhotons> chunks, TracedMaps& maps) {
+  std::vector<StoredPhoton> photons;
+  for (TracedPhotons& chunk : chunks) {
+    photons.insert(photons.end(), chunk.photons.begin(), chunk.photons.end());
+    chunk.photons = {};
+    maps.rays += chunk.rays;
+  }
+  return photons;
+}
+
+/// Adds the map of caustics. Returns false if stopped.
+bool add_caustics(const Scene& scene, const PhotonSources& sources, const PhotonMapKey& key,
+                  const Preparation& preparation, TracedMaps& maps) {
+  std::vector<TracedPhotons> chunks(kChunks);
+  if (!preparation.run(kChunks, [&](std::uint64_t i) {
+        chunks[i] = trace_photons(scene, sources.casters, chunk_of(key, key.photons, i));
+      })) {
+    return false;
+  }
+  double power_by_angle = 0;
+  double power = 0;
+  for (const TracedPhotons& chunk : chunks) {
+    power += chunk.power;
+    power_by_angle += chunk.power_by_angle;
+  }
+  maps.lamp_angle = power > 0 ? power_by_angle / power : 0;
+  maps.caustics = map_of(scene, joined(std::move(chunks), maps), key, 0, 0, preparation);
+  preparation.advance();
+  return !preparation.stopped();
+}
+
+/// Adds the map of indirect light, for which that of caustics MUST be there. Returns false if
+/// stopped.
+bool add_indirect(const Scene& scene, const PhotonSources& sources, const PhotonMapKey& key,
+                  const Preparation& preparation, TracedMaps& maps) {
+  PhotonMaps caustics(sources.casters);
+  caustics.use_for_all(maps);
+  const std::uint64_t points = std::max(key.photons, kMinOrigins);
+  std::vector<PhotonOrigins> found(kChunks);
+  if (!preparation.run(kChunks, [&](std::uint64_t i) {
+        found[i] = find_origins(scene, sources, caustics, chunk_of(key, points, i));
+      })) {
+    return false;
+  }
+  std::vector<PhotonOrigin> origins;
+  std::vector<double> luminance_up_to;
+  double sum = 0;
+  for (const PhotonOrigins& chunk : found) {
+    maps.rays += chunk.rays;
+    for (const PhotonOrigin& origin : chunk.items) {
+      origins.push_back(origin);
+      sum += luminance(origin.power);
+      luminance_up_to.push_back(sum);
+    }
+  }
+  std::vector<TracedPhotons> chunks(kChunks);
+  if (!origins.empty() && !preparation.run(kChunks, [&](std::uint64_t i) {
+        chunks[i] = trace_indirect_photons(scene, sources, origins, luminance_up_to,
+                                           chunk_of(key, points / kOriginsPerPhoton, i));
+      })) {
+    return false;
+  }
+  maps.indirect = map_of(scene, joined(std::move(chunks), maps), key, 1, kMaxHalvings, preparation);
+  double power = 0;
+  double radii = 0;
+  for (const StoredPhoton& photon : maps.indirect.photons()) {
+    power += luminance(photon.power);
+    radii += luminance(photon.power) * photon.radius;
+  }
+  maps.gather_distance = power > 0 ? kGatherRadii * radii / power : 0;
+  preparation.advance();
+  return !preparation.stopped();
+}
+
+bool has_emissive_surface(const Scene& scene) {
+  return std::any_of(scene.materials().begin(), scene.materials().end(), [](const Material& m) {
+    return std::holds_alternative<Emissive>(m.kind) || !is_black(m.emission.radiance.factor);
+  });
+}
+
+/// Returns true if photons travel through surfaces of this material otherwise than paths:
+/// - Hidden lamps: paths pass through them, but a photon ends at any emitter that it hits.
+/// - Nested glass: its index of refraction depends on the other glasses around the point, which a
+///   photon that starts there does not know.
+bool misleads_photons(const Material& material) {
+  return is_hidden_lamp(material) || nested_glass(material) != nullptr;
+}
+
+}  // namespace
+
+std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height) {
+  return std::clamp(std::uint64_t{8} * width * height, std::uint64_t{1} << 15,
+                    std::uint64_t{1} << 19);
+}
+
+std::shared_ptr<const TracedMaps> make_photon_maps(const Scene& scene, const PhotonSources& sources,
+                                                   const PhotonMapKey& key,
+                                                   const Preparation& preparation) {
+  TracedMaps maps;
+  if (!sources.casters.empty() && !add_caustics(scene, sources, key, preparation, maps)) {
+    return nullptr;
+  }
+  if (sources.surfaces && !add_indirect(scene, sources, key, preparation, maps)) {
+    return nullptr;
+  }
+  return std::make_shared<const TracedMaps>(std::move(maps));
+}
+
+bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
+  // Mixtures with a caster: a path that meets such a part takes it for a caster, but photons do not
+  // start there.
+  const auto hinders = [&](const Material& material) {
+    const auto* mix = std::get_if<Mix>(&material.kind);
+    return misleads_photons(material) ||
+           (mix != nullptr && (casters.casts(mix->a) || casters.casts(mix->b)));
+  };
+  return !casters.empty() && casters.complete() && has_emissive_surface(scene) && !scene.moves() &&
+         std::none_of(scene.materials().begin(), scene.materials().end(), hinders);
+}
+
+bool caustics_pay(const TracedMaps& maps) {
+  return maps.caustics.size() > 0 && maps.lamp_angle <= kLargestLamp;
+}
+
+std::optional<SurfaceSampler> surfaces_of_indirect_light(const Scene& scene,
+                                                         const Casters& casters) {
+  // Not scene.features(), because forced features must not change pixels.
+  const bool has_media = scene.media().fog || scene.media().has_boundaries();
+  const auto hinders = [](const Material& material) {
+    return misleads_photons(material) || std::holds_alternative<Mix>(material.kind);
+  };
+  if (scene.moves() || has_media ||
+      std::any_of(scene.materials().begin(), scene.materials().end(), hinders)) {
+    return std::nullopt;
+  }
+  std::vector<PrimitiveId> ids;
+  std::size_t count = 0;
+  visit_primitives(scene.geometry(), [&](PrimitiveId id, MaterialId material) {
+    const bool scatters = !std::holds_alternative<Emissive>(scene.material(material).kind);
+    if (scatters && !casters.casts(material) && ++count <= kMaxPrimitives) {
+      ids.push_back(id);
+    }
+  });
+  SurfaceSampler surfaces;
+  for (const PrimitiveId id : ids) {
+    if (count > kMaxPrimitives || !surfaces.add(scene, id)) {
+      return std::nullopt;
+    }
+  }
+  return surfaces.empty() ? std::nullopt : std::optional(std::move(surfaces));
+}
+
+}  // namespace bandsaw
