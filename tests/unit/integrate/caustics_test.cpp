@@ -20,6 +20,7 @@
 #include "renderlib/integrate/trace_photons.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
+#include "tests/unit/integrate/same_mean.h"
 
 namespace bandsaw {
 namespace {
@@ -266,36 +267,13 @@ TEST(PhotonMaps, TakeAlignedRangesOfSamples) {
   }
 }
 
-/// Expects paths with and without maps to have the same mean, within 4 standard errors and 1 %. The
-/// others are guided, because they would be too noisy otherwise.
 void expect_same_mean(const Scene& scene, const Ray& ray, std::uint32_t max_depth) {
-  const Casters casters(scene);
-  Pool pool(2);
-  const auto guiding = train_guiding(scene, {64, 64, max_depth}, {pool, kGoOn});
-  test::Moments with;
-  test::Moments without;
-  PathCounts counts;
-  for (std::uint32_t number = 0; number < 32; ++number) {
-    const auto map = map_of(scene, casters, number, 1 << 14);
-    PhotonMaps caustics(casters);
-    caustics.use_for_all(*map);
-    const PathOptions mapped{.max_depth = max_depth, .maps = &caustics};
-    const PathOptions guided{.max_depth = max_depth, .guiding = &guiding->field};
-    test::Moments of_map;
-    for (std::uint32_t i = 0; i < 1000; ++i) {
-      const PixelSampler sampler(5, i, number);
-      // The directions differ a little, so that one map tells more.
-      const Vec3 aside{0.0004 * (i % 32) - 0.0064, 0.0004 * (i / 32) - 0.0064, 0};
-      const Ray near{.origin = ray.origin, .direction = normalize(ray.direction + aside * 20)};
-      of_map.add(path_radiance(scene, near, sampler, 0, mapped, counts).g);
-      without.add(path_radiance(scene, near, sampler, 0, guided, counts).g);
-    }
-    with.add(of_map.mean());
-  }
-  const double deviation = std::hypot(with.standard_error(), without.standard_error());
-  EXPECT_LE(std::abs(with.mean() - without.mean()), 4 * deviation + 0.01 * without.mean())
-      << with.mean() << " and " << without.mean();
-  EXPECT_LT(deviation, 0.06 * without.mean());
+  test::expect_same_mean(scene, {Casters(scene)}, ray,
+                         {.max_depth = max_depth,
+                          .maps = 32,
+                          .paths = 1000,
+                          .photons = 1 << 14,
+                          .max_deviation = 0.06});
 }
 
 TEST(Caustics, ChangeNoMean) {

@@ -19,6 +19,7 @@
 #include "renderlib/render/render_band.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
+#include "tests/unit/integrate/same_mean.h"
 
 namespace bandsaw {
 namespace {
@@ -28,7 +29,7 @@ using test::SceneMaker;
 
 const std::atomic<bool> kGoOn = false;
 
-/// What photon maps of the scene are made of; with maps of caustics where these are possible.
+/// Returns the sources of photon maps of indirect light and, where possible, of caustics.
 PhotonSources sources_of(const Scene& scene, std::uint32_t max_depth) {
   const Casters all(scene);
   const Casters casters = can_have_caustic_maps(scene, all) ? all : Casters::none(scene);
@@ -127,41 +128,20 @@ std::vector<Case> cases() {
   return all;
 }
 
-// Compares with guided paths without maps, which have less noise than plain ones: within 4 standard
-// errors (a false alarm in 1 of 1,700 runs of these cases) and 1 % for the blur.
+// Nine comparisons.
 TEST(IndirectPhotons, ChangeNoMean) {
   for (const Case& of : cases()) {
     SCOPED_TRACE(of.name);
     const auto scene = of.maker.build();
     const PhotonSources sources = sources_of(*scene, of.max_depth);
     ASSERT_TRUE(sources.surfaces);
-    Pool pool(2);
-    const auto guiding = train_guiding(*scene, {64, 64, of.max_depth}, {pool, kGoOn});
-    test::Moments with;
-    test::Moments without;
-    PathCounts counts;
-    for (std::uint32_t number = 0; number < 12; ++number) {
-      const auto traced = maps_of(*scene, sources, number, 1 << 15);
-      PhotonMaps maps(sources.casters);
-      maps.use_for_all(*traced);
-      const PathOptions mapped{.max_depth = of.max_depth, .maps = &maps};
-      const PathOptions guided{.max_depth = of.max_depth, .guiding = &guiding->field};
-      test::Moments of_map;
-      test::Moments of_paths;
-      for (std::uint32_t i = 0; i < 2048; ++i) {
-        const PixelSampler sampler(5, i, number);
-        const Vec3 aside{0.01 * (i % 32) - 0.16, 0.01 * (i / 32) - 0.23, 0};
-        const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{1.2, 1, -1.5} + aside)};
-        of_map.add(path_radiance(*scene, ray, sampler, 0, mapped, counts).g);
-        of_paths.add(path_radiance(*scene, ray, sampler, 0, guided, counts).g);
-      }
-      with.add(of_map.mean());
-      without.add(of_paths.mean());
-    }
-    const double deviation = std::hypot(with.standard_error(), without.standard_error());
-    EXPECT_LE(std::abs(with.mean() - without.mean()), 4 * deviation + 0.01 * without.mean())
-        << with.mean() << " and " << without.mean() << ", standard error " << deviation;
-    EXPECT_LT(deviation, 0.05 * without.mean());
+    const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{1.2, 1, -1.5})};
+    test::expect_same_mean(*scene, sources, ray,
+                           {.max_depth = of.max_depth,
+                            .maps = 12,
+                            .paths = 4096,
+                            .photons = 1 << 15,
+                            .max_deviation = 0.05});
   }
 }
 
