@@ -37,7 +37,7 @@ struct TrainedGuiding {
   std::uint64_t paths = 0;    ///< training paths from the camera
   std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
   std::uint64_t rays = 0;     ///< rays of both, of pilots and of the first photon map
-  /// What photon maps are made of; null: no light comes from maps.
+  /// The surfaces at which the photons of maps start; null: no light comes from maps.
   std::shared_ptr<const PhotonSources> sources;
 };
 

@@ -39,7 +39,8 @@ inline CausticRole caustic_role(const Casters& casters, MaterialId material, con
                                    : CausticRole::kOther;
 }
 
-/// The photon maps of some samples of an image. Consecutive samples share a map.
+/// The photon maps of some samples of an image: of caustics, and of indirect light
+/// (indirect_photons.h). Consecutive samples share them.
 class PhotonMaps {
  public:
   /// Number of samples that share one of the first maps.

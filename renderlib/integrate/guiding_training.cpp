@@ -159,10 +159,10 @@ class Decisions {
 
   /// Decides whether indirect light comes from maps, with the caustics as decided before.
   bool decide_on_indirect_light() {
-    const Casters casters = mapping_.sources != nullptr ? casters_ : Casters::none(scene_);
     if (gain_ && !gain_->is_hard()) {
       return true;
     }
+    const Casters casters = mapping_.sources != nullptr ? casters_ : Casters::none(scene_);
     std::optional<SurfaceSampler> surfaces = surfaces_of_indirect_light(scene_, casters);
     if (!surfaces) {
       return true;

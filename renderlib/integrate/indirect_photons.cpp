@@ -15,10 +15,7 @@
 namespace bandsaw {
 namespace {
 
-/// The random numbers of origins and of photons are those of pixels outside of the largest image,
-/// whose sides have 2^16 pixels; those of caustics use pixel 2^24.
-constexpr std::uint32_t kBeyondImages = 1u << 24;
-
+/// The random numbers of origins and of photons; those of caustics use column kBeyondImages.
 PixelSampler sampler_of_origins(const PhotonChunk& chunk) {
   return {chunk.seed, kBeyondImages + 1, kBeyondImages + chunk.map};
 }

@@ -56,9 +56,9 @@ PhotonChunk chunk_of(const PhotonMapKey& key, std::uint64_t photons, std::uint64
 
 /// Builds the map of the photons. Each photon spreads its power over a disk. Knaus and Zwicker
 /// multiply the area of the disks of map n = 0, 1, … by about (n + 1)^(alpha - 1), here with alpha
-/// = 2/3. So the factor of the area is (n + 1)^(-1/3), and that of the radius is its root, (n +
-/// 1)^(-1/6). `kind` makes the division of space differ between
-/// maps of one number; `max_halvings`: see kMaxHalvings.
+/// = 2/3. So the factor of the area is (n + 1)^(-1/3), and that of the radius is its root,
+/// (n + 1)^(-1/6). `kind` makes the division of space differ between maps of one number;
+/// `max_halvings`: see kMaxHalvings.
 PhotonMap map_of(const Scene& scene, std::vector<StoredPhoton> photons, const PhotonMapKey& key,
                  std::uint64_t kind, int max_halvings, const Preparation& preparation) {
   const double factor = pow(key.number + 1.0, -1.0 / 6);
@@ -209,21 +209,16 @@ std::optional<SurfaceSampler> surfaces_of_indirect_light(const Scene& scene,
       std::any_of(scene.materials().begin(), scene.materials().end(), hinders)) {
     return std::nullopt;
   }
-  std::vector<PrimitiveId> ids;
+  SurfaceSampler surfaces;
   std::size_t count = 0;
+  bool complete = true;
   visit_primitives(scene.geometry(), [&](PrimitiveId id, MaterialId material) {
     const bool scatters = !std::holds_alternative<Emissive>(scene.material(material).kind);
-    if (scatters && !casters.casts(material) && ++count <= kMaxPrimitives) {
-      ids.push_back(id);
+    if (complete && scatters && !casters.casts(material)) {
+      complete = ++count <= kMaxPrimitives && surfaces.add(scene, id);
     }
   });
-  SurfaceSampler surfaces;
-  for (const PrimitiveId id : ids) {
-    if (count > kMaxPrimitives || !surfaces.add(scene, id)) {
-      return std::nullopt;
-    }
-  }
-  return surfaces.empty() ? std::nullopt : std::optional(std::move(surfaces));
+  return complete && !surfaces.empty() ? std::optional(std::move(surfaces)) : std::nullopt;
 }
 
 }  // namespace bandsaw

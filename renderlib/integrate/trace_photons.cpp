@@ -158,9 +158,6 @@ StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const Sur
 }
 
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk) {
-  // The random numbers are those of a pixel outside of the largest image, whose sides have 2^16
-  // pixels.
-  constexpr std::uint32_t kBeyondImages = 1u << 24;
   const PixelSampler sampler(chunk.seed, kBeyondImages, kBeyondImages + chunk.map);
   TracedPhotons out;
   for (std::uint64_t number = chunk.first; number < chunk.last; ++number) {

@@ -147,7 +147,6 @@ void add_records(const TrainingPath& path, double camera_distance, std::vector<G
 
 PixelSampler training_sampler(const TrainingChunk& chunk) {
   constexpr std::uint64_t kSeed = 0x9d1a5e3c7b2f8641;  // an arbitrary number
-  constexpr std::uint32_t kBeyondImages = 1u << 24;    // sides have at most 2^16 pixels
   return {kSeed, kBeyondImages + chunk.number, kBeyondImages + chunk.round};
 }
 

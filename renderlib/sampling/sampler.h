@@ -23,6 +23,10 @@ struct SampleKey {
   std::uint64_t sample = 0;
 };
 
+/// Pixel coordinates from this one on are outside of the largest image, whose sides have 2^16
+/// pixels. Photons and the training of path guiding take their numbers there.
+inline constexpr std::uint32_t kBeyondImages = 1u << 24;
+
 /// Four numbers in [0, 1), multiples of 2^-32. Any aligned power-of-two range of samples of one
 /// (seed, pixel, group) is a (t, m, 4)-net, stratified in projections like the first four Sobol'
 /// dimensions.
