@@ -17,6 +17,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "proto/link/channel.h"
 #include "proto/link/join.h"
 #include "proto/link/random.h"
 #include "proto/wire/limits.h"
@@ -252,6 +253,7 @@ int run_command(int argc, char** argv, const WrapCalls& wrap_calls) {
     return app.exit(error) == 0 ? 0 : kWrongUsage;
   }
   link::hide_join_strings({argv, static_cast<std::size_t>(argc)});
+  link::use_system_resolver();
   return run(arguments, wrap_calls);
 }
 

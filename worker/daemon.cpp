@@ -82,7 +82,8 @@ class Daemon::Impl {
 
 absl::Status Daemon::Impl::run() {
   while (true) {
-    absl::StatusOr<link::Connected> connected = link::connect(options_.join, kConnectTime);
+    absl::StatusOr<link::Connected> connected =
+        link::connect(options_.join, kConnectTime, [this] { return session_.over(); });
     const absl::Status status = connected.ok() ? talk(*connected) : connected.status();
     if (session_.over() || (dismissal_ && dismissal_->for_ever)) {
       return absl::OkStatus();

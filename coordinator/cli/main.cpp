@@ -8,6 +8,7 @@
 
 #include "coordinator/cli/command_line.h"
 #include "coordinator/cli/options/commands.h"
+#include "proto/link/channel.h"
 #include "proto/link/join.h"
 
 namespace bandsaw::coordinator {
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
     return static_cast<int>(
         console.fail(ExitCode::kWrong, std::string(command.status().message())));
   }
+  bandsaw::link::use_system_resolver();
   Interrupts interrupts;
   Process process{console, interrupts};
   const ExitCode code = run_command(*command, process);

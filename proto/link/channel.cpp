@@ -3,6 +3,8 @@
 
 #include "proto/link/channel.h"
 
+#include <cstdlib>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "proto/link/certificate.h"
@@ -52,7 +54,7 @@ Connected open_channels(const std::string& address,
 }
 
 absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Digest& expected,
-                                      Socket& socket, Deadline deadline) {
+                                      Socket& socket, const Deadline& deadline) {
   absl::StatusOr<std::string> pem = fetch_certificate_pem(socket, deadline);
   if (!pem.ok()) {
     return pem.status();
@@ -75,20 +77,26 @@ absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Di
   return open_channels(address, grpc::SslCredentials(options), true);
 }
 
-absl::StatusOr<Connected> connect_plain(const std::string& address,
-                                        std::chrono::milliseconds timeout) {
+absl::StatusOr<Connected> connect_plain(const std::string& address, const Deadline& deadline) {
   Connected connected = open_channels(address, grpc::InsecureChannelCredentials(), false);
-  if (!connected.control->WaitForConnected(std::chrono::system_clock::now() + timeout)) {
-    return absl::UnavailableError(
-        "the server there does not speak plaintext gRPC: was the coordinator started with "
-        "--insecure?");
+  while (!connected.control->WaitForConnected(std::chrono::system_clock::now() +
+                                              Deadline::kInterval)) {
+    if (std::chrono::steady_clock::now() >= deadline.end ||
+        (deadline.stopped && deadline.stopped())) {
+      return absl::UnavailableError(
+          "the server there does not speak plaintext gRPC: was the coordinator started with "
+          "--insecure?");
+    }
   }
   return connected;
 }
 
 }  // namespace
 
-absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout) {
+void use_system_resolver() { setenv("GRPC_DNS_RESOLVER", "native", 0); }
+
+absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout,
+                                  const std::function<bool()>& stopped) {
   std::vector<std::string> reasons;
   std::size_t wrong = 0;  // number of addresses that presented another certificate
   // One of these addresses is on another machine. A wrong certificate on this machine is no proof
@@ -96,7 +104,11 @@ absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseco
   // those of bridges for containers), and this machine may run another farm.
   bool wrong_elsewhere = false;
   for (const std::string& address : join.addresses) {
-    const Deadline deadline = std::chrono::steady_clock::now() + timeout;
+    if (stopped && stopped()) {
+      reasons.push_back("interrupted");
+      break;
+    }
+    const Deadline deadline{std::chrono::steady_clock::now() + timeout, stopped};
     absl::StatusOr<Socket> socket = Socket::connect(address, deadline);
     if (!socket.ok()) {
       reasons.push_back(absl::StrCat(address, ": ", socket.status().message()));
@@ -104,7 +116,7 @@ absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseco
     }
     absl::StatusOr<Connected> connected =
         join.certificate ? connect_tls(address, *join.certificate, *socket, deadline)
-                         : connect_plain(address, timeout);
+                         : connect_plain(address, deadline);
     if (connected.ok()) {
       return connected;
     }

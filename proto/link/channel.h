@@ -5,6 +5,7 @@
 // the join string before it is trusted.
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -19,6 +20,12 @@ namespace bandsaw::link {
 /// Metadata key of the secret.
 inline constexpr char kSecretKey[] = "bandsaw-secret";
 
+/// Lets gRPC look up host names with the system's resolver, which knows names of mDNS such as
+/// studio.local, and those of NIS. gRPC's own resolver knows /etc/hosts and DNS only. MUST be
+/// called before the first channel is made, while the process has one thread, because it sets a
+/// variable of the environment (GRPC_DNS_RESOLVER; a value that the user has set is kept).
+void use_system_resolver();
+
 /// A connection to the address that answered with the certificate of the join string.
 struct Connected {
   std::string address;
@@ -27,11 +34,13 @@ struct Connected {
 };
 
 /// Tries the addresses in order, each for at most `timeout` (a refused connection fails at once).
+/// Stops soon after `stopped` returns true (UNAVAILABLE); see Deadline.
 /// Verifies the server's identity only; a wrong secret or role is detected by the first call.
 /// UNAVAILABLE: no address answered, or this machine's clock is outside the certificate's validity
 /// (the message gives the reason for each address). UNAUTHENTICATED: a server answered with another
 /// certificate, on another machine or at all addresses.
-absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout);
+absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout,
+                                  const std::function<bool()>& stopped = {});
 
 /// Fetches the certificate that a server presents, as PEM, without trusting it. UNAVAILABLE: no
 /// answer in time, or no TLS there; the message says which.
@@ -39,7 +48,7 @@ absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
                                                   std::chrono::milliseconds timeout);
 
 /// The same through a connection that is open already. The connection is of no other use then.
-absl::StatusOr<std::string> fetch_certificate_pem(Socket& socket, Deadline deadline);
+absl::StatusOr<std::string> fetch_certificate_pem(Socket& socket, const Deadline& deadline);
 
 /// Sets the secret and the deadline on a call's context. A deadline of zero means none (for long
 /// streams).

@@ -30,7 +30,7 @@ std::string take_all(BIO* bio) {
 
 /// One round of the handshake: runs OpenSSL, sends its output and feeds it the answer. Returns true
 /// once the handshake is complete.
-absl::StatusOr<bool> advance(SSL* session, Socket& socket, Deadline deadline) {
+absl::StatusOr<bool> advance(SSL* session, Socket& socket, const Deadline& deadline) {
   ERR_clear_error();  // SSL_get_error reports errors that earlier calls of this thread have left
   const int result = SSL_connect(session);
   const int reason = SSL_get_error(session, result);
@@ -65,7 +65,7 @@ absl::StatusOr<std::string> peer_certificate_pem(SSL* session) {
 
 absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
                                                   std::chrono::milliseconds timeout) {
-  const Deadline deadline = std::chrono::steady_clock::now() + timeout;
+  const Deadline deadline{std::chrono::steady_clock::now() + timeout};
   absl::StatusOr<Socket> socket = Socket::connect(address, deadline);
   if (!socket.ok()) {
     return socket.status();
@@ -73,7 +73,7 @@ absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
   return fetch_certificate_pem(*socket, deadline);
 }
 
-absl::StatusOr<std::string> fetch_certificate_pem(Socket& socket, Deadline deadline) {
+absl::StatusOr<std::string> fetch_certificate_pem(Socket& socket, const Deadline& deadline) {
   const Context context(SSL_CTX_new(TLS_client_method()), &SSL_CTX_free);
   const Session session(context == nullptr ? nullptr : SSL_new(context.get()), &SSL_free);
   if (session == nullptr) {

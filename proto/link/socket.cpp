@@ -24,25 +24,31 @@ absl::Status unavailable(int error) {
   return absl::UnavailableError(absl::AsciiStrToLower(std::strerror(error)));
 }
 
-absl::Status wait_for(int fd, short events, Deadline deadline) {
+absl::Status wait_for(int fd, short events, const Deadline& deadline) {
+  using std::chrono::milliseconds;
   while (true) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-        deadline - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::duration_cast<milliseconds>(deadline.end - std::chrono::steady_clock::now());
+    const milliseconds slice =
+        std::max(milliseconds(0), deadline.stopped ? std::min(Deadline::kInterval, left) : left);
     pollfd watched{.fd = fd, .events = events, .revents = 0};
-    const int ready = poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(0, left.count())));
+    const int ready = poll(&watched, 1, static_cast<int>(slice.count()));
     if (ready > 0) {
       return absl::OkStatus();
     }
-    if (ready == 0) {
-      return absl::UnavailableError("no answer in time");
-    }
-    if (errno != EINTR) {
+    if (ready < 0 && errno != EINTR) {
       return unavailable(errno);
+    }
+    if (deadline.stopped && deadline.stopped()) {
+      return absl::UnavailableError("interrupted");
+    }
+    if (ready == 0 && left <= slice) {
+      return absl::UnavailableError("no answer in time");
     }
   }
 }
 
-absl::Status connect_one(int fd, const addrinfo& info, Deadline deadline) {
+absl::Status connect_one(int fd, const addrinfo& info, const Deadline& deadline) {
   if (::connect(fd, info.ai_addr, info.ai_addrlen) == 0) {
     return absl::OkStatus();
   }
@@ -62,7 +68,7 @@ absl::Status connect_one(int fd, const addrinfo& info, Deadline deadline) {
 
 }  // namespace
 
-absl::StatusOr<Socket> Socket::connect(const std::string& address, Deadline deadline) {
+absl::StatusOr<Socket> Socket::connect(const std::string& address, const Deadline& deadline) {
   const std::size_t colon = address.rfind(':');
   if (colon == std::string::npos) {
     return absl::InvalidArgumentError(absl::StrCat("'", address, "' is not HOST:PORT"));
@@ -82,7 +88,7 @@ absl::StatusOr<Socket> Socket::connect(const std::string& address, Deadline dead
   return connect(list.get(), deadline);
 }
 
-absl::StatusOr<Socket> Socket::connect(const addrinfo* list, Deadline deadline) {
+absl::StatusOr<Socket> Socket::connect(const addrinfo* list, const Deadline& deadline) {
   int left = 0;
   for (const addrinfo* info = list; info != nullptr; info = info->ai_next) {
     ++left;
@@ -92,7 +98,8 @@ absl::StatusOr<Socket> Socket::connect(const addrinfo* list, Deadline deadline) 
     const auto now = std::chrono::steady_clock::now();
     Socket socket(::socket(info->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     last = socket.fd_ < 0 ? unavailable(errno)
-                          : connect_one(socket.fd_, *info, now + (deadline - now) / left);
+                          : connect_one(socket.fd_, *info,
+                                        {now + (deadline.end - now) / left, deadline.stopped});
     if (last.ok()) {
       return socket;
     }
@@ -125,7 +132,7 @@ bool Socket::is_to_this_machine() const {
   return bind(probe.fd_, reinterpret_cast<const sockaddr*>(&peer), size) == 0;
 }
 
-absl::Status Socket::send(const std::string& bytes, Deadline deadline) {
+absl::Status Socket::send(const std::string& bytes, const Deadline& deadline) {
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t sent = ::send(fd_, bytes.data() + done, bytes.size() - done, MSG_NOSIGNAL);
@@ -142,7 +149,7 @@ absl::Status Socket::send(const std::string& bytes, Deadline deadline) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::string> Socket::receive(Deadline deadline) {
+absl::StatusOr<std::string> Socket::receive(const Deadline& deadline) {
   std::string bytes(16 << 10, '\0');
   while (true) {
     const ssize_t got = recv(fd_, bytes.data(), bytes.size(), 0);

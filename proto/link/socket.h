@@ -6,23 +6,31 @@
 #include <netdb.h>
 
 #include <chrono>
+#include <functional>
 #include <string>
 
 #include "absl/status/statusor.h"
 
 namespace bandsaw::link {
 
-using Deadline = std::chrono::steady_clock::time_point;
+/// How long the operations of a socket may wait: until `end`, or until `stopped` returns true,
+/// which is called every `kInterval`. Without `stopped` only the time ends them.
+struct Deadline {
+  static constexpr std::chrono::milliseconds kInterval{100};
+  std::chrono::steady_clock::time_point end;
+  std::function<bool()> stopped = {};
+};
 
-/// Owns a connected, non-blocking socket. Every wait ends at the deadline with UNAVAILABLE.
+/// Owns a connected, non-blocking socket. Every wait ends at the deadline with UNAVAILABLE. Only
+/// the system's resolver, which looks up names, does not know deadlines.
 class Socket {
  public:
   /// Connects to `address`, HOST:PORT or [IPv6]:PORT. UNAVAILABLE: nobody accepts the connection,
   /// or there is no such host. INVALID_ARGUMENT: the address has no port.
-  static absl::StatusOr<Socket> connect(const std::string& address, Deadline deadline);
+  static absl::StatusOr<Socket> connect(const std::string& address, const Deadline& deadline);
   /// The same with the addresses of a resolved name, in order. Each gets an equal part of the time
   /// that its predecessors have left.
-  static absl::StatusOr<Socket> connect(const addrinfo* list, Deadline deadline);
+  static absl::StatusOr<Socket> connect(const addrinfo* list, const Deadline& deadline);
   Socket(Socket&& other) noexcept;
   Socket& operator=(Socket&&) = delete;
   ~Socket();
@@ -31,9 +39,9 @@ class Socket {
   /// another of the machine's own addresses.
   bool is_to_this_machine() const;
   /// Sends all bytes. UNAVAILABLE: the connection is broken, or not all were sent in time.
-  absl::Status send(const std::string& bytes, Deadline deadline);
+  absl::Status send(const std::string& bytes, const Deadline& deadline);
   /// Returns at least one byte. UNAVAILABLE: closed by the other side, or no answer in time.
-  absl::StatusOr<std::string> receive(Deadline deadline);
+  absl::StatusOr<std::string> receive(const Deadline& deadline);
 
  private:
   explicit Socket(int fd) : fd_(fd) {}

@@ -5,6 +5,8 @@
 #include <csignal>
 #include <filesystem>
 
+#include "absl/strings/str_replace.h"
+#include "proto/link/join.h"
 #include "tests/farm/farm_processes.h"
 
 namespace bandsaw::test {
@@ -38,6 +40,21 @@ class Administration : public testing::Test {
 TEST_F(Administration, TheFileForUsersIsWrittenLast) {
   EXPECT_LE(std::filesystem::last_write_time(farm_.join_file()),
             std::filesystem::last_write_time(farm_.farm_file()));
+}
+
+// "127.1" stands for a name that DNS does not know, such as one of mDNS: the system's resolver
+// takes it for 127.0.0.1, and gRPC's own resolver does not know it.
+TEST_F(Administration, NamesAreLookedUpByTheSystem) {
+  const auto named = [&](const std::string& file) {
+    link::JoinString join = *link::join_string_from(file);
+    join.addresses = {absl::StrReplaceAll(join.addresses.front(), {{"127.0.0.1", "127.1"}})};
+    return join.text();
+  };
+  EXPECT_EQ(run({BANDSAW_BIN, "jobs", "--farm", named(farm_.farm_file())}).code, 0);
+  Process worker =
+      Process::start({BANDSAW_WORKER_BIN, "--join", named(farm_.join_file()), "--threads", "1",
+                      "--name", "desk", "--cache", farm_.path("cache")});
+  EXPECT_TRUE(worker.wait_for("joined 127.1:")) << worker.err();
 }
 
 TEST_F(Administration, AWorkersLogIsReadOverTheNetwork) {

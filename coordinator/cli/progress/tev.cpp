@@ -58,7 +58,7 @@ void channels(Packet& packet) {
   }
 }
 
-link::Deadline soon() { return std::chrono::steady_clock::now() + kTevTimeout; }
+link::Deadline soon() { return {std::chrono::steady_clock::now() + kTevTimeout}; }
 
 }  // namespace
 

@@ -107,6 +107,16 @@ TEST_F(ConnectTest, TrustsTheCertificateThatTheStringNames) {
   expect_calls_work(*connected, join);
 }
 
+TEST_F(ConnectTest, TriesNoAddressAfterItWasStopped) {
+  const EchoServer server(tls(identity_));
+  const absl::Status status =
+      connect(join_to(server.port, identity_.certificate_digest), milliseconds(10'000), [] {
+        return true;
+      }).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("interrupted"));
+}
+
 TEST_F(ConnectTest, RefusesAnotherCertificateBeforeAnyCall) {
   const EchoServer server(tls(identity_));
   const absl::Status status =

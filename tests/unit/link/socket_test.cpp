@@ -35,24 +35,42 @@ struct Listener {
   ~Listener() { close(fd); }
 };
 
-TEST(Socket, AnAddressThatDoesNotAnswerLeavesTimeForTheNext) {
-  // Linux answers no further connections while a queue of length 0 has one.
-  Listener silent(0);
+/// A listener that answers no connection: Linux answers none while a queue of length 0 has one.
+struct SilentListener : Listener {
   std::vector<int> waiting;
-  for (int i = 0; i < 3; ++i) {
-    waiting.push_back(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
-    ::connect(waiting.back(), silent.info.ai_addr, silent.info.ai_addrlen);
+
+  SilentListener() : Listener(0) {
+    for (int i = 0; i < 3; ++i) {
+      waiting.push_back(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0));
+      ::connect(waiting.back(), info.ai_addr, info.ai_addrlen);
+    }
   }
+  ~SilentListener() {
+    for (const int one : waiting) {
+      close(one);
+    }
+  }
+};
+
+TEST(Socket, StopsWhenItIsTold) {
+  const SilentListener silent;
+  int calls = 0;
+  const Deadline deadline{std::chrono::steady_clock::now() + std::chrono::hours(24),
+                          [&] { return ++calls == 2; }};
+  const absl::Status status = Socket::connect(&silent.info, deadline).status();
+  EXPECT_EQ(status.message(), "interrupted");
+  EXPECT_EQ(calls, 2);
+}
+
+TEST(Socket, AnAddressThatDoesNotAnswerLeavesTimeForTheNext) {
+  SilentListener silent;
   Listener answers(1);
   silent.info.ai_next = &answers.info;
-  const Deadline deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+  const Deadline deadline{std::chrono::steady_clock::now() + std::chrono::seconds(1)};
   EXPECT_TRUE(Socket::connect(&silent.info, deadline).ok());
   const int accepted = accept(answers.fd, nullptr, nullptr);
   EXPECT_GE(accepted, 0) << "the second address was reached";
   close(accepted);
-  for (const int fd : waiting) {
-    close(fd);
-  }
 }
 
 }  // namespace
