@@ -43,10 +43,12 @@ inline CausticRole caustic_role(const Casters& casters, MaterialId material, con
 /// (indirect_photons.h). Consecutive samples share them.
 class PhotonMaps {
  public:
-  /// Number of samples that share one of the first maps.
-  static constexpr std::uint64_t kMinSamplesOfMap = 16;
-  /// Returns the number of the map of a sample. The first four maps have 16 samples each; in
-  /// general, samples [16 * 4^k, 64 * 4^k) have maps of 16 * 2^k samples each. So the number of
+  /// Number of samples that share one of the first maps: one block (render/band.h). So the two
+  /// halves of an image's samples share no map, and the noise of the maps is part of the difference
+  /// from which the error is estimated (render/error_estimate.h).
+  static constexpr std::uint64_t kMinSamplesOfMap = 8;
+  /// Returns the number of the map of a sample. The first four maps have 8 samples each; in
+  /// general, samples [8 * 4^k, 32 * 4^k) have maps of 8 * 2^k samples each. So the number of
   /// maps grows with the root of the number of samples: a map costs as much as 10^5 to 10^6
   /// samples, and a band of many samples must not need more maps than a worker can keep.
   static std::uint32_t number_of(std::uint64_t sample);

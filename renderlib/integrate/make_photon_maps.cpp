@@ -165,8 +165,8 @@ bool misleads_photons(const Material& material) {
 }  // namespace
 
 std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height) {
-  return std::clamp(std::uint64_t{8} * width * height, std::uint64_t{1} << 15,
-                    std::uint64_t{1} << 19);
+  return std::clamp(std::uint64_t{4} * width * height, std::uint64_t{1} << 14,
+                    std::uint64_t{1} << 18);
 }
 
 std::shared_ptr<const TracedMaps> make_photon_maps(const Scene& scene, const PhotonSources& sources,

@@ -14,8 +14,8 @@
 namespace bandsaw {
 
 /// Returns the number of photons of caustics that are started for each map of an image of this size
-/// in pixels: 8 for each pixel, half as many as the paths that share a map, but between 2^15 and
-/// 2^19. There are a quarter as many indirect photons, at least 2^15, because a path looks at them
+/// in pixels: 4 for each pixel, half as many as the paths that share a map, but between 2^14 and
+/// 2^18. There are a quarter as many indirect photons, at least 2^15, because a path looks at them
 /// from afar, so that their noise is averaged.
 std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height);
 

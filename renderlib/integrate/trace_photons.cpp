@@ -1,9 +1,11 @@
 #include "renderlib/integrate/trace_photons.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
+#include "renderlib/base/split_mix.h"
 #include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/intersect_visible.h"
 #include "renderlib/integrate/medium_traversal.h"
@@ -15,6 +17,7 @@
 #include "renderlib/material/opacity.h"
 #include "renderlib/math/elementary.h"
 #include "renderlib/sampling/basis.h"
+#include "renderlib/sampling/sampler.h"
 
 namespace bandsaw {
 namespace {
@@ -142,6 +145,15 @@ bool is_on_surface(const Scene& scene, const StoredPhoton& photon, const Vec3& t
   return visibility(scene, along, rays) > 0 && visibility(scene, down, rays) < 1;
 }
 
+/// Returns a number in [0, 1) that depends on the photon's position alone.
+double random_number_of(const StoredPhoton& photon) {
+  std::uint64_t bits = 0;
+  for (const float coordinate : photon.position) {
+    bits = split_mix(bits ^ std::bit_cast<std::uint32_t>(coordinate));
+  }
+  return NumberStream(bits).next();
+}
+
 }  // namespace
 
 StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const SurfacePoint& hit,
@@ -171,18 +183,22 @@ TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const Ph
 
 double share_on_surface(const Scene& scene, const StoredPhoton& photon) {
   constexpr int kAtRim = 4;                          // points at the rim of the disk
+  constexpr double kRim = 0.97;                      // their distance, as a part of the radius
   constexpr int kAllOver = 16;                       // points all over the disk
   constexpr double kGoldenTurn = 0.381966011250105;  // the golden angle, as a part of a turn
   const Basis basis = orthonormal_basis(vec3(photon.normal));
+  // The points of each disk are turned by another angle, so that they miss no edge of a scene whose
+  // edges are parallel to its axes.
+  const double first_turn = random_number_of(photon);
   const auto is_there = [&](double turn, double distance) {
-    const SinCos angle = sincos_turns(turn);
+    const SinCos angle = sincos_turns(turn + first_turn);
     return is_on_surface(scene, photon,
                          vec3(photon.position) + basis.x * (distance * angle.cos) +
                              basis.y * (distance * angle.sin));
   };
   int found = 0;
   for (int i = 0; i < kAtRim; ++i) {
-    found += is_there((i + 0.5) / kAtRim, 0.9 * photon.radius) ? 1 : 0;
+    found += is_there(double{i} / kAtRim, kRim * photon.radius) ? 1 : 0;
   }
   if (found == kAtRim) {
     return 1;
@@ -193,8 +209,7 @@ double share_on_surface(const Scene& scene, const StoredPhoton& photon) {
   for (int i = 0; i < kAllOver; ++i) {
     const double inside = (i + 0.5) / kAllOver;
     const double distance = std::sqrt(1 - std::sqrt(1 - inside));
-    const double turn = i * kGoldenTurn;
-    found += is_there(turn - std::floor(turn), distance * photon.radius) ? 1 : 0;
+    found += is_there(i * kGoldenTurn, distance * photon.radius) ? 1 : 0;
   }
   return std::max(1, found) / static_cast<double>(kAllOver);
 }

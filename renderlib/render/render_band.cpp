@@ -165,7 +165,7 @@ GuidingKey field_key(const RenderSettings& settings) {
 
 /// Maximum number of photon maps that are in use at the same time for a band.
 constexpr std::size_t kMaxMaps = 8;
-static_assert(PhotonMaps::kMinSamplesOfMap % kBlockSamples == 0, "a block has one photon map");
+static_assert(PhotonMaps::kMinSamplesOfMap == kBlockSamples, "a block has one photon map");
 
 /// Renders a part with its photon maps: at once, or in halves if there are too many maps.
 absl::StatusOr<BandPixels> render_with_maps(const Render& render, const BandPart& part,

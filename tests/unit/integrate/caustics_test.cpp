@@ -206,6 +206,28 @@ TEST(Caustics, TheShareOnTheSurfaceKnowsEdges) {
   EXPECT_NEAR(share_on_surface(*scene, photon), 0.25, 0.1);
 }
 
+// Photons at all distances up to the radius from a straight edge: the mean share is 1 minus the
+// integral of x f(x) over [0, 1], where f(x) = 8 / (3 pi) (1 - x^2)^(3/2) is the kernel's density
+// at the distance x of a line from the centre: 1 - 8 / (15 pi).
+TEST(Caustics, TheMeanShareOnTheSurfaceIsRightNearAnEdge) {
+  SceneMaker maker;
+  maker.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, maker.diffuse(0.5f));
+  maker.camera({3, 3, 3}, {0, 0, 0}, 60);
+  const auto scene = maker.build();
+  constexpr int kPhotons = 20'000;
+  constexpr double kGolden = 0.618033988749895;
+  double sum = 0;
+  for (int i = 0; i < kPhotons; ++i) {
+    const double along = 1 + 2 * (i * kGolden - std::floor(i * kGolden));
+    const StoredPhoton photon{.position = float3(Vec3{4 - 0.5 * (i + 0.5) / kPhotons, along, 0}),
+                              .radius = 0.5f,
+                              .normal = {0, 0, 1}};
+    sum += share_on_surface(*scene, photon);
+  }
+  // The standard deviation of a share is below 0.07, so this is at least 4 standard errors.
+  EXPECT_NEAR(sum / kPhotons, 1 - 8 / (15 * kPi), 0.002);
+}
+
 TEST(Caustics, TheShareOnTheSurfaceIgnoresTransparentSurfaces) {
   SceneMaker maker;
   maker.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, maker.diffuse(0.5f));
@@ -261,7 +283,7 @@ TEST(PhotonMaps, TakeAlignedRangesOfSamples) {
     first = sample;
   }
   EXPECT_EQ(PhotonMaps::number_of(4 * kStep - 1), 3u);
-  for (const std::uint64_t samples : {64, 256, 1024, 4096, 16384, 65536}) {
+  for (std::uint64_t samples = 4 * kStep; samples <= 1 << 17; samples *= 4) {
     const double root = std::sqrt(static_cast<double>(samples / kStep));
     EXPECT_EQ(PhotonMaps::number_of(samples), 3 * root - 2) << samples;
   }

@@ -1,6 +1,6 @@
 // Division of a band (a range of samples by a range of rows) into parts that need one photon map
-// each. A map is made for a range of samples (PhotonMaps::number_of): the first four maps have two
-// blocks of samples each, later ones more.
+// each. A map is made for a range of samples (PhotonMaps::number_of): the first four maps have one
+// block of samples each, later ones more.
 
 #include "renderlib/render/band_parts.h"
 
@@ -14,7 +14,7 @@ namespace {
 using Maps = std::vector<std::uint32_t>;
 /// Number of samples of each of the first four maps.
 constexpr std::uint64_t kOfMap = PhotonMaps::kMinSamplesOfMap;
-static_assert(kOfMap == 2 * kBlockSamples);
+static_assert(kOfMap == kBlockSamples);
 
 TEST(BandParts, AWholeBandNeedsTheMapsOfItsNode) {
   const BandPart part{{{16 * kOfMap, 32 * kOfMap}, {0, 16}}, {}};
@@ -35,7 +35,7 @@ TEST(BandParts, HalvesDivideTheSamplesOfAllHalfTiles) {
   tiles.set(1, {2 * kBlockSamples, 4 * kBlockSamples});
   tiles.set(3, {4 * kBlockSamples, 8 * kBlockSamples - 3});
   const BandPart part{{{0, kBlockSamples}, {0, 16}}, tiles};
-  EXPECT_EQ(maps_of(part), (Maps{0, 1, 2, 3}));
+  EXPECT_EQ(maps_of(part), (Maps{1, 2, 3, 4, 5}));
   std::vector<BandPart> open{part};
   std::vector<std::uint64_t> samples(4);
   while (!open.empty()) {
@@ -53,6 +53,14 @@ TEST(BandParts, HalvesDivideTheSamplesOfAllHalfTiles) {
   }
   EXPECT_EQ(samples, (std::vector<std::uint64_t>{kBlockSamples, 2 * kBlockSamples, 0,
                                                  4 * kBlockSamples - 3}));
+}
+
+// The film keeps the sums of two halves of the samples, [0, n) and [n, 2n), for the estimate of the
+// error. The noise of a map that both had would be missing from it.
+TEST(BandParts, TheHalvesOfAnImageShareNoMap) {
+  for (std::uint64_t half = kBlockSamples; half <= 1 << 20; half *= 2) {
+    EXPECT_LT(PhotonMaps::number_of(half - 1), PhotonMaps::number_of(half)) << half;
+  }
 }
 
 }  // namespace
