@@ -198,7 +198,7 @@ double share_on_surface(const Scene& scene, const StoredPhoton& photon) {
   };
   int found = 0;
   for (int i = 0; i < kAtRim; ++i) {
-    found += is_there(double{i} / kAtRim, kRim * photon.radius) ? 1 : 0;
+    found += is_there(i / double{kAtRim}, kRim * photon.radius) ? 1 : 0;
   }
   if (found == kAtRim) {
     return 1;
