@@ -64,7 +64,8 @@ void FarmClient::pause(milliseconds time) {
 }
 
 absl::Status FarmClient::try_once(milliseconds deadline,
-                                  const std::function<grpc::Status(grpc::ClientContext&)>& body) {
+                                  const std::function<grpc::Status(grpc::ClientContext&)>& body,
+                                  bool stoppable) {
   grpc::ClientContext context;
   link::prepare(context, join_, deadline);
   {
@@ -72,12 +73,12 @@ absl::Status FarmClient::try_once(milliseconds deadline,
     if (stopped_) {
       return absl::CancelledError("interrupted");
     }
-    running_ = &context;
+    running_ = stoppable ? &context : nullptr;
   }
   const grpc::Status status = body(context);
   MutexLock lock(mutex_);
   running_ = nullptr;
-  if (stopped_ && !status.ok()) {
+  if (stopped_ && stoppable && !status.ok()) {
     return absl::CancelledError("interrupted");
   }
   // A coordinator that is being stopped cancels the calls in progress.
@@ -94,6 +95,22 @@ absl::Status FarmClient::call(milliseconds deadline,
     status = try_once(deadline, body);
   }
   return given_up(status);
+}
+
+absl::Status FarmClient::call_to_start(
+    milliseconds deadline, const std::function<grpc::Status(grpc::ClientContext&)>& body) {
+  absl::Status status = try_once(deadline, body, false);
+  bool may_have_started = false;
+  for (int tries = 1; tries < kTries && outcome_unknown(status); ++tries) {
+    may_have_started = true;
+    pause(kRetryPause);
+    status = try_once(deadline, body, false);
+  }
+  return may_have_started && absl::IsCancelled(status)
+             ? absl::CancelledError(
+                   "interrupted before the farm answered; if it has accepted the "
+                   "job, `bandsaw jobs` lists it")
+             : given_up(status);
 }
 
 absl::Status FarmClient::given_up(const absl::Status& status) const {
@@ -126,7 +143,7 @@ absl::StatusOr<std::vector<FarmClient::MissingBlob>> FarmClient::missing_blobs(
 
 absl::StatusOr<JobId> FarmClient::submit(const farm::SubmitRequest& request) {
   farm::SubmitReply reply;
-  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+  RETURN_IF_ERROR(call_to_start(kCallTimeout, [&](grpc::ClientContext& context) {
     return control_->Submit(&context, request, &reply);
   }));
   return reply.job();

@@ -57,7 +57,9 @@ class FarmClient {
   absl::Status put_blob(const wire::Digest& digest, absl::Span<const std::byte> bytes,
                         std::uint64_t there, const std::function<void(std::uint64_t)>& sent);
 
-  /// Starts a job. FAILED_PRECONDITION: the farm lacks a blob of the scene.
+  /// Starts a job. FAILED_PRECONDITION: the farm lacks a blob of the scene. stop() does not end an
+  /// attempt, here and in submit_sequence(): otherwise the user would not learn the number of a job
+  /// that the farm has accepted.
   absl::StatusOr<JobId> submit(const farm::SubmitRequest& request);
 
   /// Starts a sequence (a job of many frames), whose scenes add_frame() names one by one.
@@ -130,7 +132,8 @@ class FarmClient {
 
   const std::string& address() const { return connected_.address; }
 
-  /// Cancels the call in progress, and every later one, with CANCELLED: for Ctrl-C. Thread-safe.
+  /// Cancels the call in progress, unless it starts a job, and every later one, with CANCELLED: for
+  /// Ctrl-C. Thread-safe.
   void stop() EXCLUDES(mutex_);
   bool stopped() const EXCLUDES(mutex_);
 
@@ -151,6 +154,11 @@ class FarmClient {
   /// not answer within `deadline`.
   absl::Status call(std::chrono::milliseconds deadline,
                     const std::function<grpc::Status(grpc::ClientContext&)>& body) EXCLUDES(mutex_);
+  /// The same for calls that start a job: stop() ends only the pauses between attempts. CANCELLED
+  /// after an attempt whose outcome is not known says where the user finds the job.
+  absl::Status call_to_start(std::chrono::milliseconds deadline,
+                             const std::function<grpc::Status(grpc::ClientContext&)>& body)
+      EXCLUDES(mutex_);
   /// For streams, because large transfers take long; gRPC's keepalive detects a dead connection.
   static constexpr std::chrono::milliseconds kNoDeadline{0};
   static constexpr std::chrono::milliseconds kRetryPause{500};
@@ -163,11 +171,11 @@ class FarmClient {
   absl::Status put_rest(const wire::Digest& digest, absl::Span<const std::byte> bytes,
                         std::uint64_t offset, const std::function<void(std::uint64_t)>& sent)
       EXCLUDES(mutex_);
-  /// Calls `body` once, so that stop() can cancel it. UNAVAILABLE: the farm does not answer, or it
-  /// cancelled the call. CANCELLED: stop() was called. Returns other errors of the farm.
+  /// Calls `body` once. `stoppable`: stop() cancels it. UNAVAILABLE: the farm does not answer, or
+  /// it cancelled the call. CANCELLED: stop() was called. Returns other errors of the farm.
   absl::Status try_once(std::chrono::milliseconds deadline,
-                        const std::function<grpc::Status(grpc::ClientContext&)>& body)
-      EXCLUDES(mutex_);
+                        const std::function<grpc::Status(grpc::ClientContext&)>& body,
+                        bool stoppable = true) EXCLUDES(mutex_);
 
   link::JoinString join_;
   link::Connected connected_;

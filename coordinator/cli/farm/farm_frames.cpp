@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kTimeout{20'000};
 
 absl::StatusOr<JobId> FarmClient::submit_sequence(const farm::SubmitSequenceRequest& request) {
   farm::SubmitReply reply;
-  RETURN_IF_ERROR(call(kTimeout, [&](grpc::ClientContext& context) {
+  RETURN_IF_ERROR(call_to_start(kTimeout, [&](grpc::ClientContext& context) {
     return control_->SubmitSequence(&context, request, &reply);
   }));
   return reply.job();

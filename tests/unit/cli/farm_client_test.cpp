@@ -11,20 +11,14 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A farm that cancels its first calls, as a coordinator does while it stops.
-class CancellingFarm : public farm::Farm::Service {
+/// A farm on a free port of loopback, without TLS.
+class TestFarm : public farm::Farm::Service {
  public:
-  /// `cancelled`: number of calls that are answered with CANCELLED.
-  explicit CancellingFarm(int cancelled) : cancelled_(cancelled) {
+  TestFarm() {
     grpc::ServerBuilder builder;
     builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port_);
     builder.RegisterService(this);
     server_ = builder.BuildAndStart();
-  }
-
-  grpc::Status ListJobs(grpc::ServerContext*, const farm::ListJobsRequest*,
-                        farm::ListJobsReply*) override {
-    return cancelled_-- > 0 ? grpc::Status::CANCELLED : grpc::Status::OK;
   }
 
   /// Connects to this farm without TLS.
@@ -37,9 +31,37 @@ class CancellingFarm : public farm::Farm::Service {
   }
 
  private:
-  std::atomic<int> cancelled_;
   int port_ = 0;
   std::unique_ptr<grpc::Server> server_;
+};
+
+/// A farm that cancels its first calls, as a coordinator does while it stops.
+class CancellingFarm : public TestFarm {
+ public:
+  /// `cancelled`: number of calls that are answered with CANCELLED.
+  explicit CancellingFarm(int cancelled) : cancelled_(cancelled) {}
+
+  grpc::Status ListJobs(grpc::ServerContext*, const farm::ListJobsRequest*,
+                        farm::ListJobsReply*) override {
+    return cancelled_-- > 0 ? grpc::Status::CANCELLED : grpc::Status::OK;
+  }
+
+ private:
+  std::atomic<int> cancelled_;
+};
+
+/// A farm that accepts a job, calls `accepted`, and then answers with `answer`.
+class AcceptingFarm : public TestFarm {
+ public:
+  grpc::Status Submit(grpc::ServerContext*, const farm::SubmitRequest*,
+                      farm::SubmitReply* reply) override {
+    accepted();
+    reply->set_job(7);
+    return answer;
+  }
+
+  std::function<void()> accepted;
+  grpc::Status answer;
 };
 
 TEST(FarmClient, RepeatsACallThatTheFarmCancelled) {
@@ -60,6 +82,25 @@ TEST(FarmClient, IsCancelledByStop) {
   const auto client = farm.connect();
   client->stop();
   EXPECT_EQ(client->jobs().status().code(), absl::StatusCode::kCancelled);
+}
+
+TEST(FarmClient, TellsTheJobThatTheFarmAcceptedWhenItWasStopped) {
+  AcceptingFarm farm;
+  const auto client = farm.connect();
+  farm.accepted = [&] { client->stop(); };
+  const absl::StatusOr<JobId> job = client->submit({});
+  ASSERT_TRUE(job.ok()) << job.status();
+  EXPECT_EQ(*job, 7u);
+}
+
+TEST(FarmClient, SaysThatTheFarmMayHaveAcceptedAJob) {
+  AcceptingFarm farm;
+  farm.answer = grpc::Status(grpc::StatusCode::UNAVAILABLE, "the connection was lost");
+  const auto client = farm.connect();
+  farm.accepted = [&] { client->stop(); };
+  const absl::Status status = client->submit({}).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kCancelled);
+  EXPECT_NE(status.message().find("`bandsaw jobs` lists it"), std::string::npos) << status;
 }
 
 }  // namespace
