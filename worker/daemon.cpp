@@ -162,7 +162,7 @@ void Daemon::Impl::note_log(const farm::ToWorker& message) {
 }
 
 void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& address) {
-  note_log(message);  // before receive(): after a Welcome, that lets write_all() send lines
+  note_log(message);  // first: after a Welcome, receive() lets write_all() send lines
   const SessionEffects effects = session_.receive(message);
   if (message.has_welcome()) {
     backoff_.reset();

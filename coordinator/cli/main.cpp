@@ -15,7 +15,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// Runs the command and returns its exit code. If memory cannot be allocated (std::bad_alloc),
-/// prints this and returns kFailed.
+/// prints an error and returns kFailed.
 ExitCode run_command(const Command& command, Process& process) {
   try {
     return std::visit([&](const auto& options) { return run(options, process); }, command);

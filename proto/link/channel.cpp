@@ -99,9 +99,10 @@ absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseco
                                   const std::function<bool()>& stopped) {
   std::vector<std::string> reasons;
   std::size_t wrong = 0;  // number of addresses that presented another certificate
-  // One of these addresses is on another machine. A wrong certificate on this machine is no proof
-  // that the farm is another one: the join string names addresses that every machine has (loopback,
-  // those of bridges for containers), and this machine may run another farm.
+  // True if one of these addresses is on another machine. If only servers on this machine present
+  // another certificate, the wanted farm may still exist: the join string names addresses that
+  // every machine has (loopback, those of bridges for containers), and this machine may run another
+  // farm.
   bool wrong_elsewhere = false;
   for (const std::string& address : join.addresses) {
     if (stopped && stopped()) {

@@ -47,7 +47,8 @@ absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseco
 absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
                                                   std::chrono::milliseconds timeout);
 
-/// The same through a connection that is open already. The connection is of no other use then.
+/// Fetches the certificate through a connection that is already open. Afterwards the connection
+/// cannot be used for anything else.
 absl::StatusOr<std::string> fetch_certificate_pem(Socket& socket, const Deadline& deadline);
 
 /// Sets the secret and the deadline on a call's context. A deadline of zero means none (for long

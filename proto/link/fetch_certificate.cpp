@@ -41,7 +41,7 @@ absl::StatusOr<bool> advance(SSL* session, Socket& socket, const Deadline& deadl
     return true;
   }
   if (reason != SSL_ERROR_WANT_READ) {
-    ERR_clear_error();  // the thread's queue, which later calls of others would read
+    ERR_clear_error();  // later calls of this thread would read this error
     return absl::UnavailableError("the server there does not speak TLS");
   }
   absl::StatusOr<std::string> answer = socket.receive(deadline);
@@ -82,7 +82,7 @@ absl::StatusOr<std::string> fetch_certificate_pem(Socket& socket, const Deadline
   SSL_set_bio(session.get(), BIO_new(BIO_s_mem()), BIO_new(BIO_s_mem()));
   SSL_set_verify(session.get(), SSL_VERIFY_NONE, nullptr);
   SSL_set_tlsext_host_name(session.get(), kServerName);
-  // A gRPC server closes the connection without it.
+  // A gRPC server closes a connection that does not offer HTTP/2 by ALPN.
   static constexpr unsigned char kAlpn[] = {2, 'h', '2'};
   SSL_set_alpn_protos(session.get(), kAlpn, sizeof(kAlpn));
   while (true) {

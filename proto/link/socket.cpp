@@ -1,4 +1,4 @@
-// Non-blocking calls, with poll() until the deadline.
+// Calls the non-blocking functions of the system, and waits with poll() until the deadline.
 
 #include "proto/link/socket.h"
 
@@ -126,8 +126,8 @@ bool Socket::is_to_this_machine() const {
   } else if (peer.ss_family == AF_INET6) {
     reinterpret_cast<sockaddr_in6&>(peer).sin6_port = 0;
   }
-  // Only an address of this machine can be bound. The address of the connection's own end does not
-  // tell: a connection to 127.0.0.2 comes from 127.0.0.1.
+  // Only an address of this machine can be bound. The address of the connection's own end would not
+  // be enough: a connection to 127.0.0.2 comes from 127.0.0.1.
   const Socket probe(::socket(peer.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   return bind(probe.fd_, reinterpret_cast<const sockaddr*>(&peer), size) == 0;
 }

@@ -13,8 +13,8 @@
 
 namespace bandsaw::link {
 
-/// How long the operations of a socket may wait: until `end`, or until `stopped` returns true,
-/// which is called every `kInterval`. Without `stopped` only the time ends them.
+/// The operations of a socket wait until `end`, or until `stopped` returns true. `stopped` is
+/// called every `kInterval`. If it is empty, only the time ends a wait.
 struct Deadline {
   static constexpr std::chrono::milliseconds kInterval{100};
   std::chrono::steady_clock::time_point end;
@@ -22,14 +22,15 @@ struct Deadline {
 };
 
 /// Owns a connected, non-blocking socket. Every wait ends at the deadline with UNAVAILABLE. Only
-/// the system's resolver, which looks up names, does not know deadlines.
+/// the look-up of a name by the system's resolver has no deadline.
 class Socket {
  public:
   /// Connects to `address`, HOST:PORT or [IPv6]:PORT. UNAVAILABLE: nobody accepts the connection,
   /// or there is no such host. INVALID_ARGUMENT: the address has no port.
   static absl::StatusOr<Socket> connect(const std::string& address, const Deadline& deadline);
-  /// The same with the addresses of a resolved name, in order. Each gets an equal part of the time
-  /// that its predecessors have left.
+  /// Tries the addresses of a resolved name in order, and connects to the first one that accepts.
+  /// Each address gets an equal part of the time that its predecessors have left. `list` stays the
+  /// caller's.
   static absl::StatusOr<Socket> connect(const addrinfo* list, const Deadline& deadline);
   Socket(Socket&& other) noexcept;
   Socket& operator=(Socket&&) = delete;

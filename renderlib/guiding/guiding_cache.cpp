@@ -8,7 +8,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns what is kept for `key`. If nothing is, makes it and appends it unless it is nullptr.
+/// Returns the field or the maps that are kept for `key`. If there are none, calls `make`, and
+/// keeps the result unless it is nullptr.
 template <class Entry, class Key, class Made>
 Made get_or_make(std::deque<Entry>& entries, const Key& key, absl::FunctionRef<Made()> make) {
   for (const Entry& entry : entries) {

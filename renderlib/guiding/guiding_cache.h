@@ -18,13 +18,14 @@ namespace bandsaw {
 
 struct PhotonSources;  // renderlib/integrate/photon_sources.h
 
-/// The field of a scene depends on the shape of the image and the length of the paths. It does not
-/// depend on the seed: images of all seeds use the same field.
+/// The field of a scene depends on the width and height of the image and on the maximum depth of
+/// the paths. It does not depend on the seed: images of all seeds use the same field.
 struct GuidingKey {
   std::uint32_t width = 0;   ///< pixels
   std::uint32_t height = 0;  ///< pixels
   std::uint32_t max_depth = 0;
-  /// Leaves the field empty, and uses no photon maps, where they do not repay their cost.
+  /// If true, the field stays empty, and no photon maps are used, where they do not repay their
+  /// cost.
   bool only_if_it_pays = false;
   friend bool operator==(const GuidingKey&, const GuidingKey&) = default;
 };
@@ -36,7 +37,7 @@ struct TrainedGuiding {
   Portals portals;
   std::uint64_t paths = 0;    ///< training paths from the camera
   std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
-  std::uint64_t rays = 0;     ///< rays of both, of pilots and of the first photon map
+  std::uint64_t rays = 0;     ///< rays of paths, photons, pilots and the first photon map
   /// The surfaces at which the photons of maps start; null: no light comes from maps.
   std::shared_ptr<const PhotonSources> sources;
 };
@@ -46,16 +47,17 @@ struct PhotonMapKey {
   std::uint64_t seed = 0;
   std::uint32_t number = 0;   ///< maps of higher numbers have smaller disks of photons
   std::uint64_t photons = 0;  ///< number of photons of caustics that are started
-  GuidingKey field = {};      ///< the field with which the sources were decided
+  GuidingKey field = {};      ///< key of the field whose training decided on the sources
   friend bool operator==(const PhotonMapKey&, const PhotonMapKey&) = default;
 };
 
-/// The photon maps that some samples use, and what is known from their making.
+/// The photon maps that a range of samples shares, and values that were measured while the maps
+/// were made.
 struct TracedMaps {
   PhotonMap caustics;  ///< empty if caustics are left to paths
   PhotonMap indirect;  ///< light that receivers scattered (integrate/indirect_photons.h)
-  /// A path takes indirect light from the map if it has come at least as far since the last
-  /// receiver; 0: never.
+  /// In scene units: a path takes indirect light from the map if its length since the last receiver
+  /// is at least this. 0 if the map is empty; then it is never used.
   double gather_distance = 0;
   /// Mean solid angle in steradians of the lamps as seen from where photons of caustics start,
   /// weighted by power.
@@ -72,7 +74,7 @@ class GuidingCache {
   using Maps = std::shared_ptr<const TracedMaps>;
 
   /// Returns the field of `key`. If it is not kept yet, calls `make`; other threads that call get()
-  /// wait meanwhile. If `make` returns nullptr (it was stopped), returns that and keeps nothing.
+  /// wait meanwhile. If `make` returns nullptr (it was stopped), returns nullptr and keeps nothing.
   Trained get(const GuidingKey& key, absl::FunctionRef<Trained()> make) EXCLUDES(mutex_);
   /// Forgets all fields and maps, so that the next image makes its own. For measurements.
   void clear() EXCLUDES(mutex_);

@@ -16,25 +16,25 @@ namespace {
 // Radii are found in a tree of places: boxes of space that are divided while they have more than
 // kPhotonsOfLeaf photons.
 constexpr std::uint32_t kPhotonsOfLeaf = 8;
-/// The area of a photon is estimated from at least this many photons.
+/// The area that a photon occupies is estimated from at least this many photons.
 constexpr std::uint32_t kEnough = 16;
 /// Bounds the recursion where many photons are at nearly the same point.
 constexpr int kMaxTreeDepth = 48;
 /// A place is divided at a random point of its longest side: between kFirstPart and 1 - kFirstPart
 /// of the length.
 constexpr double kFirstPart = 3.0 / 8;
-/// In even places (see below) of at most kMostOfEven photons, each disk has kPartOfEven of the area
-/// of its place.
+/// In even places (see below) of at most kMostOfEven photons, each disk has the part kPartOfEven of
+/// the area of its place.
 constexpr std::uint32_t kMostOfEven = 1024;
 constexpr double kPartOfEven = 1.0 / 4;
-// A place is even if its photons are as good as uniform on a flat surface: in it and in all places
-// below it, the powers of the two halves differ by at most kDeviations standard deviations plus
-// kSlope of their sum, and the sum of the normals is at least kFlat times as long as for equal
-// ones.
+// A place is even if its photons are as good as uniform on a flat surface. Two conditions hold in
+// the place and in all places below it. The difference between the powers of its two parts deviates
+// from the expected one by at most kDeviations standard deviations plus kSlope of their sum. The
+// sum of the normals is at least kFlat times as long as it would be for equal normals.
 constexpr double kDeviations = 3.5;
 constexpr double kSlope = 0.1;
 constexpr double kFlat = 0.97;
-/// In an even place one photon stands for several, but a point is still in about this many disks.
+/// In an even place one photon replaces several, but a point still lies in about this many disks.
 constexpr double kSeen = 10;
 /// The largest radius at a radius factor of 1, as a part of the diagonal of the box of all photons.
 constexpr double kLargestDisk = 1.0 / 16;
@@ -70,8 +70,8 @@ Box box_of(absl::Span<const StoredPhoton> photons) {
   return box;
 }
 
-/// Returns the area of the surface in the box, which is about flat: the product of the two longer
-/// sides.
+/// Returns the area of the surface in the box: the product of the two longer sides of the box. The
+/// surface is taken to be flat.
 double area_of(const Box& box) {
   const double x = box.extent(0);
   const double y = box.extent(1);
@@ -84,18 +84,18 @@ struct Place {
   std::uint32_t first = 0;  ///< photons [first, last)
   std::uint32_t last = 0;
   std::uint32_t next = 0;  ///< the place after all descendants
-  double area = 0;         ///< area of a photon, from the smallest ancestor with enough of them
+  double area = 0;         ///< area that a photon occupies; an ancestor's if few photons are here
   double power = 0;        ///< sum of the luminances
   double squares = 0;      ///< sum of the squared luminances
   Vec3 normal;             ///< sum of the normals, by luminance
-  bool even = false;       ///< the photons are as good as uniform on a flat surface
+  bool even = false;       ///< true for an even place, as described above
 
   std::uint32_t count() const { return last - first; }
 };
 
-/// Divides the photons at this part of the longest side of their box. Returns the first photon of
-/// the second half; std::nullopt if there are at most kPhotonsOfLeaf photons, if they are all at
-/// one point, or at the maximum depth.
+/// Divides the photons [first, last) at the part `part`, in (0, 1), of the longest side of their
+/// box, and sorts them accordingly. Returns the first photon of the second half; std::nullopt if
+/// there are at most kPhotonsOfLeaf photons, if they are all at one point, or at the maximum depth.
 std::optional<std::uint32_t> divide(std::vector<StoredPhoton>& photons, std::uint32_t first,
                                     std::uint32_t last, int depth, const Box& box,
                                     float part = 0.5f) {
@@ -112,8 +112,8 @@ std::optional<std::uint32_t> divide(std::vector<StoredPhoton>& photons, std::uin
 }
 
 /// Adds the place of photons [first, last) and its descendants, in depth-first order, and sorts the
-/// photons accordingly. `area` is that of the parent. Where a place is divided is random, by
-/// `seed`: radii jump there, and over several maps the jumps must not add up to a line.
+/// photons accordingly. `area` is that of the parent. `seed` determines the random points at which
+/// places are divided. Radii jump there, and the jumps of several maps must not add up to a line.
 void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::uint32_t last,
                 int depth, double area, std::uint64_t seed, std::vector<Place>& places) {
   const absl::Span<const StoredPhoton> own(photons.data() + first, last - first);
@@ -153,8 +153,8 @@ void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::ui
 }
 
 /// Returns one of the photons, chosen with a probability in proportion to its power, and gives it
-/// the power of all. It stands for all of them where they are close together compared with their
-/// disks.
+/// the power of all. This photon can replace all of them where they are close together compared
+/// with their disks.
 StoredPhoton stand_in(absl::Span<const StoredPhoton> photons, std::uint64_t seed) {
   double total = 0;
   for (const StoredPhoton& photon : photons) {
@@ -172,11 +172,12 @@ StoredPhoton stand_in(absl::Span<const StoredPhoton> photons, std::uint64_t seed
 }
 
 /// Sets the radii of the photons. Where photons are close together compared with their disks, one
-/// of them replaces them.
+/// of them replaces the whole group.
 std::vector<StoredPhoton> with_disks(std::vector<StoredPhoton> photons, double radius_factor,
                                      std::uint64_t seed) {
   std::vector<Place> places;
-  // One tree for each main direction of the normals, so that the walls of a corner are apart.
+  // There is one tree for each main direction of the normals, so the walls of a corner are in
+  // different trees.
   auto from = photons.begin();
   for (std::uint32_t side = 0; side < 6 && from != photons.end(); ++side) {
     const auto to = std::stable_partition(from, photons.end(), [&](const StoredPhoton& photon) {
@@ -197,7 +198,7 @@ std::vector<StoredPhoton> with_disks(std::vector<StoredPhoton> photons, double r
     return std::max(std::min(wanted, largest), 1e-6 * largest);
   };
   double even_radius = 0;   // of the current even place
-  double together = 0;      // number of photons that one stands for there
+  double together = 0;      // number of photons that one photon replaces there
   std::uint32_t until = 0;  // end of the current even place
   for (std::uint32_t i = 0; i < places.size();) {
     const Place& place = places[i];
@@ -264,7 +265,7 @@ void PhotonMap::split(std::uint32_t first, std::uint32_t last, int depth) {
   nodes_[number].next = static_cast<std::uint32_t>(nodes_.size());
 }
 
-/// Children follow their parents, so in reverse order they are complete first.
+/// Children follow their parents, so in reverse order the boxes of children are computed first.
 void PhotonMap::set_boxes() {
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     Node& node = nodes_[i];
@@ -274,7 +275,7 @@ void PhotonMap::set_boxes() {
       Float3 low = photon.position;
       Float3 high = photon.position;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        // A little more than the disk, for rounding.
+        // The box is a little larger than the disk, because of rounding.
         low[axis] = std::nextafter(low[axis] - photon.radius * 1.001f,
                                    -std::numeric_limits<float>::infinity());
         high[axis] = std::nextafter(high[axis] + photon.radius * 1.001f,

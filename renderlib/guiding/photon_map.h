@@ -21,18 +21,18 @@ namespace bandsaw {
 /// A photon that arrived at a surface.
 struct StoredPhoton {
   Float3 position{};
-  float radius = 0;         ///< of its disk; set by PhotonMap
+  float radius = 0;         ///< of its disk, scene units; set by PhotonMap
   Float3 normal{};          ///< geometric normal of the surface, unit, on the side of arrival
   std::uint32_t chain = 0;  ///< number of scatterings between the light and this surface
-  Float3 from{};            ///< unit, towards where it came from
-  Rgb power{};
+  Float3 from{};            ///< unit, towards the place from which the photon came
+  Rgb power{};              ///< flux: radiance x steradian x area in scene units
 };
 
 /// Immutable after construction. integrate/make_photon_maps.h makes the maps of a scene.
 class PhotonMap {
  public:
-  /// A disk is as large as the area of about this many photons, if the radius factor is 1. Where
-  /// photons are spread evenly it is larger.
+  /// A disk has the area that about this many photons occupy, if the radius factor is 1. Where
+  /// photons are spread evenly, disks are larger.
   static constexpr double kPhotonsOfDisk = 20;
 
   PhotonMap() = default;
@@ -78,7 +78,7 @@ class PhotonMap {
 
 /// Returns the density of a photon's power at a point, in 1 / area: Epanechnikov's kernel over the
 /// disk. It is 0 for points farther from the disk's plane than a quarter of the radius, and for
-/// normals that differ by more than 60 degrees, because those are of other surfaces.
+/// normals that differ by more than 60 degrees, because such points belong to other surfaces.
 inline float density_at(const StoredPhoton& photon, const Float3& position, const Float3& normal) {
   const float x = position[0] - photon.position[0];
   const float y = position[1] - photon.position[1];

@@ -12,8 +12,9 @@ namespace {
 /// Maximum number of primitives that are listed.
 constexpr std::size_t kMaxPrimitives = std::size_t{1} << 18;
 
-/// Rougher metals cast no sharp light. A material that blends several kinds of surface is a caster
-/// if its factor of metal or of transmission is above this.
+/// Metals rougher than this are no casters, because they cast no sharp light. A material that
+/// blends several kinds of surface is a caster if its factor of metal or of transmission is above
+/// this.
 constexpr double kRoughest = 0.5;
 
 bool is_caster(const Material& material) {

@@ -34,7 +34,7 @@ class Casters {
                                       double time) const;
 
  private:
-  /// Without casters.
+  /// Makes an object without casters for a scene with this number of materials.
   Casters(const Scene& scene, std::size_t materials) : scene_(scene), casting_(materials) {}
 
   const Scene& scene_;

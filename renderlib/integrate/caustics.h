@@ -27,9 +27,9 @@ namespace bandsaw {
 /// The role of a surface for caustics, as described above.
 enum class CausticRole { kOther, kCaster, kReceiver };
 
-/// Returns true if all lobes of the BSDF that have a pdf are wide, so that photons around a point
-/// tell what it scatters: diffuse surfaces, plastic and glTF's material unless they are polished. A
-/// smooth coat is a delta direction and does not matter.
+/// Returns true if all lobes of the BSDF that have a pdf are wide, so that the light that it
+/// scatters can be estimated from the photons around a point: diffuse surfaces, plastic and glTF's
+/// material unless they are polished. A smooth coat is a delta direction and does not matter.
 bool receives_caustics(const Bsdf& bsdf);
 
 /// Returns the role of a surface of this material with this BSDF.
@@ -53,14 +53,15 @@ class PhotonMaps {
   /// samples, and a band of many samples must not need more maps than a worker can keep.
   static std::uint32_t number_of(std::uint64_t sample);
 
+  /// `casters` MUST outlive this object.
   explicit PhotonMaps(const Casters& casters) : casters_(&casters) {}
   /// Adds the maps `number`, larger than that of all maps so far. They MUST outlive this object.
   void add(std::uint32_t number, const TracedMaps& maps) { maps_.push_back({number, &maps}); }
-  /// Uses these maps for all samples.
+  /// Uses these maps for all samples. They MUST outlive this object.
   void use_for_all(const TracedMaps& maps) { for_all_ = &maps; }
 
   const Casters& casters() const { return *casters_; }
-  /// Returns the maps of a sample; if they were not added, that is a bug of the caller.
+  /// Returns the maps of a sample. They MUST have been added.
   const TracedMaps& of_sample(std::uint64_t sample) const;
 
  private:
@@ -69,8 +70,9 @@ class PhotonMaps {
   const TracedMaps* for_all_ = nullptr;
 };
 
-/// Returns the radiance that a receiver scatters towards `wo`. It comes from the photons of the map
-/// around the point; those with a chain of more than `longest` casters are left out.
+/// Returns the radiance that a receiver scatters towards `wo`, a unit vector. It is estimated from
+/// the photons of the map around the point. Photons with a chain of more than `longest` scatterings
+/// are left out.
 Rgb photon_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf& bsdf,
                     const Vec3& wo, std::uint32_t longest);
 

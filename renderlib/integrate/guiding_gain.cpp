@@ -16,12 +16,13 @@ namespace {
 constexpr std::uint32_t kPixels = 512;
 constexpr std::uint64_t kSamples = 8;
 
-/// A pixel darker than this part of the image's mean counts as if it were that bright: the noise of
-/// black pixels is not seen.
+/// A pixel darker than this part of the image's mean counts as if it were that bright, because the
+/// noise of black pixels is not visible.
 constexpr double kDarkest = 1.0 / 16;
 
-/// Below these shares of the variance, the cells of paths, photon maps, and the cells of photons
-/// cost more than they gain (NOTES.md, "Whether it pays").
+/// Below this share of the variance, the cells of paths cost more than they gain (NOTES.md,
+/// "Whether it pays"). kMinShareOfMaps is the same limit for photon maps, and kMinShareOfPhotons
+/// that for the cells of photons.
 constexpr double kMinShareOfPaths = 0.15;
 /// Where the variance is above this, guiding pays: paths find light so rarely that the field, which
 /// was trained with few of them, cannot show it.
@@ -30,7 +31,7 @@ constexpr double kMinShareOfMaps = 0.08;
 constexpr double kMinShareOfPhotons = 0.2;
 
 /// Photon maps of indirect light are tried if the variance is above kHard, and used if they reduce
-/// variance times rays by this factor.
+/// variance times rays by more than the factor kMinGainOfGathering.
 constexpr double kHard = 0.3;
 constexpr double kMinGainOfGathering = 1.7;
 
@@ -42,8 +43,8 @@ constexpr double kMomentOfLamp = 2;
 struct PixelStatistics {
   double sum = 0;         ///< of the luminances
   double squares = 0;     ///< of the squared luminances
-  double by_paths = 0;    ///< of the variances that GuidingGain::by_paths is about
-  double by_photons = 0;  ///< the same for GuidingGain::by_photons
+  double by_paths = 0;    ///< of the variances that the cells of paths would remove
+  double by_photons = 0;  ///< of the variances that photons would remove
   double expected = 0;    ///< of the luminances that the cells predict
   std::uint64_t rays = 0;
 };
@@ -90,7 +91,7 @@ void follow(const PathContext& context, const GuidingField& field, const Ray& ca
   }
 }
 
-/// Takes the samples of a pixel of the image that is chosen at random by the number `pixel`.
+/// Chooses a pixel of the image at random, by the number `pixel`, and takes its samples.
 PixelStatistics statistics_of(const Scene& scene, const RayGenerator& camera, const GuidingKey& key,
                               const GuidingField& field, const PathOptions& options,
                               std::uint32_t pixel) {

@@ -20,10 +20,11 @@ namespace bandsaw {
 /// The field consists of cells, which hold the directions from which light arrives at a place
 /// (guiding/guiding_cell.h): some are fitted to the light that paths found, others to photons.
 struct GuidingGain {
-  /// Measured without guiding. Too low where light is so rare that the few samples miss it.
+  /// Measured without guiding. It is too low where light is so rare that the few samples miss it.
   double variance = 0;
   double rays = 0;  ///< mean number of rays of a sample
-  /// Predicted by the field, so that rare light counts as well. Each may exceed `variance`.
+  /// The next two are predicted by the field, so that rare light counts as well. Each may exceed
+  /// `variance`.
   double by_paths = 0;    ///< part that the cells of paths would remove
   double by_photons = 0;  ///< part of the caustics, which photon maps or cells of photons remove
 
@@ -37,8 +38,8 @@ struct GuidingGain {
   bool is_hard() const;
 };
 
-/// Returns true if photon maps of indirect light pay: variance times rays was `before` without and
-/// is `with` with them, and that is much less.
+/// Returns true if photon maps of indirect light pay, because they make the product of variance and
+/// rays much smaller. `before` was measured without these maps, and `with` was measured with them.
 bool gathering_pays(const GuidingGain& before, const GuidingGain& with);
 
 /// Measures the variance with 8 samples in each of 512 pixels. Estimates the parts from the cells

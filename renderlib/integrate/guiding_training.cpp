@@ -1,6 +1,7 @@
-// The rounds of the training: photons, a small round of paths, a large round of paths. Each is
-// divided among a fixed number of chunks, which the threads trace, and whose records are joined in
-// order. A pilot (the same rounds with fewer photons and paths) decides whether the training pays.
+// The training has three rounds: photons, a small round of paths, and a large round of paths. Each
+// is divided among a fixed number of chunks, which the threads trace, and whose records are joined
+// in order. A pilot (the same rounds with fewer photons and paths) decides whether the training
+// pays.
 
 #include "renderlib/integrate/guiding_training.h"
 
@@ -20,13 +21,15 @@
 namespace bandsaw {
 namespace {
 
-/// Fixed, so that the records do not depend on the number of threads.
+/// Number of chunks of a round. It is fixed, so that the records do not depend on the number of
+/// threads.
 constexpr std::uint32_t kChunks = 64;
 
 /// Smaller and larger images are trained like images of this many pixels.
 constexpr std::uint64_t kMinTrainingPixels = 1 << 15;
 constexpr std::uint64_t kMaxTrainingPixels = 1 << 18;
-/// The pilot, from which the gain of guiding is estimated, is trained like an image of this many.
+/// The pilot, from which the gain of guiding is estimated, is trained like an image of this many
+/// pixels.
 constexpr std::uint64_t kPilotPixels = 1 << 13;
 /// Number of photons (PhotonMapKey::photons) of the maps with indirect light that the pilot and the
 /// training use.
@@ -95,7 +98,8 @@ std::optional<GuidingGain> pilot(const Scene& scene, const GuidingKey& key, cons
   return expected_gain(scene, key, trained->field, options, preparation);
 }
 
-/// Photon maps for the training, and what they are made of. Without sources there are none.
+/// Photon maps for the training, and the surfaces at which their photons start. If `sources` is
+/// null, there are no maps.
 struct Mapping {
   std::shared_ptr<const PhotonSources> sources;
   std::shared_ptr<const TracedMaps> maps;
@@ -131,7 +135,7 @@ class Decisions {
     options_.portals = portals.empty() ? nullptr : &portals;
   }
 
-  /// Measures the gain of maps and of a field, if it decides what is used.
+  /// Measures the gain of maps and of a field, if this gain decides what is used (only_if_it_pays).
   bool measure() {
     if (key_.only_if_it_pays) {
       gain_ = pilot(scene_, key_, casters_, options_, preparation_, rays_);

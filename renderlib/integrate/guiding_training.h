@@ -1,9 +1,9 @@
 #pragma once
 
-// Training of path guiding: the field of a scene, made before the first sample is rendered. It is a
-// pure function of the scene and the key, so every process that renders the scene can make it
-// alike. Its paths and photons are divided among a fixed number of chunks, whose records are joined
-// in order, so that neither threads nor machines change a bit.
+// Trains the field of path guiding of a scene before the first sample is rendered. The field is a
+// pure function of the scene and the key, so every process that renders the scene makes the same
+// field. The paths and photons of the training are divided among a fixed number of chunks, whose
+// records are joined in order, so that neither threads nor machines change a bit.
 //
 // Photons come first (training_photons.h); the field of their records guides the first round of
 // paths (training_paths.h), and the field of all records so far the second, larger round.

@@ -27,11 +27,12 @@ PixelSampler sampler_of_photons(const PhotonChunk& chunk) {
 struct Place {
   SurfacePoint point;
   Vec3 normal;     ///< geometric normal of one side, each with probability 1/2
-  Vec3 direction;  ///< unit, on that side; its pdf is that of the cosine
+  Vec3 direction;  ///< unit, on that side; sampled with the pdf cosine / pi
   double pdf = 0;  ///< pdf of the point by area, > 0
 };
 
-/// Returns a direction on the side of the normal, by the cosine; std::nullopt if it grazes.
+/// Samples a direction on the side of the normal with the pdf cosine / pi. Returns std::nullopt if
+/// the sample is not on that side.
 std::optional<Vec3> direction_from(const Vec3& normal, double u, double v) {
   const Vec3 direction =
       normalize(orthonormal_basis(normal).to_world(sample_cosine_hemisphere(u, v)));
@@ -76,7 +77,8 @@ void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler
     if (!next) {
       return;
     }
-    // Russian roulette: what is absorbed ends photons, and the others keep their power.
+    // Russian roulette: the share of photons that is absorbed ends, and the others keep their
+    // power.
     const Rgb scattered = power * next->factor;
     const double survival = std::min(1.0, double{max_component(scattered)} / max_component(power));
     if (!(sampler.group(number, group_light(chain))[0] < survival) || !is_finite(scattered)) {
@@ -114,8 +116,8 @@ PhotonOrigins find_origins(const Scene& scene, const PhotonSources& sources, con
       path.ends_at_receiver = true;
       trace_path(context, 1, path);
     }
-    // Radiance times cosine over its pdf is pi times radiance. Factor 2, because one of the two
-    // sides was chosen.
+    // Radiance times cosine, divided by the pdf of the direction, is pi times radiance. Factor 2,
+    // because one of the two sides was chosen.
     const double weight = 2 * kPi / (place->pdf * static_cast<double>(chunk.photons)) *
                           opacity(scene.material(point.material), scene.textures(), point);
     const Rgb power = path.radiance * static_cast<float>(weight);

@@ -5,16 +5,16 @@
 // another one, the light that receivers scattered to that point is estimated from photons, and the
 // path ends at the next receiver that it meets.
 //
-// All light that a receiver scatters is thus divided into two parts. The one that arrives from
-// lamps without meeting another receiver, directly or over mirrors, glass and other surfaces, is
-// found by paths (and its caustics by their own photon map). The one that arrives from other
-// receivers is that of the photons.
+// All light that a receiver scatters is thus divided into two parts. The first part arrives from
+// lamps without meeting another receiver, directly or over mirrors, glass and other surfaces. It is
+// found by paths, and its caustics come from their own photon map. The second part arrives from
+// other receivers. It is estimated from the photons.
 //
-// A photon starts at a random point of a receiver, in a random direction. Its power is the radiance
-// that the point scatters in that direction out of the first part, and a path measures it that is
-// traced as if the camera were there. So lamps, environments, portals and caustics light the
-// starting points exactly as they light the paths of the image. From there on the photon is
-// scattered as paths are, and it is stored at every receiver that it meets.
+// A photon starts at a random point of a receiver, in a random direction. Its power comes from the
+// radiance of the first part that the point scatters in this direction. A path that is traced as if
+// the camera were in this direction measures this radiance. So lamps, environments, portals and
+// caustics light the starting points exactly as they light the paths of the image. From there on
+// the photon is scattered as paths are, and it is stored at every receiver that it meets.
 
 #include <cstdint>
 #include <vector>
@@ -29,7 +29,7 @@ namespace bandsaw {
 /// A point and a direction in which photons start.
 struct PhotonOrigin {
   std::uint64_t number = 0;  ///< determines the point and the direction
-  Rgb power;
+  Rgb power;                 ///< flux (StoredPhoton::power) of all photons that start here
   /// True if the point scatters the same radiance in all directions, so that each photon that
   /// starts there can have a direction of its own.
   bool diffuse = false;
@@ -48,10 +48,10 @@ struct PhotonOrigins {
 PhotonOrigins find_origins(const Scene& scene, const PhotonSources& sources, const PhotonMaps& maps,
                            const PhotonChunk& chunk);
 
-/// Traces photons from the origins, which are chosen in proportion to the luminance of their power
-/// and evenly (systematic sampling), so that all photons of a map start with the same luminance.
-/// `luminance_up_to`: for each origin, the sum of the luminances up to it; not empty. Sets only
-/// `photons` and `rays` of the result.
+/// Traces photons from the origins. The origin of each photon is chosen by systematic sampling, in
+/// proportion to the luminance of the power, so that all photons of a map start with the same
+/// luminance. `luminance_up_to`: for each origin, the sum of the luminances up to and including its
+/// own; not empty. Sets only `photons` and `rays` of the result.
 TracedPhotons trace_indirect_photons(const Scene& scene, const PhotonSources& sources,
                                      absl::Span<const PhotonOrigin> origins,
                                      absl::Span<const double> luminance_up_to,

@@ -29,17 +29,17 @@ constexpr double kLargestLamp = 0.5;
 /// Number of points that are tried for one indirect photon.
 constexpr std::uint64_t kOriginsPerPhoton = 4;
 
-/// A path takes indirect light from the map if it has come this many times the radius of a disk:
-/// the mean radius, weighted by power. So the disks of the map are small as seen from the surface
-/// that gathers the light.
+/// A path takes indirect light from the map if its length since the last receiver is at least this
+/// many times the mean radius of the disks, weighted by power. So the disks of the map are small as
+/// seen from the surface that gathers the light.
 constexpr double kGatherRadii = 3;
 
 /// Minimum number of points at which indirect photons may start, so that disks are small even if
-/// the image is.
+/// the image is small.
 constexpr std::uint64_t kMinOrigins = 1 << 17;
 
-/// The disk of an indirect photon is halved up to this many times where it reaches an edge or a
-/// wall. Otherwise it would shine into a dark room behind a thin wall.
+/// The radius of an indirect photon's disk is halved up to this many times where the disk reaches
+/// an edge or a wall. Otherwise the photon would shine into a dark room behind a thin wall.
 constexpr int kMaxHalvings = 3;
 
 /// Maximum number of primitives at which indirect photons start.
@@ -105,8 +105,8 @@ bool add_caustics(const Scene& scene, const PhotonSources& sources, const Photon
   return !preparation.stopped();
 }
 
-/// Adds the map of indirect light, for which that of caustics MUST be there. Returns false if
-/// stopped.
+/// Adds the map of indirect light. `maps` MUST already have the map of caustics, if the sources
+/// have casters. Returns false if stopped.
 bool add_indirect(const Scene& scene, const PhotonSources& sources, const PhotonMapKey& key,
                   const Preparation& preparation, TracedMaps& maps) {
   PhotonMaps caustics(sources.casters);
@@ -183,8 +183,8 @@ std::shared_ptr<const TracedMaps> make_photon_maps(const Scene& scene, const Pho
 }
 
 bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
-  // Mixtures with a caster: a path that meets such a part takes it for a caster, but photons do not
-  // start there.
+  // A path that meets the caster of a mixture treats it as a caster, but photons do not start
+  // there.
   const auto hinders = [&](const Material& material) {
     const auto* mix = std::get_if<Mix>(&material.kind);
     return misleads_photons(material) ||
@@ -200,7 +200,7 @@ bool caustics_pay(const TracedMaps& maps) {
 
 std::optional<SurfaceSampler> surfaces_of_indirect_light(const Scene& scene,
                                                          const Casters& casters) {
-  // Not scene.features(), because forced features must not change pixels.
+  // scene.features() is not used here, because forced features must not change pixels.
   const bool has_media = scene.media().fog || scene.media().has_boundaries();
   const auto hinders = [](const Material& material) {
     return misleads_photons(material) || std::holds_alternative<Mix>(material.kind);

@@ -14,22 +14,23 @@
 namespace bandsaw {
 
 /// Returns the number of photons of caustics that are started for each map of an image of this size
-/// in pixels: 4 for each pixel, half as many as the paths that share a map, but between 2^14 and
-/// 2^18. There are a quarter as many indirect photons, at least 2^15, because a path looks at them
-/// from afar, so that their noise is averaged.
+/// in pixels. It is 4 for each pixel, half as many as the paths that share one of the first maps,
+/// but between 2^14 and 2^18. There are a quarter as many indirect photons, but at least 2^15.
+/// Fewer are enough, because paths see these photons from afar and average their noise.
 std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height);
 
-/// Traces and builds the maps of caustics and of indirect light, whichever the sources have: a pure
-/// function of the scene, the sources and the key. The radii fall with the number of the map, so
-/// that the mean over maps converges to the irradiance (Knaus and Zwicker 2011, "Progressive Photon
-/// Mapping: A Probabilistic Approach", section 4, alpha = 2/3). Returns nullptr if it was stopped.
+/// Makes the map of caustics if the sources have casters, and the map of indirect light if they
+/// have surfaces. The result is a pure function of the scene, the sources and the key. The radii
+/// fall with the number of the map, so that the mean over maps converges to the irradiance (Knaus
+/// and Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach", section 4, alpha =
+/// 2/3). Returns nullptr if it was stopped.
 std::shared_ptr<const TracedMaps> make_photon_maps(const Scene& scene, const PhotonSources& sources,
                                                    const PhotonMapKey& key,
                                                    const Preparation& preparation);
 
 /// Returns true if caustics can come from maps: the scene has casters, all of which can be sampled,
 /// and emissive surfaces; and it has no motion, no glass with priorities, no mixtures with casters
-/// and no hidden lamps, with which photons would not travel exactly as paths do.
+/// and no hidden lamps. With those, photons would not travel exactly as paths do.
 bool can_have_caustic_maps(const Scene& scene, const Casters& casters);
 
 /// Returns true if photon maps of caustics are better than paths: photons arrive, and the lamps are
@@ -39,7 +40,7 @@ bool caustics_pay(const TracedMaps& maps);
 /// Returns the surfaces at which indirect photons start (PhotonSources::surfaces). Returns
 /// std::nullopt if indirect light cannot come from maps: the scene has no such surface or more than
 /// 2^21 primitives of them, or it has motion, media, mixtures, glass with priorities or hidden
-/// lamps, with which photons would not travel exactly as paths do.
+/// lamps. With those, photons would not travel exactly as paths do.
 std::optional<SurfaceSampler> surfaces_of_indirect_light(const Scene& scene,
                                                          const Casters& casters);
 

@@ -49,7 +49,7 @@ float emission_weight(const Scene& scene, const PreviousVertex& previous, const 
 }
 
 /// Returns the background radiance in a direction in which a ray leaves the scene, times its MIS
-/// weight against light sampling of the environment and against the portals (may be null).
+/// weight against light sampling of the environment and against the portals. `portals` may be null.
 Rgb weighted_background(const Scene& scene, const Portals* portals, const PreviousVertex& previous,
                         const Vec3& direction, Technique technique) {
   const Rgb background = radiance(scene.background(), scene.textures(), direction);
@@ -77,9 +77,11 @@ struct CompetingStrategies {
   /// Local shading: sampled directions contribute only the environment.
   bool reaches_distant_only = false;
   /// True if light is sampled on the far side of the surface. There, directions that pass the
-  /// surface have MIS weight 1, so light sampling covers only lights that they cannot reach.
+  /// surface have MIS weight 1, so light sampling covers only lights that such directions cannot
+  /// reach.
   bool beyond_surface = false;
-  /// True if photons find the light of emissive surfaces, so that they are not sampled here.
+  /// True if photons find the light of emissive surfaces, so that these surfaces are not sampled
+  /// here.
   bool without_surfaces = false;
   /// The portals through which the background is sampled as well; null: none.
   const Portals* portals = nullptr;
@@ -119,7 +121,8 @@ bool is_also_sampled_by_bsdf(const LightSample& light, const CompetingStrategies
 }
 
 /// Returns the light-sampling estimate of the radiance scattered at the point: samples one light,
-/// traces a shadow ray to it, through media with the numbers `media`, and applies the MIS weight.
+/// traces a shadow ray to it, and applies the MIS weight. `media`: random numbers for the media
+/// along the shadow ray.
 Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& receiver,
                  const Bsdf& bsdf, const GuidingCones& cones, const Sample4& numbers,
                  const CompetingStrategies& competing, NumberStream media, std::uint64_t& rays) {
@@ -202,7 +205,8 @@ bool has_free_passage(const Material& material) {
 }
 
 /// Counts a sampled scattering. Returns false, and marks the path as truncated, if `max_depth`
-/// forbids it; for a scattering that does not count, if there were kMaxUncounted of them.
+/// forbids it. A scattering that does not count towards `max_depth` is forbidden after
+/// kMaxUncounted of them.
 bool count(const PathContext& context, const BsdfSample& next, std::uint32_t depth,
            PathState& path) {
   const bool ends = next.counts ? context.is_at_end(path, depth) : path.uncounted == kMaxUncounted;
@@ -285,8 +289,9 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
 }
 
 /// Returns the light of caustics that a receiver scatters along the path. Beyond an earlier
-/// receiver they are looked up in every second sample of a pixel and count twice: they are a small
-/// part of the light there, and looking them up takes longer than the rest of the scattering.
+/// receiver, the map is looked up in every second sample of a pixel only, and its light counts
+/// twice: caustics are a small part of the light there, and a look-up takes longer than the rest of
+/// the scattering.
 Rgb caustics_at(const PathContext& context, const PhotonMap& map, const SurfacePoint& point,
                 const Bsdf& bsdf, std::uint32_t depth, const PathState& path) {
   constexpr std::uint64_t kOneOf = 2;

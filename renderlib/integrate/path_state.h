@@ -38,7 +38,8 @@ struct PathState {
   /// met no receiver yet.
   std::uint32_t chain = kNoChain;
   bool after_receiver = false;  ///< a receiver of caustics has scattered the path
-  /// The light of the next receiver comes from a photon map of indirect light: the path ends there.
+  /// True if the light of the next receiver was already taken from a photon map of indirect light,
+  /// so that the path ends there.
   bool ends_at_receiver = false;
   double reach = 0;                ///< length of the path since the last receiver that scattered it
   bool truncated = false;          ///< see PathCounts::truncated

@@ -10,11 +10,11 @@
 
 namespace bandsaw {
 
-/// Where photons start, and by that which light comes from photon maps.
-/// integrate/guiding_training.h decides on it.
+/// The surfaces at which photons start. They determine which light comes from photon maps. The
+/// training (integrate/guiding_training.h) decides on them.
 struct PhotonSources {
-  /// Surfaces that cast caustics, which then come from maps (caustics.h); without casters, caustics
-  /// are left to paths.
+  /// Surfaces that cast caustics. If there are any, caustics come from maps (caustics.h), otherwise
+  /// caustics are left to paths.
   Casters casters;
   /// Set if indirect light comes from maps (indirect_photons.h): all surfaces that can scatter it,
   /// except casters.

@@ -10,23 +10,23 @@
 namespace bandsaw {
 namespace {
 
-/// Part of the directions that rough surfaces sample about the geometric normal, where the shading
-/// normal is another.
+/// Part of the directions that rough surfaces sample about the geometric normal, where it differs
+/// from the shading normal.
 constexpr double kGeometricPart = 0.125;
-/// Squared distances between unit vectors: normals that differ by less are one normal, and
+/// Squared distances between unit vectors: normals that differ by less are treated as equal, and
 /// directions that differ by less agree up to rounding.
 constexpr double kSameNormal = 1e-16;
 constexpr double kSameDirection = 1e-20;
 
 /// The two normals about which mirrors, fuzzy metal and smooth glass can scatter, unit vectors on
-/// the side of the photon. They use the shading normal, except where that would lead to the wrong
-/// side of the surface. Which normal a path uses depends on the direction from which it comes
-/// (for_mirror() and for_glass() in material/bsdf.cpp), and that is the photon's result. So both
-/// have to be tried.
+/// the side of the photon. These surfaces use the shading normal, except where it would send light
+/// to the wrong side of the surface. The normal that a path uses depends on the direction from
+/// which the path comes (for_mirror() and for_glass() in material/bsdf.cpp). For a photon this is
+/// the direction to be sampled, so both normals have to be tried.
 struct PhotonNormals {
   Vec3 geometric;
   Vec3 shading;
-  bool same;  ///< both are one normal
+  bool same;  ///< the two normals are equal
 };
 
 PhotonNormals normals_at(const Scene& scene, const SurfacePoint& point, const Vec3& in) {
@@ -37,8 +37,8 @@ PhotonNormals normals_at(const Scene& scene, const SurfacePoint& point, const Ve
              : PhotonNormals{point.geometric_normal, shading, same};
 }
 
-/// Returns true if the BSDF, of a path that leaves along `out`, scatters it to `in` about the
-/// normal.
+/// Returns true if `bsdf` scatters a path to `in` about the normal. The path comes from the
+/// direction in which the photon leaves, and `bsdf` is seen from there.
 bool is_path(const Bsdf& bsdf, const Vec3& in, const Vec3& normal) {
   if (const auto* mirror = std::get_if<MirrorBsdf>(&bsdf)) {
     return length_squared(mirror->mirror - in) < kSameDirection;
@@ -49,7 +49,8 @@ bool is_path(const Bsdf& bsdf, const Vec3& in, const Vec3& normal) {
                   length_squared(glass->normal.shading + normal)) < kSameDirection;
 }
 
-/// Returns the scattering to `out`, which was sampled with this pdf, by the BSDF of paths.
+/// Returns the scattering to `out`, which was sampled with this pdf. The factor is that of the BSDF
+/// for a path that comes from `out`.
 PhotonScattering path_value(const Scene& scene, const SurfacePoint& point, const Vec3& in,
                             const Vec3& out, double pdf) {
   const Bsdf of_path = bsdf_at(scene.material(point.material), scene.textures(), point, out);
@@ -98,8 +99,8 @@ std::optional<PhotonScattering> scatter_about(const Scene& scene, const SurfaceP
   return PhotonScattering{out, reflectance * static_cast<float>(factor)};
 }
 
-/// Scatters at a mirror or at smooth glass, whose BSDF seen from `in` is `bsdf`. If paths come here
-/// about both normals, one of the two ways is chosen at random, with twice the power.
+/// Scatters at a mirror or at smooth glass, whose BSDF seen from `in` is `bsdf`. If paths scatter
+/// to `in` about both normals, one of the two ways is chosen at random, and the power is doubled.
 std::optional<PhotonScattering> scatter_specular(const Scene& scene, const SurfacePoint& point,
                                                  const Bsdf& bsdf, const Vec3& in,
                                                  const Sample4& numbers) {
@@ -121,17 +122,19 @@ std::optional<PhotonScattering> scatter_specular(const Scene& scene, const Surfa
 }
 
 /// Returns the scattering into a delta direction at a surface with a smooth coat or at a pane. Such
-/// ways are the same in both directions, except for the cosines at the shading normal. (Where that
-/// sends light to the wrong side of the surface, a path would take another way; this is ignored.)
+/// ways are the same in both directions, except for the cosines at the shading normal. (Where the
+/// shading normal sends light to the wrong side of the surface, a path would take another way; this
+/// is ignored.)
 PhotonScattering scatter_by_delta(const SurfacePoint& point, const Vec3& in,
                                   const BsdfSample& next) {
   const double cosines = dot(next.wi, point.geometric_normal) / dot(in, point.geometric_normal);
   return {next.wi, next.weight * static_cast<float>(std::abs(cosines) / next.compression)};
 }
 
-/// Samples a direction from one of two BSDFs seen from `in`, with the pdf of both together. Both
-/// are needed where the two normals differ: a BSDF bends or replaces its shading normal by the
-/// direction from which it is seen, so one of them would not reach all directions of paths.
+/// Samples a direction from one of two BSDFs seen from `in`, with the pdf of their mixture. Both
+/// are needed where the two normals differ: a BSDF bends or replaces its shading normal depending
+/// on the direction from which it is seen, so one BSDF alone would not reach all directions of
+/// paths.
 std::optional<PhotonScattering> scatter_by_both(const Scene& scene, const SurfacePoint& point,
                                                 const Bsdf& about_shading,
                                                 const Bsdf& about_geometric, const Vec3& in,
@@ -152,7 +155,7 @@ std::optional<PhotonScattering> scatter_by_both(const Scene& scene, const Surfac
   return path_value(scene, point, in, next->wi, pdf);
 }
 
-/// Returns the lobe of fuzzy metal about a normal, whether or not a path would use that.
+/// Returns the lobe of fuzzy metal about a normal, whether or not a path would use this normal.
 Bsdf fuzzy_lobe(const FuzzyMetalBsdf& metal, const Vec3& normal, const PhotonNormals& normals,
                 const Vec3& in) {
   return FuzzyMetalBsdf{{normals.geometric, normals.geometric},

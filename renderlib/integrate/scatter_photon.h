@@ -1,6 +1,7 @@
 #pragma once
 
-// Scattering of a photon at a surface, as the opposite of what a path does there.
+// Scatters a photon at a surface. The photon takes a way that a path takes in the opposite
+// direction.
 
 #include <optional>
 
@@ -17,10 +18,11 @@ struct PhotonScattering {
   Rgb factor;  ///< of its power
 };
 
-/// Samples the direction in which a photon leaves a surface at `point`. It comes from `in`, a unit
-/// vector that points away from the surface. The power changes by the BSDF of the opposite way, in
-/// which paths travel: neither refraction nor shading normals are symmetric (Veach 1997, section
-/// 5.3). Returns std::nullopt if the photon is absorbed. The factor can be zero or not finite.
+/// Samples the direction in which a photon leaves a surface at `point`. The photon comes from `in`,
+/// a unit vector that points away from the surface. `numbers`: four random numbers in [0, 1). The
+/// power changes by the BSDF of a path that travels in the opposite direction, because neither
+/// refraction nor shading normals are symmetric (Veach 1997, section 5.3). Returns std::nullopt if
+/// the photon is absorbed. The factor can be zero or not finite.
 std::optional<PhotonScattering> scatter_photon(const Scene& scene, const SurfacePoint& point,
                                                const Vec3& in, const Sample4& numbers);
 

@@ -24,7 +24,7 @@ class SurfaceSampler {
  public:
   /// Appends a primitive of the scene. Returns false, and leaves it out, if its area in the middle
   /// of the shutter, or the sum of the areas, is not finite. A primitive without area is left out
-  /// as well; that returns true.
+  /// as well, but then add() returns true.
   bool add(const Scene& scene, PrimitiveId id);
 
   bool empty() const { return primitives_.empty(); }

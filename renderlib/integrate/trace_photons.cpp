@@ -68,7 +68,7 @@ double receiving_part(const Scene& scene, const Casters& casters, MaterialId id,
 }
 
 /// Returns the photon that leaves a random point of a caster; std::nullopt if no emissive surface
-/// lights the point or the photon is absorbed. `photons`: their number, which share the power.
+/// lights the point or the photon is absorbed. `photons`: number of photons that share the power.
 std::optional<Photon> start(const Scene& scene, const Casters& casters, const Numbers& numbers,
                             std::uint64_t photons, std::uint64_t& rays) {
   std::optional<PhotonStart> at = start_photon(scene, casters, numbers.sampler, numbers.photon,

@@ -38,8 +38,9 @@ struct TracedPhotons {
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk);
 
 /// Returns the photon of this power as a map holds it: it arrived at the receiver `hit` from
-/// direction `from` after `chain` scatterings. Paths look up photons only where the receiver is
-/// present, so the power is the one that arrives whether or not it is.
+/// direction `from` after `chain` scatterings. A partly transparent receiver, or one in a mixture,
+/// is present with some probability, and paths look up photons only where it is present. So the map
+/// holds `power` divided by this probability.
 StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const SurfacePoint& hit,
                            const Vec3& from, std::uint32_t chain, Rgb power);
 

@@ -14,7 +14,8 @@ SampleRange range_at(const std::vector<std::uint32_t>& numbers, std::size_t i) {
   return {numbers[2 * i], std::uint64_t{numbers[2 * i]} + numbers[2 * i + 1]};
 }
 
-/// Returns the part with other samples of its half tiles.
+/// Returns the part with other samples of its half tiles: those of `numbers`
+/// (TileSamples::numbers).
 BandPart with_numbers(const BandPart& part, const std::vector<std::uint32_t>& numbers,
                       std::uint32_t width) {
   auto tiles = TileSamples::from_numbers(numbers, width, part.band.rows);

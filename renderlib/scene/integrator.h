@@ -13,8 +13,8 @@ namespace bandsaw {
 
 /// The values are used in protocols and files.
 enum class Integrator {
-  /// Path tracing (integrate/path.h). As kPathGuided where a pilot shows that it pays
-  /// (integrate/guiding_gain.h), otherwise as kPathPlain.
+  /// Path tracing (integrate/path.h). This works as kPathGuided where a pilot shows that this pays
+  /// (integrate/guiding_gain.h), and otherwise as kPathPlain.
   kPath = 0,
   kDirect = 1,   ///< direct light and the ambient term; paths continue at mirrors and glass
   kNormals = 2,  ///< (n + 1) / 2 of the shading normal in world space; black for a miss
@@ -32,7 +32,7 @@ enum class Integrator {
 };
 inline constexpr int kLastIntegrator = 9;
 
-/// Returns true for those that path_radiance (integrate/path.h) computes.
+/// Returns true for the integrators that path_radiance (integrate/path.h) computes.
 constexpr bool computes_radiance(Integrator integrator) {
   return integrator == Integrator::kPath || integrator == Integrator::kDirect ||
          integrator == Integrator::kPathLights || integrator == Integrator::kPathScattering ||

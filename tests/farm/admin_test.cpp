@@ -36,7 +36,7 @@ class Administration : public testing::Test {
 };
 
 // Scripts, such as that in the README, wait for the users' file and then start a worker with the
-// workers' file. So that one must be there before.
+// workers' file. So the workers' file must be there first.
 TEST_F(Administration, TheFileForUsersIsWrittenLast) {
   EXPECT_LE(std::filesystem::last_write_time(farm_.join_file()),
             std::filesystem::last_write_time(farm_.farm_file()));
@@ -163,8 +163,8 @@ TEST_F(Administration, ALinkForBrowsersLastsUntilItIsRevokedOrASecretIsRenewed) 
   EXPECT_NE(secret(), last) << "also if no coordinator runs";
 }
 
-// One band of a million samples, so that each worker is killed while it renders this band. The
-// first loss makes the band suspect; five more are needed on a farm that has not stored a band
+// The job is one band of a million samples, so each worker is killed while it renders this band.
+// The first loss makes the band suspect; five more are needed on a farm that has not stored a band
 // before (coordinator/scheduler/liveness/crash_attribution.h).
 TEST_F(Administration, ABandThatCrashesEveryWorkerFailsItsJob) {
   EXPECT_EQ(

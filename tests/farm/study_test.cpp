@@ -34,8 +34,8 @@ TEST_F(StudyCommand, WritesTableFiguresAndPlot) {
   EXPECT_NE(done.out.find("| spheres | independent numbers | 16 |"), std::string::npos);
   const std::string csv = file_bytes(folder_ / "s.csv");
   // The header, and for each of the two scenes: rows of 1, 4 and 16 samples for four methods and
-  // for adaptive sampling, and rows of four tolerances. The Cornell box uses photon maps of indirect
-  // light, so it has rows without them as well.
+  // for adaptive sampling, and rows of four tolerances. The Cornell box uses photon maps of
+  // indirect light, so it has rows without them as well.
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (5 * 3 + 4) + 3);
   EXPECT_EQ(file_bytes(folder_ / "s.svg").rfind("<svg ", 0), 0u);
 }

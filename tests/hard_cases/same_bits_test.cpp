@@ -64,7 +64,7 @@ std::string hash_of(const ImportedScene& imported, const Rendering& how) {
   return absl::StrFormat("%016x", hash.value());
 }
 
-/// True if each ray can be tested against all primitives of the scene.
+/// Returns true if the scene is so small that each ray can be tested against all of its primitives.
 bool is_small(const Geometry& geometry) {
   const auto few = [](const Mesh& mesh) { return mesh.triangles.size() <= 2'000; };
   return geometry.instances.size() <= 10 &&

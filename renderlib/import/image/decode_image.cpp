@@ -32,7 +32,7 @@
 namespace bandsaw {
 namespace {
 
-// Removes the next word of the header and one white-space character after it.
+// Removes and returns the next word of the header, and removes one white-space character after it.
 absl::string_view take_word(absl::string_view& rest) {
   std::size_t end = 0;
   while (end < rest.size() && !absl::ascii_isspace(static_cast<unsigned char>(rest[end]))) {
@@ -43,7 +43,7 @@ absl::string_view take_word(absl::string_view& rest) {
   return word;
 }
 
-/// Returns the number in the first four of `bytes`, which MUST be that many.
+/// Returns the number in the first four bytes. There MUST be at least four.
 std::uint32_t first_number(absl::string_view bytes, bool big_endian) {
   std::uint32_t bits = 0;
   std::memcpy(&bits, bytes.data(), sizeof(bits));
@@ -309,8 +309,8 @@ absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes) {
   alpha.height = 1;
   std::vector<std::byte> texels{std::byte{255}};
   if (shape.channels == 2 || shape.channels == 4) {
-    // Decoded to four channels, of which the last is alpha, also if the file has only grey and
-    // alpha.
+    // The file is decoded to four channels, of which the last is alpha, even if it has only grey
+    // and alpha.
     Shape found;
     ASSIGN_OR_RETURN(const Pixels<stbi_uc> pixels, decode_pixels(bytes, 4, found));
     alpha.width = static_cast<std::uint32_t>(found.width);

@@ -92,7 +92,8 @@ Totals totals_of(const PhotonMap& map, double from = 0, double to = 1) {
 }
 
 // The mean over many places of the estimate is the density of the photons, which is ten times as
-// high where x < 1/4. The disks are in proportion. As the photons are even, there is little noise.
+// high where x < 1/4. The disks are smaller there accordingly. The photons are spread evenly in
+// each part, so there is little noise.
 TEST(PhotonMap, EstimatesTheDensityAndAdaptsTheDisks) {
   Pool pool(1);
   constexpr std::uint64_t kPhotons = 100'000;
@@ -110,7 +111,7 @@ TEST(PhotonMap, EstimatesTheDensityAndAdaptsTheDisks) {
     EXPECT_LT(moments.variance(), 0.15 * 0.15 * expected * expected);
   }
   EXPECT_NEAR(totals_of(map).power, kPhotons, 1e-3 * kPhotons);
-  EXPECT_LT(map.size(), kPhotons / 2);  // where they are even, some stand for others
+  EXPECT_LT(map.size(), kPhotons / 2);  // in even places one photon replaces several
   const double ratio = totals_of(map, 0.25).radius / totals_of(map, 0, 0.25).radius;
   EXPECT_GT(ratio, 2);
   EXPECT_LT(ratio, 5);
@@ -152,8 +153,8 @@ TEST(PhotonMap, DependsNotOnThreads) {
   }
 }
 
-// Where radii jump from one part of the photons to the next, an image would show lines if they were
-// at the same places in all maps. Here, twice as many photons lie on one half of the floor.
+// Radii jump from one part of the photons to the next. An image would show lines if the jumps were
+// at the same places in all maps. Here, a quarter of the floor has no photons.
 TEST(PhotonMap, TheSeedDecidesWhereRadiiJump) {
   Pool pool(1);
   std::vector<StoredPhoton> photons = on_floor(4000);

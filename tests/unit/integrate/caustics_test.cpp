@@ -1,7 +1,7 @@
-// Caustics from photon maps: closed forms, and that maps and path tracing divide the light exactly.
-// Photons are traced from lamps to casters, the surfaces of metal and glass, and arrive at
-// receivers, the surfaces with wide lobes. Light that takes this way is estimated by the maps, and
-// left out by paths.
+// Compares caustics from photon maps with closed forms, and checks that maps and path tracing
+// divide the light exactly between them. Photons are traced from lamps to casters, the surfaces of
+// metal and glass, and arrive at receivers, the surfaces with wide lobes. Light that takes this way
+// is estimated from the maps, and paths leave it out.
 
 #include "renderlib/integrate/caustics.h"
 
@@ -47,7 +47,8 @@ struct Expected {
 };
 
 /// Expects the mean over maps, each with its own seed, of the radiance that arrives from each point
-/// after at most two scatterings: within 4 standard errors and 2 % of bias.
+/// after at most two scatterings. The mean must be within 4 standard errors, plus 2 % for bias, of
+/// the expected radiance.
 void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expected>& expected) {
   const Casters casters(scene);
   Pool pool(2);
@@ -73,9 +74,9 @@ void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expe
   }
 }
 
-// Glass that hardly refracts stops shadow rays, but the lamp lights the wall as if it were bare. A
-// sphere of radius r and radiance L at distance d gives a surface that is wholly on one side of it
-// the irradiance pi L (r / d)^2 cos.
+// Glass that hardly refracts stops shadow rays, but the lamp lights the wall as if the lamp were
+// bare. A sphere of radius r and radiance L at distance d gives a surface that is wholly on one
+// side of it the irradiance pi L (r / d)^2 cos.
 TEST(Caustics, MeetTheClosedFormOfALampInGlassThatDoesNotRefract) {
   const auto scene = lamp_in_glass(1.00001, 0.2).build();
   std::vector<Expected> expected;
@@ -86,8 +87,8 @@ TEST(Caustics, MeetTheClosedFormOfALampInGlassThatDoesNotRefract) {
   expect_radiance(*scene, {0, 0, 1.9}, expected);
 }
 
-// A mirror on the floor lights a wall as a second lamp below it would, if the wall sees it in the
-// mirror wholly.
+// A mirror on the floor lights a wall as a second lamp below it would, if the wall sees the whole
+// lamp in the mirror.
 TEST(Caustics, MeetTheClosedFormOfALampAboveAMirror) {
   SceneMaker maker;
   const MaterialId wall = maker.diffuse(0.5f);
@@ -108,7 +109,7 @@ TEST(Caustics, MeetTheClosedFormOfALampAboveAMirror) {
 }
 
 // All light of a small lamp in the middle of a ball meets the glass at right angles; 4 % of it is
-// reflected back to the lamp. The other power arrives at the walls.
+// reflected back to the lamp. The rest of the power arrives at the walls.
 TEST(Caustics, TheWallsReceiveThePowerOfTheLampInGlass) {
   const auto scene = lamp_in_glass(1.5, 0.02).build();
   const Casters casters(*scene);
@@ -186,7 +187,7 @@ TEST(Caustics, NoPowerIsLostAtEdges) {
     lost += on_floor ? photon.power.g * (1 - share_on_surface(*scene, photon)) : 0;
   }
   EXPECT_NEAR(sum, raw, 0.01 * raw);
-  EXPECT_GT(lost, 0.02 * raw);  // without the correction
+  EXPECT_GT(lost, 0.02 * raw);  // the power that would be lost without the correction
 }
 
 TEST(Caustics, TheShareOnTheSurfaceKnowsEdges) {
@@ -206,9 +207,9 @@ TEST(Caustics, TheShareOnTheSurfaceKnowsEdges) {
   EXPECT_NEAR(share_on_surface(*scene, photon), 0.25, 0.1);
 }
 
-// Photons at all distances up to the radius from a straight edge: the mean share is 1 minus the
-// integral of x f(x) over [0, 1], where f(x) = 8 / (3 pi) (1 - x^2)^(3/2) is the kernel's density
-// at the distance x of a line from the centre: 1 - 8 / (15 pi).
+// The photons are at all distances up to the radius from a straight edge. Their mean share is 1
+// minus the integral of x f(x) over [0, 1], where f(x) = 8 / (3 pi) (1 - x^2)^(3/2) is the kernel's
+// density at the distance x of a line from the centre: 1 - 8 / (15 pi).
 TEST(Caustics, TheMeanShareOnTheSurfaceIsRightNearAnEdge) {
   SceneMaker maker;
   maker.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, maker.diffuse(0.5f));
@@ -224,7 +225,8 @@ TEST(Caustics, TheMeanShareOnTheSurfaceIsRightNearAnEdge) {
                               .normal = {0, 0, 1}};
     sum += share_on_surface(*scene, photon);
   }
-  // The standard deviation of a share is below 0.07, so this is at least 4 standard errors.
+  // The standard deviation of a share is below 0.07, so the tolerance is at least 4 standard
+  // errors.
   EXPECT_NEAR(sum / kPhotons, 1 - 8 / (15 * kPi), 0.002);
 }
 
@@ -239,8 +241,9 @@ TEST(Caustics, TheShareOnTheSurfaceIgnoresTransparentSurfaces) {
   EXPECT_EQ(share_on_surface(*maker.build(), photon), 1);
 }
 
-// With an empty map, paths bring just the light that is not left to the photons: none in a room
-// whose lamp is in glass, up to the depth at which a surface of the room is the second receiver.
+// With an empty map, paths bring just the light that is not left to the photons. In a room whose
+// lamp is in glass this is none, because all light passes the glass before it meets a surface of
+// the room.
 TEST(Caustics, PathsLeaveOutJustTheLightOfThePhotons) {
   const auto scene = lamp_in_glass(1.5, 0.2).build();
   const Casters casters(*scene);
@@ -264,8 +267,8 @@ TEST(Caustics, PathsLeaveOutJustTheLightOfThePhotons) {
   EXPECT_GT(plain, 0);
 }
 
-// Maps follow each other, each takes an aligned range of a power of two of samples, and their
-// number grows with the root of the number of samples.
+// The maps of an image are for consecutive, aligned ranges of samples, and the length of each range
+// is a power of two. The number of maps grows with the root of the number of samples.
 TEST(PhotonMaps, TakeAlignedRangesOfSamples) {
   constexpr std::uint64_t kStep = PhotonMaps::kMinSamplesOfMap;
   std::uint64_t first = 0;
@@ -307,8 +310,8 @@ TEST(Caustics, ChangeNoMean) {
   }
 }
 
-// Casters whose directions have a pdf: there light sampling finds the lamp too, and the photons
-// take its place.
+// At casters whose directions have a pdf, light sampling finds the lamp as well. Photons take the
+// place of this light sampling.
 TEST(Caustics, ChangeNoMeanWithFuzzyMetalAndRoughGlass) {
   for (const bool glass : {false, true}) {
     SCOPED_TRACE(glass);

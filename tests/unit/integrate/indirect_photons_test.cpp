@@ -1,7 +1,7 @@
-// Indirect light from photon maps: a closed form, and that paths with maps have the same expected
-// value as paths without. A receiver is a surface with wide lobes. At the second receiver of a
-// path, the light that other receivers sent there is estimated from photons, and the path ends at
-// the next one.
+// Compares indirect light from photon maps with a closed form, and checks that paths with maps have
+// the same expected value as paths without. A receiver is a surface with wide lobes. At the second
+// receiver of a path, the light that other receivers sent there is estimated from photons, and the
+// path ends at the next receiver.
 
 #include "renderlib/integrate/indirect_photons.h"
 
@@ -128,7 +128,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-// Nine comparisons.
+// This test makes nine comparisons.
 TEST(IndirectPhotons, ChangeNoMean) {
   for (const Case& of : cases()) {
     SCOPED_TRACE(of.name);
@@ -145,8 +145,8 @@ TEST(IndirectPhotons, ChangeNoMean) {
   }
 }
 
-// Photons that start have the luminance of all light divided by their number. Absorption ends them,
-// so in grey rooms all of them keep it.
+// Each photon starts with the luminance of all light divided by the number of photons. Absorption
+// ends photons and does not dim them, so in grey rooms all photons keep this luminance.
 TEST(IndirectPhotons, HaveEqualPower) {
   const auto scene = uplit_room().build();
   const PhotonSources sources = sources_of(*scene, 8);
@@ -189,8 +189,8 @@ TEST(IndirectPhotons, DependNeitherOnThreadsNorOnChunks) {
             one->indirect.photons()[0].position);
 }
 
-// Where only a background lights a scene, paths are split at the first surface. With maps they are
-// not, because each sample has one map.
+// Where only a background lights a scene, paths are split at the first surface. With maps, paths
+// are not split, because each sample has one map.
 TEST(IndirectPhotons, AreUsedWhereABackgroundLightsTheScene) {
   SceneMaker maker;
   add_room(maker, maker.diffuse(0.6f));
@@ -207,7 +207,7 @@ TEST(IndirectPhotons, AreUsedWhereABackgroundLightsTheScene) {
 }
 
 // The integrator `path` takes indirect light from maps where the light of a lamp reaches most of
-// the room by the ceiling, and not where it is found by light sampling.
+// the room by way of the ceiling, and not where it is found by light sampling.
 TEST(IndirectPhotons, AreUsedWhereTheyPay) {
   Pool pool(2);
   const auto are_used = [&](const SceneMaker& maker) {

@@ -45,7 +45,7 @@ inline void expect_same_mean(const Scene& scene, const PhotonSources& sources, c
     Moments of_map;
     for (std::uint32_t i = 0; i < size.paths; ++i) {
       const PixelSampler sampler(5, i, number);
-      // The directions differ a little, so that one map tells more.
+      // The directions differ a little, so that more places of each map are tested.
       const Vec3 aside{0.0004 * (i % 32) - 0.0064, 0.0004 * (i / 32) - 0.0064, 0};
       const Ray near{.origin = ray.origin, .direction = normalize(ray.direction + aside * 20)};
       of_map.add(path_radiance(scene, near, sampler, 0, mapped, counts).g);

@@ -33,7 +33,7 @@ class Echo : public farm::Farm::Service {
   }
 };
 
-/// Runs an Echo on loopback. `wanted_port`: 0: any free one.
+/// Runs an Echo on loopback. `wanted_port`: the port; 0 for any free one.
 struct EchoServer {
   Echo service;
   int port = 0;

@@ -12,7 +12,7 @@
 namespace bandsaw::link {
 namespace {
 
-/// A loopback address on which a socket listens, as one that getaddrinfo has found.
+/// A loopback address on which a socket listens, in the form in which getaddrinfo returns one.
 struct Listener {
   const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
   sockaddr_in address{};
@@ -35,7 +35,8 @@ struct Listener {
   ~Listener() { close(fd); }
 };
 
-/// A listener that answers no connection: Linux answers none while a queue of length 0 has one.
+/// A listener that answers no connection: its queue has the length 0, and Linux answers no further
+/// connection while one waits in such a queue.
 struct SilentListener : Listener {
   std::vector<int> waiting;
 

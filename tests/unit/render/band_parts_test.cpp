@@ -56,7 +56,7 @@ TEST(BandParts, HalvesDivideTheSamplesOfAllHalfTiles) {
 }
 
 // The film keeps the sums of two halves of the samples, [0, n) and [n, 2n), for the estimate of the
-// error. The noise of a map that both had would be missing from it.
+// error. If both halves shared a map, the noise of this map would be missing from the estimate.
 TEST(BandParts, TheHalvesOfAnImageShareNoMap) {
   for (std::uint64_t half = kBlockSamples; half <= 1 << 20; half *= 2) {
     EXPECT_LT(PhotonMaps::number_of(half - 1), PhotonMaps::number_of(half)) << half;

@@ -10,8 +10,8 @@
 namespace bandsaw {
 namespace {
 
-/// The definition of a node: some level and index whose blocks the range covers, the last one
-/// possibly truncated.
+/// Returns true if the range is a node by the definition: there are a level and an index whose
+/// blocks the range covers. The last block may be truncated.
 bool is_node_by_definition(std::uint64_t first, std::uint64_t last) {
   for (std::uint64_t blocks = 1; blocks <= 64; blocks *= 2) {
     for (std::uint64_t index = 0; index < 64; ++index) {

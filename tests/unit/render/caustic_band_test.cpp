@@ -1,5 +1,6 @@
-// The integrator path_guided where photon maps find caustics: pixels have the same bits for any
-// number of threads and any division of the image into bands (ranges of samples by ranges of rows).
+// Renders, with the integrator path_guided, a scene whose caustics come from photon maps. The
+// pixels have the same bits for any number of threads and any division of the image into bands
+// (ranges of samples by ranges of rows).
 
 #include <gtest/gtest.h>
 
