@@ -59,6 +59,9 @@ struct TracedMaps {
   /// In scene units: a path takes indirect light from the map if its length since the last receiver
   /// is at least this. 0 if the map is empty; then it is never used.
   double gather_distance = 0;
+  /// Effective number of the points at which the photons of `indirect` start: the squared sum of
+  /// their powers over the sum of the squares (Kish 1965, "Survey Sampling").
+  double effective_origins = 0;
   /// Mean solid angle in steradians of the lamps as seen from where photons of caustics start,
   /// weighted by power.
   double lamp_angle = 0;

@@ -101,7 +101,9 @@ std::optional<std::uint32_t> divide(std::vector<StoredPhoton>& photons, std::uin
                                     float part = 0.5f) {
   const std::size_t axis = box.longest_axis();
   const float middle = box.low[axis] * (1 - part) + box.high[axis] * part;
-  if (last - first <= kPhotonsOfLeaf || depth >= kMaxTreeDepth || !(middle > box.low[axis])) {
+  // In a box that is a few units in the last place wide, `middle` may be rounded to above the box.
+  const bool divides = middle > box.low[axis] && middle <= box.high[axis];
+  if (last - first <= kPhotonsOfLeaf || depth >= kMaxTreeDepth || !divides) {
     return std::nullopt;
   }
   const auto half = std::stable_partition(
@@ -119,7 +121,8 @@ void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::ui
   const absl::Span<const StoredPhoton> own(photons.data() + first, last - first);
   const Box box = box_of(own);
   Place place{.first = first, .last = last, .area = area, .normal = {}};
-  if (own.size() >= kEnough) {
+  // Photons at one point tell no area.
+  if (own.size() >= kEnough && area_of(box) > 0) {
     // The outermost photons lie on the sides of the box, so it holds about one photon less.
     place.area = area_of(box) / static_cast<double>(own.size() - 1);
   }

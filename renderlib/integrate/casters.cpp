@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "renderlib/geometry/primitive_list.h"
+
 namespace bandsaw {
 namespace {
 
 /// Maximum number of primitives that are listed.
-constexpr std::size_t kMaxPrimitives = std::size_t{1} << 18;
+constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 18;
 
 /// Metals rougher than this are no casters, because they cast no sharp light. A material that
 /// blends several kinds of surface is a caster if its factor of metal or of transmission is above
@@ -42,17 +44,13 @@ Casters::Casters(const Scene& scene) : scene_(scene) {
   for (const Material& material : scene.materials()) {
     casting_.push_back(is_caster(material));
   }
-  std::vector<PrimitiveId> ids;
-  visit_primitives(geometry, [&](PrimitiveId id, MaterialId material) {
-    if (casts(material)) {
-      ids.push_back(id);
-    }
-  });
-  const std::size_t step = (ids.size() + kMaxPrimitives - 1) / kMaxPrimitives;
+  const PrimitiveList list(geometry, casting_);
+  const std::uint64_t step = (list.size() + kMaxPrimitives - 1) / kMaxPrimitives;
   complete_ = step <= 1;
   std::vector<SurfaceSampler> all(scene.materials().size());
-  for (std::size_t i = 0; i < ids.size(); i += step) {
-    complete_ = all[index_of(material_of(geometry, ids[i]))].add(scene, ids[i]) && complete_;
+  for (std::uint64_t i = 0; i < list.size(); i += step) {
+    const PrimitiveId id = list[i];
+    complete_ = all[index_of(material_of(geometry, id))].add(scene, id) && complete_;
   }
   for (SurfaceSampler& of : all) {
     if (!of.empty()) {

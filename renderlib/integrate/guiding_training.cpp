@@ -177,6 +177,9 @@ class Decisions {
     if (!mapping) {
       return false;
     }
+    if (!has_enough_origins(*mapping->maps)) {
+      return true;
+    }
     const std::optional<GuidingGain> before = gain_;
     Mapping without = mapping_;
     use(*std::move(mapping));

@@ -57,11 +57,21 @@ std::optional<Place> place_of(const Scene& scene, const PhotonSources& sources,
   return direction ? std::optional(Place{at->point, normal, *direction, at->pdf}) : std::nullopt;
 }
 
-/// Follows the photon, which has left an origin, and adds it to `out` at each receiver.
+/// Number of scatterings after which Russian roulette ends a photon even if nothing is absorbed,
+/// and the probability with which it survives each further one. So the mean number of photons that
+/// are stored for each one that starts is at most kLongChain + 1 / (1 - kSurvival).
+constexpr std::uint32_t kLongChain = 8;
+constexpr double kSurvival = 0.75;
+
+/// Follows the photon, which has left an origin, and adds it to `out` at each receiver: at the
+/// first one with `of_first` times its power, or not at all if that is 0.
 void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler& sampler,
-            std::uint64_t number, Ray ray, Rgb power, TracedPhotons& out) {
+            std::uint64_t number, Ray ray, Rgb power, float of_first, TracedPhotons& out) {
   NestedDielectrics nesting;
-  for (std::uint32_t chain = 1; chain < sources.max_depth; ++chain) {
+  std::uint32_t uncounted = 0;  // scatterings that do not count towards max_depth
+  float share = of_first;
+  for (std::uint32_t chain = 1; chain - uncounted < sources.max_depth && uncounted < kMaxUncounted;
+       ++chain) {
     const std::optional<SurfacePoint> hit =
         intersect_visible(scene, ray, sampler, number, chain, nesting, out.rays);
     if (!hit || std::holds_alternative<Emissive>(scene.material(hit->material).kind)) {
@@ -70,7 +80,11 @@ void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler
     const Vec3 from = -ray.direction;
     const Bsdf bsdf = bsdf_at(scene.material(hit->material), scene.textures(), *hit, from);
     if (caustic_role(sources.casters, hit->material, bsdf) == CausticRole::kReceiver) {
-      out.photons.push_back(stored_photon(scene, sources.casters, *hit, from, chain, power));
+      if (share > 0) {
+        out.photons.push_back(
+            stored_photon(scene, sources.casters, *hit, from, chain - uncounted, power * share));
+      }
+      share = 1;
     }
     const std::optional<PhotonScattering> next =
         scatter_photon(scene, *hit, from, sampler.group(number, group_bsdf(chain)));
@@ -80,10 +94,12 @@ void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler
     // Russian roulette: the share of photons that is absorbed ends, and the others keep their
     // power.
     const Rgb scattered = power * next->factor;
-    const double survival = std::min(1.0, double{max_component(scattered)} / max_component(power));
+    const double survival = std::min(chain < kLongChain ? 1 : kSurvival,
+                                     double{max_component(scattered)} / max_component(power));
     if (!(sampler.group(number, group_light(chain))[0] < survival) || !is_finite(scattered)) {
       return;
     }
+    uncounted += next->counts ? 0 : 1;
     power = scattered * static_cast<float>(1 / survival);
     ray = spawn_ray(*hit, next->out);
   }
@@ -136,18 +152,33 @@ TracedPhotons trace_indirect_photons(const Scene& scene, const PhotonSources& so
   const PixelSampler sampler = sampler_of_photons(chunk);
   const double each = luminance_up_to.back() / static_cast<double>(chunk.photons);
   const double shift = sampler.group(0, kGroupTime)[0];
-  TracedPhotons out;
-  for (std::uint64_t number = chunk.first; number < chunk.last; ++number) {
+  const auto origin_of = [&](std::uint64_t number) {
     const double wanted = (static_cast<double>(number) + shift) * each;
     const auto found = std::upper_bound(luminance_up_to.begin(), luminance_up_to.end() - 1, wanted);
-    const PhotonOrigin& origin = origins[static_cast<std::size_t>(found - luminance_up_to.begin())];
+    return static_cast<std::size_t>(found - luminance_up_to.begin());
+  };
+  TracedPhotons out;
+  for (std::uint64_t first = chunk.first, next = first; first < chunk.last; first = next) {
+    const std::size_t chosen = origin_of(first);
+    while (next < chunk.last && origin_of(next) == chosen) {
+      ++next;
+    }
+    const PhotonOrigin& origin = origins[chosen];
     const std::optional<Place> place = place_of(scene, sources, of_origins, origin.number);
-    const Sample4 toward = sampler.group(number, kGroupCamera);
-    const std::optional<Vec3> direction =
-        origin.diffuse ? direction_from(place->normal, toward[0], toward[1]) : place->direction;
-    if (direction) {
-      follow(scene, sources, sampler, number, spawn_ray(place->point, *direction),
-             origin.power * static_cast<float>(each / luminance(origin.power)), out);
+    const Rgb power = origin.power * static_cast<float>(each / luminance(origin.power));
+    for (std::uint64_t number = first; number < next; ++number) {
+      const Sample4 toward = sampler.group(number, kGroupCamera);
+      const std::optional<Vec3> direction =
+          origin.diffuse ? direction_from(place->normal, toward[0], toward[1]) : place->direction;
+      // Photons with one direction arrive at the same point: there the first stands for all.
+      // Otherwise their density would be infinite, and their disks points.
+      const auto of_first = static_cast<float>(origin.diffuse    ? 1
+                                               : number == first ? next - first
+                                                                 : 0);
+      if (direction) {
+        follow(scene, sources, sampler, number, spawn_ray(place->point, *direction), power,
+               of_first, out);
+      }
     }
   }
   return out;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "renderlib/base/split_mix.h"
+#include "renderlib/geometry/primitive_list.h"
 #include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/indirect_photons.h"
 #include "renderlib/integrate/trace_photons.h"
@@ -38,12 +39,16 @@ constexpr double kGatherRadii = 3;
 /// the image is small.
 constexpr std::uint64_t kMinOrigins = 1 << 17;
 
+/// Minimum effective number of origins (TracedMaps::effective_origins). With 256, the brightness of
+/// all indirect light differs from map to map by about 1 / sqrt(256), which is 6 %.
+constexpr double kMinEffectiveOrigins = 256;
+
 /// The radius of an indirect photon's disk is halved up to this many times where the disk reaches
 /// an edge or a wall. Otherwise the photon would shine into a dark room behind a thin wall.
 constexpr int kMaxHalvings = 3;
 
 /// Maximum number of primitives at which indirect photons start.
-constexpr std::size_t kMaxPrimitives = std::size_t{1} << 21;
+constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 21;
 
 /// Returns chunk `i` of a map.
 PhotonChunk chunk_of(const PhotonMapKey& key, std::uint64_t photons, std::uint64_t i) {
@@ -121,14 +126,18 @@ bool add_indirect(const Scene& scene, const PhotonSources& sources, const Photon
   std::vector<PhotonOrigin> origins;
   std::vector<double> luminance_up_to;
   double sum = 0;
+  double squares = 0;
   for (const PhotonOrigins& chunk : found) {
     maps.rays += chunk.rays;
     for (const PhotonOrigin& origin : chunk.items) {
+      const double power = luminance(origin.power);
       origins.push_back(origin);
-      sum += luminance(origin.power);
+      sum += power;
+      squares += power * power;
       luminance_up_to.push_back(sum);
     }
   }
+  maps.effective_origins = squares > 0 ? sum * sum / squares : 0;
   std::vector<TracedPhotons> chunks(kChunks);
   if (!origins.empty() && !preparation.run(kChunks, [&](std::uint64_t i) {
         chunks[i] = trace_indirect_photons(scene, sources, origins, luminance_up_to,
@@ -194,6 +203,10 @@ bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
          std::none_of(scene.materials().begin(), scene.materials().end(), hinders);
 }
 
+bool has_enough_origins(const TracedMaps& maps) {
+  return maps.effective_origins >= kMinEffectiveOrigins;
+}
+
 bool caustics_pay(const TracedMaps& maps) {
   return maps.caustics.size() > 0 && maps.lamp_angle <= kLargestLamp;
 }
@@ -209,16 +222,23 @@ std::optional<SurfaceSampler> surfaces_of_indirect_light(const Scene& scene,
       std::any_of(scene.materials().begin(), scene.materials().end(), hinders)) {
     return std::nullopt;
   }
+  std::vector<bool> scatters;
+  for (std::size_t i = 0; i < scene.materials().size(); ++i) {
+    const MaterialId id{static_cast<std::uint32_t>(i)};
+    scatters.push_back(!std::holds_alternative<Emissive>(scene.material(id).kind) &&
+                       !casters.casts(id));
+  }
+  const PrimitiveList list(scene.geometry(), scatters);
+  if (list.size() > kMaxPrimitives) {
+    return std::nullopt;
+  }
   SurfaceSampler surfaces;
-  std::size_t count = 0;
-  bool complete = true;
-  visit_primitives(scene.geometry(), [&](PrimitiveId id, MaterialId material) {
-    const bool scatters = !std::holds_alternative<Emissive>(scene.material(material).kind);
-    if (complete && scatters && !casters.casts(material)) {
-      complete = ++count <= kMaxPrimitives && surfaces.add(scene, id);
+  for (std::uint64_t i = 0; i < list.size(); ++i) {
+    if (!surfaces.add(scene, list[i])) {
+      return std::nullopt;
     }
-  });
-  return complete && !surfaces.empty() ? std::optional(std::move(surfaces)) : std::nullopt;
+  }
+  return surfaces.empty() ? std::nullopt : std::optional(std::move(surfaces));
 }
 
 }  // namespace bandsaw

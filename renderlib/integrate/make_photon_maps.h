@@ -37,6 +37,11 @@ bool can_have_caustic_maps(const Scene& scene, const Casters& casters);
 /// small as seen from the casters, so that paths hardly find them.
 bool caustics_pay(const TracedMaps& maps);
 
+/// Returns true if enough places light the maps of indirect light. Otherwise, as in a lit room that
+/// is a small part of the scene, the brightness of all indirect light would be that of the few
+/// places that each map happens to choose. The pilot cannot measure this, because it sees one map.
+bool has_enough_origins(const TracedMaps& maps);
+
 /// Returns the surfaces at which indirect photons start (PhotonSources::surfaces). Returns
 /// std::nullopt if indirect light cannot come from maps: the scene has no such surface or more than
 /// 2^21 primitives of them, or it has motion, media, mixtures, glass with priorities or hidden

@@ -128,7 +128,8 @@ std::optional<PhotonScattering> scatter_specular(const Scene& scene, const Surfa
 PhotonScattering scatter_by_delta(const SurfacePoint& point, const Vec3& in,
                                   const BsdfSample& next) {
   const double cosines = dot(next.wi, point.geometric_normal) / dot(in, point.geometric_normal);
-  return {next.wi, next.weight * static_cast<float>(std::abs(cosines) / next.compression)};
+  return {next.wi, next.weight * static_cast<float>(std::abs(cosines) / next.compression),
+          next.counts};
 }
 
 /// Samples a direction from one of two BSDFs seen from `in`, with the pdf of their mixture. Both

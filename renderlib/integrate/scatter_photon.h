@@ -14,8 +14,9 @@
 namespace bandsaw {
 
 struct PhotonScattering {
-  Vec3 out;    ///< unit; the direction in which the photon leaves
-  Rgb factor;  ///< of its power
+  Vec3 out;            ///< unit; the direction in which the photon leaves
+  Rgb factor;          ///< of its power
+  bool counts = true;  ///< counts towards `max_depth` (BsdfSample::counts)
 };
 
 /// Samples the direction in which a photon leaves a surface at `point`. The photon comes from `in`,

@@ -43,20 +43,4 @@ class SurfaceSampler {
   std::vector<Primitive> primitives_;
 };
 
-/// Calls visit(id, material) for each primitive of the scene: first the loose ones, then those of
-/// each instance.
-template <class Visit>
-void visit_primitives(const Geometry& geometry, const Visit& visit) {
-  for (std::uint32_t instance = 0; instance <= geometry.instances.size(); ++instance) {
-    const Instance* placed = instance == 0 ? nullptr : &geometry.instances[instance - 1];
-    const std::size_t count =
-        placed == nullptr ? geometry.size() : primitives_of(geometry, *placed);
-    for (std::uint32_t primitive = 0; primitive < count; ++primitive) {
-      visit(PrimitiveId{instance, primitive},
-            placed == nullptr ? material_of(static_cast<const Shapes&>(geometry), primitive)
-                              : material_of(geometry, *placed, primitive));
-    }
-  }
-}
-
 }  // namespace bandsaw

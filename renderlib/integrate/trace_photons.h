@@ -44,7 +44,7 @@ TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const Ph
 StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const SurfacePoint& hit,
                            const Vec3& from, std::uint32_t chain, Rgb power);
 
-/// Returns the share, in (0, 1], of the photon's disk that lies on surfaces. It is estimated by
+/// Returns the share, in [1/4, 1], of the photon's disk that lies on surfaces. It is estimated by
 /// short rays, first at the rim and, if some miss, all over the disk. PhotonMap divides the power
 /// by it; otherwise a photon near an edge would lose the power that falls beyond the edge.
 double share_on_surface(const Scene& scene, const StoredPhoton& photon);

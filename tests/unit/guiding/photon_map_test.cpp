@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -186,6 +187,20 @@ TEST(PhotonMap, MayBeEmptyOrHaveAllPhotonsAtOnePoint) {
   }
   const PhotonMap map(photons, 1, 0, pool, whole);
   EXPECT_EQ(irradiance(map, {0, 0, 0}), 0);
+}
+
+// Photons at one point do not tell the density of their surroundings, so the disks there must not
+// become points.
+TEST(PhotonMap, PhotonsAtOnePointHaveTheDisksOfTheirSurroundings) {
+  Pool pool(1);
+  std::vector<StoredPhoton> photons = on_floor(4000);
+  for (std::size_t i = 0; i < 40; ++i) {
+    photons[i].position = {0.6f, 0.6f, 0};
+  }
+  const PhotonMap map(photons, 1, 0, pool, whole);
+  for (const StoredPhoton& photon : map.photons()) {
+    EXPECT_GT(photon.radius, 0.005f);
+  }
 }
 
 }  // namespace

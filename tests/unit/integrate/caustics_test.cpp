@@ -18,6 +18,7 @@
 #include "renderlib/integrate/path.h"
 #include "renderlib/integrate/photon_sources.h"
 #include "renderlib/integrate/trace_photons.h"
+#include "tests/support/media.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 #include "tests/unit/integrate/same_mean.h"
@@ -188,6 +189,18 @@ TEST(Caustics, NoPowerIsLostAtEdges) {
   }
   EXPECT_NEAR(sum, raw, 0.01 * raw);
   EXPECT_GT(lost, 0.02 * raw);  // the power that would be lost without the correction
+}
+
+// Fog so dense that no light arrives: a photon without power must not stand for others.
+TEST(Caustics, PhotonsWithoutPowerAreNotStored) {
+  SceneMaker maker = lamp_in_glass(1.5, 0.02);
+  maker.scene.media.fog = test::add(maker, test::medium(100, 0));
+  const auto scene = maker.build();
+  const TracedPhotons traced =
+      trace_photons(*scene, Casters(*scene), {.seed = 1, .photons = 2000, .last = 2000});
+  for (const StoredPhoton& photon : traced.photons) {
+    ASSERT_GT(photon.power.g, 0);
+  }
 }
 
 TEST(Caustics, TheShareOnTheSurfaceKnowsEdges) {

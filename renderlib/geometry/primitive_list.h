@@ -1,0 +1,45 @@
+#pragma once
+
+// Lists the primitives of a geometry by their material.
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "renderlib/geometry/ray.h"
+#include "renderlib/geometry/shapes.h"
+
+namespace bandsaw {
+
+/// The primitives whose material belongs to a set, in the order of their ids: first the loose
+/// shapes, then those of each instance. The instances of a group share the list of the group's
+/// primitives. So time and memory grow with the sum of the numbers of instances and of stored
+/// primitives, and not with their product.
+class PrimitiveList {
+ public:
+  /// `wanted`: for each material, whether its primitives belong to the list.
+  PrimitiveList(const Geometry& geometry, const std::vector<bool>& wanted);
+  PrimitiveList(const PrimitiveList&) = delete;
+  PrimitiveList& operator=(const PrimitiveList&) = delete;
+
+  std::uint64_t size() const { return parts_.empty() ? 0 : parts_.back().up_to; }
+  /// `i` MUST be below size().
+  PrimitiveId operator[](std::uint64_t i) const;
+
+ private:
+  /// The primitives of an instance, or the loose shapes.
+  struct Part {
+    std::uint32_t instance = 0;                          ///< PrimitiveId::instance
+    const std::vector<std::uint32_t>* chosen = nullptr;  ///< their numbers; null: all
+    std::uint64_t up_to = 0;  ///< number of primitives of the parts up to this one
+  };
+  /// Adds a part with this number of primitives, unless that is 0.
+  void add(std::uint32_t instance, const std::vector<std::uint32_t>* chosen,
+           std::uint64_t primitives);
+
+  std::vector<Part> parts_;  ///< those that have primitives
+  /// Primitives of each group whose shapes have materials of their own; kNoGroup: the loose shapes.
+  std::map<GroupId, std::vector<std::uint32_t>> chosen_;
+};
+
+}  // namespace bandsaw
