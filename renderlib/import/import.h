@@ -1,8 +1,8 @@
 #pragma once
 
 // The interface of this folder: converts a scene file, a foreign scene or a model to the
-// description that is encoded as a scene package. Called only by the confined process
-// bandsaw-import (import/main.cpp), never by the coordinator or a worker.
+// description that is encoded as a scene package. Only the confined process bandsaw-import
+// (import/main.cpp) calls it, never the coordinator or a worker.
 
 #include <map>
 #include <optional>
@@ -47,7 +47,8 @@ struct ImportChoices {
   std::string folder = {};
 };
 
-/// Returns the folder below which the import reads. Errors as SceneFolder::around.
+/// Returns the folder below which the import reads. Errors as SceneFolder::around; INVALID_ARGUMENT
+/// also if `choices.folder` is set and `path` is not a scene of Mitsuba.
 absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const ImportChoices& choices);
 
 /// Reads a scene file (*.textproto, *.json), a scene of pbrt-v4 (*.pbrt, *.pbrt.gz) or Mitsuba
@@ -56,8 +57,9 @@ absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const Import
 /// are read. An invalid value is INVALID_ARGUMENT, for example
 /// "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1"; a file that is missing or
 /// outside of the folder is NOT_FOUND or PERMISSION_DENIED with its name. `memory` is passed to the
-/// imports of all frames of one scene: files that an earlier import has read are not read again,
-/// and the imported scenes share their equal parts. nullptr: nothing is kept.
+/// imports of all frames of one scene. Models, image textures and the foreign scene are kept from
+/// one import to the next, and the imported scenes share their equal parts. nullptr: nothing is
+/// kept.
 absl::StatusOr<ImportedScene> import_scene(const std::string& path,
                                            const ImportChoices& choices = {},
                                            ImportMemory* memory = nullptr);
@@ -71,9 +73,9 @@ struct SceneAsText {
 };
 
 /// Converts a scene of pbrt-v4 or Mitsuba, or a single model, to a scene file of Bandsaw. The
-/// result is read in the way of import_scene(), so that the text is known to be valid; errors are
-/// as there. Ignores `environment` and `camera` of the choices. Returns INVALID_ARGUMENT also if
-/// `path` is a scene file of Bandsaw already.
+/// result is read as import_scene() reads it, so that the text is known to be valid; errors as
+/// import_scene(). Ignores `environment` and `camera` of the choices. Returns INVALID_ARGUMENT also
+/// if `path` is a scene file of Bandsaw already.
 absl::StatusOr<SceneAsText> scene_as_text(const std::string& path,
                                           const ImportChoices& choices = {});
 

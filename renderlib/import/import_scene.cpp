@@ -39,8 +39,8 @@ namespace {
 
 constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
 
-/// Returns true if the scene has a light source of its own. Parts of models that glow do not count:
-/// most need a sky as well.
+/// Returns true if the scene has a light source of its own. A MetallicRoughness material that emits
+/// does not count, because most models with glowing parts need a sky as well.
 bool has_light(const SceneDescription& scene) {
   const std::vector<Medium>& media = scene.media.media;
   return !scene.lights.empty() || std::any_of(media.begin(), media.end(), [](const Medium& medium) {
@@ -63,7 +63,8 @@ Camera framed(const ImportedScene& out, const Shutter& shutter) {
 
 /// Returns the camera for a scene file without a camera of its own: the model's camera that the
 /// file names, otherwise the first camera of a model, otherwise one that frames the only model.
-/// Returns an error if none of these exists. The model may be hidden by its animation.
+/// Returns an error if none of these exists. If its animation hides the only model, the camera is
+/// the default one.
 absl::StatusOr<MovingCamera> camera_of_a_model(const Field& root, const scene::Scene& from,
                                                const SceneDraft& draft) {
   if (from.has_camera()) {
@@ -250,9 +251,9 @@ absl::Status read_converted(const std::shared_ptr<const ConvertedScene>& convert
   return read_frame(converted->scene, nullptr, choices, draft);
 }
 
-/// Returns the model's first camera, or one that frames the model. The latter frames an animated
-/// model as it is at time 0, or in its rest pose if the animation hides it then, so that the camera
-/// rests in a sequence.
+/// Returns the model's first camera, or one that frames the model if it has no camera. The framing
+/// camera does not move in a sequence: it frames an animated model in its pose at time 0, or in its
+/// rest pose if the animation hides the model at time 0.
 absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
                                               const AnimationChoice& animation,
                                               const SceneDraft& draft) {

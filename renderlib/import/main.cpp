@@ -1,6 +1,6 @@
 // bandsaw-import: reads one foreign file and writes it to a folder in a form that needs no parser.
-// If that fails, it writes one error to standard output. Started by the client commands and the
-// dashboard (coordinator/cli/scene/import_process.h); can be run by hand. FOLDER must exist;
+// If that fails, it writes one error to standard output. The client commands and the dashboard
+// start it (coordinator/cli/scene/import_process.h); it can also be run by hand. FOLDER must exist;
 // SECONDS and BYTES limit the CPU time and the memory.
 //
 //   bandsaw-import scene FILE FOLDER SECONDS BYTES [CHOICE ...]
@@ -13,9 +13,10 @@
 //   bandsaw-import frames FILE FOLDER SECONDS BYTES frame=N [CHOICE ...]
 //
 // does the same for one frame after the other: it reads their numbers from standard input, one a
-// line, and answers each with the line "done" when FOLDER has the package of that frame alone. The
-// files of the scene are read once. SECONDS is the CPU time for all frames together. The choice
-// frame=N must be given, but its N is not used;
+// line, and answers each with the line "done" when FOLDER has the package of that frame alone.
+// Models, image textures and a foreign scene are kept for the next frame; other files of the scene
+// are read again. SECONDS is the CPU time for all frames together. The choice frame=N must be
+// given, but its N is not used;
 //
 //   bandsaw-import text FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
@@ -26,8 +27,8 @@
 //
 //   bandsaw-import unzip FILE FOLDER SECONDS BYTES
 //
-// leaves FOLDER/list with a line "made NAME" for each file in the archive, and their bytes as
-// above;
+// leaves FOLDER/list with a line "made NAME" for each file in the archive, and the bytes of these
+// files as above;
 //
 //   bandsaw-import image FILE FOLDER SECONDS BYTES
 //
@@ -158,7 +159,7 @@ class FrameImports {
   std::set<wire::Digest> written_;  ///< blobs in the folder
 };
 
-/// Imports the frames whose numbers are on standard input, until that ends.
+/// Imports the frames whose numbers are on standard input, until standard input ends.
 absl::Status frames_to(const std::string& path, const std::string& folder,
                        const ImportChoices& choices) {
   FrameImports imports(path, folder, choices);
@@ -250,7 +251,7 @@ absl::StatusOr<GivenFile> read_given(const std::string& path) {
 }
 
 // Reads frame=N, fps=F or shutter=SHARE. Returns false if `value` is not a number in the permitted
-// range, if `key` is another one, or if fps or shutter come before frame.
+// range, if `key` is none of these three, or if fps or shutter come before frame.
 bool read_frame_choice(absl::string_view key, absl::string_view value, ImportChoices& choices) {
   double number = 0;
   if (!absl::SimpleAtod(value, &number) || !std::isfinite(number)) {

@@ -31,7 +31,7 @@ struct NodeMotion {
   bool rests(double from, double to) const;
   /// Returns the times of keys inside (from, to), rising, each once.
   std::vector<double> times_between(double from, double to) const;
-  /// Returns true if straight interpolation between keys is exact.
+  /// Returns true if all curves are linear, so that interpolation between their keys is exact.
   bool is_linear() const;
 };
 
@@ -50,8 +50,8 @@ absl::StatusOr<std::optional<std::size_t>> choose(const AnimationChoice& choice,
 
 struct Animation {
   std::string name;
-  /// Moving nodes, keyed by their number in Assimp's tree, parents first (for a glTF file until it
-  /// is loaded: by their index in the file).
+  /// Moving nodes, keyed by their number in Assimp's tree, parents first. Until Assimp has loaded a
+  /// glTF file, the key is the node's index in that file.
   std::map<std::size_t, NodeMotion> nodes = {};
   /// Weights of morph targets, keyed by the same numbers; the width is the number of targets.
   std::map<std::size_t, Curve> weights = {};

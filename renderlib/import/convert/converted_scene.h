@@ -1,8 +1,8 @@
 #pragma once
 
-// A scene of another renderer, as a scene file of ours: what the converters of pbrt and Mitsuba
-// scenes return. The importer reads it as it reads a scene file; `bandsaw import` writes it to
-// disk.
+// A ConvertedScene is a scene of another renderer in the form of a Bandsaw scene file. The
+// converters of pbrt and Mitsuba scenes return it. The importer reads it as it reads a scene file;
+// `bandsaw import` writes it to disk.
 
 #include <map>
 #include <string>

@@ -38,7 +38,8 @@ std::string header_of(const PlyMesh& mesh) {
   return header;
 }
 
-/// Assimp skips white space after the header, although a number may begin with such a byte.
+/// Returns true if Assimp would take the first byte after the header as white space. Assimp skips
+/// white space there, although a number may begin with such a byte.
 bool begins_with_space(const PlyMesh& mesh) {
   unsigned char first = 0;
   std::memcpy(&first, mesh.positions[0].data(), 1);

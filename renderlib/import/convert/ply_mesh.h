@@ -25,7 +25,7 @@ struct MeshAttribute {
   std::string name;  ///< "vertex_color", "face_weight"
   bool per_face = false;
   std::size_t channels = 1;   ///< 1 or 3
-  std::vector<float> values;  ///< channels for each vertex or triangle
+  std::vector<float> values;  ///< `channels` numbers for each vertex or triangle
 };
 
 /// Returns the mesh as binary little-endian PLY. `mesh` MUST have a triangle, and each index MUST

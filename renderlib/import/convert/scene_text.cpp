@@ -55,7 +55,7 @@ class Writer {
     write_line(indent, "}");
   }
 
-  // Writes a field that is not a message; a list on one line.
+  // Writes a field that is not a message. A list is written on one line.
   void write_value(const Message& message, const FieldDescriptor& field, int count,
                    std::size_t indent) {
     std::vector<std::string> values;

@@ -1,5 +1,5 @@
-// Makes the boundary of a medium from a mesh: the mesh must be closed, and it is turned over if its
-// triangles face inwards. Each mesh is converted once.
+// Makes the boundary of a medium from a mesh: the mesh must be closed, and its triangles are
+// reversed if they face inwards. Each mesh is converted once.
 
 #include "renderlib/import/draft/boundaries.h"
 
@@ -16,7 +16,7 @@ double signed_volume(const Mesh& mesh) {
     const std::array<float, 3>& p = mesh.positions[index];
     return Vec3{p[0], p[1], p[2]};
   };
-  // Relative to a corner of the mesh, so that a distant origin costs no precision.
+  // Points are taken relative to a corner of the mesh, so that a distant origin costs no precision.
   const Vec3 from = corner(mesh.triangles[0][0]);
   double sum = 0;
   for (const auto& [a, b, c] : mesh.triangles) {

@@ -1,8 +1,8 @@
 #pragma once
 
 // Makes boundaries of media: closed meshes that separate a medium, such as smoke or the inside of
-// glass, from its surroundings. Used for models of a scene file that a medium fills, and for glass
-// of glTF.
+// glass, from its surroundings. They are used for models of a scene file that a medium fills, and
+// for glass of glTF.
 
 #include <optional>
 

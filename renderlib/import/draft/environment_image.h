@@ -16,7 +16,8 @@ namespace bandsaw {
 std::size_t repair_light(ImageTexture& image);
 
 /// Adds the image of a file to the textures of the draft, the scene that is being read. Repaired
-/// texels cause a warning that begins with `name`. Returns INVALID_ARGUMENT if it is not an image.
+/// texels cause a warning that begins with `name`. Errors as decode_image(); they begin with `name`
+/// too.
 absl::StatusOr<TextureId> add_environment_image(const std::string& bytes, const std::string& name,
                                                 SceneDraft& draft);
 

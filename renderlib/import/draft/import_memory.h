@@ -1,6 +1,7 @@
 #pragma once
 
-// Memory that the imports of one scene at several frames share, so that its files are read once.
+// Memory that the imports of one scene at several frames share, so that its models, its image
+// textures and a foreign scene need not be read again.
 
 #include <map>
 #include <memory>

@@ -1,7 +1,8 @@
 #pragma once
 
-// Instances of meshes and groups, and moving coordinate systems (Frame), in one space: the scene or
-// a group. They are collected here before they are added to the scene's geometry.
+// A Placements holds instances of meshes and groups, and moving coordinate systems (Frame), in one
+// space: the scene or a group. They are collected here before they are added to the scene's
+// geometry.
 
 #include <optional>
 #include <vector>
@@ -24,7 +25,7 @@ struct Contents {
   std::size_t size() const { return seen.instances.size() + filled.instances.size(); }
 };
 
-/// Maximum number of placements, because each is part of the manifest.
+/// Maximum number of placements. There is a limit, because each placement is part of the manifest.
 inline constexpr std::size_t kMaxPlacements = 500'000;
 
 /// Place of an instance in a Placements: the transform to the frame `frame` or, if that is
@@ -38,7 +39,8 @@ struct Place {
 FrameId add_frame(Frame frame, Placements& to);
 
 /// Adds all placements of `what` to `to` at a place; `material`, if set, replaces their materials.
-/// Returns false if a placement would be singular; then `to` has a part of them.
+/// Returns false if a placement would be singular; in that case only some of the placements have
+/// been added to `to`.
 bool place(const Placements& what, const Place& at, std::optional<MaterialId> material,
            Placements& to);
 

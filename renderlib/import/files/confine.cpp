@@ -91,7 +91,7 @@ constexpr std::array kForbidden = {
 constexpr sock_filter statement(std::uint16_t code, std::uint32_t value) {
   return {code, 0, 0, value};
 }
-/// `yes` and `no` are numbers of statements to skip.
+/// `yes` and `no` are the numbers of statements to skip if the comparison is true or false.
 constexpr sock_filter jump(std::uint16_t code, std::uint32_t value, std::uint8_t yes,
                            std::uint8_t no) {
   return {code, yes, no, value};
@@ -114,8 +114,8 @@ std::vector<sock_filter> program() {
       // On x86-64, the x32 numbers are aliases of the same calls; other architectures have none.
       jump(kAtLeast, kX32, 0, 1),
       answer(EPERM),
-      // The C library falls back to clone, whose flags can be checked: threads are allowed,
-      // processes are not.
+      // clone3 fails with ENOSYS, so that the C library falls back to clone, whose flags can be
+      // checked: threads are allowed, processes are not.
       jump(kEqual, SYS_clone3, 0, 1),
       answer(ENOSYS),
       jump(kEqual, SYS_clone, 0, 4),

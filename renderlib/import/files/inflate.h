@@ -17,7 +17,8 @@ enum class DeflateKind {
 
 /// Returns the decompressed bytes. The error is INVALID_ARGUMENT if the data are damaged or
 /// truncated, or if bytes follow their end (except for further members of a gzip file), and
-/// RESOURCE_EXHAUSTED for more than `max_bytes`. Messages have no file name.
+/// RESOURCE_EXHAUSTED for more than `max_bytes` of result or 4 GiB of compressed data. Messages
+/// have no file name.
 absl::StatusOr<std::string> inflate(absl::string_view bytes, DeflateKind kind,
                                     std::uint64_t max_bytes);
 

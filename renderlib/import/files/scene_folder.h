@@ -1,7 +1,7 @@
 #pragma once
 
-// The only folder that an import reads, with the folders below it: the folder of the scene file, or
-// a folder above it that the user named.
+// SceneFolder is the only folder that an import reads, together with the folders below it. It is
+// the folder of the scene file, or a folder above it that the user named.
 
 #include <cstdint>
 #include <map>
@@ -22,15 +22,16 @@ class SceneFolder {
   static absl::StatusOr<SceneFolder> around(const std::string& scene_path,
                                             const std::string& folder);
 
-  /// Returns the real path of the regular file to which `name` refers in a file of `folder`
-  /// (absolute, below this one). Messages contain `name` and a remedy, but not the referring file.
-  /// Returns PERMISSION_DENIED if the path is absolute or outside the scene's folder, also by a
-  /// symbolic link, NOT_FOUND if there is no such file, and INVALID_ARGUMENT if the name is empty
-  /// or that of a folder.
+  /// Returns the real path of the regular file to which a file in `folder` refers by `name`.
+  /// `folder` is absolute, and is this folder or lies below it. Messages do not contain the
+  /// referring file; they contain `name`, unless it is empty or has a zero byte. Returns
+  /// PERMISSION_DENIED if the path is absolute or outside the scene's folder, also by a symbolic
+  /// link, or if the process may not access it, NOT_FOUND if there is no such file, and
+  /// INVALID_ARGUMENT if the name is empty, has a zero byte or is not that of a regular file.
   absl::StatusOr<std::string> resolve(const std::string& name, const std::string& folder) const;
 
-  /// The same for a file in `folder` itself, ignoring case. Of several files, the first in byte
-  /// order is taken.
+  /// As resolve(). If that fails and `name` has no slash, a file in `folder` itself is searched
+  /// whose name is `name` except for case. If there are several, the first in byte order is taken.
   absl::StatusOr<std::string> resolve_any_case(const std::string& name,
                                                const std::string& folder) const;
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads zip archives whose entries are stored or deflated (APPNOTE.TXT of PKWARE, with zip64). Used
-// by bandsaw-import to unpack a scene that is sent as one file.
+// Reads zip archives whose entries are stored or deflated (APPNOTE.TXT of PKWARE, with zip64).
+// By it bandsaw-import unpacks a scene that is sent as one file.
 
 #include <cstdint>
 #include <string>
@@ -37,7 +37,8 @@ class ZipArchive {
   const std::vector<Entry>& entries() const { return entries_; }
 
   /// Returns the bytes of an entry. The error is INVALID_ARGUMENT if they are damaged, or if their
-  /// size or checksum differs from the one in the archive's directory.
+  /// size or checksum differs from the one in the archive's directory, and RESOURCE_EXHAUSTED if a
+  /// deflated entry has more bytes than the directory says.
   absl::StatusOr<std::string> read(const Entry& entry) const;
 
  private:

@@ -21,7 +21,8 @@ namespace {
 constexpr int kMaxComponents = 4;
 using Raw = std::array<std::int64_t, kMaxComponents>;
 
-/// Returns the components of one value as integers of any size.
+/// Sets `to` to the components of one value, which may be integers of any size; returns false if
+/// libdraco cannot convert them.
 bool load(const draco::PointAttribute& from, draco::AttributeValueIndex at, Raw& to) {
   return from.ConvertValue<std::int64_t>(at, from.num_components(), to.data());
 }

@@ -33,9 +33,11 @@ class DracoMesh {
   std::vector<std::uint32_t> indices() const;
   /// Returns the attribute with the number `id` in the stream, with the number of components of
   /// `shape`; integers are normalised as `shape` says. Returns INVALID_ARGUMENT if there is no such
-  /// attribute, it has fewer components, or its count differs from that of `shape`.
+  /// attribute, if it has fewer components than `shape`, or if the count of `shape` is not
+  /// vertices().
   absl::StatusOr<std::vector<float>> floats(std::size_t id, const AccessorShape& shape) const;
-  /// The same for non-negative integers.
+  /// The same for non-negative integers. Others are clamped to [0, 2^32 - 1]; INVALID_ARGUMENT also
+  /// for an attribute of floats.
   absl::StatusOr<std::vector<std::uint32_t>> whole_numbers(std::size_t id,
                                                            const AccessorShape& shape) const;
 

@@ -1,8 +1,8 @@
 #pragma once
 
 // Reads accessors of a glTF file as plain numbers: of any component type, normalised or not,
-// strided or sparse. An accessor without a buffer view holds zeros. Used to rewrite the file
-// (plain_gltf.h) and to read its animations.
+// strided or sparse. An accessor without a buffer view holds zeros. The numbers serve to rewrite
+// the file (plain_gltf.h) and to read its animations.
 
 #include <array>
 #include <cstdint>
@@ -31,7 +31,7 @@ struct AccessorShape {
   std::string place;  ///< "accessors[3]"
   Component component = Component::kFloat;
   bool normalized = false;
-  std::size_t components = 1;  ///< 3 of a VEC3, 16 of a MAT4
+  std::size_t components = 1;  ///< 3 for a VEC3, 16 for a MAT4
   std::size_t count = 0;       ///< number of elements, at most 2^31
 
   std::size_t values() const { return count * components; }
@@ -49,7 +49,7 @@ float value_of(std::int64_t component, Component type, bool normalized);
 
 /// Returns all components of all elements; integers are converted by value_of(). Returns
 /// INVALID_ARGUMENT if the elements are not within their buffer view, or if a sparse index is not
-/// below the count.
+/// below the count, and RESOURCE_EXHAUSTED as Buffers::take().
 absl::StatusOr<std::vector<float>> read_floats(const Json& root, std::size_t index,
                                                const AccessorShape& shape, Buffers& buffers);
 

@@ -21,12 +21,12 @@ struct GltfFile {
   std::optional<absl::string_view> binary;  ///< the binary chunk of a .glb; points into `bytes`
 
   GltfFile() = default;
-  GltfFile(const GltfFile&) = delete;  ///< `binary` points into it
+  GltfFile(const GltfFile&) = delete;  ///< `binary` points into `bytes`
   GltfFile& operator=(const GltfFile&) = delete;
 };
 
-/// Reads the file into `to`. Returns false for glTF 1; for a binary one, `to` then has no JSON.
-/// Returns INVALID_ARGUMENT if the container or the JSON is broken, and the errors of
+/// Reads the file into `to`. Returns false for glTF 1; if that file is binary, `to.root` is an
+/// empty object. Returns INVALID_ARGUMENT if the container or the JSON is broken, and the errors of
 /// read_whole_file().
 absl::StatusOr<bool> read_gltf_file(const std::string& path, GltfFile& to);
 

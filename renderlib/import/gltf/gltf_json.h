@@ -25,7 +25,8 @@ absl::Status damaged(absl::string_view place, absl::string_view what);
 
 /// Returns the member `name` of the object `in`; nullptr if there is none or `in` is no object.
 const Json* find(const Json& in, absl::string_view name);
-/// The same, but nullptr also if the member is no object, or no list.
+/// The same, but object() returns nullptr also if the member is not an object, and list() also if
+/// the member is not a list.
 const Json* object(const Json& in, absl::string_view name);
 const Json* list(const Json& in, absl::string_view name);
 /// Returns a list; an empty one if there is none.

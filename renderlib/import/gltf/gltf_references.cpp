@@ -1,6 +1,7 @@
-// Checks the indices by which the objects of a glTF file refer to each other. A table lists which
-// member of which list refers to which other list. Accessors of meshes, extensions and the tree of
-// nodes are checked by functions of their own.
+// Checks the indices by which the objects of a glTF file refer to each other. Each entry of the
+// table kReferences names a list, the member of its objects that is an index, and the list to which
+// this index refers. Textures of materials, lights of nodes, primitives, the tree of nodes and the
+// scenes are checked by functions of their own.
 
 #include "renderlib/import/gltf/gltf_references.h"
 

@@ -1,6 +1,6 @@
 // Rewrites a glTF file as a plain document, which any reader understands. Rewriter goes through the
-// lists of the JSON, replaces each accessor and image that is used by a plain copy in one new
-// buffer, and leaves everything else as it is.
+// lists of the JSON. It writes plain copies of the arrays of meshes and skins, and of the images
+// that are not files, to one new buffer, and makes the document refer to these copies.
 
 #include "renderlib/import/gltf/plain_gltf.h"
 
@@ -24,8 +24,8 @@
 namespace bandsaw::gltf {
 namespace {
 
-/// Extensions that replace the bytes of vertices or images. A file that uses but does not require
-/// them has a fallback.
+/// Extensions that replace the bytes of vertices or images, and that are not read. A file that uses
+/// but does not require them has a fallback.
 constexpr absl::string_view kUnreadable[] = {"KHR_meshopt_compression", "KHR_texture_basisu",
                                              "EXT_texture_avif", "MSFT_texture_dds"};
 constexpr char kWebp[] = "EXT_texture_webp";
@@ -119,8 +119,9 @@ class Rewriter {
     return absl::OkStatus();
   }
 
-  /// Returns what distinguishes the pose of a node's mesh from those at other nodes: its skin, and
-  /// the weights of its morph targets, which belong to the node alone if it animates them.
+  /// Returns a value by which the poses of a mesh at different nodes are compared: the skin, and
+  /// the weights of morph targets. If the animation changes the weights at this node, the value
+  /// also contains the node, because no other node shares these weights.
   Json pose_at(std::size_t node, const Json& mesh) const {
     const Json& from = from_["nodes"][node];
     const Json* skin = find(from, "skin");
@@ -191,7 +192,8 @@ class Rewriter {
     const std::string uri = text(from, "uri");
     Json& to = plain_.root["images"][index];
     if (!is_used) {
-      // It stays as a name that is never opened, so that the other images keep their numbers.
+      // The image stays in the list, with a name that is never opened, so that the other images
+      // keep their numbers.
       to = {{"uri", "unused"}};
     } else if (find(from, "bufferView") != nullptr) {
       ASSIGN_OR_RETURN(const std::size_t view, whole_of(from, "bufferView", place));
@@ -209,7 +211,8 @@ class Rewriter {
     return absl::OkStatus();
   }
 
-  /// The format of an image is detected from its bytes, not from the type in the file.
+  /// Adds the bytes of an image to the buffer. The MIME type is only a placeholder: the format of
+  /// an image is detected from its bytes.
   void embed(absl::string_view bytes, Json& image) {
     image = {{"bufferView", out_.add_bytes(bytes)}, {"mimeType", "image/png"}};
   }

@@ -1,8 +1,8 @@
 #pragma once
 
-// Rewrites a glTF 2.0 file so that any reader understands it: attributes are floats, indices are
-// 32-bit, nothing is sparse, compressed or outside of one buffer. model/model.cpp lets Assimp read
-// the result.
+// Rewrites a glTF 2.0 file so that any reader understands it: attributes are floats, except for
+// joints, which are 16-bit integers; indices are 32-bit; nothing is sparse, compressed or outside
+// of one buffer. model/model.cpp lets Assimp read the result.
 
 #include <cstddef>
 #include <optional>
@@ -17,8 +17,8 @@
 namespace bandsaw::gltf {
 
 struct PlainGltf {
-  /// True for glTF 1, which is not rewritten: `root` is its JSON (empty for a binary file), the
-  /// rest is empty.
+  /// True for glTF 1, which is not rewritten. Then `root` is the JSON of the file, or empty for a
+  /// binary file, and all other members are empty.
   bool is_first_version = false;
   Json root;           ///< refers to one buffer, whose uri is kPlainBuffer
   std::string buffer;  ///< bytes of that buffer
@@ -29,14 +29,15 @@ struct PlainGltf {
 inline constexpr char kPlainBuffer[] = "plain.bin";
 
 /// Reads the model at `path` (real, below `scene`) and the buffers to which it refers. Images in
-/// files stay there; all others are moved to the buffer. Animations other than the chosen one,
-/// tangents and attributes that glTF does not define are omitted. A mesh that several nodes pose
-/// differently, by skins or weights of morph targets, is copied to the end of the list for each
-/// pose but the first, and a node's weights become those of its mesh: a mesh has one pose.
-/// Everything else keeps its place and number. Returns NOT_FOUND if there is no such animation,
-/// INVALID_ARGUMENT if the file is damaged or requires an extension that replaces vertices or
-/// images by unreadable bytes, NOT_FOUND or PERMISSION_DENIED for a buffer's file, and
-/// RESOURCE_EXHAUSTED for more than 8 GiB of vertices.
+/// files stay there; all other images that textures use are moved to the buffer, and an image that
+/// no texture uses keeps only its number. Animations other than the chosen one, tangents and
+/// attributes that glTF does not define are omitted. In the result each mesh has one pose: if
+/// several nodes pose a mesh differently, by skins or weights of morph targets, the mesh is copied
+/// to the end of the list for each pose after the first. The weights of a node become those of its
+/// mesh. Everything else keeps its place and number. Returns NOT_FOUND if there is no such
+/// animation, INVALID_ARGUMENT if the file is damaged or requires an extension that replaces
+/// vertices or images by unreadable bytes, NOT_FOUND or PERMISSION_DENIED for a buffer's file, and
+/// RESOURCE_EXHAUSTED for more than 8 GiB of buffers and decoded arrays.
 absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene,
                                           const AnimationChoice& choice = {});
 

@@ -1,6 +1,6 @@
 // Rewrites the meshes of a glTF file (plain_gltf.h): reads each attribute and index of a primitive,
-// from its accessor or from a Draco stream, and adds it to the new buffer as floats or 32-bit
-// indices.
+// from its accessor or from a Draco stream, and adds it to the new buffer as floats, 16-bit joints
+// or 32-bit indices.
 
 #include "renderlib/import/gltf/plain_meshes.h"
 
@@ -44,7 +44,8 @@ absl::Status check_shape(const std::string& attribute, const AccessorShape& shap
                                                  attribute, " needs ", semantic.least_components));
 }
 
-/// Three channels get a fourth, so that its default does not depend on the reader.
+/// Adds an alpha of 1 to colours of three channels, so that its default does not depend on the
+/// program that reads the document.
 std::vector<float> with_alpha(const std::vector<float>& rgb) {
   std::vector<float> rgba;
   rgba.reserve(rgb.size() / 3 * 4);

@@ -26,7 +26,8 @@ struct Free {
   void operator()(float* values) const { std::free(values); }
 };
 
-/// Takes ownership of the message.
+/// Returns an error that contains the message `error` of tinyexr, and frees the message; nullptr:
+/// there is none.
 absl::Status failure(const char* error) {
   const absl::Status status = absl::InvalidArgumentError(
       absl::StrCat("is not an EXR file that can be read, or is damaged (",
@@ -42,7 +43,7 @@ struct Layout {
   bool turned = false;  ///< the line order is another one than from the top
 };
 
-// Both limits of a box belong to it.
+// The rows and columns at both limits of a box belong to the box.
 std::int64_t width_of(const EXRBox2i& box) { return std::int64_t{box.max_x} - box.min_x + 1; }
 std::int64_t height_of(const EXRBox2i& box) { return std::int64_t{box.max_y} - box.min_y + 1; }
 
@@ -83,8 +84,8 @@ absl::StatusOr<Layout> read_layout(const unsigned char* data, std::size_t size) 
 }
 
 /// Returns a copy of the file whose header has the line order "from the top". With any other order,
-/// tinyexr mirrors the image, or each of its tiles. This is wrong, because it finds rows and tiles
-/// by their numbers, in whatever order they are stored.
+/// tinyexr mirrors the image, or each of its tiles. This is wrong, because tinyexr finds rows and
+/// tiles by their numbers, in whatever order they are stored.
 std::string with_rows_from_the_top(absl::string_view bytes) {
   constexpr absl::string_view kLineOrder("lineOrder\0lineOrder\0\1\0\0\0", 24);
   std::string out(bytes);

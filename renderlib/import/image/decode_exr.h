@@ -10,11 +10,12 @@ namespace bandsaw {
 
 bool is_exr(absl::string_view bytes);
 
-/// Decodes an image with channels R, G, B, or one channel for all; halves or floats; scan lines or
-/// tiles, stored in any order. Alpha is omitted. The image is the display window; pixels outside of
-/// the data window are black. Returns linear floats, rows from the top, of any value including NaN.
-/// The size is checked before anything is decoded. Returns INVALID_ARGUMENT with the reason,
-/// without the file's name.
+/// Decodes an image with the channels R, G and B, or with one channel for all three. Its numbers
+/// are halves or floats, and its scan lines or tiles are stored in any order. Alpha is omitted. The
+/// image is the display window; pixels outside of the data window are black. Returns linear floats,
+/// rows from the top, of any value including NaN. The size is checked before anything is decoded.
+/// Returns INVALID_ARGUMENT if the file cannot be decoded, with the reason, without the file's
+/// name.
 absl::StatusOr<ImageTexture> decode_exr(absl::string_view bytes);
 
 }  // namespace bandsaw

@@ -24,15 +24,17 @@ enum class Gray { kExpanded, kKept };
 
 /// Decodes an image file. PNG, JPEG, TGA, BMP, PNM and WebP become 8-bit sRGB with three channels
 /// (or one, if the file is grey and `gray` is kKept); alpha and the second byte of channels with 16
-/// bits are omitted with a warning. HDR and EXR
-/// become linear floats. The texels are in the decoder's memory, not copied. Sizes are checked
-/// before anything is decoded. Returns INVALID_ARGUMENT, or RESOURCE_EXHAUSTED for a file of 2 GiB
-/// or more, with the reason, without the file's name.
+/// bits are omitted with a warning. A PNM file with 16 bits for each value is an error. HDR and EXR
+/// become linear floats. Except for EXR, the texels stay in the decoder's memory and are not
+/// copied. Sizes are checked before anything is decoded. Returns INVALID_ARGUMENT, or
+/// RESOURCE_EXHAUSTED for a file of 2 GiB or more, with the reason, without the file's name.
 absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
                                           std::vector<std::string>& warnings,
                                           Gray gray = Gray::kExpanded);
 
-/// Decodes the alpha of an 8-bit image as a linear image of one channel; all 255 if it has none.
+/// Decodes the alpha of an image, other than EXR, as a linear 8-bit image of one channel. If the
+/// image has no alpha, the result is a single texel of 255. Errors as decode_image();
+/// INVALID_ARGUMENT for EXR.
 absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes);
 
 /// Returns true if the file has an alpha channel; false if it cannot be read.

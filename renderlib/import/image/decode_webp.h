@@ -18,13 +18,13 @@ struct WebpHeader {
   bool has_alpha = false;
 };
 
-/// Reads the properties of an image without decoding it. Returns INVALID_ARGUMENT if it is broken
-/// or an animation, with the reason, without the file's name.
+/// Reads the properties of an image without decoding it. Returns INVALID_ARGUMENT if the image is
+/// broken or an animation, with the reason, without the file's name.
 absl::StatusOr<WebpHeader> webp_header(absl::string_view bytes);
 
-/// Decodes 8-bit sRGB, lossy or lossless: `channels` (3, or 4 with alpha) bytes a pixel, rows from
-/// the top. Returns INVALID_ARGUMENT if it is broken or truncated, with the reason, without the
-/// file's name.
+/// Decodes a lossy or lossless image to 8-bit sRGB: `channels` (3, or 4 with alpha) bytes for each
+/// pixel, rows from the top. The size is that of webp_header(). Returns INVALID_ARGUMENT if the
+/// image is broken or truncated, with the reason, without the file's name.
 absl::StatusOr<std::shared_ptr<std::uint8_t>> decode_webp(absl::string_view bytes, int channels);
 
 }  // namespace bandsaw

@@ -1,6 +1,6 @@
 // Adds images to the imported scene as textures: decodes an image, converts its texels as its use
-// requires (factor, normals from heights, index of refraction), and keeps the texture under its
-// image and use.
+// requires (factor, normals from heights, index of refraction), and stores the texture under the
+// key of its image and use.
 
 #include "renderlib/import/image/texture_store.h"
 
@@ -23,7 +23,8 @@ namespace {
 using Format = ImageTexture::Format;
 using Wrap = ImageTexture::Wrap;
 
-/// Returns a texel's channel: a code divided by 255, decoded from sRGB if `decoded`, or a float.
+/// Returns one value of the image, `number` values after the first. A code is divided by 255, or
+/// decoded if `decoded` is set and the image is sRGB. A float that is not finite becomes 0.
 double channel(const ImageTexture& image, std::size_t number, bool decoded) {
   if (image.format == Format::kFloat32) {
     float value = 0;
@@ -90,9 +91,9 @@ ImageTexture normals_of_heights(const ImageTexture& heights, double strength) {
   return with_texels(heights, Format::kFloat32, 3, std::move(texels));
 }
 
-/// Converts an image to an index_map for which F0, the reflectance along the normal, is that of
-/// `index` (> 1) times the luminance of the image: one channel of 8 bits, or of floats if the image
-/// has floats.
+/// Converts an image to an index_map. With it, F0, the reflectance along the normal, is the F0 of
+/// `index` (> 1) times the luminance of the image. The result has one channel of 8 bits, or of
+/// floats if the image has floats.
 ImageTexture index_map_of_reflectance(const ImageTexture& amounts, double index) {
   const double root = (index - 1) / (index + 1);  // square root of F0
   const std::size_t count = std::size_t{amounts.width} * amounts.height;

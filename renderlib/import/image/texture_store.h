@@ -57,11 +57,12 @@ class TextureStore {
       kIndexMap,    ///< the texels scale the reflectance F0 of the index of refraction `by`
     } become = Become::kThemselves;
     double by = 1;
-    bool alpha_is_known = false;  ///< no warning of an unused alpha: the material says what it is
+    /// An alpha that is not used causes no warning, because the material says what the alpha is.
+    bool alpha_is_known = false;
   };
   /// Adds an image unless it is already stored. `key` identifies the image, `name` is its name in
-  /// errors and warnings; `read` returns the bytes of its file, and is called if the image is not
-  /// stored yet. Returns the error of `read`, or INVALID_ARGUMENT if it is not an image.
+  /// errors and warnings; `read` returns the bytes of its file, and is called only if the decoded
+  /// image is not known yet. Returns the error of `read` or of decode_image().
   absl::StatusOr<TextureId> image(const std::string& key, const std::string& name, const Use& use,
                                   absl::FunctionRef<absl::StatusOr<std::string>()> read);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// File systems for Assimp, which opens files only through them: AssimpFiles for the files of the
-// scene's folder, read only, and PlainGltfFiles for a rewritten glTF document in memory.
+// Assimp opens files only through the file systems of this header. AssimpFiles gives it the files
+// of the scene's folder, read only. PlainGltfFiles gives it a rewritten glTF document in memory.
 
 #include <assimp/IOSystem.hpp>
 
@@ -19,8 +19,8 @@ namespace bandsaw {
 /// Maximum size of each file of a model, in bytes.
 inline constexpr std::uint64_t kMaxModelFileBytes = std::uint64_t{8} << 30;
 
-/// Files to which a model referred and which it could not open. MUST outlive the Assimp importer,
-/// which owns its AssimpFiles.
+/// Files to which a model refers and which Assimp could not open. MUST outlive the Assimp importer,
+/// which owns the AssimpFiles.
 struct RefusedFiles {
   std::vector<std::string> missing;  ///< names as in the model
   std::vector<std::string> outside;  ///< error messages for files outside of the scene's folder
@@ -34,7 +34,7 @@ struct ModelSource {
 
 class AssimpFiles : public Assimp::IOSystem {
  public:
-  /// The names of other files than the model are relative to the model's folder. The options of MTL
+  /// The names of files other than the model are relative to the model's folder. The options of MTL
   /// files that Assimp opens are added to `mtl`. `folder`, `refused` and `mtl` MUST outlive this
   /// object.
   AssimpFiles(const SceneFolder& folder, const ModelSource& model, RefusedFiles& refused,

@@ -1,4 +1,5 @@
-// Finds the nodes that have an instance of a camera, and reads the optics of that camera.
+// Finds the nodes of a COLLADA file that have an instance of a camera, and reads the optics of that
+// camera.
 
 #include "renderlib/import/model/collada_cameras.h"
 
@@ -18,8 +19,8 @@ double number(const pugi::xml_node& in, const char* name) {
   return value > 0 ? value : 0;
 }
 
-// Returns the angle in radians; std::nullopt if the file has none. The angles in the file are in
-// degrees; xfov counts only without yfov. `aspect`: width / height.
+// Returns the vertical field of view in radians; std::nullopt if the file has no angle. The angles
+// in the file are in degrees; xfov counts only without yfov. `aspect`: width / height.
 std::optional<double> vertical_fov(const pugi::xml_node& perspective, double aspect) {
   const double vertical = number(perspective, "yfov");
   const double horizontal = number(perspective, "xfov");

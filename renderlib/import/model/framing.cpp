@@ -32,11 +32,11 @@ void for_each_vertex(const Geometry& geometry, const std::vector<Instance>& inst
   }
 }
 
-// Finds the nearest place of a camera that sees all points, in one direction of the image. A camera
-// at (a, d) with half-angle tangent t sees a point (x, z), z towards the camera, if
-// |x - a| <= t (d - z). So d t >= x + t z - a and d t >= -x + t z + a. Over all points, let R be
-// the maximum of x + t z, and L the maximum of -x + t z. Then the least d is (R + L) / (2 t), and
-// it is reached at a = (R - L) / 2.
+// Finds the nearest place of a camera that sees all points, in one direction of the image,
+// horizontal or vertical. A camera at (a, d) with half-angle tangent t sees a point (x, z), z
+// towards the camera, if |x - a| <= t (d - z). So d t >= x + t z - a and d t >= -x + t z + a. Over
+// all points, let R be the maximum of x + t z, and L the maximum of -x + t z. Then the least d is
+// (R + L) / (2 t), and it is reached at a = (R - L) / 2.
 struct Fit {
   double tangent;
   double right = -std::numeric_limits<double>::infinity();
@@ -68,8 +68,8 @@ PerspectiveCamera frame(const Geometry& geometry, const std::vector<Instance>& i
     high.add(dot(p, up), dot(p, back));
   });
   double distance = std::max(wide.distance(), high.distance());
-  // The point in the middle of the visible points along the view direction, at which the camera
-  // looks.
+  // The camera looks at the point halfway between the nearest and the farthest vertex along the
+  // view direction.
   double nearest = -std::numeric_limits<double>::infinity();
   double farthest = std::numeric_limits<double>::infinity();
   for_each_vertex(geometry, instances, [&](const Vec3& p) {

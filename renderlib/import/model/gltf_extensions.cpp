@@ -65,7 +65,7 @@ using gltf::name_in;
 using gltf::number;
 using gltf::object;
 
-// Reads two numbers; absent ones keep their value.
+// Reads two numbers. If the member is not a list of two numbers, `x` and `y` keep their values.
 void read_pair(const Json& in, const std::string& name, double& x, double& y) {
   const Json* values = list(in, name);
   if (values != nullptr && values->size() == 2 && (*values)[0].is_number() &&
@@ -75,8 +75,9 @@ void read_pair(const Json& in, const std::string& name, double& x, double& y) {
   }
 }
 
-// Converts offset + rotation (scale uv) with v = 0 at the top of the image to uvs with v = 0 at the
-// bottom: v -> 1 - v before and after. The rotation is counter-clockwise in the image.
+// Converts the transform offset + rotation (scale uv) of KHR_texture_transform, for which v = 0 is
+// the top of the image, to uvs with v = 0 at the bottom: v becomes 1 - v before and after it. The
+// rotation is counter-clockwise in the image.
 UvTransform transform_of(const Json& from) {
   double offset_u = 0;
   double offset_v = 0;

@@ -27,7 +27,7 @@ struct GltfTexture {
 /// index of refraction.
 struct GltfSpecular {
   double factor = 1;
-  std::array<double, 3> color{1, 1, 1};  ///< linear RGB, also multiplied
+  std::array<double, 3> color{1, 1, 1};  ///< linear RGB, scales F0 too
   bool has_maps = false;
 };
 
@@ -51,7 +51,7 @@ struct GltfMaterial {
   std::optional<GltfSpecular> specular;
   double coat_normal_scale = 1;  ///< KHR_materials_clearcoat: scale of clearcoatNormalTexture
   bool unlit = false;            ///< KHR_materials_unlit
-  bool has_metallic_roughness = false;  ///< pbrMetallicRoughness, with a member at least
+  bool has_metallic_roughness = false;  ///< pbrMetallicRoughness has a member
 };
 
 struct GltfExtensions {
@@ -67,7 +67,8 @@ struct GltfExtensions {
   std::size_t lights_with_range = 0;  ///< lights with KHR_lights_punctual's range, which is ignored
 };
 
-/// `root` is the JSON of a plain glTF file (gltf/plain_gltf.h), whose references have been checked.
+/// `root` is PlainGltf::root (gltf/plain_gltf.h): the JSON of a plain glTF file, whose references
+/// have been checked, or of glTF 1, which is not checked.
 GltfExtensions read_gltf_extensions(const gltf::Json& root);
 
 }  // namespace bandsaw

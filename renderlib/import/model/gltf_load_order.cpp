@@ -41,7 +41,7 @@ class Walk {
         const Json* mesh = item_of(root_, "meshes", *node, "mesh");
         add_mesh(mesh);
         if (const Json* skin = item_of(root_, "skins", *node, "skin"); skin && mesh) {
-          skins_[mesh] = skin;  // a plain document has one for each mesh
+          skins_[mesh] = skin;  // a plain document has one skin for each mesh
         }
         add(item_of(root_, "cameras", *node, "camera"), numbers_[node], cameras_, order.cameras);
         if (const Json* light = extension(*node, kLights);
@@ -86,7 +86,7 @@ class Walk {
       }
     }
   }
-  // Joints may come after the meshes that use them.
+  // Bones are added after the traversal, because joints may come after the meshes that use them.
   void add_bones() {
     for (const auto& [mesh, skin] : skins_) {
       std::vector<std::size_t> nodes;

@@ -30,7 +30,7 @@ struct GltfLoadOrder {
   std::vector<GltfAtNode> cameras;
   std::vector<GltfAtNode> lights;  ///< KHR_lights_punctual
   /// Nodes of the bones, as GltfAtNode::node, keyed by Assimp's mesh number; absent for a mesh
-  /// without a skin or with a bone outside the scene.
+  /// without a skin, and empty for a mesh with a bone outside the scene.
   std::map<std::size_t, std::vector<std::size_t>> bones;
   /// GltfAtNode::node of each node of the scene, keyed by its index in the file.
   std::map<std::size_t, std::size_t> nodes;

@@ -56,8 +56,8 @@ UvTransform uv_transform_of(const aiUVTransform& from) {
   return {{a, b, mu + from.mTranslation.x, c, d, mv + from.mTranslation.y}};
 }
 
-// Returns the name without white space around it: Assimp keeps that at the end of a line of an MTL
-// file.
+// Returns the name without white space around it: Assimp keeps the white space at the end of a line
+// of an MTL file.
 std::string without_space(const aiString& name) {
   return std::string(absl::StripAsciiWhitespace(name.C_Str()));
 }
@@ -121,8 +121,8 @@ MaterialReader::MaterialReader(ModelFile& file, unsigned index)
   }
 }
 
-// Finds the textures whose files are missing. Called for formats in which names of missing files
-// are common: there such a texture is left out with a warning.
+// Finds the textures whose files are missing or must not be read. Such a texture is left out with a
+// warning. This is called only for formats in which names of missing files are common.
 void MaterialReader::name_dead_files() {
   for (unsigned type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
     for (unsigned index = 0; index < material_.GetTextureCount(aiTextureType(type)); ++index) {
@@ -144,7 +144,8 @@ const GltfMaterial* MaterialReader::gltf() const {
   if (index_ < all.size() && (all[index_].name.empty() || is_this(all[index_]))) {
     return &all[index_];
   }
-  // A material without a name, such as Assimp's default material, is not one of the JSON's.
+  // A material without a name, such as Assimp's default material, is not one of the materials in
+  // the JSON.
   const auto found = name.length == 0 ? all.end() : std::find_if(all.begin(), all.end(), is_this);
   return found == all.end() ? nullptr : &*found;
 }

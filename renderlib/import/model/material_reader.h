@@ -90,7 +90,7 @@ class MaterialReader {
   const aiMaterial& material_;
   ModelTextures textures_;
   std::string called_;                ///< name in messages: "\"steel\"", or its number
-  std::set<std::string> dead_files_;  ///< missing textures, named as in the model
+  std::set<std::string> dead_files_;  ///< missing or refused textures, named as in the model
   std::vector<unsigned> uv_sets_;  ///< Assimp's numbers of the two uv sets that the material uses
 };
 

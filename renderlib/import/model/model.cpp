@@ -39,7 +39,8 @@
 namespace bandsaw {
 namespace {
 
-// Returns Assimp's error, or the files that it could not open, which are mostly the cause.
+// Returns the error of a model that Assimp could not read. If there are files that Assimp could not
+// open, the error names the first, because such a file is mostly the cause.
 absl::Status read_failure(const std::string& name, const RefusedFiles& refused,
                           absl::string_view reason) {
   if (!refused.outside.empty()) {
@@ -105,7 +106,7 @@ ModelKind kind_of(const std::string& path) {
 // Returns the rotation that turns the scene of an FBX file to +y up, +z front and +x right; the
 // file's metadata name its axes. Assimp 5.2 does not rotate the scene. Assimp 5.4 rotates it and
 // scales it by the file's unit in the root node; this is undone here, so that all versions give the
-// same scene.
+// same scene. Returns the identity if the metadata do not name valid axes.
 Transform upright(const aiScene& scene) {
   struct Axis {
     const char* name;
@@ -172,7 +173,7 @@ absl::Status gltf_failure(const std::string& name, const absl::Status& why) {
 }
 
 /// Returns the animation with its nodes keyed by their number in Assimp's tree instead of their
-/// index in the file. `numbers` maps the latter to the former.
+/// index in the file. `numbers` maps the index in the file to the number in Assimp's tree.
 std::optional<Animation> renumbered(std::optional<Animation> animation,
                                     const std::map<std::size_t, std::size_t>& numbers) {
   if (!animation) {
@@ -190,7 +191,8 @@ std::optional<Animation> renumbered(std::optional<Animation> animation,
   return to;
 }
 
-/// Sets the chosen animation and the names of all of them. NOT_FOUND: there is no such animation.
+/// Sets the chosen animation and the names of all animations. Returns NOT_FOUND if there is no such
+/// animation.
 absl::Status choose_animation(const AnimationChoice& choice, const std::string& name,
                               std::optional<gltf::PlainGltf>& plain, LoadedModel& model) {
   if (plain && !plain->is_first_version) {
@@ -209,8 +211,8 @@ absl::Status choose_animation(const AnimationChoice& choice, const std::string& 
   return absl::OkStatus();
 }
 
-/// Deletes the files that Assimp reads from. SetIOHandler(nullptr) would not delete them in Assimp
-/// 5.2 (Assimp's pull request 5926), but setting another handler does in all versions.
+/// Deletes the file system object through which Assimp read. SetIOHandler(nullptr) would not delete
+/// it in Assimp 5.2 (Assimp's pull request 5926), but setting another handler does in all versions.
 void forget_files(Assimp::Importer& importer) {
   importer.SetIOHandler(std::make_unique<Assimp::DefaultIOSystem>().release());
 }
@@ -252,7 +254,7 @@ absl::StatusOr<std::shared_ptr<LoadedModel>> load_model(const ModelSource& sourc
     plain = *std::move(read);
   }
   auto model = std::make_shared<LoadedModel>();
-  // No placeholder meshes for the bones of files without meshes.
+  // Assimp makes no placeholder meshes for the bones of files without meshes.
   model->importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   model->scene = read_by_assimp(source, folder, plain, *model);
   if (model->scene == nullptr || model->scene->mRootNode == nullptr ||

@@ -1,7 +1,7 @@
 #pragma once
 
 // Reads model files of every format that Assimp supports, as meshes, materials and placements of
-// the scene. Used for models that a scene file names and for a model that is rendered alone.
+// the scene. This serves for models that a scene file names and for a model that is rendered alone.
 
 #include <optional>
 #include <string>
@@ -47,13 +47,13 @@ bool is_model_file(const std::string& path);
 /// model is broken or has no triangles, NOT_FOUND for a file that it needs or for the animation,
 /// and PERMISSION_DENIED for a file outside of the scene's folder. `animation` chooses one of its
 /// animations, which is evaluated over the draft's shutter interval: nodes move during the
-/// interval, and vertices of skins and morph targets have one position at its begin and one at its
-/// end. With an animation the model may have no placements: a scale of 0 hides a node.
+/// interval, and vertices of skins and morph targets have one position at its beginning and one at
+/// its end. With an animation the model may have no placements: a scale of 0 hides a node.
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft,
                                  const AnimationChoice& animation = {});
 
-/// Reads a model that a converter made, from its bytes; it may name files of the scene's folder.
-/// MUST NOT be glTF. Otherwise as read_model.
+/// Reads a model that a converter made, from its bytes. The model may name files of the scene's
+/// folder; it MUST NOT be glTF. Otherwise as read_model.
 absl::StatusOr<Model> read_made_model(const std::string& name, absl::string_view bytes,
                                       bool with_materials, SceneDraft& draft);
 

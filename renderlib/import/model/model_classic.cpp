@@ -48,7 +48,7 @@ bool shines(const MaterialReader& reader, double exponent) {
 double opacity_of(MaterialReader& reader, bool mapped) {
   const double opacity = reader.number("$mat.opacity", 0, 1).value_or(1);
   if (opacity == 0 && !mapped) {
-    // The most common mistake of exporters: transparency and opacity are exchanged.
+    // This is the most common mistake of exporters: transparency and opacity are exchanged.
     reader.unsupported("it is not there at all (opacity 0), which is taken as a mistake");
     return 1;
   }

@@ -16,8 +16,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the absorption per unit with which white light has the volume's colour after the
-/// volume's distance (Beer and Lambert).
+/// Returns the absorption per unit of length with which white light has the volume's
+/// attenuation_color after its attenuation_distance (Beer and Lambert).
 Rgb absorption_of(const GltfVolume& volume) {
   const auto channel = [&](double color) {
     constexpr double kMinColor = 1e-6;  // darker colours are practically opaque

@@ -21,8 +21,8 @@ namespace {
 
 Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-/// Returns colour times intensity, which Assimp has multiplied: glTF's candela and lux become
-/// radiant intensity and irradiance unchanged.
+/// Returns the product of colour and intensity, which is what Assimp stores. glTF's candela and lux
+/// become radiant intensity and irradiance unchanged.
 Rgb brightness_of(const aiLight& from) {
   const auto channel = [](float value) {
     return std::isfinite(value) ? std::clamp(value, 0.0f, kMaxRadiance) : 0.0f;
@@ -31,12 +31,13 @@ Rgb brightness_of(const aiLight& from) {
           channel(from.mColorDiffuse.b)};
 }
 
-/// Returns the intensity at distance 1 of a light with the falloff c + l r + q r^2, q > 0. Other
-/// falloffs, which few formats have and which are not physical, are replaced by the falloff with
-/// the same intensity at distance 1.
+/// Returns the intensity of a light at distance 1. In Assimp, the falloff with the distance r is 1
+/// / (c + l r + q r^2). If c = l = 0 and q > 0, the light falls off with the square of the
+/// distance. Other falloffs, which few formats have and which are not physical, are replaced, with
+/// a warning, by the falloff with the square that has the same intensity at distance 1.
 Rgb intensity_of(const aiLight& from, ModelFile& file) {
   const float square = from.mAttenuationQuadratic;
-  // It is infinite for FBX lights whose decay starts at 0.
+  // `square` is infinite for FBX lights whose decay starts at 0.
   const bool is_square = square > 0 && std::isfinite(square) && from.mAttenuationConstant == 0 &&
                          from.mAttenuationLinear == 0;
   if (is_square) {
@@ -64,8 +65,8 @@ std::size_t directional_lights(const Model& model) {
 /// Returns true if the scene's validation accepts the position (light/check_lights.cpp).
 bool is_place(const Vec3& p) { return is_finite(p) && max_abs(p) <= 1e30; }
 
-/// Returns true for formats that give a spot light the angles across its whole cones. Others, such
-/// as glTF, give those from the axis to the edge. Assimp passes both on as they are.
+/// Returns true for formats in which the angles of a spot light span its whole cones. In other
+/// formats, such as glTF, they reach from the axis to the edge. Assimp passes both on as they are.
 bool has_whole_angles(const ModelFile& file) {
   constexpr absl::string_view kSuffixes[] = {".fbx", ".dae", ".3ds", ".ase", ".blend"};
   return std::any_of(std::begin(kSuffixes), std::end(kSuffixes), [&](absl::string_view suffix) {

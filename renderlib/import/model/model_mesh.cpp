@@ -36,7 +36,8 @@ struct Poses {
   MeshPose at_close;
 };
 
-/// Sets positions and normals, those at the shutter's close only where they differ.
+/// Sets the positions and normals at the opening of the shutter, and those at its closing if they
+/// differ.
 void add_vertices(const aiMesh& from, const Poses& poses, Mesh& mesh) {
   Vertices open = posed_vertices(from, poses.at_open);
   if (!(poses.at_close == poses.at_open)) {
@@ -83,7 +84,7 @@ std::vector<std::array<float, 2>> uvs(const aiMesh& from, unsigned uv_set) {
   if (uv_set >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !from.HasTextureCoords(uv_set)) {
     return {};
   }
-  // Assimp converts the uvs of all formats so that v = 0 is the bottom row of an image, as in our
+  // Assimp converts the uvs of all formats so that v = 0 is the bottom row of an image, as in this
   // renderer.
   std::vector<std::array<float, 2>> to(from.mNumVertices);
   for (unsigned i = 0; i < from.mNumVertices; ++i) {
@@ -93,8 +94,8 @@ std::vector<std::array<float, 2>> uvs(const aiMesh& from, unsigned uv_set) {
   return to;
 }
 
-// Returns the vertex colours in linear RGB; in formats other than glTF they are sRGB. Empty if
-// there are none, or if all are white or unset.
+// Returns the vertex colours in linear RGB; in formats other than glTF the colours of the file are
+// sRGB. The result is empty if there are no colours, or if all are white or unset.
 std::vector<std::array<float, 3>> colors(const aiMesh& from, ModelKind kind) {
   if (!from.HasVertexColors(0)) {
     return {};
@@ -163,8 +164,8 @@ class MeshReader {
   std::vector<std::string>& warnings_;
 };
 
-// Returns true if a vertex colour is transparent. If every alpha is 0, the file has none: Assimp
-// gives colours of three channels an alpha of 0.
+// Returns true if a vertex colour is transparent. If every alpha is 0, the file has no alpha:
+// Assimp gives colours of three channels an alpha of 0.
 bool has_clear_colors(const aiMesh& from) {
   const auto any = [&](auto has) {
     return from.HasVertexColors(0) &&
@@ -174,8 +175,9 @@ bool has_clear_colors(const aiMesh& from) {
          any([](const aiColor4D& c) { return c.a != 0; });
 }
 
-// Returns the transforms of a mesh's bones; std::nullopt if a bone has no node. Bones are found by
-// the file's numbers if it has them, otherwise by name, because names need not be unique.
+// Returns the transforms of a mesh's bones; std::nullopt if a bone has no node. Names need not be
+// unique, so the bones are found by the numbers in GltfExtensions::bones if these are known, and
+// only otherwise by name.
 std::optional<std::vector<Transform>> bone_places(const ModelFile& file, unsigned number,
                                                   const NodePlaces& places) {
   const aiMesh& mesh = *file.scene.mMeshes[number];

@@ -25,9 +25,9 @@ Slot either(const MaterialReader& reader, Slot first, Slot second) {
   return reader.has(first) ? first : second;
 }
 
-/// Returns true if a glTF material is described by pbrMetallicRoughness. It may then describe
-/// itself by KHR_materials_pbrSpecularGlossiness too, whose values Assimp stores as the diffuse
-/// ones.
+/// Returns true if a glTF material is described by pbrMetallicRoughness. Such a material may also
+/// have KHR_materials_pbrSpecularGlossiness, whose values Assimp stores as diffuse colour and
+/// texture.
 bool has_own_base(const MaterialReader& reader) {
   return reader.gltf() != nullptr && reader.gltf()->has_metallic_roughness;
 }
@@ -42,7 +42,7 @@ absl::Status read_base(MaterialReader& reader, MetallicRoughness& to) {
   ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
   const auto base = reader.color("$clr.base", 1);
   to.base_color.factor = base ? *base : reader.color("$clr.diffuse", 1).value_or(Rgb{1, 1, 1});
-  // glTF stores both in one image; other formats have an image for each.
+  // glTF stores metallic and roughness in one image; other formats have an image for each.
   const Slot both{aiTextureType_UNKNOWN};
   const bool one = reader.kind() == ModelKind::kGltf && reader.has(both);
   const Slot metal = one ? both : Slot{aiTextureType_METALNESS};
@@ -90,8 +90,9 @@ absl::Status read_normals(MaterialReader& reader, Relief& relief, MetallicRoughn
   return absl::OkStatus();
 }
 
-// Sets the index whose F0 is the material's F0 times its factor and the luminance of its colour. At
-// grazing angles all light is still reflected, unless F0 is 0.
+// Sets the index whose F0 is the material's F0 times the specular factor and the luminance of the
+// specular colour; the index is at most 5. At grazing angles all light is still reflected, unless
+// F0 is 0.
 void read_specular(const GltfSpecular& from, MaterialReader& reader, MetallicRoughness& to) {
   const auto [r, g, b] = from.color;
   if (r != g || g != b) {
@@ -112,7 +113,8 @@ void read_specular(const GltfSpecular& from, MaterialReader& reader, MetallicRou
 double index_of_refraction(const MaterialReader& reader) {
   if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->index_of_refraction) {
     const double index = *gltf->index_of_refraction;
-    // KHR_materials_ior: 0 means a reflection that does not depend on the angle.
+    // KHR_materials_ior: 0 means a reflection that does not depend on the angle. Such a material
+    // gets the index 1.5.
     return index >= 1 && index <= 5 ? index : 1.5;
   }
   return reader.number("$mat.refracti", 1, 5).value_or(1.5);
@@ -133,9 +135,9 @@ absl::Status read_layers(MaterialReader& reader, MetallicRoughness& to) {
   return absl::OkStatus();
 }
 
-// Converts KHR_materials_pbrSpecularGlossiness without its image. A surface whose specular colour
-// is brighter than 0.5 is taken as a metal. Its metallic share m is chosen so that the mixture
-// (1 - m) 0.04 + m is as bright as the specular colour.
+// Converts KHR_materials_pbrSpecularGlossiness without its image. A surface without a diffuse
+// texture whose specular colour is brighter than 0.5 is taken as a metal. Its metallic share m is
+// chosen so that the mixture (1 - m) 0.04 + m is as bright as the specular colour.
 void from_glossiness(MaterialReader& reader, double glossiness, MetallicRoughness& to) {
   to.roughness.factor = 1 - glossiness;
   to.metallic.factor = 0;

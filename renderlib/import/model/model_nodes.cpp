@@ -34,9 +34,9 @@ struct CameraAtNode {
   std::optional<double> height = std::nullopt;        ///< as ColladaLens::height
 };
 
-// Returns the vertical field of view. Assimp's reader of glTF 1 stores the vertical angle times the
-// aspect ratio, or the vertical angle itself if the file has no ratio; other readers store the
-// horizontal angle.
+// Returns the vertical field of view in degrees. Assimp's reader of glTF 1 stores the vertical
+// angle times the aspect ratio, or the vertical angle itself if the file has no ratio; other
+// readers store the horizontal angle.
 double vertical_fov_degrees(const CameraAtNode& found, bool gltf) {
   if (found.vertical_fov) {
     return *found.vertical_fov * 180 / kPi;
@@ -50,12 +50,13 @@ double vertical_fov_degrees(const CameraAtNode& found, bool gltf) {
   return atan2(half.sin, half.cos * aspect) * 360 / kPi;
 }
 
-// Returns std::nullopt if the camera is invalid.
+// Returns the camera in the space to which `node` transforms; std::nullopt if the camera is
+// invalid.
 std::optional<Camera> camera_of(const CameraAtNode& found, const Transform& node, bool gltf) {
   const aiCamera& camera = *found.camera;
   View view;
-  // Assimp 5.2 copies the node's translation into the camera of some files; cameras are at the
-  // node's origin.
+  // The camera is at the node's origin. Assimp's position is not used, because Assimp 5.2 copies
+  // the node's translation into the camera of some files.
   view.position = node.point({0, 0, 0});
   view.look_at = view.position + node.direction(vector_of(camera.mLookAt));
   view.up = node.direction(vector_of(camera.mUp));
@@ -74,7 +75,8 @@ std::optional<Camera> camera_of(const CameraAtNode& found, const Transform& node
   return validate(out).ok() ? std::optional(out) : std::nullopt;
 }
 
-// Cameras of 3DS and similar files look at a target that Assimp does not pass on.
+// Returns false for 3DS and similar files, whose cameras look at a target that Assimp does not pass
+// on.
 bool has_usable_cameras(const ModelFile& file) {
   return file.kind != ModelKind::kOther || file.is_collada() ||
          absl::EndsWithIgnoreCase(file.path, ".fbx");
@@ -110,8 +112,9 @@ std::vector<Key> keys_of(const NodeMotion& motion, const Shutter& shutter) {
 }
 
 // Visits all nodes of the file's tree and collects instances, cameras and lights in `model`.
-// `flattened` counts the instances whose transform has no inverse: it would make them flat, so they
-// are left out. The traversal uses an explicit stack, because the file can make the tree deep.
+// `flattened` counts the instances that are left out because their transform has no inverse and
+// would make them flat. The traversal uses an explicit stack, because the file can make the tree
+// deep.
 class Walk {
  public:
   Walk(ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
@@ -188,7 +191,8 @@ class Walk {
                     parent.at_open * local(shutter.open),
                     parent.in_middle * local(middle_of(shutter)),
                     parent.at_close * local(shutter.close)};
-    // A moving node becomes a frame. Without keys it rests where it is in the middle.
+    // A moving node becomes a frame. If keys_of() returns no keys, it rests where it is in the
+    // middle of the shutter interval.
     if (motion != nullptr && !motion->rests(shutter.open, shutter.close)) {
       if (std::vector<Key> keys = keys_of(*motion, shutter); !keys.empty()) {
         place.in_frame = Transform{};

@@ -23,6 +23,7 @@ namespace bandsaw {
 namespace {
 
 // Returns raw texels as a TGA file with 32 bits a pixel, rows from the top, in Assimp's byte order.
+// Returns an empty string if a side has more than 65,535 texels.
 std::string tga_of(const aiTexture& raw) {
   constexpr unsigned kMaxImageSide = 0xffff;
   if (raw.mWidth > kMaxImageSide || raw.mHeight > kMaxImageSide) {

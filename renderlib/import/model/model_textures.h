@@ -18,10 +18,10 @@ class ModelTextures {
   ModelTextures(const aiScene& scene, const std::string& model_path, SceneDraft& draft)
       : scene_(scene), path_(model_path), draft_(draft) {}
 
-  /// Finds an image by its name in the model: an embedded image, or a file by its name as it is,
-  /// with backslashes, percent-encoded, in other case, or by a path of another machine whose last
-  /// part is in the model's folder. Returns NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT with
-  /// the reason.
+  /// Finds an image by its name in the model and adds it as a texture. The image is embedded, or it
+  /// is a file. The name of a file may have backslashes, be percent-encoded or differ in case. It
+  /// may also be a path of another machine whose last part is in the model's folder. Returns
+  /// NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT with the reason.
   absl::StatusOr<TextureId> find(const std::string& file, const TextureStore::Use& use) const;
 
   /// Returns OK if find() would find a file or an embedded image, otherwise its error.

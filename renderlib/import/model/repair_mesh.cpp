@@ -1,5 +1,6 @@
-// Repairs normals and uvs of a model's mesh: finds what is not finite or has no direction, and
-// computes a replacement from the rest of the mesh.
+// Repairs a model's mesh. Normals that are zero or not finite are computed from the triangles, and
+// uvs that are not finite become 0. Vertices that no triangle uses are removed if a vertex is not
+// finite.
 
 #include "renderlib/import/model/repair_mesh.h"
 #include "renderlib/math/float3.h"

@@ -13,7 +13,8 @@ namespace bandsaw {
 void drop_unused_vertices(Mesh& mesh);
 
 /// Replaces each normal that is zero or not finite by the area-weighted mean of the normals of its
-/// triangles; at both ends if the mesh deforms. Returns the number of replaced normals.
+/// triangles, or by (0, 1, 0) if this mean is zero. If the mesh deforms, the normals at both ends
+/// of the shutter interval are repaired. Returns the number of replaced normals.
 std::size_t repair_normals(Mesh& mesh);
 
 /// Replaces each uv that is not finite by (0, 0). Returns the number of replaced uvs.
