@@ -15,7 +15,8 @@ float filmic(float light) {
   if (std::isnan(light)) {
     return light;
   }
-  // The curve exceeds 1 from 8.1 on; much larger values would overflow.
+  // The curve exceeds 1 from 7.25 on. The clamp keeps infinity out of the quotient, which would
+  // be NaN.
   const double x = std::clamp(double{light}, 0.0, 1e6);
   return static_cast<float>(std::min(1.0, x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)));
 }

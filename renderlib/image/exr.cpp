@@ -17,8 +17,8 @@ namespace bandsaw {
 namespace {
 
 constexpr float kMaxHalf = 65504;
-/// Maximum length of a layer's name, in bytes. A channel's name has 255 at most, of which the
-/// suffix needs two.
+/// Maximum length of a layer's name, in bytes. A channel's name has at most 255 bytes, and its
+/// suffix needs two of them.
 constexpr std::size_t kMaxLayerName = 200;
 
 /// Frees memory of tinyexr, which allocates by malloc.

@@ -90,7 +90,7 @@ std::vector<std::byte> encode_hdr(const Image& image) {
     out.push_back(static_cast<std::byte>(c));
   }
   RowWriter writer(out);
-  // For other widths readers expect the old form without runs.
+  // Readers expect runs only in rows of these widths. Other rows have the old form without runs.
   const bool runs = image.width >= 8 && image.width < 32768;
   std::vector<Rgbe> row(image.width);
   for (std::uint32_t y = 0; y < image.height; ++y) {

@@ -16,8 +16,8 @@ const std::array<float, 256>& srgb_table();
 /// Returns the linear value of an sRGB value in [0, 1].
 double srgb_decode(double v);
 
-/// Returns the 8-bit code of a linear value, round(255 f(x)); 0 for negative values and NaN, 255
-/// above 1. Inverts srgb_table() exactly.
+/// Returns the 8-bit code of a linear value, round(255 srgb_curve(linear)); 0 for negative values
+/// and NaN, 255 above 1. Inverts srgb_table() exactly.
 std::uint8_t srgb_encode(float linear);
 
 }  // namespace bandsaw

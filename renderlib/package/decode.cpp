@@ -169,8 +169,8 @@ class Decoder {
  public:
   Decoder(BlobSource& blobs, DecodedParts* parts) : blobs_(blobs), parts_(parts) {}
 
-  // Returns the whole blob without copying it: a mapped file stays mapped. Its size has been
-  // compared with the manifest.
+  // Returns the whole blob without copying it: a mapped file stays mapped. Returns INVALID_ARGUMENT
+  // if the size of the blob is not that in the manifest.
   absl::StatusOr<SharedBytes> bytes(const package::Blob& blob, const std::string& field) {
     ASSIGN_OR_RETURN(const BlobRef ref, blob_ref(blob, field));
     ASSIGN_OR_RETURN(std::shared_ptr<const BlobBytes> held, blob_of(ref.digest));

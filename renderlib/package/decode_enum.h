@@ -10,7 +10,8 @@ namespace bandsaw {
 
 /// Converts an enum of proto/package.proto to the enum `Ours`, whose values count from 0 in the
 /// same order. `first` and `last` are the first and last valid value of the protocol; `first` is 1
-/// if its 0 means "unspecified". Returns INVALID_ARGUMENT, which names `field`, for other values.
+/// if the protocol's 0 means "unspecified". Returns INVALID_ARGUMENT, which names `field`, for
+/// other values.
 template <class Ours>
 absl::StatusOr<Ours> decode_enum(int value, int first, int last, const std::string& field) {
   if (value < first || value > last) {
@@ -19,7 +20,7 @@ absl::StatusOr<Ours> decode_enum(int value, int first, int last, const std::stri
   return static_cast<Ours>(value - first);
 }
 
-/// The same for enums of the protocol that start at 1.
+/// The same for enums of the protocol whose first valid value is 1.
 template <class Ours>
 absl::StatusOr<Ours> decode_enum(int value, int last, const std::string& field) {
   return decode_enum<Ours>(value, 1, last, field);

@@ -2,7 +2,7 @@
 
 // Remembers the large parts (meshes and blobs) of decoded packages as long as a scene uses them. If
 // a package that is decoded later has equal parts, it shares them. So for each frame of an
-// animation only the parts that change are read. decode_package() (package.h) uses it.
+// animation only the parts that change are read. decode_package() (package.h) uses this class.
 
 #include <cstddef>
 #include <map>

@@ -27,13 +27,14 @@ namespace {
 std::uint32_t number(TextureId id) { return static_cast<std::uint32_t>(id); }
 
 /// Converts an enum to one of the protocol. Both are declared in the same order; `first` is 1 if
-/// the protocol's has an additional 0 for "unspecified".
+/// the protocol's enum has an additional 0 for "unspecified".
 template <class Theirs, class Ours>
 Theirs as(Ours ours, int first = 0) {
   return static_cast<Theirs>(static_cast<int>(ours) + first);
 }
 
-/// Sets `ref` to the bytes. Adds them to `blobs`, unless they were in the last package (`parts`).
+/// Sets `ref` to the size and digest of the bytes. Adds the bytes to `blobs`, unless they were in
+/// the last package (`parts`).
 void put_shared(const SharedBytes& bytes, BlobMap& blobs, EncodedParts* parts, package::Blob& ref) {
   ref.set_size(bytes.size());
   if (const wire::Digest* known = parts != nullptr ? parts->digest_of(bytes) : nullptr) {
@@ -263,7 +264,7 @@ void encode(const Camera& camera, package::Camera& to) {
 
 void encode(const PixelFilter& filter, package::Manifest& manifest) {
   if (filter != PixelFilter{}) {
-    // The enums are declared in the same order; the protocol's has an additional 0.
+    // The enums are declared in the same order; the protocol's enum has an additional 0.
     const int kind = static_cast<int>(filter.kind) + 1;
     manifest.mutable_filter()->set_kind(static_cast<package::PixelFilter::Kind>(kind));
     manifest.mutable_filter()->set_radius(filter.radius);

@@ -126,7 +126,7 @@ absl::StatusOr<DeltaLight> decode(const package::Light& from, const std::string&
 }  // namespace
 
 void encode_environment(const Environment& from, package::Environment& to) {
-  // The enums are declared in the same order; the protocol's has an additional 0.
+  // The enums are declared in the same order; the protocol's enum has an additional 0.
   to.set_kind(static_cast<package::Environment::Kind>(static_cast<int>(from.kind) + 1));
   for (const TextureId image : from.images) {
     to.add_image(static_cast<std::uint32_t>(image));

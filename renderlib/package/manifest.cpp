@@ -73,9 +73,9 @@ absl::Status check_all(const package::Manifest& manifest) {
   return check_meshes("boundaries.", boundaries.mesh());
 }
 
-/// Returns INVALID_ARGUMENT if a mesh, a group or the loose shapes are more than a BVH can hold
-/// (scene/check_counts.h). The counts follow from the sizes of the blobs, so no blob is read and no
-/// memory is allocated.
+/// Returns INVALID_ARGUMENT if there are more shapes in a mesh, in a group, or outside of all
+/// groups than a BVH can hold (scene/check_counts.h). The counts follow from the sizes of the
+/// blobs, so no blob is read and no memory is allocated.
 absl::Status check_counts(const package::Manifest& manifest) {
   const absl::Status good = check_all(manifest);
   return good.ok() ? good
@@ -196,7 +196,7 @@ absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Vi
   return absl::OkStatus();
 }
 
-// Calls visit(blob, path of its field) for all blobs of a manifest, in a fixed order, until it
+// Calls visit(blob, path of its field) for all blobs of a manifest, in a fixed order, until a call
 // returns an error.
 template <class Visit>
 absl::Status for_each_blob(const package::Manifest& m, Visit visit) {

@@ -43,7 +43,7 @@ void encode(const VolumeGrid& grid, package::VolumeGrid& to) {
     to.add_cells(side);
   }
   to.set_channels(grid.channels);
-  // The enums are declared in the same order; the protocol's have an additional 0.
+  // The enums are declared in the same order; the protocol's enums have an additional 0.
   to.set_format(static_cast<package::VolumeGrid::Format>(static_cast<int>(grid.format) + 1));
   to.set_filter(static_cast<package::VolumeGrid::Filter>(static_cast<int>(grid.filter) + 1));
   to.set_border(static_cast<package::VolumeGrid::Border>(static_cast<int>(grid.border) + 1));

@@ -42,8 +42,8 @@ struct BlobRef {
 std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs,
                            EncodedParts* parts = nullptr);
 
-/// Returns the data of a manifest that needs no blobs. Returns INVALID_ARGUMENT, with the field, if
-/// parse_manifest() (manifest.h) does.
+/// Returns the data that are stored in the manifest itself, so no blobs are needed. Errors are
+/// those of parse_manifest() (manifest.h): INVALID_ARGUMENT with the field.
 absl::StatusOr<PackageInfo> package_info(const std::string& manifest);
 
 /// Returns every blob to which a manifest refers, each once. Returns INVALID_ARGUMENT if the

@@ -1,5 +1,5 @@
-// CheckParts checks the numbers of each kind of texture, and adds up how many textures its
-// evaluation needs.
+// CheckParts checks the numbers of each kind of texture, and adds up how many textures one lookup
+// of the texture evaluates.
 
 #include "renderlib/texture/check_texture.h"
 

@@ -11,9 +11,9 @@ namespace bandsaw {
 /// Sets of uv coordinates of a surface.
 enum class UvSet : std::uint8_t { kFirst, kSecond };
 
-/// The space of a texture that varies through space. World: scene units. Object: the space of the
-/// mesh or group before its placement; for a sphere, positions relative to its centre; for other
-/// shapes of no mesh and no group, the world.
+/// The space of a texture that varies through space. kWorld is the world, in scene units. kObject
+/// is the space of the mesh or group before its placement. On a sphere, positions in kObject are
+/// relative to its centre. For other shapes outside of all meshes and groups, kObject is the world.
 enum class Space : std::uint8_t { kWorld, kObject };
 
 /// The place at which a texture is looked up.

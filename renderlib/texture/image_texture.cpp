@@ -63,7 +63,7 @@ std::uint32_t wrapped_index(std::int64_t i, std::uint32_t size, ImageTexture::Wr
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, last));
 }
 
-/// x and y are in [0, 1], y from the top; so in bilinear().
+/// x and y are in [0, 1], y from the top. The same holds for bilinear().
 Rgb nearest(const ImageTexture& image, double x, double y) {
   const auto column = static_cast<std::int64_t>(std::floor(x * image.width));
   const auto row = static_cast<std::int64_t>(std::floor(y * image.height));

@@ -41,7 +41,7 @@ const Gradients& gradients() {
   return table;
 }
 
-/// A point of the lattice: its whole coordinates, modulo 2^64.
+/// A point of the lattice: its integer coordinates, modulo 2^64.
 struct Lattice {
   std::uint64_t x;
   std::uint64_t y;

@@ -10,9 +10,9 @@
 
 namespace bandsaw {
 
-/// Returns noise in [-0.87, 0.87]. It is 0 at points with whole coordinates, and once
-/// differentiable. Returns 0 where a component of p is not finite or too large (2^51) to have a
-/// useful fraction.
+/// Returns noise in [-0.87, 0.87]. The noise is once differentiable, and it is 0 at points with
+/// integer coordinates. Returns 0 where a component of p is not finite or too large (2^51) to have
+/// a useful fraction.
 double noise(const Vec3& p);
 
 /// Returns |sum of noise(2^i p) / 2^i over i < octaves|, in [0, 1.74].

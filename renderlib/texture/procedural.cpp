@@ -21,8 +21,8 @@ double parity(double x, double slack) {
   return std::isfinite(bit) ? bit : 0;
 }
 
-/// Returns the margin by which cells begin early, in cells: 2^-20, and above the rounding error of
-/// coordinates as large as `largest`.
+/// Returns the margin by which cells begin early, in cells. It is at least 2^-20, and larger than
+/// the rounding error of coordinates as large as `largest`.
 double slack_of(double largest) { return 0x1p-20 + 0x1p-40 * largest; }
 
 /// Returns t of NoiseTexture before clamping to [0, 1].

@@ -92,7 +92,7 @@ struct NoiseTexture {
   Rgb high{1, 1, 1};
 };
 
-/// Maps a number to a colour: another texture's luminance, or a coordinate.
+/// Maps a number to a colour. The number is another texture's luminance, or a coordinate.
 struct RampTexture {
   enum class Over : std::uint8_t { kTexture, kU, kV, kX, kY, kZ };
   struct Stop {
@@ -105,8 +105,8 @@ struct RampTexture {
   Space space = Space::kWorld;
   /// True: piecewise constant from each stop to the next; otherwise linear between stops.
   bool steps = false;
-  /// At least one stop; `at` is finite and strictly increasing. Values before the first and after
-  /// the last stop get their colour.
+  /// At least one stop; `at` is finite and strictly increasing. Values before the first stop get
+  /// the colour of the first stop, and values after the last stop its colour.
   std::vector<Stop> stops;
 };
 

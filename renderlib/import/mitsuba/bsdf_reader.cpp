@@ -160,7 +160,7 @@ absl::Status BsdfReader::thin_dielectric(const Parameters& from, Draft& draft) {
   scene::ThinDielectric& to = *draft.material.mutable_thin_dielectric();
   draft.transmits = true;
   ASSIGN_OR_RETURN(const double index, relative_index(from, "bk7", draft));
-  draft.turned = false;  // it is the same on both sides
+  draft.turned = false;  // a pane is the same on both sides
   to.set_index_of_refraction(std::clamp(index, 1.0, 5.0));
   to.set_free_passage(to_.passages_are_free);
   RETURN_IF_ERROR(color_only(from, "specular_reflectance", [&] { return to.mutable_specular(); }));

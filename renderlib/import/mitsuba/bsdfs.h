@@ -17,7 +17,7 @@ namespace bandsaw::mitsuba {
 /// The result of converting a surface of Mitsuba.
 struct SurfaceMaterial {
   std::string name;     ///< name of our material; empty: there is no surface (null)
-  bool turned = false;  ///< the geometry must be turned over: its inside is denser than its outside
+  bool turned = false;  ///< the geometry must be turned over: its outside is denser than its inside
 };
 
 /// The materials that have been made so far.
@@ -26,12 +26,12 @@ class Materials {
   /// Materials are added to `scene`. Both MUST outlive this object.
   Materials(scene::Scene& scene, Conversion& to) : scene_(scene), to_(to) {}
 
-  /// Returns the material of a surface, made if it is new. If `bsdf` is nullptr, it is Mitsuba's
-  /// default, a grey diffuse one. `emitter` is of type area, or nullptr if the surface does not
-  /// emit.
+  /// Returns the material of a surface, made if it is new. If `bsdf` is nullptr, the material is
+  /// Mitsuba's default, a grey diffuse surface. `emitter` is of type area, or nullptr if the
+  /// surface does not emit.
   absl::StatusOr<SurfaceMaterial> material_of(const Object* bsdf, const Object* emitter,
                                               const TexturedSurface& surface);
-  /// Returns SurfaceMaterial::turned, without adding the material.
+  /// Returns a SurfaceMaterial of which only `turned` is set. Adds no material.
   absl::StatusOr<SurfaceMaterial> sides_of(const Object* bsdf) const;
 
  private:

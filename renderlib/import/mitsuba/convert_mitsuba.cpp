@@ -43,14 +43,14 @@ absl::Status convert(const Object& root, scene::Scene& scene, Conversion& to) {
       RETURN_IF_ERROR(add_emitter(*object_in(*emitter), scene, to));
     }
   }
-  // Objects with these tags are converted where they are used; this marks them as used.
+  // Objects with these tags are converted where they are used. The loop marks them as read.
   for (const char* tag :
        {"bsdf", "texture", "medium", "phase", "volume", "spectrum", "film", "sampler", "rfilter"}) {
     from.objects(tag);
   }
   to.warn_of_unused(from);
   if (!scene.has_background()) {
-    for (int i = 0; i < 3; ++i) {  // without light it is dark, not under our default sky
+    for (int i = 0; i < 3; ++i) {  // black, because Bandsaw's default is a sky
       scene.mutable_background()->mutable_constant()->add_rgb(0);
     }
   }

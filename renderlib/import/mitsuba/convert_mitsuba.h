@@ -10,8 +10,8 @@
 namespace bandsaw {
 
 /// Returns the scene as a scene file of ours. Errors name file and line: "kitchen.xml:17: …".
-/// INVALID_ARGUMENT: it is broken, or a bound is exceeded. NOT_FOUND, PERMISSION_DENIED: a file
-/// that it includes cannot be read.
+/// INVALID_ARGUMENT: the scene is broken, or a bound is exceeded. NOT_FOUND, PERMISSION_DENIED: a
+/// file that the scene includes cannot be read.
 absl::StatusOr<ConvertedScene> convert_mitsuba(const ForeignScene& from);
 
 }  // namespace bandsaw

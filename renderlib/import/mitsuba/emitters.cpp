@@ -27,7 +27,8 @@ void set(const Vec3& v, google::protobuf::RepeatedField<double>* to) {
   to->Add(v.z);
 }
 
-/// Returns the colour of a light, each channel >= 0; white if there is none.
+/// Returns the colour of a light from the parameter `name`, each channel >= 0. Returns white if the
+/// parameter is absent or, with a warning, a texture.
 absl::StatusOr<Rgb> light_color(const Parameters& from, const std::string& name, Conversion& to) {
   const Property* property = from.find(name);
   if (property == nullptr) {
@@ -102,7 +103,8 @@ absl::Status spot(const Parameters& from, scene::Scene& scene, Conversion& to) {
   return absl::OkStatus();
 }
 
-/// Returns width / height of the image of a texture; 1 for others.
+/// Returns width / height of the image of a texture; 1 for other textures, and for an image that
+/// cannot be read.
 double aspect_of(const scene::Texture& texture, const Files& files) {
   if (!texture.has_image()) {
     return 1;

@@ -1,7 +1,8 @@
 #pragma once
 
-// Files that a Mitsuba scene names. They are searched in the folders of its <path> elements, the
-// latest first, and then in the folder of the scene; all of them below the folder of the import.
+// Finds the files that a Mitsuba scene names. They are searched in the folders of its <path>
+// elements, the latest first, and then in the folder of the scene. Only files below the folder of
+// the import are found.
 
 #include <string>
 #include <vector>

@@ -20,7 +20,8 @@ class Media {
   Media(scene::Scene& scene, Conversion& to) : scene_(scene), to_(to) {}
 
   /// Returns the name of our medium, which is added if it is new. Mitsuba places grids in the
-  /// world, we place them in the space of the shape; `to_world` is the placement of the shape.
+  /// world; Bandsaw places them in the space of the shape. `to_world` is the placement of the
+  /// shape.
   absl::StatusOr<std::string> medium_of(const Object& medium, const Transform& to_world);
 
  private:

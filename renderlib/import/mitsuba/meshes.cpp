@@ -91,8 +91,7 @@ Rgb bounded(const Rgb& c, const std::array<Rgb, 3>& corner) {
 }
 
 /// Returns the image of an attribute. The fourth texel is b + c - a, which makes the interpolation
-/// linear; where that leaves [0, 1], it is clamped, and the colours near the longest edge are not
-/// linear.
+/// linear. Where bounded() clamps this texel, the colours near the longest edge are not linear.
 Image image_of(const MeshAttribute& attribute, const PlyMesh& mesh, const Atlas& atlas) {
   Image image{2 * atlas.columns, 2 * atlas.rows, {}};
   image.pixels.resize(std::size_t{image.width} * image.height);

@@ -74,7 +74,8 @@ class ObjReader {
     return absl::OkStatus();
   }
 
-  /// Reads an index that counts from 1, or backwards from the end.
+  /// Reads an index that counts from 1 or, if it is negative, backwards from the end. Returns the
+  /// index from 0, which is below `count`.
   static absl::StatusOr<std::uint32_t> read_index(absl::string_view text, std::size_t count) {
     std::int64_t index = 0;
     if (!absl::SimpleAtoi(text, &index)) {

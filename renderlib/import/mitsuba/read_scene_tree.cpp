@@ -91,7 +91,8 @@ std::vector<std::size_t> line_starts_of(const std::string& text) {
   return starts;
 }
 
-/// Returns a node that is nested too deeply, or an empty one. Needs no stack.
+/// Returns a node that is nested too deeply, or an empty node if there is none. Does not recurse,
+/// so deep nesting cannot exhaust the stack.
 pugi::xml_node too_deep(const pugi::xml_node& root) {
   pugi::xml_node at = root;
   int depth = 0;
@@ -525,8 +526,8 @@ class Reader {
     return check_cycles(*tree_.root, 0);
   }
 
-  /// Checks the objects that `object` contains and refers to: none may contain itself, or have more
-  /// than kMaxParts parts. Sets their sizes.
+  /// Checks `object` and the objects that it contains and refers to: none may contain itself, and
+  /// none except scenes and shapes may have more than kMaxParts parts. Sets their sizes.
   absl::Status check_cycles(const Object& object, int depth) {
     if (depth > kMaxNesting) {
       return error_at(object.place, absl::StrCat("objects are nested more than ", kMaxNesting,

@@ -22,7 +22,7 @@ absl::StatusOr<bool> read_boolean(absl::string_view text);
 absl::StatusOr<Vec3> read_three(absl::string_view text);
 /// Reads one or three numbers of linear RGB, or "#rrggbb" in sRGB.
 absl::StatusOr<Rgb> read_rgb(absl::string_view text);
-/// Reads a colour in sRGB: three numbers in [0, 1] or "#rrggbb".
+/// Reads a colour in sRGB: one or three numbers, or "#rrggbb". Returns it as linear RGB.
 absl::StatusOr<Rgb> read_srgb(absl::string_view text);
 /// Reads a number, or "wavelength:value" pairs with increasing wavelengths.
 absl::StatusOr<Spectrum> read_spectrum(absl::string_view text);

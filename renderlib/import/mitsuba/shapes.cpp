@@ -468,7 +468,7 @@ absl::StatusOr<std::string> ShapeReader::group_of(const Object& group) {
   }
   to_.warn_of_unused(from);
   if (out.shape().empty() && out.model().empty() && out.instance().empty()) {
-    name.clear();  // nothing of it is known
+    name.clear();  // nothing was added to the group
   } else {
     *scene_.add_group() = std::move(out);
   }

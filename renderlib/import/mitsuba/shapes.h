@@ -51,14 +51,16 @@ class ShapeReader {
   absl::Status add_sphere(const Parameters& from, const Surface& surface, const Target& target);
   absl::Status add_cylinder(const Parameters& from, const Surface& surface, const Target& target);
   absl::Status add_instance(const Parameters& from, const Target& target);
-  /// Adds a sphere or disk as an instance of a group, for a transform that changes its form.
+  /// Adds a sphere or disk as an instance of a group that `to_world` places. Used if the transform
+  /// changes the form of the shape, or if the uvs of a sphere are needed.
   absl::Status add_placed(const scene::Shape& shape, const Transform& to_world,
                           const Target& target);
-  /// Adds a model file, unless no part of it would be visible.
+  /// Adds a model file. Returns INVALID_ARGUMENT, with file and line, if the shape has neither a
+  /// material nor a medium.
   absl::Status add_model(const Parameters& from, const Surface& surface, const std::string& file,
                          const std::string& material, const Target& target);
   /// Returns the name of the group that a shapegroup becomes, made when it is first used; empty if
-  /// none of its shapes is known.
+  /// all of its shapes are left out.
   absl::StatusOr<std::string> group_of(const Object& group);
   /// Warns of a medium in a shape that is not closed.
   void warn_of_interior(const Surface& surface, const Parameters& from);

@@ -20,7 +20,7 @@ struct SourceMesh {
   bool faceted = false;                   ///< the file itself requests face normals
 };
 
-/// Largest size of a mesh file, and of one in memory.
+/// Maximum size of a mesh file, and of a mesh in memory, in bytes.
 inline constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 
 /// Reads a Wavefront OBJ: vertices, normals, uvs and polygons; materials and groups are ignored.

@@ -185,7 +185,8 @@ absl::StatusOr<MetalIndex> metal_of(const std::string& name) {
   if (found == metals().end()) {
     return absl::NotFoundError(name);
   }
-  // The illuminant is that of equal energy, not D65, as in Mitsuba's reference images of metals.
+  // The illuminant has equal energy at all wavelengths, as in Mitsuba's reference images of metals.
+  // It is not D65.
   const auto color = [](const std::array<double, 14>& values) {
     return rounded(spectrum::light_rgb({metal_wavelengths(), {values.begin(), values.end()}}));
   };

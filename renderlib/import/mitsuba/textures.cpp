@@ -1,6 +1,6 @@
 // Converts the textures of Mitsuba scenes. texture_of() converts an object of type bitmap,
-// checkerboard, mesh attribute or scale to a texture of our scene file; uv transforms are converted
-// between both conventions (in_our_frame).
+// checkerboard, mesh attribute or scale to a texture of our scene file. in_our_frame() converts uv
+// transforms from Mitsuba's convention, in which v = 0 is the top row of an image, to Bandsaw's.
 
 #include "renderlib/import/mitsuba/textures.h"
 
@@ -53,7 +53,8 @@ Affine in_our_frame(const Affine& m, UvFrame frame) {
   return to;
 }
 
-/// Writes the map as scale, rotation and offset. Returns false if it shears, which is left out.
+/// Writes the map as scale, rotation and offset. Returns false if the map shears; the shear is left
+/// out.
 bool set_uv(const Affine& m, scene::ImageTexture& to) {
   const bool turned = m[1][0] != 0;
   const double angle = turned ? atan2(m[1][0], m[0][0]) : 0;

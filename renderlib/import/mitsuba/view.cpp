@@ -149,7 +149,7 @@ absl::Status set_sensor(const Object& sensor, scene::Scene& scene, Conversion& t
   }
   const Frame frame = frame_of(to_world);
   set(frame.position, camera.mutable_position());
-  // Far enough ahead that the sum keeps the precision of the direction.
+  // The point is so far ahead that the sum keeps the precision of the direction.
   const double ahead = std::max(1.0, max_abs(frame.position));
   set(frame.position + frame.ahead * ahead, camera.mutable_look_at());
   set(frame.up, camera.mutable_up());
@@ -216,7 +216,7 @@ absl::Status set_integrator(const Object& integrator, scene::Scene& scene, Conve
                                          "direct light, stands in its place"));
     }
     to.passages_are_free = type == "volpath" || type == "volpathmis";
-    // Mitsuba's limit counts the segments of a path, max_depth counts the vertices between them.
+    // Mitsuba's limit counts the segments of a path; Bandsaw's counts the vertices between them.
     out.set_max_depth(static_cast<std::uint32_t>(
         depth < 0 ? kMaxDepth : std::clamp<std::int64_t>(depth - 1, 1, kMaxDepth)));
   }

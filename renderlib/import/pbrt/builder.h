@@ -113,10 +113,10 @@ absl::StatusOr<std::optional<std::string>> read_or_warn(const std::string& name,
                                                         absl::string_view instead,
                                                         Builder& builder);
 
-// Each of these converts a directive and adds the result to the builder (textures.cpp,
-// materials.cpp, shapes.cpp, lights.cpp). The type is the first word of the directive ("sphere");
-// for a texture it is "spectrum" or "float", and `kind` is that word ("imagemap"). `label` begins
-// the name of the material.
+// Each of these converts a directive and adds the result to the builder; make_surface() returns the
+// result instead (textures.cpp, materials.cpp, shapes.cpp, lights.cpp). `type` is the type that the
+// directive names ("sphere"). For a texture, `type` is "spectrum" or "float", and `kind` is the
+// class of the texture ("imagemap"). `label` begins the name of the material.
 absl::Status add_texture(const std::string& name, const std::string& type, const std::string& kind,
                          Parameters parameters, const State& state, Builder& builder);
 absl::StatusOr<std::shared_ptr<const Surface>> make_surface(const std::string& type,
@@ -139,10 +139,10 @@ absl::StatusOr<std::optional<scene::Texture>> float_texture(const Parameters& pa
                                                             const std::string& name,
                                                             Builder& builder);
 /// Adds the texture to our scene under a name that begins with `name`, and returns a reference to
-/// it. Returns a constant texture itself.
+/// it. A constant texture is not added but returned as it is.
 scene::Texture named_texture(const std::string& name, scene::Texture texture, Builder& builder);
-/// Returns a bound of the values of a texture; `texture` and the textures in it are references to
-/// named ones, or have no name yet.
+/// Returns an upper bound of the values of a texture; `texture` and the textures in it are
+/// references to named ones, or have no name yet.
 double largest_value(const scene::Texture& texture, const Builder& builder);
 /// Returns a texture with 1 in place of the values above 1 of `texture`, which color_texture() or
 /// float_texture() returned. Where the parts of a texture cannot be clamped, it is scaled to at
@@ -164,7 +164,8 @@ std::string material_name(const Surface& surface, const ShapeLook& look, const P
                           Builder& builder);
 
 /// Returns the name that the medium has in our scene. `to_shape` maps the world to the space of the
-/// shape that the medium fills. Returns an empty name after a warning if it has no counterpart.
+/// shape that the medium fills. Returns an empty name, after a warning, if the medium has no
+/// counterpart.
 absl::StatusOr<std::string> medium_name(const std::string& name, const Place& place,
                                         const Transform& to_shape, Builder& builder);
 

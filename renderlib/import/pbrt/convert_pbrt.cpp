@@ -221,7 +221,7 @@ class Interpreter {
     return tokens_.include(name, place);
   }
 
-  /// Includes a file whose changes of the graphics state end with it.
+  /// Includes a file. The changes that the file makes to the graphics state end with the file.
   absl::Status import(const Place& place) {
     ASSIGN_OR_RETURN(const std::string name, read_quoted(tokens_, place, "a file"));
     RETURN_IF_ERROR(tokens_.include(name, place));
@@ -230,7 +230,7 @@ class Interpreter {
     return absl::OkStatus();
   }
 
-  /// Restores the graphics state for each imported file that lies before the last token.
+  /// Restores the graphics state for each imported file that ended before the last token.
   void end_imports() {
     while (!imports_.empty() && tokens_.depth() < imports_.back().depth) {
       warn_of_missing_ends(imports_.back().name);
@@ -474,7 +474,7 @@ class Interpreter {
   Tokens tokens_;
   GraphicsState graphics_;
   std::vector<ImportedFile> imports_;   ///< those that are open, one within the other
-  std::map<std::string, int> objects_;  ///< number of things in each
+  std::map<std::string, int> objects_;  ///< number of shapes, models and instances in each
   std::string object_;                  ///< between ObjectBegin and ObjectEnd
   ViewSource view_;
   bool is_in_world_ = false;

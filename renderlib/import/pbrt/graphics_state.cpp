@@ -14,7 +14,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Maximum number of attributes within each other.
+/// Maximum nesting of AttributeBegin and TransformBegin.
 constexpr std::size_t kMaxNesting = 1024;
 
 }  // namespace

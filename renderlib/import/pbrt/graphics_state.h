@@ -16,9 +16,9 @@ class GraphicsState {
  public:
   State& current() { return current_; }
 
-  /// Replaces the active transformations, or multiplies them from the right. Active are those at
-  /// the start or the end of the motion, or both (ActiveTransform). The error is INVALID_ARGUMENT
-  /// if a number is not finite or beyond 1e30.
+  /// Replaces the active transformations, or multiplies them from the right. The active ones are
+  /// those at the start or at the end of the motion, or both (ActiveTransform). The error is
+  /// INVALID_ARGUMENT if a number is not finite or beyond 1e30.
   absl::Status set(const Place& place, const Transform& to);
   absl::Status concatenate(const Place& place, const Transform& by);
 

@@ -1,5 +1,5 @@
-// Limits textures to 1, as pbrt clamps a reflectance where it uses it: an image with a factor
-// becomes an image with smaller values in a made file.
+// Limits the values of textures to 1, because pbrt clamps a reflectance to 1 where it uses the
+// reflectance. An image with a factor becomes a made file, an image with the limited values.
 
 #include <algorithm>
 
@@ -13,8 +13,8 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Maximum number of textures within one that are limited each for itself; what is beyond is
-/// scaled. A hostile scene can contain one texture in another very often.
+/// Maximum number of textures within one texture that are limited one by one. The textures beyond
+/// it are scaled. A hostile scene can contain one texture in another very often.
 constexpr int kMaxSteps = 100;
 
 double most_of(const Rgb3& rgb) { return *std::max_element(rgb.begin(), rgb.end()); }
@@ -29,7 +29,7 @@ scene::Texture product(scene::Texture a, const Rgb3& b) {
   return out;
 }
 
-/// The colour times `factor`, at most 1.
+/// Returns the colour times `factor`, each channel at most 1.
 scene::Texture limited_color(const scene::Color& color, Rgb3 factor) {
   for (int c = 0; c < 3; ++c) {
     double& channel = factor[static_cast<std::size_t>(c)];
@@ -81,8 +81,8 @@ struct Limiter {
     return scaled(from, factor);
   }
 
-  /// Returns the texture times `factor`; warns if that exceeds 1, and scales it so that its largest
-  /// value is 1.
+  /// Returns the texture times `factor`. If this product exceeds 1, warns and scales the product so
+  /// that its largest value is 1.
   scene::Texture scaled(const scene::Texture& from, Rgb3 factor) {
     scene::Texture out = from;
     out.clear_name();

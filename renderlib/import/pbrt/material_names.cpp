@@ -1,5 +1,6 @@
-// Gives materials their names in our scene. pbrt's shapes have emission and opacity, here they
-// belong to the material; so each combination of a surface with them becomes a material once.
+// Gives materials their names in our scene. In pbrt, emission and opacity belong to the shape; in
+// Bandsaw they belong to the material. So each combination of a surface, an emission and an opacity
+// becomes one material.
 
 #include <algorithm>
 
@@ -9,7 +10,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Adds the emission of a shape. A black surface becomes an Emissive material.
+/// Adds the emission of a shape. A black surface without an opacity becomes an Emissive material.
 void add_emission(const ShapeLook& look, const Surface& surface, const Place& place,
                   scene::Material& to, Builder& builder) {
   const Rgb3 emission = look.emission.value_or(Rgb3{0, 0, 0});

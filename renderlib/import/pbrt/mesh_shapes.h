@@ -23,8 +23,8 @@ absl::StatusOr<PlyMesh> subdivided(const std::vector<Vec3>& points,
                                    const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                    int levels);
 
-/// Returns true if each edge belongs to two triangles that run along it in opposite directions.
-/// Points at the same position count as one.
+/// Returns true if along each edge as many triangles run in one direction as in the other. Points
+/// at the same position count as one.
 bool is_closed(const PlyMesh& mesh);
 /// Returns six times the volume that a closed mesh encloses; negative if its triangles face
 /// inwards.

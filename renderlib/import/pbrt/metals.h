@@ -1,7 +1,7 @@
 #pragma once
 
 // Converts pbrt's metals for make_surface() (materials.cpp). Errors are INVALID_ARGUMENT for a
-// parameter.
+// parameter that is wrong.
 
 #include "absl/status/status.h"
 #include "renderlib/import/pbrt/material_source.h"

@@ -23,8 +23,8 @@ std::optional<Pose> pose_of(const Transform& t);
 scene::Group& add_helper_group(Builder& builder, std::string& name);
 
 /// Adds a model or an instance to the open group or to the scene, placed by a matrix, or by keys if
-/// the two transformations differ. If the motion changes the shear or mirrors it, it stays at the
-/// first transformation, with a warning.
+/// the two transformations differ. If the motion changes the shear, mirrors, or has no duration,
+/// the model or instance stays at the first transformation, with a warning.
 void add_placed(const Place& place, const Transforms& transforms, scene::Model model,
                 Builder& builder);
 void add_placed(const Place& place, const Transforms& transforms, scene::Instance instance,

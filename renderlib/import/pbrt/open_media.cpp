@@ -1,6 +1,6 @@
-// pbrt bounds media by single surfaces, which need not be closed. Here a medium with open surfaces
-// fills the box around the scene. Media are ordered so that closed ones replace it where they
-// overlap.
+// pbrt bounds media by single surfaces, which need not be closed. In Bandsaw a medium with open
+// surfaces fills the box around the scene. Media are ordered so that the medium of a closed shape
+// replaces such a medium where the two overlap.
 
 #include "renderlib/import/pbrt/open_media.h"
 
@@ -13,8 +13,8 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Fills the box around the scene with each medium that is bounded from one side only, except that
-/// of the camera. Returns the names of these media.
+/// Fills the box around the scene with each medium that an open surface bounds, except the camera's
+/// medium. Returns the names of these media.
 absl::StatusOr<std::set<std::string>> fill_open_media(const std::string& of_camera,
                                                       Builder& builder) {
   std::set<std::string> filled;

@@ -25,7 +25,8 @@ struct Parameter {
   mutable bool is_used = false;
 };
 
-/// Parameters by name. Values of a wrong type or number are INVALID_ARGUMENT with file and line.
+/// Parameters by name. The error is INVALID_ARGUMENT, with file and line, for values of a wrong
+/// type and for a wrong number of values.
 class Parameters {
  public:
   std::vector<Parameter> list;
@@ -52,7 +53,7 @@ class Parameters {
                                               std::size_t group = 1) const;
   /// Returns a list of strings; empty if there is none.
   absl::StatusOr<std::vector<std::string>> texts(const std::string& name) const;
-  /// Marks parameters as used that change nothing in our image.
+  /// Marks these parameters as used. They change nothing in Bandsaw's image.
   void ignore(std::initializer_list<const char*> names) const;
 };
 

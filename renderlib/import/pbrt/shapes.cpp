@@ -116,8 +116,8 @@ void extend(const Shape& shape, const Vec3& low, const Vec3& high) {
   }
 }
 
-/// Adds a whole sphere: in world space if its transformation keeps angles, otherwise as an instance
-/// of a group.
+/// Adds a whole sphere: in world space if it does not move and its transformation keeps angles,
+/// otherwise as an instance of a group.
 absl::Status add_sphere(const Shape& shape, double radius, const Sides& sides) {
   extend(shape, {-radius, -radius, -radius}, {radius, radius, radius});
   const Transform& to_world = shape.state.transforms[0];
@@ -283,8 +283,8 @@ absl::Status add_mesh(Shape& shape, Sides sides) {
 }
 
 /// Returns true if the shape looks different with other uvs: by its surface, by its alpha, or by
-/// the image of its light. The uvs of a sphere or disk of ours are not those of pbrt; only our
-/// meshes can have these.
+/// the image of its light. Bandsaw's spheres and disks have other uvs than pbrt's, so only a mesh
+/// can have pbrt's uvs.
 absl::StatusOr<bool> depends_on_uvs(const Shape& shape) {
   if (depends_on_uvs(shape.state.surface->material) ||
       (shape.look.opacity && !constant_of(*shape.look.opacity))) {

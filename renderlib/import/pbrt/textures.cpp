@@ -83,10 +83,10 @@ absl::StatusOr<bool> is_linear(const TextureSource& from, const std::string& fil
   return encoding == "linear";
 }
 
-/// Returns the file that a texture of numbers shows. pbrt takes the alpha of an image that has
-/// colours and an alpha below 1 somewhere; then it is a made file whose grey is that alpha. The
-/// encoding of the texture holds for alpha too. The file is `file` itself if its `bytes` hold no
-/// such image.
+/// Returns the file that a texture of numbers shows. `bytes` are the contents of `file`. If the
+/// image has colours, and an alpha below 1 somewhere, pbrt takes its alpha as the number. Then the
+/// result is a made file whose grey is that alpha; otherwise it is `file` itself. The encoding of
+/// the texture holds for alpha too.
 std::string file_of_numbers(const std::string& file, const std::string& bytes, Builder& builder) {
   if (!image_has_alpha(bytes)) {
     return file;
@@ -97,7 +97,8 @@ std::string file_of_numbers(const std::string& file, const std::string& bytes, B
   if (!colors.ok() || !alpha.ok() || colors->channels == 1) {
     return file;
   }
-  // PNG encodes linear values as sRGB, so its bytes are those of alpha.
+  // The PNG encoder converts linear values to sRGB. So alpha is decoded as sRGB here, and the bytes
+  // of the PNG are those of alpha.
   alpha->format = ImageTexture::Format::kSrgb8;
   Image image{alpha->width, alpha->height, {}};
   image.pixels.reserve(std::size_t{image.width} * image.height);
@@ -116,7 +117,7 @@ std::string file_of_numbers(const std::string& file, const std::string& bytes, B
                           std::string(reinterpret_cast<const char*>(png->data()), png->size()));
 }
 
-/// Remembers the largest value of an image of floats. Those of other formats have 1.
+/// Remembers the largest value of an image of floats. For other formats, largest_value() returns 1.
 void note_largest_value(const std::string& file, const std::string& bytes, Builder& builder) {
   if (!absl::EndsWithIgnoreCase(file, ".exr") && !absl::EndsWithIgnoreCase(file, ".hdr")) {
     return;

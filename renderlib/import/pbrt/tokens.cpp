@@ -1,5 +1,5 @@
 // Splits the files of a pbrt scene into words. Open files form a stack: next() returns the words of
-// the innermost one and goes back to the one around it at its end.
+// the innermost file. At the end of this file, it continues with the file around it.
 
 #include "renderlib/import/pbrt/tokens.h"
 

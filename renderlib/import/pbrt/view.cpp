@@ -235,7 +235,7 @@ absl::Status read_camera(const ViewSource& view, const Film& film, Builder& buil
     return error_at(in.place, absl::StrCat("\"fov\" must be in (0, 180), is ", fov));
   }
   const bool is_flat = type == "orthographic";
-  // Without a window, ours shows the whole height with square pixels.
+  // Without a window, Bandsaw's camera shows the whole height with square pixels.
   const double aspect = film.width / film.height;
   const bool is_square =
       std::abs((screen[1] - screen[0]) / (screen[3] - screen[2]) - aspect) < 1e-9 * aspect &&

@@ -15,12 +15,12 @@ namespace bandsaw {
 using Numbers = google::protobuf::RepeatedField<double>;
 
 /// Reads three finite numbers of at most 1e30 in absolute value (so that products of a few of them
-/// do not overflow). Required.
+/// do not overflow). The field is required.
 absl::StatusOr<Vec3> read_vec3(const Field& in, const std::string& name, const Numbers& list);
 /// The same, or `otherwise` if the field is absent.
 absl::StatusOr<Vec3> read_vec3(const Field& in, const std::string& name, const Numbers& list,
                                const Vec3& otherwise);
-/// The same; required and not zero.
+/// The same; the field is required, and the vector must not be zero.
 absl::StatusOr<Vec3> read_direction(const Field& in, const std::string& name, const Numbers& list);
 
 /// Checks that a number is in [least, most].

@@ -11,8 +11,8 @@
 namespace bandsaw {
 namespace {
 
-// Returns ":LINE:COLUMN" of a JSON error; "" if it is unknown. Protobuf reports broken JSON as the
-// cause, up to 40 characters of the text, and a line with a caret below the position. If those
+// Returns ":LINE:COLUMN" of a JSON error; "" if it is unknown. For broken JSON, protobuf reports
+// the cause, up to 40 characters of the text, and a line with a caret below the position. If those
 // characters occur once in the file, they determine line and column.
 std::string place_of(absl::string_view text, absl::string_view excerpt, std::size_t caret) {
   const std::size_t found = text.find(excerpt);

@@ -1,5 +1,5 @@
-// Parses a scene file in protobuf's text format, with TextFormat, which also returns the place of
-// each field, and explains the first error.
+// Parses a scene file in protobuf's text format with protobuf's TextFormat, which also returns the
+// place of each field. Reports only the first error, with an explanation.
 
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/io/tokenizer.h>
@@ -62,8 +62,8 @@ class FirstError : public google::protobuf::io::ErrorCollector {
   const absl::Status& status() const { return status_; }
 
  private:
-  // Counted from 1. The parser reports a field's name after it has read it, so its position is
-  // searched backwards.
+  // Returns the column of an error, counted from 1. The parser reports a name after it has read the
+  // name, so the position of the name is searched backwards from `column`.
   std::size_t column_of(int line, int column, const std::string& message) const {
     const auto from = static_cast<std::size_t>(column);
     const std::size_t open = message.find("named \"");

@@ -127,7 +127,7 @@ absl::StatusOr<std::vector<Transform>> read_copies(const Field& in, const scene:
   return copies;
 }
 
-/// While an object exists, shapes and placements that are read are added to a group.
+/// While an object of this class exists, shapes and placements that are read are added to a group.
 class InGroup {
  public:
   InGroup(SceneDraft& draft, Shapes& shapes, Contents& placed)

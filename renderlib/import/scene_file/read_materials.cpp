@@ -1,5 +1,6 @@
-// Reads the materials of a scene file: read_kind() calls one function for each kind; then the
-// properties that every kind can have are read: relief, opacity, emission.
+// Reads the materials of a scene file: read_kind() calls one function for each kind. Then the
+// properties are read that all kinds except emissive, gltf and mix can have: relief, opacity,
+// emission.
 
 #include "renderlib/import/scene_file/read_materials.h"
 

@@ -1,5 +1,5 @@
-// Reads the media of a scene file: the coefficients of each. Also makes the boundaries, the closed
-// shapes that a medium fills, for which shapes and models ask.
+// Reads the media of a scene file: the coefficients of each. Also makes the boundaries, which are
+// the closed shapes that a medium fills, for the readers of shapes and models.
 
 #include "renderlib/import/scene_file/read_media.h"
 

@@ -59,8 +59,8 @@ absl::StatusOr<std::shared_ptr<const Model>> find_file(const Field& in, const sc
   return model;
 }
 
-/// Adds the delta lights of a model, which do not move: `to_world` of a moving model is that when
-/// the shutter opens. In a group they are left out.
+/// Adds the delta lights of a model, which do not move: `to_world` of a moving model is its
+/// placement when the shutter opens. The lights of a model in a group are left out, with a warning.
 void add_lights(const std::string& file, const Model& model, const Transform& to_world,
                 SceneDraft& draft) {
   if (draft.placed != &draft.world) {

@@ -16,8 +16,8 @@
 namespace bandsaw {
 namespace {
 
-/// Maximum rotation about one axis between two keys, well below the 180 degrees from which on the
-/// shortest rotation would be another one.
+/// Maximum rotation about one axis between two keys. It is well below 180 degrees, because from
+/// there on the shortest rotation is another one.
 constexpr double kMaxTurn = 90;  // degrees
 constexpr double kMaxKeys = 100'000;
 

@@ -1,5 +1,5 @@
-// Reads the parameters of both principled materials of a scene file; what both have is read by
-// common templates.
+// Reads the parameters of both principled materials of a scene file. Templates read the parameters
+// that both materials have.
 
 #include "renderlib/import/scene_file/read_principled.h"
 
@@ -13,8 +13,8 @@
 namespace bandsaw {
 namespace {
 
-/// Reads the number `name`, in [0, most]; `otherwise` if it is not given. Returns it divided by
-/// `most`.
+/// Reads the number `name`, in [0, most], and returns it divided by `most`. Returns `otherwise` as
+/// it is if the number is not given.
 absl::StatusOr<Number> read_number(const Field& in, const char* name, bool given,
                                    const scene::Parameter& from, double otherwise,
                                    SceneDraft& draft, double most = 1) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reads the principled materials of a scene file, those of Disney's model.
+// Reads the principled materials of a scene file, which follow Disney's model.
 
 #include "absl/status/statusor.h"
 #include "proto/scene.pb.h"

@@ -24,8 +24,8 @@
 namespace bandsaw {
 namespace {
 
-/// Checks a number of the file, which may be any, and returns it as an enum with the values 0 to
-/// `last`.
+/// Returns a number of the file as an enum with the values 0 to `last`. Returns INVALID_ARGUMENT
+/// for any other number, because the file may contain any number.
 template <class Ours>
 absl::StatusOr<Ours> read_enum(const Field& in, const std::string& name, int value, int last) {
   if (value < 0 || value > last) {
@@ -110,8 +110,8 @@ absl::StatusOr<TextureId> read_image_texture(const Field& in, const scene::Image
 
 using MaybeId = absl::StatusOr<TextureId>;
 
-// Reads a texture that another texture contains; `otherwise` is its colour if it is absent, or
-// below 0 if it is required.
+// Reads a texture that another texture contains. If it is absent, returns a constant grey of
+// `otherwise`, or INVALID_ARGUMENT if `otherwise` is below 0: then the texture is required.
 MaybeId read_part(const Field& in, const std::string& name, const scene::Texture& from, float most,
                   float otherwise, SceneDraft& draft) {
   if (in.has(name)) {
@@ -123,7 +123,7 @@ MaybeId read_part(const Field& in, const std::string& name, const scene::Texture
   return draft.textures.constant(gray(otherwise));
 }
 
-// Reads the size of a checker's fields: one number, or `most` (2 or 3) numbers.
+// Reads the size of a checker's cells: one number, or `most` (2 or 3) numbers; 1 if it is absent.
 absl::StatusOr<Vec3> read_size(const Field& in, const scene::CheckerTexture& from, int most) {
   const Numbers& list = from.size();
   if (list.size() > 1 && list.size() != most) {
@@ -221,7 +221,7 @@ MaybeId read_ramp(const Field& in, const scene::RampTexture& from, float most, S
                      read_texture(in.child("texture"), from.texture(), kMaxRadiance, draft));
     return draft.textures.add(std::move(to));
   }
-  // Our values count from 0, which is the texture, like the file's "unspecified".
+  // Both enums have the same order. The value 0 is kTexture here, and "unspecified" in the file.
   ASSIGN_OR_RETURN(to.over, read_enum<RampTexture::Over>(in, "coordinate", from.coordinate(),
                                                          scene::RampTexture::Coordinate_MAX));
   if (to.over == RampTexture::Over::kTexture) {
@@ -238,7 +238,7 @@ MaybeId read_mix(const Field& in, const scene::MixTexture& from, float most, Sce
   return draft.textures.add(to);
 }
 
-// The factors may be above `most`, their product may not; read_texture() checks it.
+// The factors may be above the limit of the product. read_texture() checks the product.
 MaybeId read_product(const Field& in, const scene::ProductTexture& from, SceneDraft& draft) {
   ProductTexture to;
   ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), kMaxRadiance, -1, draft));

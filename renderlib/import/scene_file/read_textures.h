@@ -11,7 +11,7 @@ namespace bandsaw {
 /// before materials are read.
 absl::Status read_textures(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// Reads the texture of `in`, which is defined there or referred to by name. It is
+/// Reads the texture of `in`, which is defined there or referred to by name. Returns
 /// INVALID_ARGUMENT, with the field's name, if a channel is above `most` anywhere.
 absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& from, float most,
                                        SceneDraft& draft);

@@ -55,7 +55,7 @@ absl::Status read_placement(const Field& in, const Message& from, Environment& t
   return absl::OkStatus();
 }
 
-/// Reads the images of `in`, a background, and adds their texels to the draft. Returns
+/// Reads the image of `in`, an environment map, and adds its texels to the draft. Returns
 /// INVALID_ARGUMENT for a field or a file.
 absl::StatusOr<Environment> read_environment(const Field& in, const scene::EnvironmentMap& from,
                                              SceneDraft& draft) {

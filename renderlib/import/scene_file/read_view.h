@@ -19,7 +19,8 @@ absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from,
 /// field of `from`. Returns INVALID_ARGUMENT if the window or the resulting camera is invalid.
 absl::Status set_window(const Field& in, const scene::Camera& from, Camera& camera);
 /// Returns the shutter interval of the frame at `time`, in seconds of the scene's time. The scene
-/// file gives it relative to the frame's time; by default it is that time alone.
+/// file gives the interval relative to the frame's time. By default the shutter opens and closes at
+/// the frame's time.
 absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from, double time);
 /// Reads the frames per second, or returns the default.
 absl::StatusOr<double> read_fps(const Field& root, const scene::Scene& from);

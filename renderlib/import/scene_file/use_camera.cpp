@@ -20,8 +20,8 @@ std::string with_file(const FoundCamera& camera) {
   return absl::StrCat(camera.model, "/", camera.name);
 }
 
-/// Returns the cameras whose node has this name; if there are none, those that have it as their own
-/// name; if there are none either, those for which it is "FILE/NODE".
+/// Returns the cameras whose node has this name. If there are none, returns the cameras whose own
+/// name it is. If there are none of these either, returns the cameras whose "FILE/NODE" it is.
 std::vector<const FoundCamera*> called(const std::string& name,
                                        const std::vector<FoundCamera>& cameras) {
   const auto all = [&](auto name_of) {

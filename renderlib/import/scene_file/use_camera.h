@@ -21,13 +21,14 @@ namespace bandsaw {
 void add_cameras(const std::string& file, const Model& model, const Transform& at_open,
                  const Transform& at_close, SceneDraft& draft);
 
-/// Returns a name for each camera that one of the names above identifies; only the first ones if
-/// there are more than a package can list.
+/// Returns one name for each camera: the first of its names, in the order above, by which only this
+/// camera is found. Leaves out cameras without such a name, and all further cameras if there are
+/// more than a package can list.
 std::vector<std::string> names_of(const std::vector<FoundCamera>& cameras);
 
 /// Returns the camera that the scene file names, with the lens and shutter of the scene file. The
 /// models MUST have been read. Returns INVALID_ARGUMENT, with the names of all cameras, if no
-/// camera or several have this name.
+/// camera has this name or several cameras have it.
 absl::StatusOr<MovingCamera> use_camera(const Field& root, const scene::Scene& from,
                                         const SceneDraft& draft);
 

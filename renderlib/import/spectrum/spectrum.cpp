@@ -31,8 +31,8 @@ Rgb3 rgb_of_xyz(const Rgb3& xyz) {
   return rgb;
 }
 
-/// Integrates f(nm) with the colour matching functions in steps of 1 nm, in units of the integral
-/// of the luminosity function.
+/// Integrates f(nm) with the colour matching functions in steps of 1 nm, and divides by the
+/// integral of the luminosity function.
 template <class F>
 Rgb3 xyz_of(const F& f) {
   Rgb3 sum = {};

@@ -31,11 +31,12 @@ struct Sampled {
 /// wavelengths that do not increase.
 absl::StatusOr<Sampled> from_pairs(const std::vector<double>& numbers);
 
-/// Parses a file of pairs, a pair a line (*.spd); # begins a comment.
+/// Parses a file of pairs, with one pair on each line (*.spd); # begins a comment. Errors are those
+/// of from_pairs(), and INVALID_ARGUMENT for a word that is no number.
 absl::StatusOr<Sampled> parse_spd(absl::string_view text);
 
-/// Returns the spectrum with 0 outside of its wavelengths, as pbrt and Mitsuba integrate those that
-/// a scene defines.
+/// Returns the spectrum with 0 outside of its wavelengths. This is how pbrt and Mitsuba integrate
+/// the spectra that a scene defines.
 Sampled zero_outside(const Sampled& from);
 
 /// Returns the visible radiation of a black body, relative to its maximum over all wavelengths,
@@ -60,8 +61,8 @@ struct Metal {
   Rgb3 k;
 };
 /// Returns an index for each channel whose reflectance at normal incidence is the colour that a
-/// spectral renderer shows: factor_rgb() of the spectral reflectance. eta is factor_rgb() of its
-/// spectrum, and k follows.
+/// spectral renderer shows: factor_rgb() of the spectral reflectance. eta of a channel is
+/// factor_rgb() of the spectrum `eta`, and k is computed from eta and the reflectance.
 Metal metal_rgb(const Sampled& eta, const Sampled& k);
 
 /// Returns a spectrum by the name that it has in pbrt: "metal-Cu-eta", "metal-Cu-k" (Ag, Al, Au,

@@ -1,6 +1,7 @@
 // Reads *.vdb files by the library OpenVDB: fog volumes of floats, halves or doubles, and vectors
-// of three floats, which become bricks: cubes of 8 x 8 x 8 cells. Everything happens on this
-// thread; the library starts none for reading. Cross-compiled programs are built without OpenVDB.
+// of three floats, which become bricks: cubes of 8 x 8 x 8 cells. Everything happens on the calling
+// thread, because the library starts no thread for reading. Cross-compiled programs are built
+// without OpenVDB.
 
 #ifndef BANDSAW_NO_OPENVDB
 
@@ -91,7 +92,8 @@ class Copy {
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
       RETURN_IF_ERROR(add(*leaf));
     }
-    // Tiles: larger cubes of one value. Values of leaves come with depth Tree::DEPTH - 1.
+    // Tiles are larger cubes of one value. The values of leaves are at depth Tree::DEPTH - 1, so
+    // the iterator stops one level above them.
     auto tile = tree.cbeginValueOn();
     tile.setMaxDepth(static_cast<openvdb::Index>(Tree::DEPTH) - 2);
     for (; tile; ++tile) {
@@ -176,7 +178,8 @@ absl::StatusOr<Transform> to_file_space(const openvdb::math::Transform& map,
           rows(column, row);
     }
   }
-  // The voxel at index i is the value at i; the cell's centre is at i + 1/2.
+  // In the file, the value of a voxel belongs to the point at its index i. In a VolumeGrid, it
+  // belongs to the centre of its cell, i + 1/2.
   const auto at = [&](std::size_t k) { return static_cast<double>(first[k]) - 0.5; };
   const Transform result = to_world * translation({at(0), at(1), at(2)});
   return inverse(to_world) ? absl::StatusOr<Transform>(result)

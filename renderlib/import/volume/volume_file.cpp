@@ -10,7 +10,7 @@
 namespace bandsaw {
 namespace {
 
-/// `grid` is the requested name, used for a *.vol file.
+/// Returns INVALID_ARGUMENT if a name, `grid`, is requested of a *.vol file.
 absl::Status check_no_name(const std::string& grid) {
   return grid.empty() ? absl::OkStatus()
                       : absl::InvalidArgumentError(

@@ -17,7 +17,7 @@ struct FileGrid {
   /// Its `to_medium` is the map to the file's space: for *.vdb, the grid's transform; for *.vol,
   /// the map to the box that the file gives.
   VolumeGrid grid;
-  /// From the same cells to the unit cube [0, 1]^3; for *.vol alone.
+  /// The map from the same cells to the unit cube [0, 1]^3. It is set for *.vol files only.
   Transform to_unit_box;
   std::uint64_t negative = 0;  ///< numbers below 0 that became 0
 };
