@@ -36,8 +36,8 @@ class Console {
   /// "dumb". It has colour if it is a terminal and NO_COLOR is not set (no-color.org).
   static Console standard();
 
-  /// Returns the error of the first write to standard output that failed; OK if all succeeded. A
-  /// reader that has ended, a closed pipe or terminal, is no error.
+  /// Returns the error of the first write to standard output that failed; OK if all succeeded. It
+  /// is no error if the reader of a pipe has ended or the terminal was closed.
   absl::Status write_error() const;
 
   bool is_terminal() const { return is_terminal_; }

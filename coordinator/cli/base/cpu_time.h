@@ -1,5 +1,7 @@
 #pragma once
 
+// Measures the CPU time of this process, for `bandsaw render` and `bandsaw study`.
+
 #include <ctime>
 
 namespace bandsaw::coordinator {

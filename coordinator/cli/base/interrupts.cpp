@@ -23,8 +23,8 @@ Interrupts::Interrupts() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
-  // SIGHUP, which a terminal that is closed sends, is treated like the others. A program that was
-  // started with nohup ignores SIGHUP from its start, and continues to do so.
+  // SIGHUP is sent when a terminal is closed. It is blocked and read like the other signals. A
+  // program that was started with nohup ignores SIGHUP from its start, and continues to do so.
   struct sigaction hang_up {};
   if (sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) {
     sigaddset(&set, SIGHUP);

@@ -10,9 +10,10 @@
 
 namespace bandsaw::coordinator {
 
-/// MUST be constructed in main before any other thread starts, because threads inherit the signal
-/// mask. Without a Listener, a signal ends the process at once with status 130. With a Listener the
-/// first signal calls its function, and the second ends the process, unless the second is SIGHUP.
+/// An object MUST be constructed in main before any other thread starts, because threads inherit
+/// the signal mask. Without a Listener, a signal ends the process at once with status 130. With a
+/// Listener the first signal calls its function, and the second ends the process, unless the second
+/// is SIGHUP.
 class Interrupts {
  public:
   Interrupts();
@@ -21,9 +22,9 @@ class Interrupts {
   Interrupts& operator=(const Interrupts&) = delete;
 
   /// While a Listener exists, the first signal of the process calls `first` on the reading thread
-  /// instead of ending the process. If there are several, only the newest is called. `first` MUST
-  /// NOT call functions of Interrupts or Listener, because the mutex is held. A Listener MUST be
-  /// destroyed before those that are older.
+  /// instead of ending the process. If there are several Listeners, only the newest one is called.
+  /// `first` MUST NOT call functions of Interrupts or Listener, because the mutex of Interrupts is
+  /// locked during the call. A Listener MUST be destroyed before every older Listener.
   class Listener {
    public:
     Listener(Interrupts& interrupts, std::function<void()> first);

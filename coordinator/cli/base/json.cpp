@@ -14,7 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Beyond the end it returns 0, which continues no UTF-8 sequence.
+// Returns the byte at `i`. Beyond the end it returns 0, which continues no UTF-8 sequence.
 unsigned byte_at(absl::string_view text, std::size_t i) {
   return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
 }

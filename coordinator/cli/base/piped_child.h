@@ -1,7 +1,7 @@
 #pragma once
 
-// A child process that reads its input from a pipe, to which this program writes: ffmpeg, which
-// makes the video of a sequence (cli/image/video.h).
+// Runs a child process whose standard input is a pipe to which this program writes. The child
+// process is ffmpeg, which makes the video of a sequence (cli/image/video.h).
 
 #include <sys/types.h>
 

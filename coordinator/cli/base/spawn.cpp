@@ -1,5 +1,5 @@
-// spawn() starts a program by posix_spawnp. The signals that this program blocks or ignores have
-// their normal effect in the child.
+// spawn() starts a program by posix_spawnp. No signal is blocked in the child, and SIGINT, SIGTERM
+// and SIGPIPE have their default effect, even if this program ignores them.
 
 #include "coordinator/cli/base/spawn.h"
 

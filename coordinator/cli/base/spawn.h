@@ -1,6 +1,6 @@
 #pragma once
 
-// Starts a child process. run_child(), Coprocess and PipedChild of this folder start theirs by it.
+// Starts a child process. run_child(), Coprocess and PipedChild of this folder use it.
 
 #include <sys/types.h>
 
@@ -16,7 +16,7 @@ struct SpawnStreams {
   int input = -1;                        ///< if there is none, `input_file` is opened
   std::string input_file = "/dev/null";  ///< a path
   int output = -1;                       ///< if there is none, the output is discarded
-  int errors = -1;                       ///< the same for standard error
+  int errors = -1;                       ///< if there is none, standard error is discarded
 };
 
 /// Starts `arguments[0]` (a path, or a name on PATH) with posix_spawn, without a shell, and returns

@@ -96,7 +96,7 @@ std::string printable(absl::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
-    // The control characters U+0080 to U+009F, in UTF-8 the byte C2 and one more.
+    // In UTF-8, the control characters U+0080 to U+009F are the byte C2 and one more byte.
     const bool c1 =
         c == 0xC2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0;
     if (c == '\n' || c == '\r' || c == '\t') {

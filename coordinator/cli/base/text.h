@@ -12,8 +12,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Formats a number with an SI prefix. A mantissa below 10 has one decimal, unless that is 0; any
-/// other is a whole number: "0", "950", "1.2 k", "5.2 M", "48 M".
+/// Formats a number with an SI prefix. A mantissa below 10 has one decimal, unless that decimal is
+/// 0. Any other mantissa is a whole number: "0", "950", "1.2 k", "5.2 M", "48 M".
 std::string si(double value);
 
 /// The same with a unit: "48 Msamples", "950 samples".

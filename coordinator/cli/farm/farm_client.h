@@ -1,9 +1,9 @@
 #pragma once
 
 // Client of a farm's service for users (proto/farm.proto), which all commands use: typed calls over
-// the gRPC stub. Calls block. All are idempotent; so a call whose outcome is unknown is repeated
-// with the same arguments, except watch() and rotate_secret(). Only stop() and stopped() may be
-// called while another call runs.
+// the gRPC stub. Calls block. Every call except watch() and rotate_secret() is repeated with the
+// same arguments if its outcome is unknown. This is safe, because these calls are idempotent. Only
+// stop() and stopped() may be called while another call runs.
 
 #include <chrono>
 #include <functional>
@@ -74,10 +74,10 @@ class FarmClient {
     std::string epoch;  ///< names the run of the coordinator, from its start to its end
     std::vector<FrameView> frames;
   };
-  /// Returns the frames that changed since a former call: those whose FrameView::changed is above
-  /// `after`, the largest such number of that call; 0: all frames. If the epoch differs from that
-  /// of the former call, the numbers cannot be compared, and all frames must be requested.
-  /// FAILED_PRECONDITION: the job is a single image.
+  /// Returns the frames that changed since a former call, which are those whose FrameView::changed
+  /// is above `after`. `after`: the largest FrameView::changed that the former call returned; 0:
+  /// all frames are returned. If the epoch differs from that of the former call, the numbers cannot
+  /// be compared, and all frames must be requested. FAILED_PRECONDITION: the job is a single image.
   absl::StatusOr<Frames> frames(JobId sequence, std::uint64_t after = 0);
 
   /// Calls `changed` with the job's status now and after each change. Returns OK after a final
@@ -102,10 +102,10 @@ class FarmClient {
   /// resolution. NOT_FOUND: no pixel is stored yet. DATA_LOSS as above.
   absl::StatusOr<FarmImage> preview(JobId job, std::uint32_t most_side);
 
-  /// Returns the state of a job, with its error curve and what each worker did of it.
+  /// Returns the state of a job, with its error curve and the share of each worker.
   absl::StatusOr<Progress> job(JobId job);
-  /// Returns the states of all jobs, ascending by id, without error curves and without what each
-  /// worker did. Reasons are cut to 300 bytes.
+  /// Returns the states of all jobs, ascending by id, without error curves and without the shares
+  /// of the workers. Reasons are cut to 300 bytes.
   absl::StatusOr<std::vector<Progress>> jobs();
   absl::StatusOr<farm::ListWorkersReply> workers();
   // The following four change a job and return its state after that.
@@ -154,12 +154,14 @@ class FarmClient {
   /// not answer within `deadline`.
   absl::Status call(std::chrono::milliseconds deadline,
                     const std::function<grpc::Status(grpc::ClientContext&)>& body) EXCLUDES(mutex_);
-  /// The same for calls that start a job: stop() ends only the pauses between attempts. CANCELLED
-  /// after an attempt whose outcome is not known says where the user finds the job.
+  /// The same for calls that start a job: stop() ends only the pauses between attempts. If stop()
+  /// is called after an attempt whose outcome is unknown, the message of CANCELLED says where the
+  /// user finds the job.
   absl::Status call_to_start(std::chrono::milliseconds deadline,
                              const std::function<grpc::Status(grpc::ClientContext&)>& body)
       EXCLUDES(mutex_);
-  /// For streams, because large transfers take long; gRPC's keepalive detects a dead connection.
+  /// Streams have no deadline, because large transfers take long. gRPC's keepalive detects a dead
+  /// connection.
   static constexpr std::chrono::milliseconds kNoDeadline{0};
   static constexpr std::chrono::milliseconds kRetryPause{500};
   static constexpr int kTries = 4;
@@ -183,7 +185,7 @@ class FarmClient {
   std::unique_ptr<farm::Farm::Stub> bulk_;     ///< on the connection for blobs and images
   mutable Mutex mutex_;
   CondVar changed_;
-  grpc::ClientContext* running_ GUARDED_BY(mutex_) = nullptr;  ///< of the call in progress
+  grpc::ClientContext* running_ GUARDED_BY(mutex_) = nullptr;  ///< of the call that stop() cancels
   bool stopped_ GUARDED_BY(mutex_) = false;
 };
 

@@ -1,6 +1,6 @@
-// The scene of the first frame is imported before the sequence (a job of many frames) is started,
-// so that an error in it is reported at once. A FrameSender sends the other scenes while
-// watch_frames() fetches the images that are done.
+// The command `bandsaw submit --frames`. The scene of the first frame is imported before the
+// sequence (a job of many frames) is started, so that an error in the scene is reported at once. A
+// FrameSender sends the other scenes while watch_frames() fetches the images that are done.
 
 #include "coordinator/cli/farm/submit_frames.h"
 
@@ -124,9 +124,9 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
 }
 
 /// Prints why the scenes of `frames` were not sent; returns the exit code. Also names the frames
-/// and the command that sends them, unless the job is over (ABORTED). Errors of the import and of
-/// the farm have the same type: the codes for which import_exit_code() has no exit code of its own
-/// (kWrong) are treated as errors of the farm.
+/// and the command that sends them, unless the job is over (ABORTED). `status` is an error of the
+/// import or of the farm. It is treated as an error of the farm if import_exit_code() returns
+/// kWrong, which it does for every code that it does not name.
 ExitCode not_sent(const absl::Status& status, JobId job, const std::vector<FrameNumber>& frames,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)

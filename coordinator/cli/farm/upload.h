@@ -10,7 +10,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Uploads the manifest and all blobs that the farm lacks; `display` shows how far it is. Returns
+/// Uploads the manifest and all blobs that the farm lacks; `display` shows the progress. Returns
 /// errors of the farm and of the package.
 absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDisplay& display);
 

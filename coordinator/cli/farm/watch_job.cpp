@@ -146,8 +146,8 @@ class Watch {
   std::optional<double> gone_since_;  // when the farm was lost; std::nullopt: it is there
 };
 
-// Prints an error that occurred after the farm had finished the image, and returns kFailed.
-// The command in it names no outputs, because these may be what cannot be written.
+// Prints an error that occurred after the farm had finished the image, and returns kFailed. The
+// command in the message names no outputs of the user, because these may be what cannot be written.
 ExitCode not_fetched(const absl::Status& status, WatchOptions options, const Console& console) {
   options.outputs.clear();
   return console.fail(
@@ -161,8 +161,9 @@ bool is_file_name(const std::string& farm) {
   return farm != "-" && !link::parse_join_string(farm).ok() && std::filesystem::exists(farm, error);
 }
 
-/// Returns what is written for the job. Renders the additional layers and, with --denoise, what the
-/// clean image needs on the farm. Shows the image as rendered and then the clean one in the views.
+/// Returns what is written for the job. The farm renders the additional layers and, with --denoise,
+/// the images that the denoiser needs. Shows the image as rendered and then the clean one in the
+/// views.
 absl::StatusOr<JobPictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
                                         const Wanted& wanted, ImageViews& views,
                                         ProgressDisplay& display, const BesideImage& beside) {

@@ -55,8 +55,8 @@ Image normals_of(const Image& shape) {
   return normals;
 }
 
-/// Filters the image by OpenImageDenoise. Also filters both parts of its samples alone, because the
-/// error of the clean image is estimated from these.
+/// Filters the image by OpenImageDenoise. Also filters the image of each of the two parts of its
+/// samples, because the error of the clean image is estimated from them.
 absl::StatusOr<Denoised> clean_by_oidn(const DenoiseInput& input, Pool& pool) {
   ASSIGN_OR_RETURN(const Oidn oidn, Oidn::load());
   const Image normals = normals_of(input.shape);

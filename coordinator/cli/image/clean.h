@@ -2,7 +2,8 @@
 
 // Removes the noise of an image (renderlib/denoise) and writes the clean image beside the image as
 // rendered, for --denoise of `render`, `submit` and `watch`. The filter needs guides: images of the
-// albedo and of the shape of the surfaces. They have little noise, so it finds edges by them.
+// albedo and of the shape of the surfaces. The guides have little noise, so the filter finds edges
+// by them.
 
 #include <cstdint>
 #include <functional>

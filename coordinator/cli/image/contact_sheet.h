@@ -1,7 +1,7 @@
 #pragma once
 
-// A contact sheet is one picture that shows the frames of a sequence, each reduced and above its
-// number, for --contact-sheet of `submit` and `watch`.
+// A contact sheet is one picture that shows the frames of a sequence, each reduced in size, with
+// its number below it, for --contact-sheet of `submit` and `watch`.
 
 #include <cstddef>
 #include <cstdint>
@@ -33,11 +33,12 @@ class ContactSheet {
   Image picture() const;
 
  private:
-  /// `cell`: index of the frame's place on the sheet, row by row. `frame`: without pixels: a cross.
+  /// `cell`: index of the frame's place on the sheet, row by row. `frame`: the reduced frame; if it
+  /// has no pixels, a cross is drawn.
   void draw_frame(Image& sheet, std::size_t cell, const Image& frame) const;
   void draw_number(Image& sheet, std::size_t cell, std::int64_t number) const;
 
-  std::map<std::int64_t, Image> cells_;  ///< reduced frames by number; without pixels: not added
+  std::map<std::int64_t, Image> cells_;  ///< reduced frames by number; no pixels: not added
   std::uint32_t columns_ = 1;            ///< number of frames in a row
   std::uint32_t cell_width_ = 1;         ///< size of a reduced frame in pixels
   std::uint32_t cell_height_ = 1;

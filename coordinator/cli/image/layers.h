@@ -28,10 +28,10 @@ using LayerRenderer =
 using SampleCounts = std::function<absl::StatusOr<Image>()>;
 
 /// Returns a layer for each of `kinds`. `settings` and `samples` (per pixel) are those of the
-/// image. The layers are rendered with at most kMaxLayerSamples samples; they have the same bits as
-/// images of that number by `--integrator albedo`, `normals` and `depth`. The layer kSamples is the
-/// result of `counts`; if `counts` is empty, all its pixels are `samples`. Returns errors of
-/// `render` and `counts`.
+/// image. The layers are rendered with at most kMaxLayerSamples samples. They have the same bits as
+/// images that `--integrator albedo`, `normals` and `depth` render with the same number of samples.
+/// The layer kSamples is the result of `counts`; if `counts` is empty, all its pixels are
+/// `samples`. Returns errors of `render` and `counts`.
 absl::StatusOr<Layers> make_layers(const std::vector<LayerKind>& kinds, RenderSettings settings,
                                    std::uint64_t samples, const LayerRenderer& render,
                                    const SampleCounts& counts);

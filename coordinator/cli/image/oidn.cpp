@@ -46,7 +46,7 @@ struct Oidn::Library {
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 
-  /// Sets `function` to the one of this name; false: the library has none.
+  /// Sets `function` to the library's function of this name. Returns false if there is none.
   template <class Function>
   bool find(const char* name, Function& function) const {
     function = reinterpret_cast<Function>(dlsym(handle, name));

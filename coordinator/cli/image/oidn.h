@@ -1,8 +1,8 @@
 #pragma once
 
-// The denoiser of Intel's library OpenImageDenoise, version 1 or 2, for --denoise=oidn. The library
-// is loaded at run time, if it is installed; nothing of it is needed to build this program. Its
-// functions are those of https://www.openimagedenoise.org/documentation.html, "C API".
+// Removes noise by Intel's library OpenImageDenoise, version 1 or 2, for --denoise=oidn. The
+// library is loaded at run time, if it is installed; nothing of it is needed to build this program.
+// Its functions are those of https://www.openimagedenoise.org/documentation.html, "C API".
 
 #include <memory>
 #include <string>

@@ -23,7 +23,8 @@ absl::Status write_outputs(const Image& image, const std::vector<std::string>& o
                            const Display& display, const Layers& layers = {});
 
 /// Returns how many values of the image are clipped in an EXR file of 16-bit numbers (--half),
-/// because these cannot represent them; 0 if there is no such file among the outputs.
+/// because 16-bit numbers cannot represent these values. Returns 0 if there is no such file among
+/// the outputs.
 std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>& outputs,
                              const Display& display);
 

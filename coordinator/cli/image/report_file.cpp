@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns true if the path exists, also if it is a symbolic link whose target does not.
+/// Returns true if the path exists, also if it is a symbolic link whose target does not exist.
 bool is_there(const std::string& path) {
   std::error_code error;
   return fs::exists(fs::symlink_status(path, error));

@@ -19,14 +19,16 @@ namespace bandsaw::coordinator {
 absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& given,
                                                       const std::vector<std::string>& outputs);
 
-/// Checks if an image of `scene` may be written to the default file `output`. An existing file
-/// with the name of a model may be the model's texture, so it may be replaced only if a report is
-/// beside it. For a scene file it may always be replaced: a scene file has no texture of its own
-/// name. INVALID_ARGUMENT: the file exists and may not be replaced.
+/// Checks if an image of `scene` may be written to the default file `output`. If `scene` is a scene
+/// file (.textproto or .json), an existing file may always be replaced, because a scene file has no
+/// texture of its own name. Any other scene may be a model whose texture is the existing file, so
+/// the file may be replaced only if a report is beside it. INVALID_ARGUMENT: the file exists and
+/// may not be replaced.
 absl::Status check_default_output(const std::string& scene, const std::string& output);
 
 /// Checks that `outputs` can be written. If the user named none (`given` is empty), also calls
-/// check_default_output(). Errors: those of check_outputs_writable (output.h) and of that function.
+/// check_default_output(). Errors: those of check_outputs_writable (output.h) and of
+/// check_default_output().
 absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& given,
                            const std::vector<std::string>& outputs);
 

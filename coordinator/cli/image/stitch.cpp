@@ -19,7 +19,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Joins the records of all parts into one image. Its film is the sums of all pixels.
+/// Joins the records of all parts into one image. Its film has the sums of the samples of every
+/// pixel.
 class Stitcher {
  public:
   /// Adds a record. `part`: its file, for errors. INVALID_ARGUMENT: the record is of another scene

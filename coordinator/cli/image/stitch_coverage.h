@@ -31,7 +31,7 @@ class StitchCoverage {
     SampleRange samples;
     std::size_t part = 0;  ///< index into parts_
   };
-  /// Returns the number of samples of a row. INVALID_ARGUMENT: some before the last one are
+  /// Returns the number of samples of a row. INVALID_ARGUMENT: samples before the last one are
   /// missing.
   absl::StatusOr<std::uint64_t> samples_of_row(std::size_t row) const;
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Makes a video of the frames of a sequence with ffmpeg, which runs as a child process. For --video
-// of `submit` and `watch`.
+// Makes a video of the frames of a sequence with ffmpeg, for --video of `submit` and `watch`.
+// ffmpeg runs as a child process.
 
 #include <optional>
 #include <string>

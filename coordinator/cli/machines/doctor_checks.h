@@ -65,7 +65,8 @@ Check certificate_check(double from, double until, double now);
 Check clock_check(double ours_before, double theirs, double ours_after);
 /// Checks that the coordinator has the protocol and the pixel version of this program.
 Check versions_check(const farm::AboutReply& about);
-/// Checks that at least 1 GiB is free. `name`: of the check; `where`: the folder, for the text.
+/// Checks that at least 1 GiB is free. `name`: the name of the check. `where`: the folder that the
+/// text names.
 Check disk_space_check(const std::string& name, const std::string& where, std::uint64_t free_bytes);
 
 }  // namespace bandsaw::coordinator

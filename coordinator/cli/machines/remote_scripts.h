@@ -20,11 +20,13 @@ std::string machine_script();
 /// Returns a script that reads a line with the join string and then the worker's program from
 /// standard input. `size` is the number of bytes of the program, `program` their SHA-256, which the
 /// script checks. It installs the program into ~/.local/share/bandsaw-worker, replacing an earlier
-/// installation, and starts it: by systemd --user if the user has that, otherwise as a process.
+/// installation, and starts it: by systemd --user if that is available to the user, otherwise as a
+/// process.
 std::string invite_script(std::uint64_t size, const wire::Digest& program);
 
 /// Returns a script that lets the worker finish its bands (the rows that it is rendering) for at
-/// most `drain_s` seconds, then ends it and removes the installation. It succeeds if there is none.
+/// most `drain_s` seconds, then ends it and removes the installation. It also succeeds if no worker
+/// is installed.
 std::string dismiss_script(int drain_s);
 
 }  // namespace bandsaw::coordinator

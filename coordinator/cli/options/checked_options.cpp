@@ -66,8 +66,8 @@ absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
   return ImageOptions().stop;
 }
 
-/// Reads a number above 0 into `value`, which is unchanged without `text`. With the bound 1e9, a
-/// size in GB fits into 64 bits as bytes.
+/// Reads a number above 0 into `value`, which is unchanged without `text`. The value must be below
+/// 1e9, so that a size in GB fits into 64 bits when it is converted to bytes.
 absl::Status read_positive(const char* name, const std::optional<std::string>& text,
                            double& value) {
   if (text && (!absl::SimpleAtod(*text, &value) || !(value > 0 && value < 1e9))) {
@@ -86,7 +86,7 @@ absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
   }
   if (raw.frame) {
     FrameNumber frame = 0;
-    // Compared on both sides: the least number has no absolute value.
+    // Both bounds are compared, because the least integer has no absolute value.
     if (!absl::SimpleAtoi(*raw.frame, &frame) || frame > kMaxFrameNumber ||
         frame < -kMaxFrameNumber) {
       return wrong(absl::StrCat("--frame: must be a whole number in [", -kMaxFrameNumber, ", ",

@@ -15,9 +15,9 @@ namespace bandsaw::coordinator {
 /// moment. The escape sequences are CUU, EL and ED of ECMA-48.
 class Painter {
  public:
-  /// Returns the bytes that replace what was drawn last by `picture` and, below it, `lines`. Each
-  /// of `lines` is cut to the terminal's width; at most size.rows - 1 lines are drawn in all. The
-  /// lines of `picture` MUST fit into the width and may have colour codes.
+  /// Returns the bytes that draw `picture` and, below it, `lines`, in place of what was drawn last.
+  /// Each of `lines` is cut to the terminal's width; at most size.rows - 1 lines are drawn in all.
+  /// The lines of `picture` MUST fit into the width and may have colour codes.
   std::string frame(const std::vector<std::string>& lines, TerminalSize size,
                     const std::vector<std::string>& picture = {});
   /// Returns the bytes that erase what was drawn last; empty if nothing is drawn.

@@ -23,8 +23,8 @@ std::string header_line(const Progress& progress);
 /// Msamples · 5.2 M/s · 0:09 left".
 std::string bar_line(const Progress& progress, std::size_t width);
 
-/// Returns the whole state in one line, for a pipe: the same without the bar, but with the number
-/// of workers and, if the job waits, the reason.
+/// Returns the whole state in one line, for a pipe. The line has the figures of bar_line(), but no
+/// bar. It also has the number of workers of a farm's job and, if the job waits, the reason.
 std::string plain_line(const Progress& progress);
 
 /// Returns a line for each worker: "   desk     16 threads  3.1 M/s   rows 320–352". If there are

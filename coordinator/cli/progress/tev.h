@@ -36,8 +36,8 @@ class TevViewer {
   /// be reached there.
   static absl::StatusOr<TevViewer> connect(const std::string& address, const std::string& name);
 
-  /// Shows an image. All images MUST have the size of the first one, which each further one
-  /// replaces. UNAVAILABLE: the viewer is gone.
+  /// Shows an image. It replaces the image that was shown before. All images MUST have the same
+  /// size. UNAVAILABLE: the viewer is gone.
   absl::Status show(const Image& image);
 
  private:

@@ -21,8 +21,9 @@ class LocalMeter {
   /// `rows`: the rows that are rendered. `start`: the clocks at the start of the render.
   LocalMeter(const JobSpec& spec, RowRange rows, int threads, Clocks start);
 
-  /// Reports how many samples are done in all pixels together, also of a pass (a range of samples
-  /// of the image) that is not finished. A number that is lower than an earlier one is ignored.
+  /// Reports how many samples are done in all pixels together, including those of a pass (a range
+  /// of samples of the image) that is not finished. A number that is lower than an earlier one is
+  /// ignored.
   void reached(std::uint64_t samples);
   /// Reports the end of the last planned pass, in samples per pixel.
   void plans(std::uint64_t samples) { planned_ = samples; }
@@ -41,8 +42,8 @@ class LocalMeter {
   Progress progress(Clocks now) const EXCLUDES(mutex_);
 
  private:
-  /// Returns how much of the render is done, 1 or more: all. `curve`: the errors that the stop rule
-  /// compares with its target.
+  /// Returns the fraction of the render that is done. A value of 1 or more means that all of it is
+  /// done. `curve`: the errors that the stop rule compares with its target.
   double fraction_of(const JobView& job, const ErrorCurve& curve) const;
 
   const JobSpec spec_;

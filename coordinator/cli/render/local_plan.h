@@ -30,8 +30,8 @@ class LocalPlan {
 
   /// Returns true if the next call of next() decides by the error whether the image is done.
   bool wants_error() const { return passes_.empty() && std::holds_alternative<StopAtError>(stop_); }
-  /// Returns true if plan() is to be called now, before next() is called with the same error. That
-  /// is once in an adaptive render.
+  /// Returns true if plan() is to be called now, before next() is called with the same error. This
+  /// happens at most once in an adaptive render.
   bool wants_tiles(double error) const;
   /// Plans the samples of the half tiles. `tiles`: their errors after samples [0, samples).
   void plan(absl::Span<const HalfTileErrors> tiles, std::uint64_t samples);

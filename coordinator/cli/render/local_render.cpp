@@ -82,7 +82,8 @@ absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const R
   std::vector<BandPixels> bands;
   std::vector<SampleRange> nodes = maximal_nodes(samples);
   if (nodes.front().blocks() > 1) {
-    // The error of the whole image is estimated from its halves, as in `render`.
+    // `stitch` estimates the error of the whole image from these halves, as `render` does without
+    // --rows.
     const Halves halves = split(nodes.front());
     nodes.front() = halves.right;
     nodes.insert(nodes.begin(), halves.left);

@@ -80,7 +80,7 @@ class LocalRun {
         picture_(picture),
         views_(display_, options.display, options.tev, spec_.name) {}
 
-  /// Does all of it and returns the exit code. Call it once.
+  /// Renders the image, writes its files and returns the exit code. Call it once.
   ExitCode run(SceneDescription description, const std::vector<std::string>& outputs,
                const std::vector<std::string>& reports) {
     const Interrupts::Listener listener(process_.interrupts, [this] { stop_ = true; });
@@ -126,7 +126,7 @@ class LocalRun {
     }
     std::optional<CleanPreview> preview;
     if (options_.denoise != Denoiser::kNone) {
-      // The target of --error is that of the clean image.
+      // --error sets a target for the error of the clean image.
       job.error_of = [&](const Film& film, std::uint64_t samples) -> absl::StatusOr<double> {
         RETURN_IF_ERROR(clean(*scene, film, samples));
         return clean_->denoised.total.at_most();

@@ -2,7 +2,7 @@
 
 // Converts a .blend file to a scene file. The installed Blender is run without a window, with a
 // script (deploy/blender) that writes what Blender would render: a scene file and the files that
-// this names.
+// the scene file names.
 
 #include <atomic>
 #include <cstdint>
@@ -58,9 +58,9 @@ class BlendSession {
   BlendSession(const BlendSession&) = delete;
   BlendSession& operator=(const BlendSession&) = delete;
 
-  /// Writes the scene at a frame and returns it. It replaces the scene of the frame before, and
-  /// belongs to this object. Errors as scene_of_blend_file; after an error at() MUST NOT be called
-  /// again.
+  /// Writes the scene at a frame and returns it. The scene belongs to this object and replaces the
+  /// scene of the frame before. Errors as scene_of_blend_file; after an error at() MUST NOT be
+  /// called again.
   absl::StatusOr<const BlendScene*> at(std::int64_t frame, const std::atomic<bool>& stop);
 
  private:

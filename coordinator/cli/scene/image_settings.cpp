@@ -1,4 +1,4 @@
-// The scene's settings, replaced by the options that the user has given.
+// Takes the scene's settings, and replaces those for which the user has given an option.
 
 #include "coordinator/cli/scene/image_settings.h"
 

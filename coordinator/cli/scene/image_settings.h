@@ -10,8 +10,9 @@
 namespace bandsaw::coordinator {
 
 /// If only a width or a height is given, the other side keeps the scene's aspect ratio, rounded to
-/// the nearest pixel. The seed of a frame is made of --seed and its number, unless --fixed-seed is
-/// given. INVALID_ARGUMENT: the settings are out of range, such as an image that is too large.
+/// the nearest pixel. The seed of a frame is the sum of --seed and the number of the frame, unless
+/// --fixed-seed is given. INVALID_ARGUMENT: the settings are out of range, such as an image that is
+/// too large.
 absl::StatusOr<RenderSettings> image_settings(const ImageOptions& options,
                                               const PackageInfo& scene);
 

@@ -314,8 +314,9 @@ absl::StatusOr<std::unique_ptr<ImportSession>> ImportSession::start(const std::s
   ASSIGN_OR_RETURN(std::shared_ptr<const ScratchFolder> folder,
                    ScratchFolder::make("import", limits.scratch));
   choices.frame = 0;
-  // This process limits the time of each frame. The importer's own limit is for all frames, of
-  // which it does not know how many come, so it is set to more than any needs.
+  // This process limits the time of each frame. The importer's own limit is for all frames
+  // together. The importer does not know how many frames will come, so the limit is more than they
+  // can need.
   constexpr std::uint64_t kCpuSeconds = 100'000'000;
   ASSIGN_OR_RETURN(auto importer,
                    Coprocess::start(importer_arguments(program, "frames", scene, folder->path(),

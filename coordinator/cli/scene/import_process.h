@@ -64,14 +64,15 @@ absl::StatusOr<std::string> import_program(const ImportLimits& limits = {});
 struct ListedFile {
   /// Path relative to the folder of the scene file or of the zip file's contents; has no "..".
   std::string name;
-  /// The importer has written the file under this number to its output folder (of a converted
-  /// scene, SceneFiles::folder_path). kOld: it has not, because the file is in the folder of the
-  /// scene that was converted.
+  /// The importer has written the file to its output folder, with this number as its name. For a
+  /// converted scene, that folder is SceneFiles::folder_path. kOld: the importer has not written
+  /// the file, because it is in the folder of the scene that was converted.
   int number = kOld;
   static constexpr int kOld = -1;
 };
 
-/// A scene of another format that was converted to a scene file, and the files that this names.
+/// A scene of another format that was converted to a scene file, and the files that the scene file
+/// names.
 struct SceneFiles {
   std::string text;                             ///< the contents of the scene file
   std::vector<std::string> warnings;            ///< sentences about what was left out
@@ -88,9 +89,9 @@ struct SceneFiles {
 /// is missing.
 ///
 /// If `scene_path` is a zip file, imports the scene `choices.inside` in it. If that is empty,
-/// imports the only scene in the zip file. It is searched for in the first of these groups that has
-/// a file: .textproto; .pbrt and .xml; .pbrt.gz; .glb and .gltf; .json; other models. Only the
-/// files of the group that lie in the fewest folders count.
+/// imports the only scene in the zip file. This scene is searched for in the first of these groups
+/// that has a file: .textproto; .pbrt and .xml; .pbrt.gz; .glb and .gltf; .json; other models. Only
+/// the files of the group that lie in the fewest folders count.
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});

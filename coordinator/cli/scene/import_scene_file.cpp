@@ -1,5 +1,5 @@
-// Every scene is imported by the confined importer (import_process.h). If it is a .blend file,
-// Blender writes it as a scene file before (blend_file.h).
+// Every scene is imported by the confined importer (import_process.h). Before that, Blender
+// converts a .blend file to a scene file (blend_file.h).
 
 #include "coordinator/cli/scene/import_scene_file.h"
 

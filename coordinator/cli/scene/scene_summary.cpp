@@ -66,8 +66,8 @@ std::vector<Box> boxes_of(const List& list) {
   return boxes;
 }
 
-/// Returns a bounding box of all geometry in world space. Moving objects are bounded at the times
-/// when the shutter opens and closes only. Instances are bounded by the transformed boxes of their
+/// Returns a bounding box of all geometry in world space. Moving objects are bounded only at the
+/// times when the shutter opens and closes. Instances are bounded by the transformed boxes of their
 /// meshes or groups.
 Box bounds_of(const SceneDescription& scene) {
   const Geometry& geometry = scene.geometry;

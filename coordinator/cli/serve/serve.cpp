@@ -27,8 +27,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// The join strings of this run. start() holds the mutex until it has written them to their files,
-/// so that a renewal of a secret waits for this. If a role has no string then, start() has failed.
+/// The join strings of this run. start() holds the mutex until it has written the strings to their
+/// files, so that a renewal of a secret waits until then. If a role has no string after that,
+/// start() has failed.
 struct JoinStrings {
   Mutex mutex;
   /// Their secrets are those of the start; a renewal replaces the secret only in the file.

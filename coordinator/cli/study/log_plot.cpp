@@ -41,8 +41,8 @@ struct Axis {
   double place(double value) const { return (std::log10(value) - first) / (last - first); }
 };
 
-/// Returns the shortest axis of whole decades that has the coordinates of all points in all panels.
-/// `of` returns the coordinate of a point.
+/// Returns the shortest axis of whole decades that covers the coordinates of all points in all
+/// panels. `of` returns the coordinate of a point.
 template <class Of>
 Axis axis_over(const Plot& plot, Of of) {
   double least = 1e300;

@@ -16,7 +16,7 @@ struct CleanPoint {
   double raw_mse = 0;    ///< relMSE (compare/error_metrics.h) of the image as rendered
   double clean_mse = 0;  ///< relMSE of the clean image
   double raw_cpu_s = 0;  ///< CPU time of the image as rendered
-  /// The same plus the CPU time of the guides (images by which the filter finds edges) and of the
+  /// raw_cpu_s plus the CPU time of the guides (images by which the filter finds edges) and of the
   /// filter.
   double clean_cpu_s = 0;
   double raw_flip = 0;  ///< mean FLIP; HDR-FLIP if the reference has values that no screen shows
@@ -26,8 +26,9 @@ struct CleanPoint {
 
   /// Returns the relMSE of the image as rendered divided by that of the clean one; 0: unknown.
   double gain() const { return clean_mse > 0 ? raw_mse / clean_mse : 0; }
-  /// Returns the same ratio, if the noisy image also had the CPU time of the clean one. The relMSE
-  /// of that image is not measured: it is `raw_mse` scaled by 1 / time.
+  /// Returns the same ratio for equal CPU time: as if the image as rendered had been given the CPU
+  /// time of the clean one. The relMSE of such an image is not measured. It is `raw_mse` scaled by
+  /// 1 / time.
   double gain_in_equal_time() const {
     return clean_cpu_s > 0 ? gain() * raw_cpu_s / clean_cpu_s : 0;
   }
