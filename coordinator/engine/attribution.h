@@ -32,7 +32,7 @@ class Attribution {
     RowRange rows;
     std::uint64_t process = 0;
   };
-  /// Disjoint, by first row.
+  /// Pieces that do not overlap, keyed by first row.
   using Rows = std::map<std::uint32_t, Piece>;
   std::map<JobId, Rows> jobs_;
   std::map<std::uint64_t, std::string> names_;  ///< by process

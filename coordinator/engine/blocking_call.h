@@ -7,8 +7,8 @@
 namespace bandsaw::coordinator {
 
 /// Calls `begin` with a callback, waits until the callback is called, and returns its argument. The
-/// engine calls every callback exactly once (engine/answer.h). For threads that may wait, never the
-/// engine's or gRPC's own.
+/// engine calls every callback exactly once (engine/answer.h). MUST be called only on threads that
+/// may wait, never on the engine's or gRPC's own threads.
 template <class T, class Begin>
 T blocking_call(Begin begin) {
   const auto answer = std::make_shared<std::promise<T>>();

@@ -8,7 +8,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns seconds since an arbitrary start; never goes back.
+/// Returns the seconds since an arbitrary start. The value never decreases.
 inline Time steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -17,7 +17,7 @@ inline Time steady_seconds() {
 class Clock {
  public:
   virtual ~Clock() = default;
-  /// Never goes back.
+  /// Returns the seconds since an arbitrary start. The value never decreases.
   virtual Time now() const = 0;
 };
 

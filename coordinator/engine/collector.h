@@ -54,12 +54,12 @@ class Collector {
   };
   Final final_job(const KeptJob& job, double now) const;
   void add_files_of(JobId id, Final& job) const;
-  /// Adds the blobs of a package including its manifest; nothing if the manifest is missing or
-  /// damaged. Returns false if it exists and cannot be read.
+  /// Adds the blobs of a package, its manifest included. Adds none if the manifest is missing or
+  /// damaged. Returns false if the manifest cannot be read for another reason.
   bool add_blobs_of(const DigestHex& manifest, Needs& needs);
   /// Returns the blobs of a job's packages; std::nullopt: one of them exists and cannot be read.
   std::optional<std::set<wire::Digest>> blobs_of(const KeptJob& job);
-  /// As blobs_of, but empty instead of std::nullopt.
+  /// Returns the result of blobs_of, or an empty set if that is std::nullopt.
   std::set<wire::Digest> known_blobs_of(const KeptJob& job);
   void remove_unneeded(const std::set<wire::Digest>& needed, double now);
 

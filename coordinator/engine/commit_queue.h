@@ -16,10 +16,10 @@ namespace bandsaw::coordinator {
 /// Not thread-safe.
 class CommitQueue {
  public:
-  /// Run once all records added before it are on disk.
+  /// An effect is run once all records that were added before it are on disk.
   using Effect = absl::AnyInvocable<void()>;
-  /// Called with OK once all records added before it are on disk, or with the journal's error;
-  /// after an error nothing may be acknowledged.
+  /// A completion is called with OK once all records that were added before it are on disk, or with
+  /// the journal's error. After an error nothing may be acknowledged.
   using Completion = absl::AnyInvocable<void(const absl::Status&)>;
 
   explicit CommitQueue(Journal& journal) : journal_(journal) {}

@@ -61,7 +61,8 @@ struct EngineDependencies {
 class Engine {
  public:
   /// Opens the data folder, replays the journal and the band logs, and starts the threads.
-  /// FAILED_PRECONDITION: another coordinator uses the folder. DATA_LOSS: names the damaged file.
+  /// FAILED_PRECONDITION: another coordinator uses the folder. DATA_LOSS: a file is damaged; the
+  /// message names it.
   static absl::StatusOr<std::unique_ptr<Engine>> start(EngineOptions options,
                                                        EngineDependencies dependencies = {});
   /// Stops the threads. Everything that was acknowledged is on disk.
@@ -91,8 +92,8 @@ class Engine {
   /// Returns the frames that changed after `after` (FrameView::changed); 0: all.
   void frames(JobId sequence, std::uint64_t after,
               std::function<void(absl::StatusOr<std::vector<FrameView>>)> done);
-  /// cancel, pause, resume and set_priority return the job after the change, once that is in the
-  /// journal. NOT_FOUND: no such job. FAILED_PRECONDITION, except from cancel: the job is over.
+  /// cancel, pause, resume and set_priority return the job after the change, once the change is in
+  /// the journal. NOT_FOUND: no such job. FAILED_PRECONDITION, except from cancel: the job is over.
   void cancel(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void pause(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void resume(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
@@ -104,9 +105,9 @@ class Engine {
   void quarantine(std::string worker, bool lift, std::function<void(absl::Status)> done);
   /// Explains in sentences why the job is not done; empty: no such job.
   void why(JobId job, std::function<void(std::vector<std::string>)> done);
-  /// Calls `changed` with the present state and after each change, at most ten times and at least
-  /// once a second, until it returns false or the job is final. The final state is always
-  /// delivered. If there is no such job, `changed` is called with NOT_FOUND.
+  /// Calls `changed` with the present state and after each change, until it returns false or the
+  /// job is final. There are at most ten calls a second, and at least one. The final state is
+  /// always delivered. If there is no such job, `changed` is called with NOT_FOUND.
   void watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> changed);
   /// Returns the jobs and sequences that `page` selects, ascending by id, without the jobs of
   /// frames. JobView::curve, log and shares are empty.
@@ -127,8 +128,8 @@ class Engine {
   void result(JobId job, FinishedPart part, std::function<void(absl::StatusOr<StoredResult>)> done);
 
   /// Returns the budget of the memory for images that are made or downloaded (1 GiB). A caller of
-  /// result or preview takes the image's bytes from it first, and returns them when it frees the
-  /// image.
+  /// result or preview takes the image's bytes from this budget first, and returns them when it
+  /// frees the image.
   MemoryBudget& images();
 
   /// Returns the budget of the memory for bands (2 GiB): those that are arriving, and those that
@@ -140,8 +141,8 @@ class Engine {
    public:
     virtual ~BlobWriter() = default;  ///< without commit, the bytes are kept for the next upload
     virtual absl::Status append(absl::Span<const std::byte> bytes) = 0;
-    /// OK: the blob is on disk. INVALID_ARGUMENT: digest or size differ. DATA_LOSS: the same, and
-    /// the blob contains bytes of an earlier upload.
+    /// OK: the blob is on disk. INVALID_ARGUMENT: digest or size differ. DATA_LOSS: digest or size
+    /// differ, and the blob contains bytes of an earlier upload.
     virtual absl::Status commit() = 0;
   };
   /// Returns true if the whole blob is stored.
@@ -149,7 +150,8 @@ class Engine {
   /// Returns the number of bytes that an interrupted upload has left of a blob, from its beginning.
   std::uint64_t partial_blob(const wire::Digest& digest) const;
   /// Begins the upload of a blob of `size` bytes. `offset`: continues an interrupted upload after
-  /// this many bytes. FAILED_PRECONDITION: fewer are there. RESOURCE_EXHAUSTED: the disk is full.
+  /// this many bytes. FAILED_PRECONDITION: fewer bytes of the blob are stored. RESOURCE_EXHAUSTED:
+  /// the disk is full.
   absl::StatusOr<std::unique_ptr<BlobWriter>> write_blob(const wire::Digest& digest,
                                                          std::uint64_t size,
                                                          std::uint64_t offset = 0);
@@ -169,11 +171,12 @@ class Engine {
   void lost(SessionId session, std::string reason);
   /// Adds lines to the worker's log. They MUST have been checked.
   void worker_log(SessionId session, std::vector<std::string> lines);
-  /// Takes a band from a worker. OK once its pixels are on disk and the scheduler's decision about
-  /// it is in the journal, or the band is not wanted (BandOutcome). RESOURCE_EXHAUSTED: disk or
-  /// memory is full; keep the band and send it again. INVALID_ARGUMENT: not a band of that job.
-  /// FAILED_PRECONDITION: a browser sent it, and `instance` is not a browser that has sent Hello;
-  /// so a browser cannot pass for a native worker.
+  /// Takes a band from a worker. The answer is OK once the band's pixels are on disk and the
+  /// scheduler's decision about the band is in the journal, or if the band is not wanted
+  /// (BandOutcome). RESOURCE_EXHAUSTED: disk or memory is full; the worker has to keep the band and
+  /// send it again. INVALID_ARGUMENT: not a band of that job. FAILED_PRECONDITION: a browser sent
+  /// it, and `instance` is not a browser that has sent Hello; so a browser cannot pass for a native
+  /// worker.
   ///
   /// `work`: hash of the scene and settings that the band was rendered for
   /// (renderlib/render/work_hash.h), 0 if unknown; a band of an earlier job with the same id is not

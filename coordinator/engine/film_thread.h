@@ -39,8 +39,8 @@ class FilmThread {
   /// Adds these rows of a band. OK: they are in the film. Otherwise they wait in memory for retry,
   /// and SchedulerInbox::storage_failed is called.
   absl::Status add(JobId job, IncomingBand incoming, std::vector<RowRange> rows);
-  /// Adds these rows of a band at the next retry, when the band is read from the job's log. It is
-  /// for bands that are in the log while the film cannot take any.
+  /// Adds these rows of a band at the next retry, when the band is read from the job's log. This
+  /// function is for bands that are in the log while the film cannot take any.
   void add_later(JobId job, const IncomingBand& incoming, const std::vector<RowRange>& rows);
   /// Sends the image of samples [0, samples) to the store as soon as the film has them.
   void request_image(JobId job, std::uint64_t samples);

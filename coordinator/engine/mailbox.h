@@ -29,15 +29,18 @@ class Mailbox {
 
   /// Starts the thread, which also does the tasks that were posted before. Call once.
   void start();
-  /// Adds a task; any thread. After stop, the task is dropped. The queue has no bound of its own,
-  /// because the senders are bounded: bands by their bytes, workers and jobs by their number.
+  /// Adds a task. May be called on any thread. After stop, the task is dropped. The queue has no
+  /// bound of its own, because the senders are bounded: bands by their bytes, workers and jobs by
+  /// their number.
   void post(Task task) EXCLUDES(mutex_);
-  /// Ends the thread after its current batch and drops the waiting tasks. Not from its own thread.
+  /// Ends the thread after its current batch and drops the waiting tasks. MUST NOT be called on its
+  /// own thread.
   void stop() EXCLUDES(mutex_);
 
  private:
   void run() EXCLUDES(mutex_);
-  /// Takes all waiting tasks; none if `period_` passes without one. False: stopped.
+  /// Takes all waiting tasks, or none if `period_` passes without a task. Returns false if the
+  /// mailbox was stopped.
   bool take(std::vector<Task>& batch) EXCLUDES(mutex_);
 
   std::function<void()> after_batch_;

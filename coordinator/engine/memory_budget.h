@@ -9,7 +9,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Thread-safe. Nothing waits for a budget: what does not fit is refused.
+/// Thread-safe. Nothing waits for a budget: a share that does not fit is refused.
 class MemoryBudget {
  public:
   explicit MemoryBudget(std::uint64_t bytes) : left_(static_cast<std::int64_t>(bytes)) {}

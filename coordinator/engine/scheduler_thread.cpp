@@ -252,7 +252,7 @@ void SchedulerThread::result_written(JobId job, const absl::Status& status) {
   if (status.ok()) {
     run(input::ResultWritten{.job = job});
   } else {
-    storage_failed(job, status);  // the scheduler requests it again when the disk is back
+    storage_failed(job, status);  // the result is requested again when the disk is back
   }
 }
 

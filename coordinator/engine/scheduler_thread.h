@@ -46,13 +46,14 @@ class SchedulerThread {
   /// Runs Submit or SubmitSequence.
   void submit(const Input& input, Answer<JobId> answer);
   /// Runs Cancel, Pause, Resume, SetPriority, AddFrames or RetryFrames; the answer is the job after
-  /// it.
+  /// the command.
   void command(JobId job, const Input& input, Answer<JobView> answer);
   /// Runs Quarantine or LiftQuarantine.
   void command_worker(const Input& input, Answer<bool> answer);
   void watch(JobId job, Watchers::Changed changed);
   std::optional<JobView> job(JobId id) const { return scheduler_.job(id, clock_.now()); }
-  /// NOT_FOUND: no such job. FAILED_PRECONDITION: it is no sequence.
+  /// Returns the frames of a sequence that changed after `after`; 0: all. NOT_FOUND: no such job.
+  /// FAILED_PRECONDITION: the job is no sequence.
   absl::StatusOr<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
   std::vector<std::string> why(JobId id) const { return scheduler_.why(id, clock_.now()); }
   std::vector<JobView> jobs(const JobPage& page) const {
@@ -84,7 +85,7 @@ class SchedulerThread {
   /// for it, and informs the watchers.
   void settle();
 
-  /// Returns true if the disk has space for new data. Any thread.
+  /// Returns true if the disk has space for new data. May be called on any thread.
   bool has_disk_space() const { return has_disk_space_; }
 
  private:

@@ -1,6 +1,6 @@
 // restore() replays the journal, then the band log of each job that is not final (the file with the
-// bands that workers have rendered). Each band goes to the scheduler, and its rows that are still
-// wanted to the film of its job.
+// bands that workers have rendered). Each band goes to the scheduler. Its rows that are still
+// wanted go to the film of its job.
 
 #include <spdlog/spdlog.h>
 
@@ -69,8 +69,8 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
     if (rows->empty()) {
       return;  // a duplicate: the scheduler compares it, and the film has its rows already
     }
-    // The rows are still wanted if the scheduler did not count the band, because its machine is
-    // quarantined. Then the film does not get it either.
+    // If the rows are still wanted after the replay, the scheduler did not count the band, because
+    // its machine is quarantined. Then the film does not get the band either.
     if (const auto left = scheduler_.wanted(id, band); left && left->empty()) {
       IncomingBand incoming;
       incoming.process = record.process;

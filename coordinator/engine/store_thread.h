@@ -40,8 +40,8 @@ class StoreThread {
   void append(IncomingBand incoming);
   /// Computes the row digests of a band that is stored already. Does not write it.
   void compare(IncomingBand incoming);
-  /// Call after each batch: one fdatasync per log, then the answers. Every two seconds, tests a
-  /// disk that has failed.
+  /// MUST be called after each batch. Syncs each log that was written (one fdatasync per log), then
+  /// answers its bands. Every two seconds, tests a disk that has failed.
   void settle();
 
   /// Writes the files of a finished job and sends the scheduler result_written, with the error if
@@ -60,7 +60,7 @@ class StoreThread {
   /// Removes blobs and folders that are no longer needed, and sends the scheduler the jobs that
   /// exceed a limit of engine/collector.h. `jobs`: all known jobs.
   void collect(const std::vector<KeptJob>& jobs);
-  /// For a failed write: tests the disk until it takes data, then sends disk_is_back.
+  /// Called after a failed write. Tests the disk until it takes data, then sends disk_is_back.
   void test_disk_until_writable();
 
  private:

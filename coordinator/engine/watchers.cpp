@@ -12,7 +12,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr double kMinInterval_s = 0.1;
-/// A little less than a second, because this is checked every tenth of a second.
+/// A little less than a second, because the interval is checked every tenth of a second.
 constexpr double kMaxInterval_s = 0.9;
 
 /// Returns true if something changed that does not change with time alone.

@@ -26,8 +26,9 @@ class Watchers {
   void add(JobId job, const std::optional<JobView>& view, Changed changed, Time now);
 
   /// Calls the watchers of changed jobs, at most ten times per second and job, and all watchers at
-  /// least once a second. A final state is always delivered, and is the last. NOT_FOUND if the job
-  /// was forgotten. `hold_final`: do not deliver final states, because they are not durable.
+  /// least once a second. A final state is always delivered, and is the last. Delivers NOT_FOUND if
+  /// the job was forgotten. `hold_final`: do not deliver final states, because they are not
+  /// durable.
   void update(ViewOf view_of, bool hold_final, Time now);
 
  private:

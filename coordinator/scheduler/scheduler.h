@@ -75,8 +75,8 @@ class Scheduler {
   /// Returns the frames of a sequence that changed after `after` (FrameView::changed), ascending.
   /// std::nullopt: there is no such sequence.
   std::optional<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
-  /// Returns all jobs and sequences with what must be kept for them; frame jobs of a known sequence
-  /// belong to it.
+  /// Returns all jobs and sequences with the packages and files that must be kept for them; frame
+  /// jobs of a known sequence belong to it.
   std::vector<KeptJob> kept() const { return views_.kept(); }
   std::vector<WorkerView> workers(Time now) const;  ///< by name
   /// Returns true if the worker process with this instance id joined as a browser. Browsers that

@@ -13,8 +13,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the name of a job beside another one: its name, then the suffix, of at most a few words.
-/// The name is cut between characters if both would be longer than the name of a job may be.
+/// Returns the name of a job that is made beside another job: `name`, which is that of the other
+/// job, then `suffix`, which has at most a few words. If both together would be longer than the
+/// name of a job may be, `name` is cut between characters.
 std::string with_suffix(const std::string& name, const std::string& suffix);
 
 /// Bounds of the number of samples of the guides.
@@ -22,10 +23,10 @@ inline constexpr std::uint64_t kMinGuideSamples = 8;
 inline constexpr std::uint64_t kMaxGuideSamples = 32;
 
 /// Returns the number of samples per pixel of the guides of an image with `samples` samples, at
-/// least 1: about a quarter as many, within the bounds, and not more than the image has. More would
-/// cost more time than they improve the clean image (renderlib/denoise/NOTES.md). The number is a
-/// power of two unless the image has fewer than 8 samples, so an image that is rendered further
-/// rarely needs new guides.
+/// least 1: about a quarter as many, within the bounds, and not more than the image has. More
+/// samples would improve the clean image too little for the time that they cost
+/// (renderlib/denoise/NOTES.md). The number is a power of two unless the image has fewer than 8
+/// samples, so an image that is rendered further rarely needs new guides.
 std::uint64_t guide_samples(std::uint64_t samples);
 
 /// Checks if an image with this many samples per pixel can be denoised. FAILED_PRECONDITION: the

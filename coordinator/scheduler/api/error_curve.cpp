@@ -102,7 +102,7 @@ std::optional<double> samples_until(const ErrorCurve& curve, double target) {
   if (error <= target) {
     return samples * std::pow(error / target, 1 / fall);
   }
-  // From point to point, and beyond the last one in steps of an eighth of an octave.
+  // Goes from point to point, and beyond the last point in steps of an eighth of an octave.
   while (samples < static_cast<double>(kMaxSamples)) {
     const bool measured = point != curve.end() && ++point != curve.end();
     const double next =

@@ -26,8 +26,8 @@ using ErrorCurve = std::vector<ErrorPoint>;
 
 /// Adds a point with at least as many samples as the last one. A point with as many replaces the
 /// last one's estimate and keeps its times, because it is a second measurement of the same image.
-/// The new point replaces the last one if that one has less than 1/8 more samples than the point
-/// before it. So a curve has at most about 160 points.
+/// The new point also replaces the last point if the last point has less than 1/8 more samples than
+/// the point before it. So a curve has at most about 160 points.
 void add_point(ErrorCurve& curve, const ErrorPoint& point);
 
 /// Returns the exponent p of "error falls as samples^-p" over the last octave (the last doubling of

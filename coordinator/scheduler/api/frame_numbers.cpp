@@ -58,7 +58,7 @@ absl::Status add_item(absl::string_view item, std::vector<FrameNumber>& out) {
   if (!first || !last || !step || !rest.empty()) {
     return wrong("is neither a frame nor a range, as in 47, 1-30 or 1:240:2");
   }
-  // Compared on both sides: the least number has no absolute value.
+  // Compares with both bounds, because the least number has no absolute value.
   const auto is_beyond = [](FrameNumber number) {
     return number > kMaxFrameNumber || number < -kMaxFrameNumber;
   };

@@ -19,9 +19,11 @@ inline constexpr FrameNumber kMaxFrameNumber = 1'000'000'000;
 
 /// Parses a list of numbers and ranges, separated by commas. A range is FIRST:LAST or FIRST-LAST,
 /// both included; a step may follow, as in 1:240:2 or 1-240x2. Returns the numbers in ascending
-/// order, each once. INVALID_ARGUMENT, beginning with the item: not a number or range, a range that
-/// runs backwards, a number beyond kMaxFrameNumber, more than kMaxFrames different numbers, more
-/// than twice as many with those that are repeated, or none.
+/// order, each once. INVALID_ARGUMENT: an item is neither a number nor a range; a range runs
+/// backwards or has a step below 1; a number is beyond kMaxFrameNumber; there are more than
+/// kMaxFrames different numbers, or more than twice as many with the repeated ones; there is no
+/// number. The message begins with the item, or with the list if only the list as a whole is too
+/// long.
 absl::StatusOr<std::vector<FrameNumber>> parse_frames(absl::string_view text);
 
 /// Returns the shortest list of ranges, as parse_frames reads them. `numbers` MUST be ascending.

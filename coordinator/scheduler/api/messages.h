@@ -68,7 +68,7 @@ struct Submit {
   JobSpec spec;
   std::int32_t priority = 0;  ///< [-kMaxPriority, kMaxPriority]; used only if the job is new
 };
-/// REQUIRES: the settings are in range, and the frames are what parse_frames returns.
+/// REQUIRES: the settings are in range, and the frames are in the form that parse_frames returns.
 struct SubmitSequence {
   SequenceSpec spec;
   std::int32_t priority = 0;  ///< as in Submit
@@ -134,7 +134,7 @@ struct BandStored {
   std::string instance;         ///< of the worker that rendered it; empty if read back from disk
   WorkerProcessId process = 0;  ///< process that rendered it, if read back from disk
   Counters counters;
-  /// Time in which the worker rendered it; 0: unknown, which is so if it was read back from disk.
+  /// Time in which the worker rendered it; 0: unknown, as for a band that was read back from disk.
   double render_s = 0;
   double cpu_s = 0;     ///< CPU time of its threads
   bool written = true;  ///< false: all rows were stored already and it was only compared

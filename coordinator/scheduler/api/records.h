@@ -68,7 +68,7 @@ struct TimeSpent {
   JobId job = 0;
   double elapsed_s = 0;
 };
-/// Totals of a job that is about to become final, which drops its bands.
+/// Totals of a job that is about to become final. Its bands are dropped then.
 struct JobSummary {
   JobId job = 0;
   double elapsed_s = 0;

@@ -241,8 +241,8 @@ void Context::apply(const record::RowDisputed& r) {
   }
 }
 
-// A job with an error target decides its number of samples again, because it was decided by the
-// wrong error.
+// A job with an error target decides its number of samples again, because that number was decided
+// by the wrong error.
 void Context::apply(const record::ErrorForgotten& r) {
   if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
     job->curve.clear();

@@ -35,11 +35,9 @@ class Context {
     apply(record);
     step_.records.emplace_back(std::in_place_type<R>, std::move(record));
   }
-  /// Adds an action to the step. In place, because g++ 12 warns of the other alternatives of a
-  /// variant that is moved.
-  template <class A>
   /// Adds an action to the step. The variant is constructed in place, because g++ 12 warns about
   /// alternatives of a moved variant that it does not hold.
+  template <class A>
   void act(A action) {
     step_.actions.emplace_back(std::in_place_type<A>, std::move(action));
   }
@@ -85,8 +83,8 @@ class Context {
   /// Journalled: worker processes (instances) that joined and have not left.
   std::set<std::string> joined;
   /// Journalled: the browsers, connected or not, that may have rendered bands of active jobs. If
-  /// there are more than kMaxBrowsers, some are forgotten; what these rendered is audited like
-  /// bands of native workers if it is read back from disk.
+  /// there are more than kMaxBrowsers, some are forgotten. If their bands are read back from disk,
+  /// these are audited like bands of native workers.
   std::map<WorkerProcessId, std::string> browsers;
 
  private:

@@ -31,9 +31,9 @@ class QuarantineList {
   /// browser could return wrong pixels, be quarantined and join again any number of times.
   static constexpr std::size_t kMaxBrowsers = 256;
 
-  /// Adds an entry, or replaces that of the same process, also if it was lifted. Before a native
-  /// worker is added to kMaxNatives others, one of these is forgotten: a lifted one if there is
-  /// one.
+  /// Adds an entry, or replaces the entry of the same process, lifted or not. If the list has
+  /// kMaxNatives native workers already, one of them is forgotten before another is added: one
+  /// whose entry is lifted, if there is one.
   void add(const record::WorkerQuarantined& r);
   /// Lifts the quarantine of all processes with this name.
   void lift(const std::string& name);

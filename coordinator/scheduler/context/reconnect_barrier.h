@@ -24,8 +24,8 @@ class ReconnectBarrier {
   /// MUST be called after a worker was disconnected. If no worker is left, probably the
   /// coordinator's own network failed. Then the workers that fell silent together are noted.
   void worker_lost();
-  /// MUST be called when a worker connects. The first of workers that were lost together shows that
-  /// the network is back, and begins the grace time for the others.
+  /// MUST be called when a worker connects. When the first of the workers that were lost together
+  /// connects, the network is back, and the grace time for the others begins.
   void worker_connected(const Worker& worker);
   /// If the grace time is over, stops waiting, and writes to the journal that the missing workers
   /// have left.

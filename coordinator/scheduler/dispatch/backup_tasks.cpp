@@ -19,8 +19,8 @@ constexpr double kTransfer_s = 0.03;
 /// kTargetBackupTime of it.
 constexpr double kMaxBackupTime = 0.75;
 constexpr double kTargetBackupTime = 0.5;
-/// After a scan that found nothing, the next one waits this long per active lease; bounds the CPU
-/// time of scans on large farms.
+/// After a scan that found nothing, the next one waits this long per active lease. This bounds the
+/// CPU time of scans on large farms.
 constexpr double kScanPause_s = 2e-5;
 /// The remaining time of a lease is assumed to be at least this fraction of its expected whole
 /// time.
@@ -103,8 +103,9 @@ std::vector<BackupTasks::Straggler> BackupTasks::stragglers() const {
   return late;
 }
 
-/// Returns the remaining render time of a lease: extrapolated from the rows that are reported done,
-/// otherwise from the cost map. An overdue lease is assumed to need as long again as it is overdue.
+/// Returns the remaining render time of a lease in seconds: extrapolated from the rows that are
+/// reported done, otherwise from the cost map. An overdue lease is assumed to need as long again as
+/// it is overdue.
 double BackupTasks::remaining(const Lease& lease) const {
   const Job& job = context_.jobs.at(lease.job);
   const Worker& worker = *context_.workers.by_id(lease.worker);
@@ -142,8 +143,9 @@ std::vector<Worker*> BackupTasks::helpers(const Job& job, const Lease& lease,
   return able;
 }
 
-/// Moves a lease that is not begun to the fastest helper, if the first band that the helper would
-/// render of it would be done sooner. The rows outside that band become free.
+/// Moves a lease that is not begun to the fastest helper, if the helper would finish the first band
+/// that it cuts from the lease before the present worker would finish the lease. The rows outside
+/// that band become free.
 bool BackupTasks::steal(const Straggler& late, std::vector<Worker*>& idle) {
   const Lease lease = *context_.leases.find(late.lease);
   Job& job = context_.jobs.at(lease.job);
@@ -203,7 +205,7 @@ bool BackupTasks::back_up(const Straggler& late, std::vector<Worker*>& idle) {
   const Lease lease = *context_.leases.find(late.lease);
   Job& job = context_.jobs.at(lease.job);
   if (job.has_conclusive_crash(lease.band)) {
-    return false;  // it may crash its worker: one worker at a time
+    return false;  // the band may crash workers, so only one renders it
   }
   RowRange rows = rows_without_backup(job, lease);
   std::vector<Worker*> able = helpers(job, lease, idle);

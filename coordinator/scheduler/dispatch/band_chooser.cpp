@@ -77,9 +77,10 @@ double work_left(const Job& job, const Band& free) {
          elsewhere * job.cost.of_all() / height;
 }
 
-/// Returns `band`, cut from the first row of `free`, without mixing suspect rows and others: either
-/// the rows before the next suspect band, or one piece of a suspect band. The piece stays the same
-/// at each attempt, so that crashes are counted against the same rows.
+/// Returns a band that begins at the first row of `free` and does not mix suspect rows with others:
+/// either the rows of `band` before the next suspect band, or one piece of a suspect band. `band`:
+/// the band that would be cut if no rows were suspect. The piece stays the same at each attempt, so
+/// that crashes are counted against the same rows.
 Band separate_suspects(const Job& job, const Band& free, Band band) {
   const std::uint32_t first = band.rows.first;
   std::uint32_t next = free.rows.last;  // where the next suspect band begins
@@ -124,7 +125,7 @@ Band size_band(const Sizing& sizing) {
     band.rows.last = band.rows.first + std::min(first_tiles.count(), max_rows(sizing.width));
     return band;
   }
-  // Half of the worker's share of what is left, as in guided self-scheduling.
+  // Half of the worker's share of the work that is left, as in guided self-scheduling.
   const double guided = sizing.work_left * sizing.farm_share / 2;
   const double want =
       std::min(full * (sizing.measured ? 1 : kFirst), std::max(guided, full * kMin));

@@ -32,7 +32,7 @@ struct Sizing {
   double target_s = 1;   ///< render time of a band, > 0
 };
 
-/// Returns a part of `free` that begins at its first row. It avoids to divide a row of tiles
+/// Returns a part of `free` that begins at its first row. It avoids dividing a row of tiles
 /// (render/tile_samples.h) between two bands: if the pixels of a tile share paths
 /// (render/pixel_groups.h), both bands would have to trace the whole tile. So a band ends at the
 /// end of a row of tiles if it is long enough. If the first row of tiles alone takes more than two
@@ -51,7 +51,7 @@ class BandChooser {
   /// Returns the next probe (dispatch/probes.h), or else the first free band that is not left to
   /// other workers (Eligibility); std::nullopt: there is none for this worker. Counts the probe.
   std::optional<Band> choose(Job& job, const Worker& worker) const;
-  /// The same, but never returns a probe.
+  /// Returns the same as choose(), but never a probe.
   std::optional<Band> choose_free(const Job& job, const Worker& worker) const;
   /// Returns the part of a free piece that is a band for this worker now, beginning at its first
   /// row.

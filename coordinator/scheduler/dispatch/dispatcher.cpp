@@ -16,8 +16,9 @@ void Dispatcher::assign() {
   }
 }
 
-/// Gives each worker with a spare credit one lease. The order begins with the workers that hold the
-/// fewest leases; so a worker that can hold one more moves back in it and is visited again.
+/// Gives each worker with a spare credit one lease. Workers are visited in ascending order of the
+/// number of leases that they hold. So a worker that gets a lease and can hold one more moves back
+/// in this order and is visited again.
 void Dispatcher::lease_free() {
   const AvailableWorkers& available = context_.available;
   for (auto place = available.first_after(std::nullopt); place && !context_.jobs.leasable().empty();
@@ -45,8 +46,8 @@ void Dispatcher::lease_to(Worker& worker) {
   }
 }
 
-/// Offers a worker the frames of a sequence, which are neighbours in the order of jobs. Returns as
-/// `offer`.
+/// Offers a worker the frames of a sequence, which are neighbours in the order of jobs. Returns
+/// true once offer() has returned true for one of them.
 bool Dispatcher::offer_frames(Worker& worker, const Sequence& sequence) {
   for (Job* job : frames_.order_for(worker, sequence)) {
     const std::size_t before = worker.leases.size();

@@ -122,7 +122,8 @@ void LeaseLedger::note_progress(const Worker& worker, std::size_t from) {
 }
 
 /// The lease `ended` has ended. Each of its backup tasks becomes the owner of the rows of the
-/// backup's band. It is revoked instead if all of them are stored, or another lease owns one.
+/// backup task's band that are not stored. A backup task is revoked instead if all rows of its band
+/// are stored, or if another lease owns samples of the rows that are not.
 void LeaseLedger::promote_backups(Job& job, LeaseId ended) {
   const std::set<LeaseId> backups = job.backups;
   for (const LeaseId id : backups) {

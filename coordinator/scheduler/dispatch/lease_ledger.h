@@ -1,8 +1,8 @@
 #pragma once
 
 // Grants and ends leases: all leases begin and end here. A lease is recorded in three places, which
-// this keeps consistent: in the coverage of its pass (who owns each row), in its job, and at its
-// worker.
+// this class keeps consistent: in the coverage of its pass (who owns each row), in its job, and at
+// its worker.
 
 #include <cstddef>
 #include <vector>
@@ -24,9 +24,9 @@ class LeaseLedger {
   /// Adds a lease that owns no rows: one of a backup task (a second lease of a late band) or of an
   /// audit.
   void add(Worker& worker, Job& job, const Pass& pass, Lease lease);
-  /// Lets the elapsed times of the job and of its sequence count from now on. REQUIRES: the job has
-  /// a lease. Does nothing if the job is paused. A time that counts already, and that of a sequence
-  /// that a user paused, are unchanged.
+  /// Starts the clocks that count the elapsed times of the job and of its sequence. REQUIRES: the
+  /// job has a lease. Does nothing if the job is paused. A clock that runs already is unchanged,
+  /// and so is the clock of a sequence that a user paused.
   void start_clocks(Job& job);
   /// Frees the lease's rows, or passes them on to its backup tasks. kYes: also revokes the lease at
   /// its worker.

@@ -14,7 +14,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// Maximum number of incomplete passes of a job with a time limit. Only complete passes are in its
-/// image, so few may be begun; more than one, so that no worker waits for the last bands of a pass.
+/// image, so few may be begun. More than one may be, so that no worker waits for the last bands of
+/// a pass.
 constexpr std::ptrdiff_t kMaxIncompletePasses = 3;
 
 }  // namespace

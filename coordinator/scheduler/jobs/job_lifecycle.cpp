@@ -88,8 +88,9 @@ void JobLifecycle::evaluate_checkpoint(Job& job, const input::PassMerged& merged
       samples != job.complete_samples()) {
     return;
   }
-  // The planned passes end at no checkpoint if a crash left only some of the records of a plan. The
-  // journal writes all or none of them, but the scheduler does not rely on that.
+  // If a crash left only some of the records of a plan, the planned passes do not end at a
+  // checkpoint. The journal writes all or none of these records, but the scheduler does not rely on
+  // that.
   if (const std::uint64_t past = samples % kCheckpointStep;
       past != 0 && samples < rule->max_samples) {
     planner_.plan_until(job, std::min(samples - past + kCheckpointStep, rule->max_samples));

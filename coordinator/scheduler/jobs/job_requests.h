@@ -19,8 +19,8 @@ class JobRequests {
   /// ALREADY_EXISTS: the request id is of a job with another spec. INVALID_ARGUMENT: the stop rule,
   /// image size or priority is out of range. RESOURCE_EXHAUSTED: too many jobs.
   void submit(const input::Submit& in);
-  /// Errors of cancel, pause, resume and set_priority: NOT_FOUND: no such job.
-  /// FAILED_PRECONDITION (not of cancel()): the job is final. Cancelling it then has no effect.
+  /// Errors of cancel, pause, resume and set_priority: NOT_FOUND: no such job. FAILED_PRECONDITION
+  /// (not of cancel()): the job is final. Cancelling a final job has no effect.
   void cancel(const input::Cancel& in);
   /// Further error: FAILED_PRECONDITION if the job is finishing.
   void pause(const input::Pause& in);

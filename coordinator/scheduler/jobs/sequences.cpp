@@ -19,13 +19,13 @@ namespace {
 
 /// Number of frame jobs that are made ahead of need: kAheadInAll and kAheadPerWorker for each
 /// worker. That is enough for two bands for each worker, each of another frame, while the images of
-/// others are being written.
+/// other frames are being written.
 constexpr std::size_t kAheadPerWorker = 2;
 constexpr std::size_t kAheadInAll = 4;
 /// Maximum number of frame jobs that are not final, of all sequences that are not paused. Only the
 /// first kAheadInAll of each sequence are made beyond it, so that no sequence waits for others.
 constexpr std::size_t kMaxOpenFrames = wire::kActiveJobs / 2;
-/// Bytes of the numbers of failed frames in a reason.
+/// Maximum bytes of the numbers of failed frames in a reason.
 constexpr std::size_t kMaxNumbers = 200;
 
 /// Returns the reason of a sequence with failed frames.

@@ -1,8 +1,9 @@
 #pragma once
 
-// Sequences (jobs of many frames): makes the jobs of their frames when workers are about to need
-// them, tries failed frames again, and ends the sequence; and requests of users about sequences. A
-// request that cannot be granted sets the status of the step, which is its answer.
+// Handles sequences (jobs of many frames): makes the jobs of their frames when workers are about to
+// need them, tries failed frames again, and ends sequences. Also handles the requests of users
+// about sequences. A request that cannot be granted sets the status of the step, which is its
+// answer.
 
 #include <cstddef>
 #include <string>
@@ -43,7 +44,7 @@ class Sequences {
   void advance();
   /// Journals the elapsed times at intervals, as JobLifecycle::note_time.
   void note_times();
-  /// After a restart: lets the elapsed time of each sequence go on from what is journalled; fails
+  /// After a restart: lets the elapsed time of each sequence go on from the journalled time; fails
   /// sequences that were begun with another pixel version.
   void resume_after_restart();
 
@@ -60,9 +61,9 @@ class Sequences {
   JobLifecycle& lifecycle_;
 };
 
-/// Returns the reason for which a job or sequence fails that was begun with another pixel version
-/// (a number that changes whenever rendered pixels change) than `here`; `begun_with` 0: the journal
-/// does not say with which.
+/// Returns the reason with which a job or sequence fails because it was begun with another pixel
+/// version than `here`. A pixel version is a number that changes whenever rendered pixels change.
+/// `begun_with`: the version with which it was begun; 0: the journal does not say which.
 std::string other_pixel_version(std::uint32_t begun_with, std::uint32_t here);
 
 }  // namespace bandsaw::coordinator

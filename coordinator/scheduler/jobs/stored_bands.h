@@ -1,7 +1,7 @@
 #pragma once
 
-// Bands (ranges of rows and samples) whose pixels are on disk: counts them as stored, and frees
-// those that are found damaged.
+// Handles bands (ranges of rows and samples) whose pixels are on disk: counts them as stored, and
+// frees the bands that are found damaged.
 
 #include <cstdint>
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// Bands (ranges of rows and samples, leased to a worker) that a worker could not render, or on
-// which it makes no progress; and jobs that no connected worker may render any more.
+// Handles bands (ranges of rows and samples, leased to a worker) that a worker could not render, or
+// on which it makes no progress. Fails jobs of which a band failed too often, or which no connected
+// worker may render any more.
 
 #include <string>
 

@@ -14,14 +14,15 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// After this time a refused worker may try again: it is long, because a person has to act first.
-/// On a farm that is full, a place may become free any time.
+/// Times after which a refused worker may try again. kRetryRefusedMs is long, because a person has
+/// to act first. kRetryFullMs is for a farm that is full, on which a place may become free at any
+/// time. kKeepRefusal_s: how long a refusal is shown.
 constexpr std::uint32_t kRetryRefusedMs = 60'000;
 constexpr double kKeepRefusal_s = 3.0 * kRetryRefusedMs / 1000;
 constexpr std::uint32_t kRetryFullMs = 10'000;
 
-/// Returns why a worker cannot serve on this farm, for its log: what differs, and what to do.
-/// std::nullopt: it can.
+/// Returns the reason why a worker cannot serve on this farm, for the worker's log. The reason says
+/// what differs and what a person has to do. std::nullopt: the worker can serve.
 std::optional<std::string> incompatibility(const Compatibility& farm, const WorkerHello& worker) {
   const char* const which =
       worker.protocol < farm.protocol || worker.pixel_version < farm.pixel_version

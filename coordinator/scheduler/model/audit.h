@@ -69,10 +69,11 @@ class Audit {
   /// Returns the verdict once two machines agree, else std::nullopt. Two browsers count only if
   /// `only_browsers` (Context::only_browsers) and no native worker returned a result. Exception: a
   /// machine that rendered the band again with the same result wins against machines that have not
-  /// connected in this epoch, which cannot do so. If it is a native worker, it also wins against
-  /// browsers.
+  /// connected in this epoch, which cannot render it again. If it is a native worker, it also wins
+  /// against browsers.
   std::optional<Verdict> verdict(bool only_browsers) const;
-  /// Notes that a machine has connected. Fills it in where only the process was known.
+  /// Notes that a machine has connected. Fills in the machine of results of which only the process
+  /// was known.
   void identify(const Reporter& reporter);
   /// Cuts off the rows from `row` on and returns them as an audit of their own. REQUIRES a row
   /// inside the band.
@@ -86,8 +87,8 @@ class Audit {
   const Result* result_of(const Reporter& reporter) const;
   /// Returns true if machines returned different results and none is known to be right.
   bool disputed() const { return results_.size() > 1; }
-  /// Returns true if the stored rows may be wrong: it is disputed, and not only by browsers against
-  /// a native worker.
+  /// Returns true if the stored rows may be wrong: the audit is disputed, and not only by browsers
+  /// against a native worker.
   bool doubtful() const;
   /// Returns true if all results are of browsers.
   bool only_browsers() const;

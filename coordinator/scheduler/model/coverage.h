@@ -29,7 +29,7 @@ inline constexpr Owner kStored = ~Owner{0};
 
 class Coverage {
  public:
-  /// All of it is free. `pass` MUST be a node; `height`: rows of the image, > 0.
+  /// At first all of the pass is free. `pass` MUST be a node; `height`: rows of the image, > 0.
   Coverage(const SampleRange& pass, std::uint32_t height);
 
   /// The effect of assign().

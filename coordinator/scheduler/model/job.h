@@ -72,8 +72,8 @@ class Job {
   /// Forgets the disputes about rows of a band that the process stored: they are decided, or the
   /// rows are lost.
   void settle_disputes(const Band& band, WorkerProcessId process);
-  /// Advances the count of complete passes; forgets the row digests of all but the last
-  /// kPassesWithDigests of them.
+  /// Advances the count of complete passes. Keeps the row digests of only the last
+  /// kPassesWithDigests of them, and forgets the others.
   void count_complete_passes();
   /// Drops passes, plans, failures and digests of a job that becomes final.
   void drop_details();

@@ -79,7 +79,8 @@ struct Pass {
   double mean_share() const;  ///< mean of tile_row_shares
   /// Returns the samples that the half tiles of the band take.
   TileSamples tiles_of(const Band& band) const { return tiles.of(samples, band); }
-  /// Counts these rows of a band as stored by a worker process. `totals`: of all of them.
+  /// Counts these rows of a band as stored by a worker process. `totals`: the totals of all these
+  /// rows.
   void add_stored(WorkerProcessId process, const Band& band, const std::vector<RowRange>& rows,
                   const Totals& totals);
   /// Frees everything that the process stored. Returns false if it had stored nothing.

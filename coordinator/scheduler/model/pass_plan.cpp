@@ -1,8 +1,8 @@
 // Passes are aligned ranges of blocks whose lengths are powers of two, so that they are nodes of
 // the summation tree. A checkpoint is a number of samples at which the error is compared with the
-// target. It has a quarter more samples than the last one, or only an eighth more if the target is
-// expected earlier (error ~ samples^-1/2). It has more than that if the target cannot be reached
-// before, even if the error falls as 1 / samples.
+// target. It has a quarter more samples than the last one, or less, down to an eighth more, if the
+// target is expected earlier (error ~ samples^-1/2). It has more than that if the target cannot be
+// reached before, even if the error falls as 1 / samples.
 
 #include "coordinator/scheduler/model/pass_plan.h"
 
@@ -58,7 +58,8 @@ std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target
   if (!(error >= 0)) {
     next = 2 * now;
   } else if (error > target) {
-    // Samples at which the target is reached if the error falls as samples^(-1 / power).
+    // Returns the number of checkpoint steps at which the target is reached if the error falls as
+    // samples^(-1 / power).
     const auto reached = [&](double power) {
       return static_cast<std::uint64_t>(
           std::min(std::ceil(static_cast<double>(now) * std::pow(error / target, power)),
@@ -90,7 +91,8 @@ bool time_to_plan_tiles(double error, double target) {
 }
 
 double next_target(double target, bool tiles_to_plan) {
-  constexpr double kPilotErrorRatio = 4;  // over the target; its square is a ratio of samples
+  // The ratio of the error to the target; its square is a ratio of numbers of samples.
+  constexpr double kPilotErrorRatio = 4;
   return tiles_to_plan ? kPilotErrorRatio * target : target;
 }
 

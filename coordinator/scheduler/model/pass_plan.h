@@ -24,17 +24,16 @@ inline constexpr std::uint64_t kCheckpointStep = 16;
 /// The fewest samples per pixel of which the error is estimated.
 inline constexpr std::uint64_t kMinCheckpoint = 32;
 
-/// Returns the next error checkpoint: the number of samples per pixel, at most max_samples and,
-/// unless that is less, at least kMinCheckpoint, at which the error is compared with `target`
-/// again. Passes up to a checkpoint run without a barrier between them. `samples`: the last
-/// checkpoint, 0: none yet; `error`: measured there, negative or NaN if unknown.
+/// Returns the next error checkpoint: the number of samples per pixel at which the error is
+/// compared with `target` again. It is at most max_samples. It is at least kMinCheckpoint, unless
+/// max_samples is less. Passes up to a checkpoint run without a barrier between them. `samples`:
+/// the last checkpoint, 0: none yet; `error`: measured there, negative or NaN if unknown.
 ///
 /// The error of an image falls between n^-1/2 (random samples) and n^-1 (well stratified samples).
-/// Let `first` be the number of samples at which an error that falls as n^-1 reaches the target:
-/// the checkpoint is not earlier, because the target cannot be met before. The checkpoint is the
-/// number of samples at which an error that falls as n^-1/2 reaches the target, limited to the
-/// range from 9/8 to 5/4 of `first`. So a job renders at most about a quarter too much; the mean
-/// over the scenes of the gallery is 7 %.
+/// The checkpoint is the number of samples at which an error that falls as n^-1/2 reaches the
+/// target, limited to the range from 9/8 to 5/4 of `samples`. It is later if an error that falls as
+/// n^-1 reaches the target only later, because the target cannot be met before. So a job renders at
+/// most about a quarter too much; the mean over the scenes of the gallery is 7 %.
 std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target,
                               std::uint64_t max_samples);
 
@@ -55,9 +54,9 @@ bool time_to_plan_tiles(double error, double target);
 double next_target(double target, bool tiles_to_plan);
 
 /// Returns the next pass of a job with a time limit, after samples [0, from). `fits`: the number of
-/// samples per pixel that are expected to fit into the remaining time. The pass has at most a
-/// quarter of `from` samples, and at most `fits` unless that is less than a block (8). from <
-/// max_samples.
+/// samples per pixel that are expected to fit into the remaining time. If `from` is at least 32,
+/// the pass has at most a quarter of `from` samples. It has at most `fits` samples, unless `fits`
+/// is less than a block (8). from < max_samples.
 SampleRange next_timed_pass(std::uint64_t from, double fits, std::uint64_t max_samples);
 
 }  // namespace bandsaw::coordinator

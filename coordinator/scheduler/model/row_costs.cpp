@@ -12,7 +12,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// Bounds of the ratio that one measurement can have, and of the cost of a row: a single wrong time
-/// must not make a row free or infinitely costly.
+/// must not make the cost of a row 0 or infinite.
 constexpr double kMaxRatio = 16;
 constexpr float kMinCost = 1e-6f;
 constexpr float kMaxCost = 1e6f;
@@ -86,7 +86,8 @@ void RowTimes::measure(const RowRange& rows, double seconds) {
   measured_ = true;
 }
 
-// At the upper or lower edge of the image only one side of the gap is measured; it stands for both.
+// At the upper or lower edge of the image only one side of the gap is measured; its time stands for
+// both.
 RowTimes::Gap RowTimes::gap_at(std::uint32_t row) const {
   Gap gap{{row, row + 1}};
   while (gap.rows.first > 0 && rows_[gap.rows.first - 1] == kUnknown) {

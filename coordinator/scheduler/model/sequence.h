@@ -56,8 +56,8 @@ class Sequence {
   /// Returns the seconds for which the sequence has been worked on, in all epochs. The time in
   /// which a user paused it does not count.
   double elapsed(Time now) const;
-  /// Begins a new measurement of the pace of the frames: an epoch begins, or failed frames of a
-  /// final sequence are rendered again. Stops the clock at the journalled time.
+  /// Begins a new measurement of the pace of the frames. Called when an epoch begins, or when
+  /// failed frames of a final sequence are rendered again. Stops the clock at the journalled time.
   void restart_clock();
 
   // Only Context::apply calls these three. They do nothing if there is no such frame.

@@ -23,9 +23,9 @@ double rendered_parts(const Context& context, const Sequence& sequence, Time now
   return parts;
 }
 
-/// Returns the remaining time in seconds at the pace since Sequence::restart_clock(). Negative: it
-/// is unknown; always so while a user has paused the sequence, and while no frame that is left has
-/// a scene. `parts`: the result of rendered_parts().
+/// Returns the remaining time in seconds at the pace since Sequence::restart_clock(). Negative:
+/// unknown. The time is always unknown while a user has paused the sequence, and while no frame
+/// that is left has a scene. `parts`: the result of rendered_parts().
 double remaining_of(const Sequence& sequence, double parts, Time now) {
   const FrameCounts& counts = sequence.counts();
   const auto left = static_cast<double>(counts.all() - counts.of(FrameState::kDone) -

@@ -35,7 +35,7 @@ std::vector<std::string> failed_because(const Job& job, std::string reason) {
   return lines;
 }
 
-/// Returns "1.5 GB".
+/// Returns a size as text, for example "1.5 GB".
 std::string size_text(double bytes) {
   return bytes < 1e9 ? absl::StrFormat("%.0f MB", std::ceil(bytes / 1e6))
                      : absl::StrFormat("%.1f GB", std::ceil(bytes / 1e8) / 10);
@@ -300,7 +300,8 @@ std::string Views::audit_reason(const Job& job) const {
                       " being rendered a second time, by another machine, to compare");
 }
 
-/// Returns "all workers are busy with job 5 (priority 10)", or "" if some worker is idle.
+/// Returns for example "all workers are busy with job 5 (priority 10)", or "" if some worker is
+/// idle.
 std::string Views::busy_with_others(const Job& job) const {
   std::set<JobTable::Rank> jobs;
   for (const auto& [id, worker] : context_.workers.all()) {

@@ -27,7 +27,7 @@ class FakeWorker {
   /// Ends the session and the thread.
   ~FakeWorker();
 
-  /// Begins a session, after the end of an earlier one. `engine` MUST outlive the session.
+  /// Begins a session. Ends an earlier one first. `engine` MUST outlive the session.
   void join(Engine& engine);
   /// Ends the session, after the present band; further leases are lost.
   void leave();

@@ -85,7 +85,7 @@ TEST(MemoryBudget, FollowsTheSizeOfAShare) {
   EXPECT_EQ(budget.left(), 70);
   share->resize(120);
   EXPECT_FALSE(budget.take(1));
-  MemoryBudget::Share().resize(50);  // of no budget
+  MemoryBudget::Share().resize(50);  // a share of no budget
   share.reset();
   EXPECT_EQ(budget.left(), 100);
 }

@@ -10,7 +10,7 @@ namespace {
 
 class WatchersTest : public testing::Test {
  protected:
-  /// Adds a watcher that ends its watch after so many states. States are collected in `told_`.
+  /// Adds a watcher that ends its watch after `times` states. States are collected in `told_`.
   void watch(int times = 1'000'000) {
     watchers_.add(
         1, view_,

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kHeight = 1080;
 double even(std::uint32_t) { return 1; }
-/// 20:1 from the top to the bottom, with the mean 1.
+/// Rows of the upper half cost 20 times as much as the others. The mean cost is 1.
 double uneven(std::uint32_t row) { return row < kHeight / 2 ? 40.0 / 21 : 2.0 / 21; }
 
 /// Returns the speeds of 16 workers, in pixel samples a second, that together need `seconds` for
@@ -32,8 +32,9 @@ std::vector<double> speeds(double seconds, bool equal) {
 /// Prints and returns the second worst efficiency and last phase of 20 seeds (of 5 seeds: the
 /// worst), and the maximum of the other figures. One seed may be bad, because with random render
 /// times it is random which bands come last: 6 of 300 seeds of the noisy farm have a last phase
-/// above 2 % (8 with audits, 7 and 11 without probes). If a change made this 10 % of all seeds, the
-/// test would fail six times of ten; it would fail four times of ten if the worst of five counted.
+/// above 2 % (8 with audits, 7 and 11 without probes). If a change raised this share to 10 % of all
+/// seeds, the test would fail six times of ten. It would fail only four times of ten if the worst
+/// of five seeds counted.
 BenchResult measure(const char* name, BenchFarm farm, std::size_t seeds = 20) {
   BenchResult worst;
   std::vector<double> efficiencies;
@@ -124,7 +125,7 @@ double worst_time_left(BenchFarm farm) {
   return worst;
 }
 
-/// 1:4 from the top to the bottom, with the mean 1.
+/// The cost rises by a factor of 4 from the top to the bottom. The mean cost is 1.
 double rising(std::uint32_t row) { return 0.4 + 1.2 * row / kHeight; }
 
 TEST(TimeLeft, IsPredictedAfterAQuarterOfTheTime) {

@@ -55,7 +55,7 @@ TEST(FrameNumbers, WrongOnesAreNamed) {
 
 TEST(FrameNumbers, RepeatedOnesAreReadUpToALimit) {
   EXPECT_EQ(parsed("1-30000,1-30000,1-30000,40000").size(), 30'001U);
-  // Sooner than a number is left out.
+  // The list is refused; no number is left out.
   EXPECT_THAT(std::string(parse_frames("1-30000,1-30000,1-30000,1-30000,40000").status().message()),
               HasSubstr("lists more than 100000 frames"));
 }

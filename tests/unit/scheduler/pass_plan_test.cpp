@@ -78,8 +78,8 @@ TEST(Checkpoints, ContinueWithoutAnErrorAndStayBelowTheMaximum) {
 }
 
 /// A worker that renders 100 rows of 8 samples a second, half of the speed of the farm, gets a band
-/// of 1,000 free rows; so many rows are left. The target time of a band is 1 s. A row of tiles has
-/// 16 rows.
+/// of 1,000 free rows, which are all that are left. The target time of a band is 1 s. A row of
+/// tiles has 16 rows.
 Sizing sizing() {
   static const CostMap even(2000);
   Sizing s;

@@ -378,8 +378,8 @@ TEST(Restart, RetractsAWrongMachineOnceAllBandsAreReplayed) {
   for (const Record& record : farm.records) {
     next.scheduler.replay(record);
   }
-  // Processes 2 and 3 contradict process 1. Each of the bands has a row that the others do not
-  // have.
+  // Processes 2 and 3 contradict process 1. Each later band has a row that the bands before it do
+  // not have.
   next.scheduler.replay(on_disk({0, 2}, 1, 99));
   next.scheduler.replay(on_disk({0, 3}, 2));
   next.scheduler.replay(on_disk({0, 4}, 3));

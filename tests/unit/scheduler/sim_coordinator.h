@@ -79,7 +79,7 @@ class SimCoordinator {
   struct Committing {
     Step step;
     std::vector<std::function<void()>> then;  ///< called after the actions
-    std::optional<input::BandStored> band;    ///< that the step stored
+    std::optional<input::BandStored> band;    ///< the band that the step stored
   };
   struct OnDisk {
     JobSpec spec;
@@ -90,14 +90,14 @@ class SimCoordinator {
   struct Added {
     Band record;                ///< the whole band of the record
     Band band;                  ///< the rows of it that were added together
-    std::uint64_t process = 0;  ///< that rendered it
+    std::uint64_t process = 0;  ///< the process that rendered it
   };
   /// The film of a job in memory; a restart builds it again from the band log.
   struct Filming {
     SimFilm film;
     std::vector<Added> added;
     std::set<std::uint64_t> pass_ends;  ///< last samples of passes that are not reported as merged
-    std::set<std::uint64_t> reported;   ///< last samples of those that are
+    std::set<std::uint64_t> reported;   ///< last samples of passes that are reported as merged
   };
 
   /// Checks a step and commits it later; `then` is called after its actions.

@@ -482,7 +482,7 @@ std::vector<JobSpec> job_with_error_target(std::uint64_t seed) {
 }
 
 /// Runs the job of this seed on a farm on which things fail. The farm has another seed than the
-/// calm one, so its workers are others.
+/// calm one, so its workers are different.
 Outcome run_storm(std::uint64_t seed) {
   return Simulation(seed + 1'000'000, {.failures = false, .cancels = false})
       .run(job_with_error_target(seed));
