@@ -25,8 +25,8 @@ using LogTail = std::function<std::vector<std::string>()>;
 class BandPipeline {
  public:
   /// `kernel`: the code that renders the scenes, as in Scene::build. `log_tail` may be nullptr.
-  /// `seed`: of the random waits before a band is sent again. `calls` and `session` MUST outlive
-  /// the pipeline.
+  /// `seed`: the seed of the random waits before a band is sent again. `calls` and `session` MUST
+  /// outlive the pipeline.
   BandPipeline(SharedSession& session, std::unique_ptr<BlobCache> cache, int threads,
                const Kernel* kernel, CoordinatorApi& calls, LogTail log_tail, std::uint64_t seed);
 

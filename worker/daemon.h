@@ -21,15 +21,15 @@ namespace bandsaw::worker {
 
 class LogQueue;  // worker/log_queue.h
 
-/// Returns an implementation that is used instead of `calls`, which outlives it. A test makes
-/// a worker with it that returns wrong pixels.
+/// Returns an implementation that is used instead of `calls`, which outlives it. A test uses it to
+/// make a worker that returns wrong pixels.
 using WrapCalls = std::function<std::unique_ptr<CoordinatorApi>(CoordinatorApi& calls)>;
 
 struct DaemonOptions {
   link::JoinString join;
   WorkerInfo info;                          ///< its number of threads is also the size of the pool
   const Kernel* kernel = nullptr;           ///< the code that renders, as in Scene::build
-  std::string cache_folder;                 ///< of the blobs of scenes
+  std::string cache_folder;                 ///< the folder for blobs of scenes
   std::uint64_t cache_bytes = 16ull << 30;  ///< maximum size of that folder
   /// Returns the last lines of the log, to be sent with a failed band; may be nullptr.
   std::function<std::vector<std::string>()> log_tail;
@@ -53,9 +53,10 @@ class Daemon {
   /// join string and never admitted this worker before. After any other error it reconnects.
   absl::Status run();
 
-  /// Finishes the held bands, then ends run(). Any thread.
+  /// Finishes the held bands, then ends run(). May be called by any thread.
   void drain(const std::string& reason);
-  /// Ends run() now. The coordinator gives the held bands to other workers. Any thread.
+  /// Ends run() now. The coordinator gives the held bands to other workers. May be called by any
+  /// thread.
   void leave();
 
  private:

@@ -42,12 +42,12 @@ class BandIntake {
   absl::StatusOr<BandPixels> take();
   /// Calls take() and gives the band with its share of the budget to Engine::put_band(), which
   /// calls `done` with its answer; callable once. `done` also gets the errors of take(). `browser`:
-  /// a browser sent it.
+  /// true if a browser sent the band.
   void put(Engine& engine, std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser);
 
  private:
   MemoryBudget* memory_;
-  MemoryBudget::Share share_;  ///< of the whole band
+  MemoryBudget::Share share_;  ///< the memory of the whole band
   bool begun_ = false;
   farm::BandHeader header_;
   BandPixels pixels_;

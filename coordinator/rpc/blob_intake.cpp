@@ -1,5 +1,5 @@
-// Checks the chunks of a blob: sizes, order, and that they end at the announced size. The bytes are
-// not kept here.
+// Checks the sizes and the order of a blob's chunks, and that the last chunk ends at the announced
+// size. The bytes are not kept here.
 
 #include "coordinator/rpc/blob_intake.h"
 

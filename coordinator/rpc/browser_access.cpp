@@ -1,5 +1,6 @@
-// The link for browsers: one secret with an end. make() sets a new end, with the same secret if the
-// link still holds. Wrong secrets are counted for each address.
+// Implements the link for browsers: one secret, and the time at which it becomes invalid. make()
+// sets a new time, and keeps the secret if the link is still valid. Wrong secrets are counted for
+// each address.
 
 #include "coordinator/rpc/browser_access.h"
 

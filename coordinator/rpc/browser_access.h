@@ -22,7 +22,8 @@ class BrowserAccess {
   /// stays valid when the coordinator restarts.
   using UnixSeconds = std::function<double()>;
 
-  /// Duration of a link for which none is given, and the longest, in seconds.
+  /// The duration of a link for which the user gives none, and the longest duration of a link. Both
+  /// are in seconds.
   static constexpr double kStandardSeconds = 8 * 60 * 60;
   static constexpr double kMaxSeconds = 30.0 * 24 * 60 * 60;
 
@@ -50,8 +51,9 @@ class BrowserAccess {
   /// the disk.
   absl::Status revoke() EXCLUDES(mutex_);
 
-  /// Checks the secret of a request from this address. UNAUTHENTICATED: it is not the present
-  /// link's. RESOURCE_EXHAUSTED: the same, but too often from one address.
+  /// Checks the secret of a request from this address. UNAUTHENTICATED: it is not the secret of the
+  /// present link. RESOURCE_EXHAUSTED: it is wrong, and this address has sent too many wrong
+  /// secrets.
   absl::Status check(const std::string& secret, const std::string& address) EXCLUDES(mutex_);
   /// Returns true if check() would succeed. A wrong secret is not counted.
   bool holds(const std::string& secret) EXCLUDES(mutex_);

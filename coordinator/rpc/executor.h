@@ -22,7 +22,7 @@ class FileExecutor {
   FileExecutor& operator=(const FileExecutor&) = delete;
 
   /// Tasks start in the order in which they were posted. Tasks of one stream never overlap, because
-  /// each posts the next one itself.
+  /// each task posts the next one of its stream itself.
   void post(std::function<void()> task) EXCLUDES(mutex_);
 
  private:

@@ -1,6 +1,6 @@
-// Implements calls of the service Farm (proto/farm.proto): those that move scenes and images, and
-// the lists. Its other calls are in farm_service_admin.cpp, farm_service_frames.cpp and
-// farm_service_jobs.cpp.
+// Implements the calls of the service Farm (proto/farm.proto) that receive scenes, submit and watch
+// jobs, send images, and list jobs and workers. The other calls of the service are in
+// farm_service_admin.cpp, farm_service_frames.cpp and farm_service_jobs.cpp.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/convert/farm_messages.h"
@@ -35,9 +35,9 @@ absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsReques
 }
 
 /// Fills a reply with the first of `jobs`, the jobs that the request selects. If the request limits
-/// their number, the reply also ends when half of a message is full: the other half is for its last
-/// job, which may have thousands of workers. RESOURCE_EXHAUSTED: the request is for all jobs, and
-/// they do not fit into a message.
+/// their number, the reply also ends when half of a message is full. The other half is for the last
+/// job of the reply, which may have thousands of workers. RESOURCE_EXHAUSTED: the request is for
+/// all jobs, and they do not fit into a message.
 absl::Status fill(const std::vector<JobView>& jobs, const farm::ListJobsRequest& request,
                   farm::ListJobsReply& reply) {
   constexpr std::size_t kEntryHead = 8;  // at least the bytes of an entry's tag and length

@@ -31,9 +31,9 @@ class Gate {
  public:
   Gate(link::Identity identity, RenewSecret renew);
 
-  /// Checks that the call carries the secret of role `needed`. UNAUTHENTICATED: no secret, or a
-  /// wrong one. RESOURCE_EXHAUSTED: the same, but too often from one address. PERMISSION_DENIED:
-  /// the other role's secret.
+  /// Checks that the call carries the secret of role `needed`. UNAUTHENTICATED: the call has no
+  /// secret, or a wrong one. RESOURCE_EXHAUSTED: this is so too often for calls from one address.
+  /// PERMISSION_DENIED: the secret is that of the other role.
   absl::Status check(const grpc::CallbackServerContext& context, link::Role needed)
       EXCLUDES(mutex_);
   /// Returns true if check() would admit the call now. A wrong secret is not counted.

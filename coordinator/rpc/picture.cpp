@@ -1,5 +1,5 @@
-// Takes a share of the memory budget for an image before the image is read or made, and reduces it
-// to the size that is wanted.
+// Takes a share of the memory budget for an image before the image is read or made, and reduces the
+// image to the requested size.
 
 #include "coordinator/rpc/picture.h"
 
@@ -47,7 +47,8 @@ void shrink(HeldImage& held, std::uint32_t across, std::uint32_t down) {
   }
 }
 
-/// Returns the job of the frame that was done last, or else of the first one that is rendered.
+/// Returns the job of the frame that was done last, or else of the first frame that is being
+/// rendered.
 absl::StatusOr<JobView> frame_to_show(Engine& engine, JobId sequence) {
   using Frames = absl::StatusOr<std::vector<FrameView>>;
   ASSIGN_OR_RETURN(const std::vector<FrameView> frames,

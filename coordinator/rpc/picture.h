@@ -31,7 +31,7 @@ absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job,
 /// not set. For a sequence, this is the image of the last frame that was done; if none is done, of
 /// the first frame that is being rendered. NOT_FOUND: no band of the job is stored.
 absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side);
-/// The same for the job with this id; sets `digest`.
+/// Does the same as picture_of() for the job with this id, and sets `digest`.
 absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side);
 
 }  // namespace bandsaw::coordinator

@@ -52,8 +52,9 @@ void set_reflection(grpc::ServerBuilder& builder, bool wanted) {
 
 // Health check for probes: proto/health.proto.
 
-/// Answers without a secret: the reply reveals only that the port is served, as the open port does.
-/// The service is registered after the engine has replayed its journal, so an answer implies that.
+/// Answers without a secret, because the reply reveals no more than the open port does: that the
+/// port is served. The service is registered after the engine has replayed its journal, so an
+/// answer implies that the replay is complete.
 class HealthService final : public grpc::health::v1::Health::CallbackService {
  public:
   grpc::ServerUnaryReactor* Check(grpc::CallbackServerContext* context,
@@ -78,8 +79,8 @@ grpc::ServerUnaryReactor* HealthService::Check(grpc::CallbackServerContext* cont
 
 namespace {
 
-constexpr int kFileThreads = 4;   // they wait for the disk more than they work
-constexpr int kImageThreads = 2;  // they wait for the film, or hold an image of up to 768 MB each
+constexpr int kFileThreads = 4;   // these threads mostly wait for the disk
+constexpr int kImageThreads = 2;  // each waits for the film, or holds an image of up to 768 MB
 constexpr auto kShutdownTime = std::chrono::seconds(4);
 
 std::shared_ptr<grpc::ServerCredentials> credentials(const link::Identity& identity,

@@ -1,7 +1,8 @@
 #pragma once
 
-// Lifetime of reactors of gRPC's callback API, and the register of all streams, which are ended
-// when the server stops or a secret is renewed.
+// The parts that all calls have in common: the lifetime of reactors of gRPC's callback API, the
+// check of the caller's secret, and the register of all streams, which are ended when the server
+// stops or a secret is renewed.
 
 #include <grpcpp/grpcpp.h>
 
@@ -25,7 +26,8 @@ class LongStream {
  public:
   virtual ~LongStream() = default;
   /// Ends the call with this status as soon as the write or the task in progress has ended; nothing
-  /// is started after it. May be called on any thread; the first status counts.
+  /// is started after it. May be called on any thread. If it is called more than once, the first
+  /// status counts.
   virtual void stop(const absl::Status& why) = 0;
   /// The role whose secret opened the stream.
   virtual link::Role role() const = 0;

@@ -110,8 +110,8 @@ absl::StatusOr<DecodedBandRecord> record_at(LogBytes& log, std::uint64_t offset)
   return decode_band_record(whole);
 }
 
-/// Calls `each` with every complete record and its offset, counts in `report`, and returns the end
-/// of the last complete record. Fails only if the log cannot be read.
+/// Calls `each` with every complete record and its offset, counts records and damaged bytes in
+/// `report`, and returns the end of the last complete record. Fails only if the log cannot be read.
 absl::StatusOr<std::uint64_t> read_records(LogBytes& log,
                                            absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
                                            BandLogReport& report) {
@@ -161,7 +161,7 @@ absl::StatusOr<std::uint64_t> BandLog::append(const BandRecord& record) {
   const absl::Status written = file_.write(bytes);
   if (!written.ok()) {
     torn_ = true;
-    take_back(size_).IgnoreError();  // otherwise tried again before the next append
+    take_back(size_).IgnoreError();  // if this fails, the next append tries it again
     return written;
   }
   return std::exchange(size_, size_ + bytes.size());

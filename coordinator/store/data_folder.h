@@ -40,8 +40,9 @@ class DataFolder {
   File lock_;
 };
 
-/// Returns OK if the disk has space for `bytes`, by default those of the largest band, and accepts
-/// data. Tests this with a file: reserves the space, writes a little, syncs, and removes the file.
+/// Returns OK if the disk accepts data and has space for `bytes`, which is by default the size of
+/// the largest band. Tests this with a file: reserves the space, writes a little, syncs, and
+/// removes the file.
 absl::Status probe_disk(const std::string& folder, std::uint64_t bytes = wire::kBandBytes);
 
 /// Returns the bytes that this user may still write on the disk of a folder, or the system's error.

@@ -1,7 +1,7 @@
 #pragma once
 
 // Interface of the journal: the scheduler's records (scheduler/api/records.h) on disk, in order.
-// After a restart they rebuild its state.
+// After a restart the scheduler's state is rebuilt from them.
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"

@@ -26,15 +26,15 @@ class PartialBlobs {
   /// Returns the number of bytes from which an upload can resume; 0 while an upload is in progress.
   std::uint64_t size(const wire::Digest& digest) const EXCLUDES(mutex_);
 
-  /// The right to write an incoming blob to a file. No other claim gets the same file while it is
-  /// held.
+  /// The right to write an incoming blob to a file. No other claim gets the same file while this
+  /// claim exists.
   class Claim {
    public:
     Claim(PartialBlobs& all, std::string path, bool resumable)
         : all_(all), path_(std::move(path)), resumable_(resumable) {}
     Claim(const Claim&) = delete;
     Claim& operator=(const Claim&) = delete;
-    /// Makes the bytes left in the file available as a partial blob.
+    /// If the file is resumable, makes the bytes left in it available as a partial blob.
     ~Claim();
     const std::string& path() const { return path_; }
     /// Returns true if an upload can be resumed from the bytes in the file, false if another claim
@@ -46,7 +46,8 @@ class PartialBlobs {
     const std::string path_;
     const bool resumable_;
   };
-  /// Claims the file of this blob; if it is claimed already, another file, which is not resumable.
+  /// Claims the file of this blob. If this file is claimed already, claims another file, which is
+  /// not resumable.
   std::unique_ptr<Claim> claim(const wire::Digest& digest) EXCLUDES(mutex_);
 
   /// Removes files that were not written to for `seconds`. `now`: seconds since 1970.
@@ -62,7 +63,7 @@ class PartialBlobs {
   const std::string folder_;
   mutable Mutex mutex_;
   std::set<std::string> claimed_ GUARDED_BY(mutex_);  ///< paths of the files that are held
-  /// Number of files that were not resumable, for their names.
+  /// Number of claimed files that were not resumable. Such a file is named by its number.
   std::uint64_t others_ GUARDED_BY(mutex_) = 0;
 };
 

@@ -17,7 +17,7 @@ struct RecordText {
   friend bool operator==(const RecordText&, const RecordText&) = default;
 };
 
-/// The reverse of from_text.
+/// Returns the text of a record, which from_text() can parse.
 RecordText to_text(const Record& record);
 
 /// Parses a record. DATA_LOSS names the field: unknown kind or field, missing field, value out of

@@ -9,7 +9,7 @@ namespace bandsaw::coordinator {
 
 namespace {
 
-/// The fields of a stored band and of the worker process that rendered it.
+/// Writes the fields of a stored band and of the worker process that rendered it.
 void write_stored(FieldWriter& out, JobId job, const Band& band, WorkerProcessId process) {
   out.number("job", job);
   out.number("first", band.samples.first);
@@ -19,9 +19,10 @@ void write_stored(FieldWriter& out, JobId job, const Band& band, WorkerProcessId
   write_process(out, process);
 }
 
-// Braced initialisers are evaluated in the order they are written, which is that of the fields.
+// Braced initialisers are evaluated in the order in which they are written, which is the order of
+// the fields.
 
-/// Reads the fields of a record that has only these: BandAudited or BandLost.
+/// Reads the output of write_stored(), which is all that a record BandAudited or BandLost has.
 template <class R>
 R read_stored(FieldReader& in) {
   return {.job = in.number("job"),

@@ -1,8 +1,8 @@
 #pragma once
 
-// Parts of record_text.cpp, which stores journal records as text: groups of records as fields. Each
-// read function reads the output of the write function of the same name; FieldReader keeps its
-// first error.
+// Functions that write and read groups of journal records as text fields. They are parts of
+// record_text.cpp, which converts all records. Each read function reads the output of the write
+// function of the same name; FieldReader keeps its first error.
 
 #include <optional>
 

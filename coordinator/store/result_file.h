@@ -1,8 +1,8 @@
 #pragma once
 
-// A finished image, the mean of the first part of its samples, or the number of samples of each
-// pixel, on disk: a header, then linear RGB float32, rows from the top. The format is specified in
-// this folder's README.
+// Writes and reads the files of a job's result: the finished image, the mean of the first part of
+// its samples, and the number of samples of each pixel. A file has a header, then linear RGB
+// float32, rows from the top. The format is specified in this folder's README.
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// The journal in an SQLite file: write-ahead log, every append one transaction that is on disk when
-// it returns.
+// The journal in an SQLite file with a write-ahead log. Every append is one transaction, which is
+// on disk when the call returns.
 
 #include <cstdint>
 #include <memory>
@@ -48,7 +48,7 @@ class SqliteJournal : public Journal {
   /// Runs the statement `first` and then inserts the records with the sequence numbers that follow
   /// `after`, all in one transaction.
   absl::Status transact(const char* first, absl::Span<const Record> records, std::uint64_t after);
-  /// Returns SQLite's present error as a status; `what` failed.
+  /// Returns SQLite's present error as a status. `what`: what failed, such as "cannot read it".
   absl::Status error(const std::string& what) const;
 
   std::unique_ptr<sqlite3, CloseDatabase> database_;

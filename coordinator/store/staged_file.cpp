@@ -51,7 +51,7 @@ absl::StatusOr<StagedFile> StagedFile::resume(const std::string& staging, std::u
   StagedFile staged(std::move(file));
   // Extends the file to its full length first, so that a limit on file sizes is detected. Then
   // truncates it to the bytes written and reserves the rest without changing the length: if this
-  // process is killed, the length shows how far it came.
+  // process is killed, the length shows how many bytes were written.
   RETURN_IF_ERROR(reserve(staged.file_, size));
   RETURN_IF_ERROR(staged.file_.truncate(offset));
   RETURN_IF_ERROR(reserve(staged.file_, size, FALLOC_FL_KEEP_SIZE));

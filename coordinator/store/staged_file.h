@@ -17,8 +17,9 @@ class StagedFile {
   /// Creates `staging` and reserves `size` bytes, so that a full disk is detected before any bytes
   /// arrive.
   static absl::StatusOr<StagedFile> create(const std::string& staging, std::uint64_t size);
-  /// The same, but keeps the first `offset` bytes of an existing file and appends after them.
-  /// OUT_OF_RANGE: the file is shorter, or there is none and `offset` is not 0; nothing is changed.
+  /// Does the same as create(), but keeps the first `offset` bytes of an existing file and appends
+  /// after them. OUT_OF_RANGE: the file is shorter, or there is none and `offset` is not 0; nothing
+  /// is changed.
   static absl::StatusOr<StagedFile> resume(const std::string& staging, std::uint64_t size,
                                            std::uint64_t offset);
   StagedFile(StagedFile&&) noexcept;

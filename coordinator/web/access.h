@@ -20,15 +20,17 @@ inline constexpr char kOurHeader[] = "X-Bandsaw";
 /// Thread-safe.
 class Access {
  public:
-  /// `secure`: browsers send the cookie over TLS only. `host`: what the dashboard listens on; a
-  /// name is accepted in requests, as this machine's own name is.
+  /// `secure`: browsers send the cookie over TLS only. `host`: the address or name on which the
+  /// dashboard listens. If it is a name, requests may use it, as they may use this machine's own
+  /// name.
   Access(link::Identity identity, bool secure, std::string host);
 
   /// Invalidates logins with earlier secrets. Returns true if the users' secret has changed.
   bool renew(link::Identity identity) EXCLUDES(mutex_);
 
-  /// Checks a request. INVALID_ARGUMENT: the Host header is missing or malformed.
-  /// PERMISSION_DENIED: a foreign host name, or from another site. UNAUTHENTICATED: not logged in.
+  /// Checks a request. INVALID_ARGUMENT: the method is not GET, HEAD or POST. PERMISSION_DENIED:
+  /// the header Host is missing, malformed or names a foreign host, a POST lacks kOurHeader or
+  /// comes from another site, or the secret is the workers'. UNAUTHENTICATED: not logged in.
   /// RESOURCE_EXHAUSTED: too many wrong secrets.
   absl::Status check(const HttpRequest& request) EXCLUDES(mutex_);
 
@@ -36,8 +38,8 @@ class Access {
   bool logged_in(const HttpRequest& request) EXCLUDES(mutex_);
 
   /// Sets the cookie in `reply`. `text`: the users' join string, or the secret in it.
-  /// UNAUTHENTICATED: wrong secret. RESOURCE_EXHAUSTED: wrong, and too often from one address.
-  /// PERMISSION_DENIED: the workers' secret.
+  /// UNAUTHENTICATED: the secret is wrong. RESOURCE_EXHAUSTED: it is wrong, and this address has
+  /// sent too many wrong secrets. PERMISSION_DENIED: it is the workers' secret.
   absl::Status log_in(const HttpRequest& request, const std::string& text, HttpReply& reply)
       EXCLUDES(mutex_);
   /// Deletes the cookie.
@@ -45,7 +47,7 @@ class Access {
 
  private:
   absl::Status check_login(const HttpRequest& request) EXCLUDES(mutex_);
-  /// Checks that this is the users' secret; `address`: who sent it. Errors as log_in().
+  /// Checks that this is the users' secret. `address`: the sender's address. Errors as log_in().
   absl::Status check_secret(const std::string& secret, const std::string& address) REQUIRES(mutex_);
   std::string cookie(const HttpRequest& request, const std::string& value, long seconds) const;
 
@@ -65,9 +67,9 @@ bool is_of_this_site(const HttpRequest& request);
 std::string bearer_secret(const HttpRequest& request);
 
 /// Returns true if `host`, the header Host of a request, has an IP address, localhost, this
-/// machine's own name `machine`, or the name `named` that the user has given to the dashboard.
-/// Requests of a foreign page whose name resolves to this machine (DNS rebinding) have that foreign
-/// name.
+/// machine's own name `machine`, also with ".local" after it, or the name `named` that the user has
+/// given to the dashboard. Requests of a foreign page whose name resolves to this machine (DNS
+/// rebinding) have that foreign name.
 bool is_own_host(const std::string& host, const std::string& machine, const std::string& named);
 
 }  // namespace bandsaw::coordinator

@@ -1,5 +1,5 @@
-// Notes the leases of each session, and answers whether a scene's blobs may be read or a band sent
-// with them.
+// Keeps the leases of each browser, and decides by them which scenes' blobs browsers may read and
+// which bands a browser may send.
 
 #include "coordinator/web/browser_leases.h"
 

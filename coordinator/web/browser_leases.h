@@ -1,8 +1,9 @@
 #pragma once
 
-// The leases that were given to browsers which render; a lease assigns a band (a range of rows and
-// samples of a job's image) to one worker. They decide what a holder of the link for browsers may
-// do: read the scenes of these leases while their jobs run, and send the bands of these leases.
+// Remembers the leases that were given to browsers which render. A lease assigns a band (a range of
+// rows and samples of a job's image) to one worker. These leases decide what a holder of the link
+// for browsers may do: read the scenes of the leases while their jobs run, and send the bands of
+// the leases.
 
 #include <cstdint>
 #include <deque>
@@ -23,8 +24,8 @@
 namespace bandsaw::coordinator {
 
 /// Thread-safe. A browser is identified by the instance id of its Hello. It is remembered after its
-/// session has ended, because its bands may still arrive. It is forgotten when kBrowsers others
-/// have got leases after it.
+/// session has ended, because its bands may still arrive. It is forgotten when kBrowsers other
+/// browsers have got leases after it.
 class BrowserLeases {
  public:
   /// Maximum numbers of remembered browsers and of remembered leases of each browser. Both are
@@ -38,8 +39,8 @@ class BrowserLeases {
   /// Notes a lease that is given to a browser.
   void add(const std::string& instance, const action::Lease& lease) EXCLUDES(mutex_);
 
-  /// Checks a band that a browser sends. PERMISSION_DENIED: it was given no lease with these
-  /// samples and rows.
+  /// Checks a band that a browser sends. PERMISSION_DENIED: the browser was given no lease of this
+  /// job that has the same samples and contains these rows.
   absl::Status check(const farm::BandHeader& header) EXCLUDES(mutex_);
 
   /// Returns a blob of a scene that was leased to a browser and whose job is not over. NOT_FOUND:
@@ -53,7 +54,7 @@ class BrowserLeases {
     Band band;
     std::string manifest;  ///< in hexadecimal
   };
-  using Leases = std::deque<Lease>;     ///< of one browser, at least one, the newest last
+  using Leases = std::deque<Lease>;  ///< the leases of one browser, at least one, the newest last
   using Blobs = std::set<std::string>;  ///< digests in hexadecimal
 
   /// Returns the newest lease of each job, sorted from new to old.

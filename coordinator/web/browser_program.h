@@ -12,7 +12,7 @@ namespace bandsaw::coordinator {
 /// change. It contains no secret.
 struct BrowserProgram {
   std::string bytes;       ///< bandsaw.wasm; empty: it is not installed
-  std::string compressed;  ///< the same by brotli, of bandsaw.wasm.br; empty: not installed
+  std::string compressed;  ///< bandsaw.wasm.br, `bytes` compressed by Brotli; empty: not installed
   std::string tag;         ///< SHA-256 of `bytes` in hexadecimal
 };
 

@@ -59,7 +59,8 @@ websocket::close_code close_code_of(const absl::Status& status) {
   }
 }
 
-/// Shortens a reason to what a close frame holds, at the beginning of a character.
+/// Shortens a reason to the length that a close frame can hold. Cuts it only at the beginning of a
+/// UTF-8 character.
 std::string shortened(absl::string_view text) {
   std::size_t size = std::min(text.size(), kMaxReasonBytes);
   while (size < text.size() && size > 0 && (text[size] & 0xC0) == 0x80) {
@@ -151,7 +152,7 @@ class BrowserSocket final : public WorkerSession,
  private:
   using Clock = boost::asio::steady_timer::clock_type;
 
-  // These may be called by any thread.
+  // read_next(), write() and finish() may be called by any thread.
   void read_next() override {
     boost::asio::post(*io_, [self = shared_from_this()] { self->read(); });
   }
@@ -238,7 +239,7 @@ class BrowserSocket final : public WorkerSession,
   const std::string secret_;
   std::shared_ptr<const void> place_;
   const Gone gone_;
-  /// Set before the engine knows of the session, which then reads it in lease().
+  /// Set before the engine knows of the session, because lease(), which the engine calls, reads it.
   std::string instance_;
   std::string bytes_;  ///< being written
   boost::beast::flat_buffer buffer_;
@@ -313,7 +314,8 @@ class BrowserSockets::Impl {
   }
 
  private:
-  /// Returns a place that is given back when it is destroyed; nullptr: all are taken.
+  /// Returns an object that counts as one of the allowed sockets until it is destroyed; nullptr:
+  /// the number of sockets is at its limit.
   std::shared_ptr<const void> take_place() {
     if (taken_->fetch_add(1) >= limits_.sockets) {
       taken_->fetch_sub(1);

@@ -51,10 +51,10 @@ class CleanPictures {
   absl::StatusOr<State> start(JobId job) EXCLUDES(mutex_);
   /// Returns the state, and starts the filter when the guides are done. NOT_FOUND: no such job.
   absl::StatusOr<State> state(JobId job) EXCLUDES(mutex_);
-  /// Returns a file of the clean picture with at most about `most_side` pixels a side, 0: all. An
-  /// EXR file has the layers `raw` and `error`, as `bandsaw render --denoise` writes it.
-  /// FAILED_PRECONDITION: the state is not kReady. Errors as picture_of
-  /// (coordinator/rpc/picture.h).
+  /// Returns a file of the clean picture with at most about `most_side` pixels per side.
+  /// `most_side` = 0: the picture is not reduced. An EXR file has the layers `raw` and `error`, as
+  /// `bandsaw render --denoise` writes it. FAILED_PRECONDITION: the state is not kReady. Errors as
+  /// picture_of (coordinator/rpc/picture.h).
   absl::StatusOr<Bytes> file(JobId job, std::uint32_t most_side, ImageFormat format)
       EXCLUDES(mutex_);
 
@@ -67,7 +67,7 @@ class CleanPictures {
   };
   struct Entry {
     Stage stage = Stage::kNone;
-    std::vector<JobId> jobs = {};  ///< guides: albedo, shape; half of the samples, if needed
+    std::vector<JobId> jobs = {};  ///< albedo, shape; then, if needed, the job of half the samples
     absl::Status why = {};
     std::shared_ptr<const Kept> kept = nullptr;
     std::uint64_t used = 0;  ///< number of the last call that used it

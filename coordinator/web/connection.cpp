@@ -24,7 +24,8 @@ struct Endpoint {
   int port = 0;
 };
 
-/// `name_of`: getpeername or getsockname. Empty if the socket has no numeric address.
+/// Returns the address and port of one end of a socket. `name_of`: getpeername or getsockname. The
+/// result is empty if the socket has no numeric address.
 Endpoint endpoint_of(int socket, int (*name_of)(int, sockaddr*, socklen_t*)) {
   sockaddr_storage address{};
   socklen_t size = sizeof(address);

@@ -38,8 +38,8 @@ class Connection {
   /// Waits for bytes and reads at most `size`, which is not 0. Returns their number; 0: the
   /// connection has ended, or its deadline has passed.
   std::size_t read(char* bytes, std::size_t size);
-  /// Writes at most `size` bytes, which is not 0, as soon as some can be written. Result as of
-  /// read.
+  /// Writes at most `size` bytes, which is not 0, as soon as some can be written. The result is
+  /// that of read().
   std::size_t write(const char* bytes, std::size_t size);
 
   /// Result of one attempt to read or write. If `bytes` and `wait_for` are both 0, the connection
@@ -48,8 +48,8 @@ class Connection {
     std::size_t bytes = 0;
     short wait_for = 0;  ///< the attempt can be repeated after these events of poll
   };
-  /// Read or write what is possible at once: unlike read() and write() they do not wait, and no
-  /// deadline ends them.
+  /// These functions read or write what is possible at once. Unlike read() and write(), they do not
+  /// wait, and no deadline ends them.
   Attempt try_read(char* bytes, std::size_t size);
   Attempt try_write(const char* bytes, std::size_t size);
 

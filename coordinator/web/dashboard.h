@@ -34,7 +34,7 @@ struct DashboardOptions {
 
 class Dashboard {
  public:
-  /// `engine` outlives it. FAILED_PRECONDITION: the port cannot be used.
+  /// `engine` outlives the dashboard. FAILED_PRECONDITION: the port cannot be used.
   static absl::StatusOr<std::unique_ptr<Dashboard>> start(Engine& engine,
                                                           const link::Identity& identity,
                                                           const DashboardOptions& options);

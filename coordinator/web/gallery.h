@@ -17,10 +17,11 @@ struct GalleryScene {
   std::string about;  ///< comment at the beginning of the file, as one line
 };
 
-/// Read once; later changes of the folder have no effect.
+/// The folder is read once, by the constructor. Later changes of the folder have no effect.
 class Gallery {
  public:
-  /// Finds every *.textproto, by name. A missing folder is an empty gallery.
+  /// Finds every *.textproto. Scenes are sorted by name; those of subfolders come last. A missing
+  /// folder is an empty gallery.
   explicit Gallery(const std::string& folder);
 
   const std::vector<GalleryScene>& scenes() const { return scenes_; }

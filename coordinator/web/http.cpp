@@ -114,7 +114,7 @@ HttpReply text_reply(std::string text, std::string type) {
 
 HttpReply with_range(const HttpRequest& request, HttpReply reply) {
   if (request.method != "GET" || reply.status != 200 || !request.has_header("Range") ||
-      request.has_header("If-Range")) {  // no response has a validator that it could match
+      request.has_header("If-Range")) {  // If-Range is not evaluated
     return reply;
   }
   const std::size_t size = reply.bytes.size();

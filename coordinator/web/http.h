@@ -49,8 +49,8 @@ using TakeOver = std::function<void(std::unique_ptr<Connection>)>;
 struct HttpReply {
   int status = 200;
   std::string type = {};  ///< Content-Type; empty: no body
-  /// Without Content-Type, Content-Length and Connection. The server adds its own headers to every
-  /// response, except those that have a name of this list.
+  /// The headers of the response, without Content-Type, Content-Length and Connection. The server
+  /// adds its own headers to every response, except those whose names are in this list.
   std::vector<HttpField> headers = {};
   absl::string_view bytes = {};           ///< the body
   std::shared_ptr<const void> held = {};  ///< keeps `bytes` alive; nullptr: they outlive the server

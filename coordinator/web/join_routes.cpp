@@ -1,5 +1,6 @@
-// The handlers of browsers that render (/join/…): they send the renderer and blobs of scenes, and
-// take bands. All but the renderer need the secret of the link for browsers.
+// The handlers of the requests of browsers that render (/join/…). They send the renderer and blobs
+// of scenes, and receive bands. All requests except that for the renderer need the secret of the
+// link for browsers.
 
 #include <algorithm>
 #include <atomic>
@@ -31,7 +32,8 @@ absl::Status check_link(BrowserAccess& access, const HttpRequest& request) {
   return access.check(bearer_secret(request), request.remote_address);
 }
 
-/// Counts one transfer until it is destroyed; nullptr: too many are in progress.
+/// Returns an object that counts as one transfer until it is destroyed; nullptr: too many transfers
+/// are in progress.
 std::shared_ptr<const void> begin_transfer(const std::shared_ptr<std::atomic<int>>& transfers) {
   if (transfers->fetch_add(1) >= kMaxTransfers) {
     transfers->fetch_sub(1);
@@ -119,7 +121,7 @@ HttpReply blob_reply(BrowserLeases& leases, const HttpRequest& request,
   };
   const auto held = std::make_shared<Held>(Held{*std::move(blob), std::move(transfer)});
   const auto bytes = held->blob->bytes();
-  // Its name is its digest, so its bytes never change.
+  // The blob's name is its digest, so its bytes never change.
   return {.type = "application/octet-stream",
           .headers = {{"Cache-Control", "private, max-age=31536000, immutable"}},
           .bytes = {reinterpret_cast<const char*>(bytes.data()), bytes.size()},
@@ -145,7 +147,7 @@ HttpReply program_reply(const BrowserProgram& program, const HttpRequest& reques
   const std::string tag = absl::StrCat("\"", program.tag, compressed ? "-br" : "", "\"");
   HttpReply reply{.type = "application/wasm",
                   .headers = {{"ETag", tag},
-                              {"Cache-Control", "no-cache"},  // stored, but asked for each time
+                              {"Cache-Control", "no-cache"},  // stored, but revalidated each time
                               {"Vary", "Accept-Encoding"}}};
   if (request.header("If-None-Match") == tag) {
     reply.status = 304;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The farm's state for Prometheus: its text format, version 0.0.4.
+// Writes the farm's state as metrics in the text format of Prometheus, version 0.0.4.
 
 #include <cstdint>
 #include <string>

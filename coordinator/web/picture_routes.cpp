@@ -15,7 +15,8 @@ namespace {
 constexpr std::uint32_t kMinPictureSide = 64;
 constexpr std::uint32_t kMaxPictureSide = 2048;
 
-/// Rounds to one of few sizes, so that few pictures are made.
+/// Returns the requested side of a picture, in pixels, rounded up to one of a few sizes, so that
+/// few pictures are made.
 std::uint32_t side_of(const HttpRequest& request) {
   std::uint32_t wanted = 0;
   if (!absl::SimpleAtoi(request.parameter("side"), &wanted)) {

@@ -44,7 +44,7 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
   MutexLock lock(making_);
   const Key key{id, most_side, format};
   const auto found = made_.find(key);
-  const bool done = job.state == JobState::kDone;  // then only the finished image will do
+  const bool done = job.state == JobState::kDone;  // then an earlier picture does not suffice
   if (found != made_.end()) {
     Made& old = found->second;
     old.used = ++calls_;

@@ -27,9 +27,9 @@ class Pictures {
 
   explicit Pictures(Engine& engine) : engine_(engine) {}
 
-  /// Returns a file of the job's present image, at most a second old, or, if the job is done, of
-  /// its finished image, with at most about `most_side` pixels per side. NOT_FOUND: no such job, or
-  /// none of its bands is there. Here and below, RESOURCE_EXHAUSTED as picture_of
+  /// Returns a file of the job's present image, which is at most a second old. If the job is done,
+  /// it is the finished image. The image has at most about `most_side` pixels per side. NOT_FOUND:
+  /// no such job, or none of its bands is there. Here and below, RESOURCE_EXHAUSTED as picture_of
   /// (coordinator/rpc/picture.h).
   absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side, ImageFormat format)
       EXCLUDES(making_);

@@ -10,7 +10,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Filled by one thread first; then thread-safe.
+/// One thread adds all routes first. After that, answer() is thread-safe.
 class Router {
  public:
   /// Adds a route for GET and HEAD of paths equal to `pattern`. It may have one "*", which matches

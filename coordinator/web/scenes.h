@@ -24,8 +24,8 @@ struct SceneOnFarm {
 };
 
 /// Imports a scene file, or the scene `inside` of a zip file (empty: the only scene in it), and
-/// stores its package. Blocks; CANCELLED soon after `stop` becomes true. Errors of the importer,
-/// naming the file, and of the store.
+/// stores its package. Blocks; CANCELLED soon after `stop` becomes true. Returns the errors of the
+/// importer, whose messages name the file, and those of the store.
 using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(
     const std::string& path, const std::string& inside, const std::atomic<bool>& stop)>;
 

@@ -1,6 +1,6 @@
-// Defines a function that Abseil's cords call. The build for WebAssembly leaves out Abseil's file
-// with it, which needs threads. It does nothing here: it would remove the record of a sampled cord,
-// and without sampling there are no such records.
+// Defines a function that Abseil's cords call. The build for WebAssembly leaves out the file of
+// Abseil that defines it, because that file needs threads. The function removes the record of a
+// sampled cord. It does nothing here, because without sampling there are no such records.
 
 #include "absl/strings/internal/cordz_info.h"
 

@@ -15,8 +15,9 @@ struct KeyAndCertificate {
   std::string certificate_pem;
 };
 
-/// Creates an EC P-256 key and its self-signed certificate for `name`. It is valid for 20 years,
-/// from a day before now on because clocks differ. INTERNAL: OpenSSL failed.
+/// Creates an EC P-256 key and its self-signed certificate for `name`. The certificate is valid for
+/// 20 years. Its validity begins a day before the present, because clocks differ. INTERNAL: OpenSSL
+/// failed.
 absl::StatusOr<KeyAndCertificate> make_certificate(const std::string& name);
 
 /// Returns the SHA-256 of the DER form. INVALID_ARGUMENT: not a certificate.
@@ -38,8 +39,8 @@ absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem
 /// this is not a certificate.
 absl::Status check_clock(const std::string& certificate_pem);
 
-/// Checks that the key belongs to the certificate. INVALID_ARGUMENT: not a private key, or of
-/// another certificate.
+/// Checks that the key belongs to the certificate. INVALID_ARGUMENT: it is not a private key, or it
+/// belongs to another certificate.
 absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem);
 
 }  // namespace bandsaw::link

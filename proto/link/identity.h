@@ -15,8 +15,8 @@ struct Identity {
   std::string key_pem;
   std::string certificate_pem;
   wire::Digest certificate_digest;  ///< SHA-256 of the DER form
-  std::string worker_secret;        ///< base64url, 22 characters, as the next
-  std::string farm_secret;          ///< of users
+  std::string worker_secret;        ///< base64url, 22 characters, as farm_secret
+  std::string farm_secret;          ///< the secret of users
 };
 
 /// Loads `folder`/identity, or creates a new one (EC P-256, self-signed, for the name kServerName).

@@ -29,8 +29,8 @@ class Socket {
   /// or there is no such host. INVALID_ARGUMENT: the address has no port.
   static absl::StatusOr<Socket> connect(const std::string& address, const Deadline& deadline);
   /// Tries the addresses of a resolved name in order, and connects to the first one that accepts.
-  /// Each address gets an equal part of the time that its predecessors have left. `list` stays the
-  /// caller's.
+  /// Before each attempt, the remaining time is divided equally among the remaining addresses.
+  /// `list` stays the caller's.
   static absl::StatusOr<Socket> connect(const addrinfo* list, const Deadline& deadline);
   Socket(Socket&& other) noexcept;
   Socket& operator=(Socket&&) = delete;

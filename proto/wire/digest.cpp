@@ -29,7 +29,8 @@ struct Hasher::Context {
 #else
 namespace {
 
-// Hashing memory with a digest that OpenSSL always has cannot fail, short of a broken installation.
+// Aborts after an error of OpenSSL. Hashing memory with a digest that OpenSSL always has fails only
+// if its installation is broken.
 void require(int openssl_result) {
   if (openssl_result != 1) {
     std::abort();

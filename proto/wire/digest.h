@@ -24,7 +24,8 @@ struct Digest {
 Digest sha256(absl::Span<const std::byte> bytes);
 Digest sha256(const std::string& bytes);
 
-/// Parse a digest. INVALID_ARGUMENT: not 32 bytes / not 64 hexadecimal digits.
+/// Both functions parse a digest. INVALID_ARGUMENT: `raw` does not have 32 bytes, or `hex` is not
+/// 64 hexadecimal digits.
 absl::StatusOr<Digest> digest_from_raw(const std::string& raw);
 absl::StatusOr<Digest> digest_from_hex(const std::string& hex);
 

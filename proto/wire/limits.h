@@ -12,7 +12,7 @@ namespace bandsaw::wire {
 inline constexpr std::size_t kChunkBytes = 1 << 20;      ///< data in one chunk of a stream
 inline constexpr std::size_t kMessageBytes = 4 << 20;    ///< any gRPC message
 inline constexpr std::uint64_t kBlobBytes = 8ull << 30;  ///< one blob
-inline constexpr std::size_t kPartialBlobs = 64;  ///< partial uploads that are kept, the newest
+inline constexpr std::size_t kPartialBlobs = 64;  ///< partial uploads that are kept: the newest
 inline constexpr std::uint64_t kPartialBytes = 16ull << 30;   ///< total size of the partial uploads
 inline constexpr std::uint64_t kManifestBytes = 64ull << 20;  ///< a package's manifest
 inline constexpr std::uint64_t kPackageBytes = 32ull << 30;   ///< total size of a package's blobs
@@ -20,14 +20,14 @@ inline constexpr std::uint64_t kBandBytes = 64ull << 20;      ///< pixels of one
 inline constexpr std::size_t kBlobsPerPackage = 100'000;
 inline constexpr std::size_t kDigestsPerMessage = 10'000;
 inline constexpr std::size_t kFramesPerMessage = 1'000;  ///< frames whose scenes are sent together
-inline constexpr std::size_t kActiveJobs = 1'000;        ///< jobs that are not final; no frames
+inline constexpr std::size_t kActiveJobs = 1'000;  ///< jobs that are not final, without frame jobs
 inline constexpr std::size_t kWorkers = 4'096;
-inline constexpr std::size_t kBandsPerWorker = 16;  ///< leased to it at the same time
+inline constexpr std::size_t kBandsPerWorker = 16;  ///< leased to one worker at the same time
 inline constexpr std::size_t kThreadsPerWorker = 4'096;
 inline constexpr std::size_t kJobNameBytes = 200;
 inline constexpr std::size_t kWorkerNameBytes = 64;
 inline constexpr std::size_t kWrongSecretsPerMinute =
-    120;  ///< per address; beyond, calls with a wrong secret get RESOURCE_EXHAUSTED
+    120;  ///< per address; further calls with a wrong secret get RESOURCE_EXHAUSTED
 inline constexpr std::size_t kLogLines = 50;  ///< of a worker's log, in one message
 inline constexpr std::size_t kLogLineBytes = 500;
 /// Lines of one worker's log kept by the coordinator.

@@ -10,9 +10,9 @@
 
 namespace bandsaw::worker {
 
-/// Holds what the last function of exports.h that was called for an object answered, because the
-/// page's JavaScript reads it from the memory of the WebAssembly module after the call. Every
-/// function returns a pointer to the one answer, which the next call overwrites.
+/// Holds the answer to the last call of a function of exports.h for an object. The page's
+/// JavaScript reads the answer from the memory of the WebAssembly module after the call. Every
+/// function returns a pointer to this one answer, which the next call overwrites.
 class Answerer {
  public:
   /// Keeps a copy of the bytes.

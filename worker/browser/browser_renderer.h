@@ -2,7 +2,7 @@
 
 // The renderer of one core of a browser's tab, compiled to WebAssembly: loads scenes from blobs
 // that it is given, and renders rows of bands (a band is a range of rows and samples). The page's
-// JavaScript calls it through exports.h; it fetches the blobs and checks their digests.
+// JavaScript calls the renderer through exports.h, fetches the blobs and checks their digests.
 
 #include <atomic>
 #include <functional>
@@ -34,10 +34,10 @@ class BrowserRenderer {
   /// is broken.
   absl::StatusOr<std::vector<BlobRef>> begin_scene(const wire::Digest& manifest, std::string text);
   /// Takes a blob of the scene that was begun. Its digest was checked. INVALID_ARGUMENT: the scene
-  /// has no such blob, or not of this size.
+  /// has no such blob of this size. FAILED_PRECONDITION: no scene was begun.
   absl::Status add_blob(const wire::Digest& digest, SharedBytes bytes);
   /// Builds the scene from its blobs. NOT_FOUND: one is missing. INVALID_ARGUMENT: the package is
-  /// broken.
+  /// broken. FAILED_PRECONDITION: no scene was begun.
   absl::Status build_scene();
   /// Frees a scene, if it is loaded.
   void drop_scene(const wire::Digest& manifest) { scenes_.erase(manifest); }
@@ -48,11 +48,12 @@ class BrowserRenderer {
 
   /// Renders rows of a task's band; the sums are those of the same rows in the whole band.
   /// NOT_FOUND: the scene is not loaded. INVALID_ARGUMENT: the rows do not lie in the band.
-  /// `step` is called after each step of what the renderer prepares before the first row.
+  /// `step` is called after each step of the preparation before the first row.
   absl::StatusOr<BandPixels> render(const Task& task, const RowRange& rows,
                                     const std::function<void()>& step);
-  /// Returns the rows as 8-bit sRGB, 4 bytes a pixel, the last of them 255, with the scene's
-  /// exposure and tone. Pixels without samples are black. `pixels`: of render() with `task`.
+  /// Returns the rows as 8-bit sRGB with the scene's exposure and tone. A pixel has 4 bytes, of
+  /// which the last is 255. Pixels without samples are black. `pixels`: the result of render() with
+  /// `task`.
   std::vector<std::uint8_t> picture(const Task& task, const BandPixels& pixels) const;
 
  private:

@@ -1,8 +1,9 @@
 #pragma once
 
-// The session of a browser's tab with the coordinator, compiled to WebAssembly: worker::Session
-// with messages as bytes, and the bands that the tab holds. It has no clock, thread or socket: the
-// page's JavaScript has those, and calls this through exports.h.
+// The session of a browser's tab with the coordinator, compiled to WebAssembly. It wraps
+// worker::Session, takes and returns messages as bytes, and keeps the bands that the tab holds. It
+// has no clock, thread or socket. The page's JavaScript has them, and calls the session through
+// exports.h.
 
 #include <map>
 #include <optional>
@@ -38,7 +39,8 @@ class BrowserSession {
 
   // The stream. The messages that are returned are bytes to send.
   std::string hello() const;
-  /// Changes what the next Hello offers. `memory_bytes`: for a scene; 0: no limit.
+  /// Changes what the next Hello offers. `memory_bytes`: the memory that scenes may take; 0: no
+  /// limit.
   void offer(std::uint32_t threads, std::uint64_t memory_bytes);
   /// INVALID_ARGUMENT: the bytes are no message.
   absl::StatusOr<BrowserOrders> receive(const std::string& message);

@@ -28,8 +28,8 @@
 #include "worker/session/lease_task.h"
 
 #ifdef __wasm__
-/// Defined by the page's JavaScript. Called after each step that the renderer makes before the
-/// first row; it counts as progress of the band.
+/// Defined by the page's JavaScript. Called after each step of the renderer's preparation before
+/// the first row. Such a step counts as progress of the band.
 extern "C" __attribute__((import_module("page"), import_name("step"))) void page_step();
 #else
 static void page_step() {}

@@ -28,10 +28,10 @@ void* bandsaw_allocate(size_t size);
 void bandsaw_free(void* memory);
 
 // ---- BrowserSession; its header says more. A task is a band that the tab holds; numbers of tasks
-// are below 2^32. Bytes of memory are doubles because JavaScript's numbers are. ----
+// are below 2^32. Memory sizes are doubles, because JavaScript's numbers are doubles. ----
 
-/// A session that is not connected. `instance`: 32 hexadecimal digits, new for each tab.
-/// bandsaw_session_answer tells whether the arguments were right.
+/// Returns a new session, which is not connected. `instance`: 32 hexadecimal digits, new for each
+/// tab. bandsaw_session_answer tells whether the arguments were right.
 BandsawSession* bandsaw_session_new(const char* instance, size_t instance_size, const char* name,
                                     size_t name_size, const char* build, size_t build_size,
                                     uint32_t threads, double memory_bytes);

@@ -38,8 +38,9 @@ bool is_ours(const std::filesystem::path& path) {
   return whole_or_part && wire::digest_from_hex(path.stem().string()).ok();
 }
 
-/// While a worker downloads as many bytes as the limit, it lists the folder this many times, to see
-/// what other workers have added. So each of them adds at most this part of the limit unseen.
+/// Each time that a worker has added 1 / kListings of the size limit, it lists the folder, to see
+/// what other workers have added. So no worker adds much more than this part of the limit before it
+/// counts what the others have added.
 constexpr std::uint64_t kListings = 16;
 
 /// Lists the cache's files. Files that are removed during the scan are left out.

@@ -45,7 +45,7 @@ class BlobCache : public BlobSource {
     /// cannot be read again; they are deleted. UNAVAILABLE: the partial file cannot be renamed, as
     /// when a user has removed it.
     absl::Status commit();
-    /// Deletes the partial file, so that the next download begins at byte 0. This one MUST NOT
+    /// Deletes the partial file, so that the next download begins at byte 0. This download MUST NOT
     /// continue.
     void discard();
 
@@ -66,7 +66,8 @@ class BlobCache : public BlobSource {
   /// Opens the partial file `path` for reading and writing, and returns its descriptor. Creates the
   /// file and the cache's folder if they are missing. Errors are those of begin().
   absl::StatusOr<int> open_part(const std::string& path) EXCLUDES(mutex_);
-  /// Accounts for `added` bytes and evicts the oldest files until the rest fits; keeps `newest`.
+  /// Accounts for `added` bytes and evicts the oldest files until the rest fits. Keeps the file
+  /// `newest`.
   void make_room(std::uint64_t added, const std::string& newest) EXCLUDES(mutex_);
   /// Evicts the least recently used files because the disk is full: `wanted` bytes, or more.
   /// Returns false if there is nothing left to evict.

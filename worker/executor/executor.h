@@ -40,8 +40,8 @@ class Executor {
   Executor& operator=(const Executor&) = delete;
 
   void add(const Task& task) EXCLUDES(mutex_);
-  /// Cancels a task. A waiting task is removed; a running one ends at the next row of a tile. No
-  /// further callbacks for it.
+  /// Cancels a task. A waiting task is removed; a running one ends at the next row of a tile. The
+  /// task gets no further callbacks.
   void stop(TaskId task) EXCLUDES(mutex_);
 
  private:

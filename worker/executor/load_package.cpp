@@ -16,14 +16,14 @@
 namespace bandsaw::worker {
 namespace {
 
-// How often a wait looks at `stop`, and at the download of another worker.
+// The interval at which a wait checks `stop` and the download of another worker.
 constexpr auto kLook = std::chrono::milliseconds(50);
 constexpr int kWrongBytesTimes =
     3;  // after so many downloads with a wrong digest, the source itself is wrong
 
 absl::Status stopped() { return absl::CancelledError("stopped"); }
 
-/// Sleeps, but not much longer than until `stop`.
+/// Sleeps for `time`, or until soon after `stop` is set.
 void pause(std::chrono::milliseconds time, const std::atomic<bool>& stop) {
   const auto end = std::chrono::steady_clock::now() + time;
   while (!stop && std::chrono::steady_clock::now() < end) {

@@ -27,8 +27,9 @@ using TransferBlob = std::function<absl::Status(const wire::Digest& digest, std:
 /// Reads blobs from the cache, fetching those that are missing.
 class FetchingSource : public BlobSource {
  public:
-  /// `stop`: set by another thread to cancel. `prepared`: gets the bytes fetched plus the blobs
-  /// read. All references MUST outlive it.
+  /// `stop`: set by another thread to cancel. `prepared`: gets the progress, which is the sum of
+  /// the bytes fetched, the blobs read, and the short waits for another worker's download. All
+  /// references MUST outlive this object.
   FetchingSource(BlobCache& cache, const TransferBlob& transfer, const std::atomic<bool>& stop,
                  const Prepared& prepared)
       : cache_(cache), transfer_(transfer), stop_(stop), prepared_(prepared) {}
@@ -50,8 +51,8 @@ class FetchingSource : public BlobSource {
 };
 
 /// Builds scenes. What a scene shares with earlier ones that are still in use (meshes with their
-/// BVHs, texels, grids) is neither read nor built again, so a frame of a sequence costs what has
-/// changed in it.
+/// BVHs, texels, grids) is neither read nor built again, so loading a frame of a sequence takes
+/// time only for the parts that have changed.
 class PackageLoader {
  public:
   /// `kernel`: as in Scene::build. `pool` MUST outlive the loader.

@@ -1,4 +1,5 @@
-// The last two scenes, the latest first. The older one is dropped before another scene is loaded.
+// Keeps the last two scenes, the most recently used first. The older one is dropped before another
+// scene is loaded.
 
 #include "worker/executor/scene_cache.h"
 

@@ -15,9 +15,9 @@
 
 namespace bandsaw::worker {
 
-/// One attempt to send a band. INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION: permanent, the
-/// band will never be accepted. RESOURCE_EXHAUSTED: the coordinator's disk is full now. All other
-/// errors: retry.
+/// One attempt to send a band. INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION: the band will
+/// never be accepted. RESOURCE_EXHAUSTED: the coordinator's disk is full now. All other errors:
+/// retry.
 using SendBand = std::function<absl::StatusOr<farm::PutBandReply::Outcome>(const FinishedBand&)>;
 
 /// Called from the uploader's thread when a band is finally acknowledged, or rejected with a
@@ -27,7 +27,7 @@ using Settled =
 
 class Uploader {
  public:
-  /// `seed`: of the random part of the waits between attempts.
+  /// `seed`: the seed of the random part of the waits between attempts.
   Uploader(SendBand send, Settled settled, std::uint64_t seed);
   /// Waits for the attempt in progress. Bands that are not acknowledged by then are lost.
   ~Uploader();
@@ -50,8 +50,8 @@ class Uploader {
   CondVar changed_;
   bool closing_ GUARDED_BY(mutex_) = false;
   bool retry_now_ GUARDED_BY(mutex_) = false;
-  /// Bounded: while these are unacknowledged, the coordinator leases no more bands than the
-  /// worker's credit allows.
+  /// Their number is bounded, because the coordinator leases no more bands than the worker's credit
+  /// allows while these are not acknowledged.
   std::deque<std::shared_ptr<const FinishedBand>> bands_ GUARDED_BY(mutex_);
   Backoff backoff_;  ///< used by the thread only
   std::thread thread_;

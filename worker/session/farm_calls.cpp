@@ -14,8 +14,9 @@
 namespace bandsaw::worker {
 namespace {
 
-// kDeadline: of a stream of bands. kServes: the age up to which a stream takes a further band. So
-// each band has at least a minute. A band whose transfer is interrupted is sent again.
+// kDeadline: the deadline of a stream of bands. kServes: the age up to which a stream takes a
+// further band. So each band has at least a minute. A band whose transfer is interrupted is sent
+// again.
 constexpr std::chrono::milliseconds kDeadline{120'000};
 constexpr std::chrono::milliseconds kServes{60'000};
 
@@ -26,7 +27,8 @@ farm::BandHeader header_of(const FinishedBand& band, const std::string& instance
                      band.pixels.counters, band.cost, instance, lease);
 }
 
-// Sufficient for a slow connection; an interrupted transfer resumes at its offset.
+// The deadline of one download of a blob. It is sufficient for a slow connection; an interrupted
+// transfer resumes at its offset.
 constexpr std::chrono::milliseconds kTransferDeadline{60'000};
 
 absl::Status not_connected() { return absl::UnavailableError("not connected"); }
@@ -42,8 +44,8 @@ class FarmCalls::BandStream {
   /// Cancels a transfer in progress.
   ~BandStream();
 
-  /// Returns true if the next band may be sent on it: it was opened on this channel, and the time
-  /// to its deadline is sufficient for a slow connection.
+  /// Returns true if the next band may be sent on this stream: it was opened on this channel, and
+  /// the time to its deadline is sufficient for a slow connection.
   bool serves(const std::shared_ptr<grpc::Channel>& channel) const;
 
   /// Sends a band and waits for the coordinator's answer. After an error the stream must not be

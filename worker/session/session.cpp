@@ -124,7 +124,8 @@ void Session::take_lease(const farm::Lease& lease, SessionEffects& effects) {
     effects.send.push_back(failure(lease.lease(), std::string(task.status().message()), {}));
     return;
   }
-  // The same band again is the coordinator's answer to Hello: continue, under the new lease id.
+  // The coordinator answers Hello with a lease of the same band: rendering continues under the new
+  // lease id.
   const auto same = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
     return held.task.job == task->job && held.task.band == task->band;
   });

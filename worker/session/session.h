@@ -73,9 +73,9 @@ class Session {
   /// Notes progress of the preparation. `prepared`: bytes fetched and steps done, a number that
   /// only increases (LeaseProgress in farm.proto).
   void preparing(TaskId task, std::uint64_t prepared);
-  /// Notes that `rows_done` rows of the band are rendered. With 0 rendering has begun, or the
-  /// renderer has done another step of what it prepares; that counts as progress of the
-  /// preparation. Returns true if it is the first call for this band.
+  /// Notes that `rows_done` rows of the band are rendered. 0 means that rendering has begun, or
+  /// that the renderer has done another step of the preparation before the first row. Such a step
+  /// counts as progress of the preparation. Returns true if this is the first call for this band.
   bool rendering(TaskId task, std::uint32_t rows_done);
   /// Marks a band as finished. Returns false if its lease was revoked: discard the pixels.
   bool finished(TaskId task);

@@ -1,7 +1,7 @@
-// The renderer in a browser's tab, called by the functions that it exports: it gives the bytes of a
-// native worker. It renders a band in parts of a few rows. If the scene shares paths between
-// pixels, the row step, 16, says that a part should have whole rows of tiles; otherwise the row
-// step is 1.
+// The renderer in a browser's tab, called through the functions that it exports. Its pixels have
+// the same bytes as those of a native worker. It renders a band in parts of a few rows. If the
+// scene shares paths between pixels, the row step, 16, says that a part should have whole rows of
+// tiles; otherwise the row step is 1.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
-// The session of a browser's tab with the coordinator, called by the functions that it exports. The
-// messages of the coordinator are made by the test. Answers are JSON or serialised messages.
+// The session of a browser's tab with the coordinator, called through the functions that it
+// exports. The messages of the coordinator are made by the test. Answers are JSON or serialised
+// messages.
 
 #include <gmock/gmock.h>
 #include <google/protobuf/struct.pb.h>

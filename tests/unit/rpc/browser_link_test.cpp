@@ -18,7 +18,7 @@ class BrowserLinkTest : public FarmTest {
  protected:
   BrowserLinkTest() { start(); }
 
-  /// Loads the link as a coordinator does that is started.
+  /// Loads the link as a coordinator does when it is started, and starts a server.
   void start() {
     server_.reset();
     auto access = BrowserAccess::load(folder_ / "identity", [this] { return now_; });
@@ -33,8 +33,8 @@ class BrowserLinkTest : public FarmTest {
   }
   ~BrowserLinkTest() override { server_.reset(); }
 
-  /// Calls BrowserLink and keeps its status. `seconds`: the time until the link is to end; 0: as it
-  /// is, or the standard for a new link.
+  /// Calls BrowserLink and keeps its status. `seconds`: the time until the link is to end. 0: the
+  /// end of the link is not changed, and a new link gets the standard duration.
   farm::BrowserLinkReply ask(double seconds = 0, bool revoke = false) {
     farm::BrowserLinkRequest request;
     request.set_seconds(seconds);

@@ -21,7 +21,8 @@ class HostileTest : public FarmTest {
  protected:
   ~HostileTest() override { hang_up(); }
 
-  /// Raises the limit of open files for both ends of so many connections.
+  /// Raises this process's limit of open files, because it has both ends of each connection.
+  /// Returns true if it may then open `files` files.
   static bool may_open(std::size_t files) {
     rlimit limit{};
     getrlimit(RLIMIT_NOFILE, &limit);

@@ -110,7 +110,7 @@ TEST_F(SecretTest, UploadsOfBandsWithTheOldSecretEnd) {
 }
 
 TEST_F(SecretTest, DownloadsOfScenesWithTheOldSecretEnd) {
-  // So large that the download is not over when the secret is renewed.
+  // The scene is so large that the download is not over when the secret is renewed.
   const std::string scene = test::pattern(16 << 20);
   ASSERT_TRUE(put_blob(chunks_of(scene)).ok());
   const auto call = context(link::Role::kWorker);

@@ -1,4 +1,5 @@
-// Journal records as text: every kind reads back, also from older versions.
+// Journal records as text: records of every kind are written and read back, and records of older
+// versions are read.
 
 #include "coordinator/store/record_text.h"
 

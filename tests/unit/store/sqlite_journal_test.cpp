@@ -185,8 +185,8 @@ TEST_F(SqliteJournalTest, AFullDiskLosesNothingAndTheSameAppendWorksLater) {
   EXPECT_EQ(replayed(*journal), expected);
 }
 
-/// Starts a child process that appends without end. It writes the number of each finished append to
-/// a pipe, whose reading end `acknowledged` is set to.
+/// Starts a child process that appends without end. The child writes the number of each finished
+/// append to a pipe. Sets `acknowledged` to the reading end of the pipe.
 pid_t start_appender(const std::string& path, int& acknowledged) {
   int ends[2];
   EXPECT_EQ(::pipe(ends), 0);

@@ -105,7 +105,7 @@ TEST_F(ExchangeTest, ChunksAreJoined) {
               ::testing::EndsWith("\r\n\r\nPOST / body"));
 }
 
-// Exactly twice the size of the buffer: the end coincides with the end of a read.
+// The body has exactly twice the size of the buffer, so its end coincides with the end of a read.
 TEST_F(ExchangeTest, ABodyOfWholeBuffersEnds) {
   const std::string body(128 << 10, 'b');
   std::thread server([this] { serve(); });

@@ -42,8 +42,8 @@ class WebTest : public ::testing::Test {
   /// `value`.
   void put(std::uint64_t job, std::uint32_t width, std::uint32_t height, std::uint64_t first,
            double value);
-  /// Uploads all samples of a job, whose number is a multiple of 8, from `first` on, and waits
-  /// until the job is done. Each pixel's value is 0.5.
+  /// Uploads the samples [first, samples) of a job and waits until the job is done. Both numbers
+  /// MUST be multiples of 8. Each pixel's value is 0.5.
   void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
               std::uint64_t samples = 64, std::uint64_t first = 0);
   /// Parses the body as a message; fails the test if it is not one.
@@ -55,7 +55,7 @@ class WebTest : public ::testing::Test {
   }
   std::string base() const { return "http://127.0.0.1:" + std::to_string(dashboard_->port()); }
 
-  /// Starts the dashboard with `options_`, instead of the one that runs.
+  /// Stops the dashboard if it runs, and starts one with `options_`.
   void start_dashboard();
 
   test::TempDir folder_;
