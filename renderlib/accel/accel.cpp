@@ -28,8 +28,8 @@ bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometr
   const Instance& instance = geometry.instances[moving.instance - 1];
   const Transform to_world = to_world_at(geometry, instance, ray.time);
   if (moving.slides) {
-    // The instance is only translated, so the linear part of its inverse is known. This gives the
-    // bits of inverse().
+    // The instance is only translated, so the linear part of its inverse is known. The result has
+    // the same bits as that of inverse().
     Transform to_object = moving.to_object;
     const Vec3 back = -to_object.direction({to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]});
     to_object.m[0][3] = back.x;
@@ -43,8 +43,8 @@ bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometr
 }
 
 /// Traces the ray through the moving instances at the ray's time. Returns true if the query is
-/// finished. Not inlined, so that scenes without motion run the same machine code as if motion were
-/// not supported.
+/// finished. The function is not inlined, so that scenes without motion run the same machine code
+/// as if motion were not supported.
 template <class Query>
 [[gnu::noinline]] bool trace_moving(const MovingTree& tree, const Geometry& geometry,
                                     const Ray& ray, Query& query) {
@@ -65,7 +65,7 @@ template <class Query>
 }
 
 /// BVHs of meshes with at least this many triangles are built one after another, each by all
-/// threads. Those of smaller meshes are built in parallel, each by one thread. The trees do not
+/// threads. BVHs of smaller meshes are built in parallel, each by one thread. The trees do not
 /// depend on this number.
 constexpr std::size_t kLargeMesh = std::size_t{1} << 15;
 
@@ -135,8 +135,8 @@ struct Accel::Trees {
     }
   }
 
-  /// Disables culling in the BVHs of groups and of the top level; those of meshes are built
-  /// without.
+  /// Disables culling in the BVHs of groups and of the top level. build_meshes() has done so in the
+  /// BVHs of meshes.
   void disable_culling() {
     for (ShapesTree& group : prototypes.groups) {
       bandsaw::disable_culling(group.tree);

@@ -1,6 +1,6 @@
-// Sorts the centres of a range of items (boxes with a number) into 16 bins on each axis, and counts
-// the items and their bounding boxes by bin. Then sweeps over the bins of each axis from both sides
-// to find the plane between two bins with the lowest cost.
+// Sorts the centres of a range of items (boxes with a number) into 16 bins on each axis. For each
+// bin it computes the number of its items and their bounding box. Then sweeps over the bins of each
+// axis from both sides to find the plane between two bins with the lowest cost.
 
 #include "renderlib/accel/best_split.h"
 
@@ -101,7 +101,7 @@ std::array<LaneBox, 2> Bins::boxes(const Split& split) const {
 
 std::array<LaneBox, 2> part(absl::Span<const TreeItem> items, const Binning& binning,
                             const Split& split, std::array<TreeItem*, 2> to) {
-  // Branch-free, because the side is unpredictable.
+  // The loop has no branch on the side of an item, because the side is unpredictable.
   std::array<LaneBox, 2> centres;
   const Float8 plane(static_cast<float>(split.bin));
   for (const TreeItem& item : items) {

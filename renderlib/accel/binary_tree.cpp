@@ -39,7 +39,7 @@ void build_subtree(const TwoLists& lists, const Range& range, absl::Span<ItemRef
 }
 
 /// Ranges of the upper tree are cut into pieces of this many items, which the threads bin and move
-/// in parallel. The tree depends neither on this number nor on those of task_size().
+/// in parallel. The tree depends neither on this number nor on the numbers in task_size().
 constexpr std::size_t kPieceSize = 1 << 12;
 
 /// Returns the size up to which a range is built by one thread.
@@ -177,7 +177,7 @@ BinaryTree build_binary_tree(TreeItems items, Pool* pool) {
   } else {
     build_task(0);
   }
-  // Freed early, because grafting needs as much memory again as the nodes.
+  // The items are freed early, because grafting needs as much memory again as the nodes.
   items = {};
   other = {};
   std::size_t nodes = tree.nodes.size();

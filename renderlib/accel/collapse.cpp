@@ -98,8 +98,8 @@ void Collapse::set_costs(std::size_t index) {
 /// `slots` (>= 1) slots.
 void Collapse::choose(std::uint32_t index, std::size_t slots, Members& members) const {
   const BinaryNode& node = tree_.nodes[index];
-  // Takes fewer slots if the cost is the same. But not if `slots` is kSlots: then the subtree is
-  // divided into the children of its own wide node.
+  // Takes fewer slots if the cost is the same, except if `slots` is kSlots. In that case the
+  // subtree is divided into the children of its own wide node.
   while (slots > 1 && slots < kSlots && cost(index, slots) == cost(index, slots - 1)) {
     --slots;
   }

@@ -10,7 +10,7 @@
 namespace bandsaw {
 namespace {
 
-// Finite: infinite planes would give NaN for rays parallel to them.
+// The number is finite, because infinite planes would give NaN for rays parallel to them.
 constexpr float kFarthest = std::numeric_limits<float>::max();
 
 /// Returns whether the node has this child: an unused child has empty bounds and keeps them.

@@ -11,8 +11,8 @@ namespace bandsaw {
 /// Makes a ray traced through the tree test all primitives in it. The hits stay the same, to the
 /// bit.
 void disable_culling(WideTree& tree);
-/// Does the same for nodes whose bounds move by `changes` (moving_nodes.h), which become zero.
-/// `changes` is empty if the nodes do not move.
+/// Does the same for nodes whose bounds move by `changes` (moving_nodes.h), and sets all changes to
+/// zero. `changes` is empty if the nodes do not move.
 void disable_culling(WideTree& tree, NodeChanges& changes);
 
 }  // namespace bandsaw

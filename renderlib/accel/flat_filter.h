@@ -44,8 +44,9 @@ struct FlatLanes {
 };
 
 /// Finds the triangles that may be hit before `bound`, and those that are certainly hit at a t in
-/// (0, sure_bound). If `sure_bound` is 0, the latter are not computed. Both are in the ray's units:
-/// `bound` is FloatRay::above(), `sure_bound` FloatRay::below() of a distance.
+/// (0, sure_bound). If `sure_bound` is 0, hits that are certain are not computed. Both bounds are
+/// in the ray's units: `bound` is FloatRay::above() of a distance, and `sure_bound` is
+/// FloatRay::below() of a distance.
 template <class Float = Float8>
 [[gnu::always_inline]] inline FlatLanes filter_flats(const FlatPack& pack, const FloatRay& ray,
                                                      float bound, float sure_bound) {

@@ -21,8 +21,8 @@ struct FlatPack {
   Corners corner;
   std::array<std::uint32_t, kPackSize> primitive;  ///< [lane]: as in PrimitiveId
   /// At least the absolute value of every component of every edge. If corners were rounded, four
-  /// times their largest component is added (README.md, "Triangles"). If they move, it holds for
-  /// all times.
+  /// times their largest component is added (README.md, "Triangles"). If corners move, `size` is
+  /// valid for all times.
   float size;
   std::uint32_t lanes;  ///< bit i: lane i is used
 
@@ -42,8 +42,8 @@ class FlatPacker {
   void add(const Corners& corners, std::uint32_t primitive);
   /// Adds a triangle whose corners were rounded from double.
   void add_rounded(const Corners& corners, std::uint32_t primitive);
-  /// Adds a triangle of a mesh that deforms. The pack gets its corners at the beginning of the
-  /// shutter interval, `to` those at its end.
+  /// Adds a triangle of a mesh that deforms. The pack gets the corners at the beginning of the
+  /// shutter interval, and `to` gets the corners at its end.
   void add_moving(const Corners& at_open, const Corners& at_close, std::uint32_t primitive,
                   FlatPack::Corners& to);
 

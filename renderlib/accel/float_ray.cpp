@@ -21,8 +21,8 @@ constexpr double kLargest = 0x1p30;
 /// Above this, the product of a length and the largest factor, as in the box test, may overflow
 /// float.
 constexpr double kLargestBox = 0x1p60;
-/// Largest slope factor; directions closer to perpendicular to an axis are clamped to it, so that
-/// it is finite.
+/// Largest slope factor. If a direction is closer to perpendicular to an axis, the factor of this
+/// axis is clamped to this number, so that it is finite.
 constexpr double kSteepest = 0x1p60;
 /// Bytes of a row of WideNode::bounds.
 constexpr std::size_t kRow = sizeof(WideNode::bounds[0]);

@@ -28,8 +28,8 @@ struct FloatRay {
   float origin_size;               ///< at least |origin|_1; bounds the rounding of the origin
   float direction_size;            ///< at least |direction|_1
   float length;                    ///< at least |direction|, within 2^-19 of it
-  /// Added to every error bound, for underflow. Infinite if the numbers are so large that float may
-  /// overflow: then the float tests of primitives decide nothing.
+  /// Added to every error bound, for underflow. It is infinite if the numbers are so large that
+  /// float may overflow. In that case the float tests of primitives decide nothing.
   float floor;
   double scale;
 

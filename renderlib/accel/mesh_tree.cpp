@@ -153,7 +153,7 @@ FlatPack pack_at(const MeshTree& mesh, std::uint32_t index, const ShutterTime& n
   FlatPack pack = mesh.packs[index];
   const FlatPack::Corners& at_close = mesh.corners_at_close[index];
   const Float8 factor(now.factor);
-  // The operations of ShutterTime::between(), so that the corners have the same bits.
+  // These are the operations of ShutterTime::between(), so that the corners have the same bits.
   for (std::size_t row = 0; row < pack.corner.size(); ++row) {
     const Float8 open = Float8::load(pack.corner[row].data());
     const Float8 close = Float8::load(at_close[row].data());

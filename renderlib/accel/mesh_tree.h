@@ -17,9 +17,9 @@ struct MeshTree {
   HugeVector<FlatPack> packs;  ///< the leaves
   Box box;                     ///< contains the mesh at all times of the shutter interval
   /// `changes` and `corners_at_close` are empty unless the mesh deforms during the shutter
-  /// interval. `changes`: how far the bounds of the nodes move from the beginning to the end of the
-  /// interval. `corners_at_close`: the corners of the packs at the end. `tree` and `packs` have the
-  /// bounds and the corners at the beginning.
+  /// interval. `changes` holds how far the bounds of the nodes move from the beginning to the end
+  /// of the interval, and `corners_at_close` holds the corners of the packs at the end. `tree` and
+  /// `packs` have the bounds and the corners at the beginning.
   NodeChanges changes;
   HugeVector<FlatPack::Corners> corners_at_close;
 

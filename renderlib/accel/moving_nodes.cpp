@@ -13,8 +13,8 @@
 namespace bandsaw {
 namespace {
 
-/// Interpolating a bound in float, and a vertex within it, is off by at most 7u of the larger end,
-/// where u is 2^-24 (README.md, "Moving boxes").
+/// If a bound and a vertex within it are interpolated in float, the error is at most 7u of the
+/// larger of both ends, where u is 2^-24 (README.md, "Moving boxes").
 constexpr double kLerpError = 8 * 0x1p-24;
 /// Covers the underflow of floats.
 constexpr double kTiny = 0x1p-120;

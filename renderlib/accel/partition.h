@@ -51,8 +51,8 @@ class Partition {
 
   /// Computes the bins of the piece.
   void bin(Piece& piece) const;
-  /// Selects the split. Returns false if the range becomes a leaf; then nothing else is to be
-  /// called.
+  /// Selects the split. Returns false if the range becomes a leaf. In that case no other function
+  /// is to be called.
   bool choose();
   /// Copies the items of the piece to the other list, if they are split at a plane.
   void move(Piece& piece) const;

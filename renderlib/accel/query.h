@@ -1,7 +1,8 @@
 #pragma once
 
-// Queries: the closest hit, or whether there is any. They are the template parameter `Query` of the
-// functions of trace.h, which pass to found() every hit that the double tests find, in any order.
+// The queries for a ray: its closest hit, its closest hit beyond an earlier one, or whether it hits
+// anything. A query is the template parameter `Query` of the functions of trace.h, which pass to
+// found() every hit that the double tests find, in any order.
 
 #include "renderlib/geometry/intersect.h"
 #include "renderlib/geometry/ray.h"

@@ -1,6 +1,7 @@
 // Fills the lanes of a pack one after the other. Numbers are rounded to float so that the float
-// test cannot miss a sphere that the exact test hits: radii upwards, and `reach`, the largest sum
-// of a centre's |coordinates| and the radius, bounds the rounding error of the centres.
+// test cannot miss a sphere that the exact test hits. For this, radii are rounded upwards. `reach`,
+// the largest sum of a centre's |coordinates| and the radius, bounds the rounding error of the
+// centres.
 
 #include "renderlib/accel/sphere_pack.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 
 // Top-level BVH of the scene. It contains the loose shapes (those of no mesh and no group) and the
-// instances of meshes and groups that have no animated frame; moving_tree.h contains the others.
+// instances of meshes and groups that have no animated frame. The tree of moving_tree.h contains
+// the other instances.
 
 #include <cstdint>
 #include <memory>

@@ -162,8 +162,8 @@ template <class Query>
   });
 }
 
-/// Traces a mesh that deforms, at the time of `world`. Not inlined, so that other meshes are
-/// faster.
+/// Traces a mesh that deforms, at the time of `world`. The function is not inlined, so that other
+/// meshes are faster.
 template <class Query>
 [[gnu::noinline]] bool trace_deforming(const MeshTree& mesh, const Interval& shutter,
                                        const TracedRay& ray, std::uint32_t instance,

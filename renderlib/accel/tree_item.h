@@ -36,8 +36,8 @@ struct TreeItem {
 using TreeItems = HugeVector<TreeItem>;
 
 /// A box as -lo in lanes 0 to 2 and hi in lanes 4 to 6, so that a union is a single max. Lanes 3
-/// and 7 are unspecified: they may hold the bits of an index. Read as a float, these may be
-/// denormal and would make products slow.
+/// and 7 are unspecified: they may hold the bits of an index. Read as a float, these bits may be a
+/// denormal number, which would make products slow.
 class LaneBox {
  public:
   LaneBox() : lanes_(-FloatBox::kInf) {}

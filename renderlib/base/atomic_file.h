@@ -17,14 +17,16 @@ namespace bandsaw {
 /// the target is unchanged, unless only the sync of the folder failed.
 absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes);
 
-/// Gives a file that another program has written its final name: syncs `part`, which is in the
-/// folder of `path`, renames it to `path`, replacing a file there, and syncs the folder. Returns
-/// the system's error. After an error `part` is still there, unless only the sync of the folder
-/// failed.
+/// Gives its final name to a file that another program has written. `part` is that file and is in
+/// the folder of `path`. The function syncs `part`, renames it to `path`, replacing a file there,
+/// and syncs the folder. Returns the system's error. After an error `part` is still there, unless
+/// only the sync of the folder failed.
 absl::Status name_file(const std::string& part, const std::string& path);
 
-/// Returns OK if write_file_atomically() could begin: the folder exists and is writable, and the
-/// path is not a folder. Otherwise returns the system's error.
+/// Returns OK if write_file_atomically() could begin: the folder exists and is writable, the path
+/// is a regular file or does not exist, and the name of the temporary file is not too long. Returns
+/// FAILED_PRECONDITION if the path is neither a regular file nor a folder, otherwise the system's
+/// error.
 absl::Status check_can_be_written(const std::string& path);
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
 #pragma once
 
 // BANDSAW_CHECK(condition, "why it holds") detects bugs in this program: if the condition is false,
-// it prints and aborts. Bad input never reaches it.
+// it prints a message and aborts the program. Bad input never makes a condition false.
 
 #include <cstdio>
 #include <cstdlib>

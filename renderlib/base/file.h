@@ -20,7 +20,8 @@ namespace bandsaw {
 /// RESOURCE_EXHAUSTED, …; the message is "what: strerror".
 absl::Status errno_status(int error, const std::string& what);
 
-/// Returns true if `status`, that of a File, says that the disk cannot read a sector (EIO).
+/// Returns true if `status`, which a function of File returned, says that the disk cannot read a
+/// sector (EIO).
 bool is_unreadable(const absl::Status& status);
 
 /// An open file descriptor that closes itself.
@@ -29,7 +30,7 @@ class File {
   /// Opens a file with the `flags` of open(2); O_CLOEXEC is added. A new file has mode 0600. Here
   /// and below, an error is that of errno_status() unless a comment says otherwise.
   static absl::StatusOr<File> open(const std::string& path, int flags);
-  /// Opens a file for reading; `flags` are further ones of open(2). Returns INVALID_ARGUMENT if it
+  /// Opens a file for reading; `flags` are further flags of open(2). Returns INVALID_ARGUMENT if it
   /// is not a regular file; does not wait for the writer of a pipe.
   static absl::StatusOr<File> open_regular(const std::string& path, int flags = 0);
   File(File&& other) noexcept : fd_(std::exchange(other.fd_, -1)), path_(std::move(other.path_)) {}

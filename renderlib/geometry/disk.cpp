@@ -17,7 +17,7 @@ constexpr double kMargin = 0x1p-44;
 
 DiskAxes axes_of(const Disk& disk) {
   const Vec3& n = disk.normal;
-  // Perpendicular to the normal and z, or to y if the normal is close to z.
+  // u is perpendicular to the normal and to z, or to y instead of z if the normal is close to z.
   const bool steep = std::abs(n.z) > 0.9 * length(n);
   const Vec3 u = normalize(steep ? cross(Vec3{0, 1, 0}, n) : cross(n, Vec3{0, 0, 1}));
   return {u, cross(normalize(n), u)};

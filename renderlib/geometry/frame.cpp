@@ -26,7 +26,7 @@ Transform compose(const Pose& pose) {
   return translation(pose.translate) * rotation(pose.rotate) * scaling(pose.scale);
 }
 
-/// Interpolates between consecutive keys; `time` is between theirs.
+/// Interpolates between consecutive keys; `time` is between the times of both.
 Transform between(const Key& a, const Key& b, double time) {
   const double u = (time - a.time) / (b.time - a.time);
   const Vec3 moved = a.pose.translate + u * (b.pose.translate - a.pose.translate);

@@ -1,7 +1,8 @@
 #pragma once
 
 // Placement of instances (of a mesh or of a group of shapes) at a time, and their primitives.
-// Tracing, surfaces and light sampling all use it, so that they see an instance at the same place.
+// Tracing, surfaces and light sampling all use these functions, so that they see an instance at the
+// same place.
 
 #include <optional>
 

@@ -70,7 +70,7 @@ struct Placement {
   double moved;  ///< the largest component of the translation
 };
 
-/// Returns the surface of a shape in its own space; `ray` is in that space. `sphere_uv` as in
+/// Returns the surface of a shape in its own space; `ray` is in that space. `sphere_uv` is that of
 /// surface_at().
 SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit, bool sphere_uv);
 

@@ -40,8 +40,8 @@ struct SurfacePoint {
   double offset = 0;
   /// Vector from the position to the origin of rays that leave outwards; those that leave inwards
   /// start on the other side. It is geometric_normal times `offset`, except if an instance squashes
-  /// space: there that could lead past the primitive, so this vector is perpendicular to it in the
-  /// primitive's own space.
+  /// space. In squashed space that product could lead past the primitive, so `away` is
+  /// perpendicular to the primitive in the primitive's own space.
   Vec3 away;
   double t = 0;     ///< Hit::t
   double time = 0;  ///< time of the ray that hit it; rays from here have the same time
@@ -87,8 +87,8 @@ inline Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, double t_m
 }
 
 /// Returns a shadow ray from `from` to `target`. Its direction is the vector to the target, so t =
-/// 1 is the target; it ends before that by the length `target_offset` (SurfacePoint::offset of the
-/// target, or 0 for a point in space).
+/// 1 is the target. The ray ends before the target by the length `target_offset`
+/// (SurfacePoint::offset of the target, or 0 for a point in space).
 Ray spawn_ray_to(const SurfacePoint& from, const Vec3& target, double target_offset);
 
 /// Returns a shadow ray to another surface. The ray ends beside that surface, on the side that

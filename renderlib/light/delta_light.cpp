@@ -53,8 +53,8 @@ double falloff_at(const SpotLight& light, double cosine) {
 /// Transforms the axis of a light and the image that it projects.
 void place(const Transform& to, Vec3& axis, ProjectedImage& image) {
   axis = normalize(to.direction(axis));
-  // `right` and `up` are made perpendicular again, whatever the transform does to angles. If it
-  // mirrors, so does the image.
+  // `right` and `up` are made perpendicular again, whatever the transform does to angles. If the
+  // transform mirrors, the image is mirrored too.
   const Vec3 right = to.direction(image.right);
   image.right = normalize(right - axis * dot(axis, right));
   const Vec3 up = cross(axis, image.right);

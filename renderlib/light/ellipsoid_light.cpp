@@ -51,9 +51,9 @@ double ellipsoid_area_pdf(const ShapeView& shape, const Vec3& position) {
 
 double ellipsoid_area(const ShapeView& shape) {
   const Cofactors cofactors(shape);
-  // The mean over the sphere of the map's local area scale, by the cubature of degree 5 on the 6
-  // face centres and 8 corners of a cube (weights 1/15 and 3/40). Opposite points have equal
-  // values, so half of them are evaluated.
+  // `sum` is the mean, over the sphere, of the map's local area scale. It is computed by the
+  // cubature of degree 5 on the 6 face centres and 8 corners of a cube (weights 1/15 and 3/40).
+  // Opposite points have equal values, so half of them are evaluated.
   double sum = 0;
   for (const Vec3& face : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
     sum += 2 * length(cofactors.times(face)) / 15;

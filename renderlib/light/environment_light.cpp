@@ -17,7 +17,7 @@ namespace bandsaw {
 namespace {
 
 /// If the luminance above the mean is less than this share of the total, the environment counts as
-/// uniform: the difference is a rounding error or too small for a shadow ray to pay.
+/// uniform: the difference is a rounding error or too small to be worth a shadow ray.
 constexpr double kMinExcess = 1e-6;
 
 bool is_cube(const Environment& environment) {
@@ -43,9 +43,9 @@ double cube_solid_angle(double x, double y, double side) {
   return 4 / (side * side) / (distance2 * std::sqrt(distance2));
 }
 
-/// Solid angles of the texels' interpolation kernels (tents). Exact for a latitude-longitude image,
-/// where all texels of a row have the same; for a cube map the solid angle at the texel's centre is
-/// used.
+/// Solid angles of the texels' interpolation kernels (tents). They are exact for a
+/// latitude-longitude image, where all texels of a row have the same solid angle. For a cube map
+/// the solid angle at the texel's centre is used.
 class TexelSolidAngles {
  public:
   TexelSolidAngles(const Environment& environment, const ImageTexture& image) : side_(image.width) {

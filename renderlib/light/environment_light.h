@@ -23,7 +23,7 @@ class EnvironmentLight {
     double pdf = 0;  ///< by solid angle; > 0, finite
   };
 
-  /// Is empty, as for a uniform environment: it is never sampled.
+  /// Makes an empty light, like that of a uniform environment. An empty light is never sampled.
   EnvironmentLight() = default;
   /// `textures` MUST outlive this object and not change.
   EnvironmentLight(Environment environment, absl::Span<const Texture> textures);
@@ -33,8 +33,8 @@ class EnvironmentLight {
   /// surface that would face all directions.
   double excess() const { return excess_; }
 
-  /// Samples a direction; u, v in [0, 1). MUST NOT be empty. At the border of the sampled region
-  /// rounding may yield a direction with pdf 0.
+  /// Samples a direction; u, v in [0, 1). The light MUST NOT be empty. At the border of the sampled
+  /// region rounding may yield a direction with pdf 0.
   Sample sample(double u, double v) const;
   /// Returns the pdf, by solid angle, with which `sample()` returns this unit direction.
   double pdf(const Vec3& unit_direction) const;

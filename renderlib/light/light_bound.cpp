@@ -44,8 +44,8 @@ Angle reduced(const Angle& a, const Angle& b) {
 
 }  // namespace
 
-// The intensity is the radiance times the largest projected area. That of a convex body, such as an
-// ellipsoid, is at most half its surface.
+// The intensity is the radiance times the largest projected area. The projected area of a convex
+// body, such as an ellipsoid, is at most half its surface.
 LightBound bound_of(const ShapeView& shape, double radiance, bool one_sided) {
   if (shape.kind == ShapeView::Kind::kSphere) {
     return {.ball = bounds(shape), .intensity = radiance * kPi * shape.radius * shape.radius};

@@ -4,10 +4,10 @@
 // contribution. Lights are selected with probabilities in proportion to it (light/light_choice.h,
 // light/light_tree.h).
 //
-// It is that of Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive
-// Tree Splitting", sections 4.1 and 4.2, with the bounds of Pharr, Jakob and Humphreys, "Physically
-// Based Rendering", 4th ed., 12.6.3: a sphere around the lights and a cone around their emission
-// normals.
+// The importance is that of Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with
+// Adaptive Tree Splitting", sections 4.1 and 4.2, with the bounds of Pharr, Jakob and Humphreys,
+// "Physically Based Rendering", 4th ed., 12.6.3: a sphere around the lights and a cone around their
+// emission normals.
 
 #include <vector>
 

@@ -49,7 +49,7 @@ double LightTree::probability(const Receiver& receiver, std::uint32_t light) con
   for (std::uint32_t at = leaves_[light]; at != 0; at = nodes_[at].parent) {
     path[steps++] = at;
   }
-  // From the root down, in the same order of multiplication as in choose().
+  // The probabilities are multiplied from the root down, in the same order as in choose().
   double probability = 1;
   while (steps > 0 && probability > 0) {
     const std::uint32_t at = path[--steps];

@@ -46,7 +46,7 @@ class LightTree {
   friend class LightTreeBuilder;
   struct Node {
     LightBound bound;
-    /// Index of the first of two adjacent children; in a leaf, of its light.
+    /// Index of the first of two adjacent children; in a leaf, the index of its light.
     std::uint32_t first = 0;
     std::uint32_t parent = 0;
     bool is_leaf = false;

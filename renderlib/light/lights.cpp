@@ -89,7 +89,8 @@ std::vector<LightBound> Lights::add_surfaces() {
   return bounds;
 }
 
-// Evaluated once for each group, because a group may have as many instances as primitives.
+// A group is examined once and not for each instance, because a group may have as many instances as
+// primitives.
 bool Lights::group_emits(std::uint32_t instance, const std::vector<double>& radiance,
                          std::map<GroupId, bool>& known) const {
   const Instance& placed = geometry_->instances[instance - 1];

@@ -97,8 +97,8 @@ class Lights {
   /// Numbers a primitive; if it is a light, appends its bound to `to`.
   void add_surface(PrimitiveId id, const std::vector<double>& radiance,
                    std::vector<LightBound>& to);
-  /// Collects the delta lights. Appends the bounds of those with a position to `local`, and returns
-  /// those of the others.
+  /// Collects the delta lights. Appends the bounds of lights with a position to `local`, and
+  /// returns the bounds of directional lights.
   std::vector<DistantBound> add_delta_lights(const std::vector<DeltaLight>& delta_lights,
                                              std::vector<LightBound>& local);
   /// Returns the number of the light; kNoLight if the primitive is none.

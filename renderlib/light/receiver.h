@@ -1,6 +1,7 @@
 #pragma once
 
-// Where light is received: what light sampling (light/lights.h) has to know about the place.
+// A receiver is a place at which light is received. The structs describe what light sampling
+// (light/lights.h) has to know about the place.
 
 #include <algorithm>
 #include <optional>
@@ -34,8 +35,8 @@ struct Receiver {
   std::optional<Vec3> normal = std::nullopt;
   double time = 0;  ///< lights are evaluated at this time
 
-  /// If set, only lights that may be visible within the cone are sampled, and no distant ones. MUST
-  /// outlive the receiver.
+  /// If set, only lights that may be visible within the cone are sampled, and no distant ones. The
+  /// cone MUST outlive the receiver.
   const Cone* within = nullptr;
 
   /// Returns true if light can arrive from `direction`, which may have any length.

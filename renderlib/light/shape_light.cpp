@@ -30,8 +30,8 @@ std::optional<SphericalTriangle> seen_triangle(const ShapeView& shape, const Vec
              : std::nullopt;
 }
 
-/// Returns the coordinates of a uniform point: in a parallelogram (u, v) itself; in a triangle
-/// through the square root that makes the distance from `a` uniform in area (Pharr, Jakob and
+/// Returns the coordinates of a uniform point. In a parallelogram the point is (u, v) itself. In a
+/// triangle the square root makes the distance from `a` uniform in area (Pharr, Jakob and
 /// Humphreys, "Physically Based Rendering", A.5.4).
 Vec2 uniform_on(Kind kind, double u, double v) {
   if (kind == Kind::kQuad) {

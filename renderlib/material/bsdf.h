@@ -1,8 +1,8 @@
 #pragma once
 
-// BSDFs: a material at a point, seen from one direction. Each member of this closed set (a
-// std::variant) has a sampling routine, a value and a pdf that agree. integrate/ scatters paths by
-// it.
+// A BSDF is a material at a point, seen from one direction. Each member of the closed set of BSDFs
+// (a std::variant) has a sampling routine, a value and a pdf that agree. integrate/ scatters paths
+// by sampling BSDFs.
 //
 // All directions are unit vectors that point away from the surface. `wo` is the outgoing direction
 // of the light (towards the camera), `wi` the incoming one. Values include the cosine: f(wo, wi)
@@ -85,8 +85,8 @@ bool has_pdf(const Bsdf& bsdf);
 /// Returns true if evaluate() can be non-zero for light from behind the surface.
 bool has_pdf_behind(const Bsdf& bsdf);
 
-/// Returns true if so much of the light from behind arrives diffusely that sampling lights there
-/// pays.
+/// Returns true if the surface transmits light from behind diffusely, so that sampling lights there
+/// is worthwhile.
 bool is_diffuse_behind(const Bsdf& bsdf);
 
 }  // namespace bandsaw

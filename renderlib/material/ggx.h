@@ -15,8 +15,8 @@
 
 namespace bandsaw {
 
-/// Minimum alpha; smaller ones are raised to it, or count as smooth where the material says so. It
-/// spreads light by a hundredth of a degree.
+/// Minimum alpha. A smaller alpha is raised to this minimum, or counts as smooth where the material
+/// says so. The minimum spreads light by a hundredth of a degree.
 inline constexpr double kMinAlpha = 1e-4;
 
 /// Returns the density D(h) of facet normals. It is computed from x and y, which are precise where

@@ -198,7 +198,7 @@ struct Relief {
   std::optional<TextureId> normal = std::nullopt;
   double normal_scale = 1;  ///< finite; scales the tangential part
   /// Height map: the surface is shaded as if displaced along its normal by the texture's luminance
-  /// times height_scale. In uv or world space.
+  /// times height_scale. The texture is in uv or world space.
   std::optional<TextureId> height = std::nullopt;
   double height_scale = 1;  ///< scene units, finite
 };

@@ -98,8 +98,9 @@ void add_refraction(const PrincipledBsdf& bsdf, const Vec3& i, BsdfValue& sum) {
   sum.pdf += bsdf.chances[kSpecular] * (bsdf.inside ? 1 : bsdf.refracting) * pdf;
 }
 
-/// Sets the selection probabilities to rough estimates of the lobes' albedos. No lobe that is
-/// present is rare.
+/// Sets the selection probabilities in proportion to rough estimates of the lobes' albedos. The
+/// estimates of the specular lobes, and of a diffuse lobe that is present, are at least kMinAlbedo,
+/// so that these lobes are not rare.
 void choose_chances(PrincipledBsdf& bsdf) {
   if (bsdf.inside) {
     bsdf.chances = {bsdf.refracting > 0 ? 1.0 : 0.0, 0, 0};

@@ -42,8 +42,8 @@ struct UvSets {
   bool first = false;
   bool second = false;
 };
-/// Returns the sets of uvs of the material's normal maps and height map; the first set also for
-/// anisotropic facets.
+/// Returns the sets of uvs of the material's normal maps and height map. If the facets are
+/// anisotropic, the first set is included as well.
 UvSets uv_sets_of(const Material& material, absl::Span<const Texture> textures);
 
 /// Returns the frame of the facets of a rough surface: z is the shading normal n; x lies along the

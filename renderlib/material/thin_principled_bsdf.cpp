@@ -30,8 +30,8 @@ void add_reflection(const ThinPrincipledBsdf& bsdf, const Vec3& i, const Vec3& h
   sum.pdf += bsdf.chances[kReflection] * pdf;
 }
 
-/// Returns true if a facet transmits to the direction that is `i` mirrored to the side of wo: in
-/// Mitsuba's definition, only if that direction is behind the facet.
+/// Returns true if a facet with the normal `h` transmits to wi; `i` is wi mirrored to the side of
+/// wo. In Mitsuba's definition, a facet transmits only if wi is behind it.
 bool transmits_to(const Vec3& h, const Vec3& i) { return h.x * i.x + h.y * i.y - h.z * i.z < 0; }
 
 /// Adds value and pdf of the specular transmission. `i` is wi mirrored to the side of wo, `h` the

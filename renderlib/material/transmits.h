@@ -1,6 +1,6 @@
 #pragma once
 
-// Which materials light can pass. Such materials cannot be one-sided (Material::one_sided).
+// Tells which materials light can pass. Such materials cannot be one-sided (Material::one_sided).
 
 #include "renderlib/base/overloaded.h"
 #include "renderlib/material/material.h"

@@ -10,7 +10,8 @@ namespace bandsaw {
 
 /// Scales of the light of black bodies of different temperature.
 enum class BlackbodyScale {
-  kPower,  ///< the luminance is (T / 1000 K)^4 / 1000, as the law of Stefan and Boltzmann has T^4
+  kPower,  ///< the luminance is (T / 1000 K)^4 / 1000, with T^4 as in the law of Stefan and
+           ///< Boltzmann
   kPeak,   ///< the spectrum's maximum is 1, as in pbrt-v4; the brightness hardly depends on T
 };
 
@@ -23,8 +24,9 @@ inline constexpr double kDarkKelvin = 100;
 /// 500 K the hue is that of 500 K, which is pure red; above 100,000 K it is that of 100,000 K.
 Rgb blackbody(double kelvin, BlackbodyScale scale);
 
-/// A table of blackbody(). Its temperatures are 1/256 of a power of 2 apart, and it is interpolated
-/// between them: the relative error is at most 0.2 % from 1000 K to 100,000 K.
+/// A table of blackbody(). It has 256 temperatures between each power of 2 and the next, and is
+/// interpolated between the temperatures. The relative error is at most 0.2 % from 1000 K to
+/// 100,000 K.
 class BlackbodyTable {
  public:
   explicit BlackbodyTable(BlackbodyScale scale);

@@ -21,7 +21,8 @@ Equiangular::Equiangular(const Vec3& origin, const Vec3& direction, double lengt
   // 1e-94 keeps the squares of `aside_` above underflow if the other lengths are 0.
   const double least = 1e-6 * std::max({around, std::abs(nearest), 1e-94});
   aside_ = std::max(bandsaw::length(to_pivot - direction * nearest), least);
-  // The difference of two arctangents as a single one, without cancellation.
+  // The angle is the difference of two arctangents. It is computed as a single arctangent, without
+  // cancellation.
   angle_ = std::isfinite(length)
                ? atan2(aside_ * length, aside_ * aside_ + start_ * (start_ + length))
                : atan2(aside_, start_);

@@ -20,7 +20,7 @@ FreeFlight::FreeFlight(const Medium& medium, const Rgb& throughput, double lengt
   for (std::size_t c = 0; c < 3; ++c) {
     extinction_[c] = extinction(absorption[c], scattering[c]);
     entering_[c] = double{weight[c]} * scattering[c];
-    // 0 and not 0 * infinity if a channel has no extinction.
+    // The case distinction avoids 0 * infinity if a channel has no extinction.
     all_scattered_[c] = entering_[c] == 0 ? 0 : entering_[c] * reach(extinction_[c], length);
     passing_[c] = weight[c] * transmittance(extinction_[c], length);
   }

@@ -1,5 +1,5 @@
-// Computes the bounds of each brick and of its outer layers of cells. The latter also count for the
-// neighbouring bricks, because values are interpolated across the border.
+// Computes the bounds of each brick and of its outer layers of cells. The bounds of these layers
+// also count for the neighbouring bricks, because values are interpolated across the border.
 
 #include "renderlib/medium/grid_bounds.h"
 

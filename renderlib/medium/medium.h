@@ -21,8 +21,9 @@ struct GridUse {
   friend bool operator==(const GridUse&, const GridUse&) = default;
 };
 
-/// Grids by which a medium varies in space; outside of its box the value of a grid is 0. At a
-/// point, where absorption, scattering and emission on the right are those of struct Medium:
+/// Grids by which a medium varies in space; outside of its box the value of a grid is 0. The values
+/// of the grids at a point determine the properties of the medium there. In the equations,
+/// absorption, scattering and emission on the right are those of struct Medium:
 ///
 ///   density     = value of the density grid, by channel if it has three; 1 without one
 ///   extinction  = density (absorption + scattering)
@@ -41,8 +42,8 @@ struct MediumGrids {
   friend bool operator==(const MediumGrids&, const MediumGrids&) = default;
 };
 
-/// Coefficients per scene unit and channel, >= 0. With absorption and scattering 0 the medium is
-/// empty space. With grids, they are the coefficients where the density is 1.
+/// Coefficients per scene unit and channel, >= 0. If absorption, scattering and emission are 0, the
+/// medium is empty space. With grids, the members are the coefficients where the density is 1.
 struct Medium {
   Rgb absorption = {};  ///< absorption coefficient
   Rgb scattering = {};  ///< scattering coefficient

@@ -33,8 +33,8 @@ struct Flight {
   Rgb emitted;          ///< emission towards the start of the segment, times the weight before it
 };
 
-/// First numbers of a flight, each in [0, 1), so that flights of one pixel can be stratified; the
-/// others are from the stream.
+/// First numbers of a flight, each in [0, 1), so that flights of one pixel can be stratified. The
+/// other numbers of a flight come from the NumberStream.
 struct FirstCollision {
   double choice = 0;
   double distance = 0;

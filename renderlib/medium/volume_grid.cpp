@@ -206,7 +206,8 @@ float number_of(std::uint16_t half) {
   return std::bit_cast<float>(std::uint32_t{half} << 13) * 0x1p112f;
 }
 
-/// Loads the cells at the corners of a cube whose first is cell `first` of the brick at `stored`.
+/// Loads the cells at the corners of a cube. The first corner is cell `first` of the brick at
+/// `stored`.
 template <class Stored, std::size_t kChannels>
 void load_corners(const std::byte* stored, std::uint32_t channels, std::uint32_t first,
                   std::array<std::array<float, kChannels>, 8>& corner) {

@@ -1,9 +1,9 @@
 #pragma once
 
 // A grid of numbers over a box in space, by which a medium varies (medium.h). It is stored
-// sparsely: only bricks of 8 x 8 x 8 cells that are not all 0, and equal bricks once. (Bricks are
-// like the leaves of OpenVDB: Museth 2013, "VDB: High-Resolution Sparse Volumes with Dynamic
-// Topology".)
+// sparsely, in bricks of 8 x 8 x 8 cells: bricks that are all 0 are left out, and equal bricks are
+// stored once. (Bricks are like the leaves of OpenVDB: Museth 2013, "VDB: High-Resolution Sparse
+// Volumes with Dynamic Topology".)
 //
 // Cell space: cell (i, j, k) is the unit cube from (i, j, k) to (i + 1, j + 1, k + 1), and its
 // number is the value at its centre.
@@ -69,9 +69,9 @@ constexpr std::uint64_t brick_bytes(std::uint32_t channels, VolumeGrid::Format f
   return std::uint64_t{kBrickCells} * channels * (format == VolumeGrid::Format::kFloat16 ? 2 : 4);
 }
 
-/// Returns the largest number of the grid. INVALID_ARGUMENT: the sizes are out of range or do not
-/// fit each other, an index or number is out of range, or a cell outside of the box is not 0. The
-/// message begins with the field: ".index: …".
+/// Returns the largest number of the grid. Returns INVALID_ARGUMENT if the sizes are out of range
+/// or do not fit each other, an index or number is out of range, or a cell outside of the box is
+/// not 0. The message begins with the field: ".index: …".
 absl::StatusOr<float> check_grid(const VolumeGrid& grid);
 
 /// Returns the number that a half (IEEE 754, 16 bits) has; exact.
@@ -86,7 +86,7 @@ class GridReader {
   explicit GridReader(const VolumeGrid& grid);
 
   /// Returns the value at a point of cell space: 0 outside of the box. For a grid of three channels
-  /// the first.
+  /// it is the value of the first channel.
   float value(const Vec3& at) const { return interpolate<1>(at)[0]; }
   /// Returns the value of three channels; for a grid of one channel, three equal ones.
   Rgb color(const Vec3& at) const;
@@ -99,9 +99,8 @@ class GridReader {
   /// Returns the place in VolumeGrid::values of the brick whose first cell is (8 x, 8 y, 8 z);
   /// kEmptyBrick if all its numbers are 0.
   std::uint32_t brick(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
-  /// Returns a number of the brick at the place `brick`, which brick() returned: cell number *
-  /// channels
-  /// + channel, with cells counted x fastest.
+  /// Returns a number of the brick at the place `brick`, which brick() returned. `number` is cell
+  /// number times channels, plus channel, with cells counted x fastest.
   float stored(std::uint32_t brick, std::uint32_t number) const;
 
  private:

@@ -20,8 +20,8 @@ constexpr double kMaxOverMean = 8;
 /// Weight of a tile's own error; its neighbours have the rest, which reduces the noise of the
 /// estimate.
 constexpr double kOwnTile = 0.5;
-/// Minimum gain in error at equal samples for which a plan pays: samples in noisy regions take 1.1
-/// to 1.4 times the time of others (tests/bench/README.md).
+/// Minimum gain in error at equal samples for which a plan is worthwhile: samples in noisy regions
+/// take 1.1 to 1.4 times the time of others (tests/bench/README.md).
 constexpr double kMinGain = 1.25;
 /// The gain of a plan is predicted for images with this many times the samples of the pilot.
 constexpr double kJudgedAfter = 8;
@@ -174,8 +174,8 @@ double gain(const std::array<Pilot, 2>& parts) {
   return std::min(fall(before.variance, after.variance), fall(before.relative, after.relative));
 }
 
-/// Returns a level for each tile, planned from the errors of half 0 or 1 of their pixels; all of
-/// them level 6 if the plan does not pay.
+/// Returns a level for each tile, planned from the errors of half 0 or 1 of their pixels; all
+/// levels are 6 if the plan is not worthwhile.
 std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                          std::size_t half) {
   std::vector<TileError> all;

@@ -14,10 +14,10 @@
 //
 // Samples are distributed for two errors at once: the mean squared error, which --error bounds, and
 // the mean of squared errors over squared values (relMSE), which corresponds to visible noise in
-// dark regions. For a single one the optimal allocation is proportional to the standard deviation
-// of one sample (Neyman 1934, "On the Two Different Aspects of the Representative Method"); for
-// both, to the square root of the sum of the two variances, each divided by its mean over the
-// image.
+// dark regions. For a single error the optimal allocation is proportional to the standard deviation
+// of one sample (Neyman 1934, "On the Two Different Aspects of the Representative Method"). For
+// both errors it is proportional to the square root of the sum of the two variances, each divided
+// by its mean over the image.
 
 #include <array>
 #include <cstdint>
@@ -52,17 +52,17 @@ struct TilePlan {
   /// times the samples of uniform sampling, but at least the pilot's.
   std::string levels;
 
-  /// Returns true if all tiles get the same number of samples.
+  /// Returns true if all half tiles get the samples of uniform sampling.
   bool even() const { return levels.find_first_not_of(kEvenLevel) == std::string::npos; }
   friend bool operator==(const TilePlan&, const TilePlan&) = default;
 };
 
 /// Computes the plan from the pilot. `tiles` has one entry for each half tile; `samples` is the
-/// number of samples of the pilot. A pure function, with the same result on every machine.
+/// number of samples of the pilot. The function is pure and has the same result on every machine.
 ///
-/// The pilot itself decides whether the plan pays: the plan from even groups is evaluated on the
-/// errors of odd groups, and vice versa. Unless both resulting errors are well below the errors of
-/// uniform sampling with as many samples, all levels of a half of the image are 6.
+/// The pilot itself decides whether the plan is worthwhile: the plan from even groups is evaluated
+/// on the errors of odd groups, and vice versa. Unless both resulting errors are well below the
+/// errors of uniform sampling with as many samples, all levels of the half of the image are 6.
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
 

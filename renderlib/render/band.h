@@ -2,11 +2,11 @@
 
 // Blocks, sample ranges and bands: the fixed binary summation tree of every pixel.
 //
-// A block is 8 consecutive, aligned samples of a pixel, added in order. A node is an aligned
-// power-of-two number of blocks: the sum of its two halves. A total over N samples adds its maximal
-// aligned nodes from left to right. The last block of a job may be truncated at the job's last
-// sample. So any node can be rendered anywhere, and stopping, resuming and merging in any order
-// give the same bits.
+// A block is 8 consecutive, aligned samples of a pixel, added in order. A node is an aligned range
+// of a power-of-two number of blocks, and its sum is the sum of its two halves. A total over N
+// samples adds the sums of its maximal aligned nodes from left to right. The last block of a job
+// may be truncated at the job's last sample. So any node can be rendered anywhere, and stopping,
+// resuming and merging in any order give the same bits.
 
 #include <cstdint>
 #include <vector>
@@ -90,8 +90,8 @@ struct Counters {
   static constexpr std::uint32_t kPortals = 4;
   static constexpr std::uint32_t kIndirectMaps = 8;
   static constexpr std::uint32_t kAllTechniques = 15;
-  /// Rays of the training of guiding and of its pilots. The same in all bands of an image, so add()
-  /// does not sum it.
+  /// Number of rays of the training of path guiding and of its pilots. The same in all bands of an
+  /// image, so add() does not sum it.
   std::uint64_t training_rays = 0;
 
   /// Adds the counters of other samples of the same image.

@@ -1,3 +1,6 @@
+// Lists the photon maps that a part of a band needs. halves_of() divides a part at the nodes of its
+// samples or, if no half tile takes more than one block, by the numbers of the photon maps.
+
 #include "renderlib/render/band_parts.h"
 
 #include <algorithm>

@@ -13,7 +13,7 @@
 namespace bandsaw {
 
 /// A band and the samples that its half tiles take (tile_samples.h). If `tiles` is whole(), all
-/// pixels take the samples of the band; otherwise its rows are those of the band.
+/// pixels take the samples of the band; otherwise the rows of `tiles` are those of the band.
 struct BandPart {
   Band band;
   TileSamples tiles;
@@ -23,9 +23,9 @@ struct BandPart {
 /// order, each once.
 std::vector<std::uint32_t> maps_of(const BandPart& part);
 
-/// Divides the samples of a part that needs more than one map; both results have all of its rows.
-/// A pixel's sum is its sum in the first part plus its sum in the second, to the bit. `width`: of
-/// the image, pixels.
+/// Divides the samples of a part that needs more than one map; both results have all of its rows. A
+/// pixel's sum is its sum in the first part plus its sum in the second, to the bit. `width` is the
+/// width of the image in pixels.
 std::pair<BandPart, BandPart> halves_of(const BandPart& part, std::uint32_t width);
 
 }  // namespace bandsaw

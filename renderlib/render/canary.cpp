@@ -268,7 +268,7 @@ void add_render(Hash64& hash, const SceneDescription& description, const RenderS
 }
 
 /// Returns settings of path tracing without guiding and photon maps: their pilot, which decides
-/// whether they pay, would take longer than these renders.
+/// whether they are worthwhile, would take longer than these renders.
 RenderSettings path(std::uint32_t width, std::uint32_t height, std::uint32_t max_depth,
                     std::uint64_t seed) {
   return {.width = width,

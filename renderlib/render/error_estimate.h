@@ -72,8 +72,8 @@ class ErrorSums {
   /// 2)^2 - v, which is unbiased.
   void add(absl::Span<const NodeSums> nodes);
   /// Ends a group of pixels: those added since the last call. The errors of pixels in one group
-  /// (render/pixel_groups.h) may be correlated by path reuse, those of other pixels are not; the
-  /// margin accounts for that.
+  /// (render/pixel_groups.h) may be correlated by path reuse. The errors of pixels in different
+  /// groups are not correlated. The margin accounts for that.
   void end_group();
 
   /// Returns the estimate. At least one pixel MUST have been added, and its group ended.

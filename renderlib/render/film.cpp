@@ -153,8 +153,8 @@ struct Film::Rows {
   void node_sums(const PixelPlace& place, std::vector<NodeSums>& out) const;
   /// Adds the contiguous nodes from left to right: 3 numbers for each pixel of the strip.
   void add_up(const StripNodes& from, std::vector<double>& total) const;
-  /// Adds the first node and those later ones that make two parts of about equal size. Returns the
-  /// number of samples of this part.
+  /// Divides the contiguous nodes into two parts of about equal size, and adds the nodes of the
+  /// part that contains the first node. Returns the number of samples of this part.
   std::uint64_t add_first_part(const StripNodes& from, std::vector<double>& total) const;
 };
 

@@ -69,8 +69,8 @@ class Film {
     Image mean;
     std::vector<float> share;  ///< share in each pixel's samples, (0, 1)
   };
-  /// Returns std::nullopt until every row has two nodes, that is, more than one block. Of a
-  /// complete film, the part has first_part_samples() of each pixel (render/first_part.h).
+  /// Returns std::nullopt until every row has two nodes, that is, more than one block. In a
+  /// complete film, the part has first_part_samples() samples of each pixel (render/first_part.h).
   std::optional<FirstPart> first_part() const;
 
   /// Returns the errors of each half tile, for a film of half tiles: the input of plan_tiles. Empty

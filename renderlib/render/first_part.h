@@ -15,10 +15,11 @@ namespace bandsaw {
 std::uint64_t first_part_samples(std::uint64_t samples);
 
 /// Returns the share of the first part in the samples of each of `pixels` pixels, (0, 1), as
-/// Film::first_part() does. `samples` is the number of each pixel, more than one block.
-std::vector<float> first_part_shares(std::uint64_t samples, std::size_t pixels);
-/// The same for an image of the number of samples of each pixel (Film::counts), each more than one
+/// Film::first_part() does. `samples` is the number of samples of each pixel; it is more than one
 /// block.
+std::vector<float> first_part_shares(std::uint64_t samples, std::size_t pixels);
+/// Does the same for an image that holds the number of samples of each pixel (Film::counts). Each
+/// number is more than one block.
 std::vector<float> first_part_shares(const Image& counts);
 
 }  // namespace bandsaw

@@ -63,7 +63,7 @@ class PixelSums {
     return place.y >= band_.rows.first && place.y < band_.rows.last;
   }
   /// Takes these samples of the pixels of a group, which may be a single pixel, and writes the sums
-  /// of those in the band.
+  /// of the pixels that lie in the band.
   void add_group(absl::Span<const PixelPlace> places, const SampleRange& samples,
                  absl::Span<double> sums, Scratch& scratch, Counters& counters) const;
   /// Returns the sums of one block, which may be truncated.

@@ -1,6 +1,6 @@
-// Implements Kernel::render_band: trains path guiding and makes photon maps where they pay, then
-// renders the pixels. Units divides the band among threads. Each thread of the pool renders one
-// unit after the other; a row is reported when its last unit is done.
+// Implements Kernel::render_band: trains path guiding and makes photon maps where they are
+// worthwhile, then renders the pixels. Units divides the band among threads. Each thread of the
+// pool renders one unit after the other; a row is reported when its last unit is done.
 
 #include <algorithm>
 #include <atomic>

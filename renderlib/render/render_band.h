@@ -22,9 +22,9 @@ using RowsDone = std::function<void(std::uint32_t)>;
 
 /// Renders the band. The pixels depend only on scene, settings, band and `tiles`. `tiles` says
 /// which samples half tiles take (tile_samples.h), for rows that include the band's; by default,
-/// all take those of the band. Sums of pixels without samples are zero. `progress` may be empty.
-/// Checks `stop` at least once per row of a tile and returns CANCELLED if it is set. Returns
-/// INVALID_ARGUMENT if settings or band are out of range.
+/// all half tiles take the samples of the band. Sums of pixels without samples are zero. `progress`
+/// may be empty. Checks `stop` at least once per row of a tile and returns CANCELLED if it is set.
+/// Returns INVALID_ARGUMENT if settings or band are out of range.
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,
                                        const Band& band, Pool& pool, const std::atomic<bool>& stop,
                                        const RowsDone& progress, const TileSamples& tiles = {});

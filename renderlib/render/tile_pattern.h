@@ -11,11 +11,12 @@ inline constexpr std::uint32_t kTileSide = 16;      ///< pixels
 inline constexpr std::uint32_t kGroupsOfTile = 32;  ///< groups of eight pixels
 
 /// Returns the number of the group within its tile, below kGroupsOfTile, to which pixel (x, y) of
-/// the image belongs. All tiles have one pattern, mirrored at random. Simulated annealing made it
-/// for two aims: The pixels of a group are near each other, nearer from row to row than from column
-/// to column, because floors and ceilings are seen from the side. And of all pairs of pixels at any
-/// one distance, at most 5.1 % are in the same group, so that the errors of neighbours are nearly
-/// uncorrelated. Each row of a tile has eight pixels in even groups and eight in odd ones.
+/// the image belongs. All tiles have one pattern, mirrored at random. The pattern was made by
+/// simulated annealing for two aims. First, the pixels of a group are near each other, and nearer
+/// vertically than horizontally, because floors and ceilings are seen from the side. Second, of all
+/// pairs of pixels at any one distance, at most 5.1 % are in the same group, so that the errors of
+/// neighbours are nearly uncorrelated. Each row of a tile has eight pixels in even groups and eight
+/// in odd ones.
 std::uint32_t group_in_tile(std::uint32_t x, std::uint32_t y);
 
 }  // namespace bandsaw

@@ -16,8 +16,8 @@ std::uint32_t tile_rows(const RowRange& rows) {
 }
 
 /// Returns the part of `taken` (the samples of a half tile in `pass`) that is rendered with the
-/// samples `within` of the pass. All three are nodes. If `taken` has fewer blocks than the pass is
-/// divided into parts, each block belongs to the first of several parts, and the others are empty.
+/// samples `within` of the pass. All three are nodes. If the pass has more parts than `taken` has
+/// blocks, each block belongs to the first of several parts, and the other parts are empty.
 SampleRange part_of(const SampleRange& taken, const SampleRange& pass, const SampleRange& within) {
   const std::uint64_t parts = pass.blocks() / within.blocks();
   const std::uint64_t part = (within.first_block() - pass.first_block()) / within.blocks();

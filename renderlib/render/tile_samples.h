@@ -5,9 +5,9 @@
 //
 // The image is divided into tiles of 16 x 16 pixels from its top left; tiles at the right and lower
 // edge may be smaller. The pixels of a tile form 32 groups of eight (render/tile_pattern.h). The
-// even groups are one half tile, the odd groups the other; each has eight pixels in every row of a
-// whole tile. A half tile is the unit of adaptive sampling (render/adaptive_plan.h): its number of
-// samples is decided from the errors of the other half.
+// even groups are one half tile, and the odd groups are the other one. Each half tile has eight
+// pixels in every row of a whole tile. A half tile is the unit of adaptive sampling
+// (render/adaptive_plan.h): its number of samples is decided from the errors of the other half.
 //
 // In each pass, a half tile takes the next node (render/band.h) of its own sequence of samples, or
 // none, as the plan says. So it always has the first samples of its sequence, and the pass
@@ -62,8 +62,9 @@ class TileSamples {
   TileSamples() = default;
   /// Makes the half tiles of the tiles that the rows overlap; none takes samples.
   TileSamples(std::uint32_t width, const RowRange& rows);
-  /// Restores the result of numbers() for the same width and rows. Returns INVALID_ARGUMENT if
-  /// their count is wrong, or a pair of them is no node of at most kMaxSamples.
+  /// Restores the result of numbers() for the same width and rows. Returns INVALID_ARGUMENT if the
+  /// count of the numbers is wrong, or if a pair of them is neither empty nor a node that ends at
+  /// or before kMaxSamples.
   static absl::StatusOr<TileSamples> from_numbers(absl::Span<const std::uint32_t> numbers,
                                                   std::uint32_t width, const RowRange& rows);
 

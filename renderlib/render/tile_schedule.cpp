@@ -1,6 +1,6 @@
 // Decides in each pass which half tiles (the units of adaptive sampling) take their next node of
-// samples: those that owe samples according to the plan. So that not all take one in the same pass,
-// each half tile has a threshold of its own.
+// samples. A half tile takes it if it is behind the plan by more samples than a threshold. The
+// threshold differs between half tiles, so that not all of them take a node in the same pass.
 
 #include "renderlib/render/tile_schedule.h"
 
@@ -12,8 +12,9 @@
 namespace bandsaw {
 namespace {
 
-/// Returns a number in [0, 1) for half tile i; they are evenly distributed over neighbours and over
-/// any range of i: the fractions of the multiples of the golden ratio (2654435769 / 2^32).
+/// Returns a number in [0, 1) for half tile i. The numbers are the fractions of the multiples of
+/// the golden ratio (2654435769 / 2^32), so they are evenly distributed over neighbours and over
+/// any range of i.
 double spread(std::size_t i) {
   return static_cast<std::uint32_t>(i * 2'654'435'769u) / 4'294'967'296.0;
 }

@@ -17,11 +17,11 @@ namespace bandsaw {
 /// Decides which samples half tiles take in each pass after the pilot.
 ///
 /// A half tile always has the first samples of its own sequence: 4, 5, 6 or 7 quarters of 2^k. If
-/// some samples were left out, the others would not form nets of Sobol' points; but in smooth
-/// regions the error falls with each complete net. A half tile takes its next quarter when the plan
-/// gives it that many samples. Half tiles of equal share take it in different passes, spread evenly
-/// over the image, so that on average they have what the plan gives. If all levels of a half of the
-/// image are 6 (uniform), it takes the samples of each pass.
+/// some samples were left out, the others would not form nets of Sobol' points. Complete nets
+/// matter, because in smooth regions the error falls with each of them. A half tile takes its next
+/// quarter when the plan gives it that many samples. Half tiles of equal share take it in different
+/// passes, spread evenly over the image, so that on average they have what the plan gives. If all
+/// levels of a half of the image are 6 (uniform), it takes the samples of each pass.
 class TileSchedule {
  public:
   /// `plan.levels` has one digit 0 to f for each half tile.
