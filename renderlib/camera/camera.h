@@ -122,8 +122,8 @@ class RayGenerator {
     Vec3 origin;  ///< orthographic: the direction of all rays
     /// Direction through image position (0, 0), not normalised; orthographic: the ray origin there.
     Vec3 corner;
-    Vec3 dx;      ///< its change per pixel to the right
-    Vec3 dy;      ///< its change per pixel down
+    Vec3 dx;      ///< change of `corner` per pixel to the right
+    Vec3 dy;      ///< change of `corner` per pixel down
     Vec3 lens_x;  ///< the lens' radius to the right
     Vec3 lens_y;  ///< the lens' radius upwards
     Vec3 forward;

@@ -29,7 +29,8 @@ struct Moments {
     squares += from_old * (value - mean);
   }
 
-  /// Returns the mean divided by its standard error; 0 if the mean is 0.
+  /// Returns the mean divided by its standard error; 0 if the mean is 0 or there are fewer than two
+  /// values, infinite if the error alone is 0.
   double t() const {
     const auto n = static_cast<double>(count);
     if (count < 2 || mean == 0) {
@@ -80,7 +81,7 @@ struct Totals {
   double light = 0;       // of all pixels of the reference
 };
 
-// Adds the finite pixels of a group.
+// Adds the mean difference of the finite pixels of a group to `block` and to `totals`.
 void add_group(const Image& image, const Image& reference, absl::Span<const PixelPlace> group,
                Moments& block, Totals& totals) {
   Moments difference;

@@ -19,7 +19,8 @@ struct BiasTest {
   /// t of the whole image: the mean over all values divided by its standard error. |t| above 4 is
   /// significant.
   double t = 0;
-  /// Sum of the differences to the reference over the sum of the reference; 0 if that is black.
+  /// Sum of the differences to the reference over the sum of the reference; 0 if the reference is
+  /// black.
   double relative_bias = 0;
   /// Number of blocks whose |t| exceeds a bound. The bound is such that one in a hundred unbiased
   /// images has a block that exceeds it (Sidak's correction; for normal noise).

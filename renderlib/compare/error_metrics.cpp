@@ -17,7 +17,7 @@
 namespace bandsaw {
 namespace {
 
-/// Added to divisors, so that ratios for dark pixels do not dominate.
+/// This is added to divisors, so that ratios for dark pixels do not dominate.
 constexpr double kDivisorOffset = 0.01;
 
 /// Sums over all finite channel values.
@@ -32,7 +32,8 @@ struct Sums {
 /// Returns the sRGB-coded value in [0, 1].
 double shown(float linear) { return srgb_curve(clamped(gray(linear)).r); }
 
-/// Returns the channel's contribution to the relative mean squared error.
+/// Adds a channel of a pixel to the sums. Returns its relative squared error, (image - reference)^2
+/// / (reference^2 + kDivisorOffset).
 double add_channel(float image, float reference, Sums& sums) {
   const double a = image;
   const double b = reference;
@@ -67,8 +68,8 @@ PixelError add_pixel(const Rgb& image, const Rgb& reference, Sums& sums,
   return error;
 }
 
-// Returns the mean of the pixels' sums without the largest thousandth, at least one if there are
-// two or more.
+// Returns the mean of the pixels' sums without the largest thousandth of them, rounded up. A single
+// sum is not left out.
 double trimmed_mean(std::vector<double>& sums) {
   const std::size_t worst = sums.size() < 2 ? 0 : (sums.size() + 999) / 1000;
   std::nth_element(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(worst), sums.end(),

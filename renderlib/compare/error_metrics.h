@@ -9,17 +9,18 @@
 namespace bandsaw {
 
 /// Metrics over all channels of all pixels where both values are finite; a is the image, b the
-/// reference, linear RGB.
+/// reference, linear RGB. If there is no such value, the metrics from rmse to psnr are NaN.
 struct ErrorMetrics {
-  double rmse = 0;           ///< sqrt(mean((a - b)^2))
-  double relative_rmse = 0;  ///< rmse / mean(b); 0 if both are black, infinite if only b is
+  double rmse = 0;  ///< sqrt(mean((a - b)^2))
+  /// rmse / |mean(b)|; 0 if rmse is 0, otherwise infinite if mean(b) is 0.
+  double relative_rmse = 0;
   /// mean((a - b)^2 / (b^2 + 0.01)), as in Rousselle et al. 2011, "Adaptive Sampling and
   /// Reconstruction using Greedy Error Minimization", section 5.
   double relative_mse = 0;
   /// `relative_mse` without the worst 0.1 % of the pixels, rounded up.
   double trimmed_relative_mse = 0;
   double mape = 0;  ///< mean(|a - b| / (|b| + 0.01))
-  /// Decibels, of the sRGB-coded values in [0, 1]; infinite if those are equal.
+  /// Decibels, of the sRGB-coded values in [0, 1]; infinite if these values are equal.
   double psnr = 0;
   double max_difference = 0;  ///< largest |a - b|
   std::uint32_t max_x = 0;    ///< first pixel with the largest difference

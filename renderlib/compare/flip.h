@@ -10,7 +10,7 @@
 
 namespace bandsaw {
 
-/// Viewing condition: 0.7 m from a monitor of 3840 pixels on 0.7 m.
+/// Viewing condition: the eye is 0.7 m from a monitor that is 0.7 m and 3840 pixels wide.
 inline constexpr double kPixelsPerDegree = 67;
 
 /// Returns the error per pixel, in [0, 1]; input values are clamped to [0, 1]. The images MUST have

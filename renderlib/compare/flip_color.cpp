@@ -77,7 +77,7 @@ Opponents seen(const Image& image, double pixels_per_degree) {
 // Section 4.1.2 (Hunt effect): dark colours appear less colourful.
 Vec3 hunt(const Vec3& lab) { return {lab.x, 0.01 * lab.x * lab.y, 0.01 * lab.x * lab.z}; }
 
-// Return the colour in L*a*b* with the Hunt effect.
+// Returns the colour in L*a*b* with the Hunt effect.
 Vec3 adjusted(const Rgb& linear) { return hunt(lab(xyz_over_white(linear))); }
 
 Vec3 adjusted(const Opponents& planes, std::size_t i) {

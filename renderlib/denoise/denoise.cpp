@@ -110,8 +110,8 @@ class Selection {
     return planes_.halves[h][c].at(x, plane_row(y));
   }
   bool valid(int x, int y) const { return planes_.valid.at(x, plane_row(y)) > 0; }
-  /// Returns 1 / (brightness^2 + a little) for each pixel, so that relative errors are compared.
-  /// The little is 3 % of the squared mean of the image, so that dark pixels do not dominate.
+  /// Returns 1 / (brightness^2 + offset) for each pixel, so that relative errors are compared. The
+  /// offset is 3 % of the squared mean of the image, so that dark pixels do not dominate.
   Map scales() const;
   Map error_of(std::size_t candidate, const Map& scale) const;
   void choose();
@@ -251,7 +251,7 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
       RowSums pixel;
       add_pixel(x, y, pixel);
       const std::size_t i = size_.index(x, y);
-      // Bounded, because sums of larger values would exceed the range of float.
+      // The values are bounded, so that their sums stay within the range of float.
       errors[i] = static_cast<float>(std::clamp(pixel.clean / 3, -1e30, 1e30));
       variances[i] = static_cast<float>(std::min(pixel.variance / 3, 1e30));
       of_row.add(pixel);
@@ -288,8 +288,8 @@ CleanError total_of(const std::vector<RowSums>& rows) {
           .bias_share = all.clean > 0 ? std::clamp(1 - all.variance / all.clean, 0.0, 1.0) : 0};
 }
 
-/// Returns the number of rows of a strip, which is even: so many that the strip has about a quarter
-/// of a megapixel, but at least 64.
+/// Returns the number of rows of a strip, which is even. A strip has about a quarter of a
+/// megapixel, or 64 rows if these have more pixels.
 int rows_of_strip(int width) {
   constexpr int kPixels = 1 << 18;
   constexpr int kMinRows = 64;

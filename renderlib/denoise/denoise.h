@@ -36,8 +36,8 @@ struct CleanError {
   /// Returns a bound of the clean image's relative error, which stop rules compare with their
   /// target.
   double at_most() const { return kMargin * relative_clean(); }
-  /// Covers the ratios of true and estimated error in the first measurements of NOTES.md; not
-  /// calibrated with many seeds.
+  /// This factor covers the ratios of true and estimated error in the first measurements of
+  /// NOTES.md. It was not calibrated with many seeds.
   static constexpr double kMargin = 1.4;
   friend bool operator==(const CleanError&, const CleanError&) = default;
 };
@@ -45,8 +45,8 @@ struct CleanError {
 /// The result of denoise().
 struct Denoised {
   Image image;
-  /// Estimated error of each pixel: the root of the mean square over its channels and over the
-  /// pixels around it, in all channels.
+  /// Estimated error of each pixel: the root of the mean squared error over its channels and over
+  /// the pixels around it. All channels of the image have this value.
   Image error;
   CleanError total;
 };

@@ -78,7 +78,7 @@ class TileFit {
   }
 
  private:
-  /// Fits eight centres: column i of row j in the tile.
+  /// Fits eight centres, of which the first is (column, row). In the tile it is column i of row j.
   void fit_centres(int column, int row, int i, int j);
   /// Solves the equations of both halves and stores the coefficients. `row` is one of the models.
   void store(int column, int row, std::size_t filter, NormalEquations (&equations)[2]);
@@ -101,7 +101,7 @@ struct GuideDistances {
         normal(d[3] * d[3] + d[4] * d[4]),
         depth(d[kDepthGuide] * per_depth * (d[kDepthGuide] * per_depth)) {}
 
-  /// Returns the factor of the pixel's weight by which it falls with these distances.
+  /// Returns the factor in [0, 1] by which these distances reduce the pixel's weight.
   Float8 similarity(const FitSettings& settings) const {
     const auto per_square = [](float reach) { return Float8(1.0f / (reach * reach)); };
     return falling(
@@ -200,7 +200,7 @@ class Evaluation {
   /// Adds the models of eight centres to the sums of the eight pixels (2 (i + lane) + parity, y).
   /// The centres are at column i + lane + k of centres and at row cy of pixels.
   void add_centres(int i, int parity, int y, int k, int cy, Sums& sums) const;
-  /// Computes these eight pixels.
+  /// Computes the eight pixels (2 (i + lane) + parity, y).
   void evaluate(int i, int parity, int y);
 
   const FitInput& input_;

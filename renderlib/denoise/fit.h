@@ -33,8 +33,8 @@ struct RowSpan {
 };
 
 /// The input of fit(): rows of an image. Only some of the rows are wanted as result. In the margin
-/// around them, all planes except `valid` hold mirrored pixels. Rows up to kFitReach from the
-/// wanted ones MUST be those of the image, or mirrored at its edges.
+/// around the input (split_plane.h), all planes except `valid` hold mirrored pixels. Rows up to
+/// kFitReach from the wanted ones MUST be those of the image, or mirrored at its edges.
 struct FitInput {
   int width = 0;
   int height = 0;

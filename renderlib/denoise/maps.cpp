@@ -23,7 +23,8 @@ Guide guide_at(const FitInput& input, int x, int y) {
   return guide;
 }
 
-/// Returns a factor of the weight of b for the pixel with guides a, in [0, 1].
+/// Returns a factor, in [0, 1], of the weight that a pixel with the guides b has in the mean for a
+/// pixel with the guides a.
 float similarity(const Guide& a, const Guide& b) {
   float distance = 0;
   for (std::size_t g = 0; g < kGuides; ++g) {

@@ -1,4 +1,4 @@
-// For a tile of pixels, computes the distance of the patch around each pixel from that around each
+// For a tile, computes the distance of the patch around each centre from the patch around each
 // pixel of its window (fit_parts.h). Differences of pixels are computed once for each offset (dx,
 // dy) within the window, and then summed up over patches. Even and odd columns are stored apart,
 // because centres are two pixels apart.
@@ -20,7 +20,8 @@ void PatchDistances::compute(int x, int y) {
   }
 }
 
-/// Compares the pixels of the tile and a patch's radius around it with those at (dx, dy) from them.
+/// Compares the pixels of the tile, and those up to a patch's radius around it, with the pixels at
+/// the offset (dx, dy) from them.
 void PatchDistances::compare(int x, int y, int dx, int dy) {
   const auto& color = input_.halves[half_];
   const SplitPlane& variance = input_.variance[half_];

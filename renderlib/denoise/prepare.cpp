@@ -10,7 +10,7 @@
 namespace bandsaw {
 namespace {
 
-/// Limit of radiance and depth: the sums of squares of larger values exceed the range of float.
+/// Limit of radiance and depth, so that sums of squares stay within the range of float.
 constexpr float kMaxDepthValue = 1e15f;
 constexpr int kAround = 2;  ///< radius, in pixels, of the neighbours that limit a bright pixel
 /// Least standard deviation of a half, as a share of the brightness around a pixel: smaller

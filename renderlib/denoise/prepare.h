@@ -10,7 +10,7 @@ namespace bandsaw {
 
 /// Means over the whole image.
 struct ImageMeans {
-  float brightness = 0;  ///< mean of all channels of pixels that are finite and not too large
+  float brightness = 0;  ///< mean of all channels of the pixels whose values are in [0, 1e15]
   float depth = 1;       ///< mean depth of the pixels that show a surface
 };
 ImageMeans means_of(const DenoiseInput& input);

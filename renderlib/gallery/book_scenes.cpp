@@ -50,7 +50,8 @@ std::string material(absl::string_view name, absl::string_view kind) {
 
 std::string color(const Vec3& rgb) { return absl::StrCat("color { rgb: ", list(rgb), " }"); }
 
-/// Returns one of the small spheres and its material; glass is one material for all.
+/// Returns one of the small spheres, and its material unless it is glass. All spheres of glass
+/// share one material.
 std::string small_sphere(int number, const Vec3& center, bool bouncing, Numbers& numbers) {
   constexpr double kRadius = 0.2;
   const std::string name = absl::StrCat("s", number);

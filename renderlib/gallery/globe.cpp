@@ -74,8 +74,8 @@ Vec3 land(double height, double rain, double latitude) {
   return lerp(color, kIce, rise(0.44, 0.56, height + 0.2 * latitude));
 }
 
-/// Returns the colour of a point on the unit sphere that is not below polar ice. Octaves that
-/// cannot be seen are not computed, because most of the planet is sea.
+/// Returns the colour of a point on the unit sphere without polar ice. In the deep sea the finer
+/// octaves change nothing and are not computed. This saves time, because most of the planet is sea.
 Vec3 uncovered(const Vec3& p, double latitude, double rain, int octaves) {
   constexpr int kBroad = 4;  // number of coarse octaves
   // Bound of the sum of the finer octaves: noise is at most 0.87.

@@ -68,8 +68,8 @@ void append_ring(std::string& out, const Ring& ring, int around) {
 
 std::string corner(int vertex) { return absl::StrCat(" ", vertex, "/", vertex, "/", vertex); }
 
-/// Adds the faces between the rings whose vertices begin at `low` and `high`; triangles at the
-/// axis.
+/// Adds the faces between the rings whose vertices begin at `low` and `high`. The faces are quads,
+/// or triangles where a ring lies on the axis.
 void append_faces(std::string& out, int low, int high, bool low_on_axis, bool high_on_axis,
                   int around) {
   for (int i = 0; i < around; ++i) {

@@ -10,10 +10,11 @@
 
 namespace bandsaw::gallery {
 
-/// Returns a Wavefront OBJ of the profile rotated around the y axis: x of a point is its radius,
-/// >= 0, y its height. A profile that goes up has its outside to the right. Edges sharper than 40
-/// degrees stay sharp, others have smooth normals; uv is (turn, share of the profile's length). The
-/// profile has at least two points, no two consecutive ones equal; around >= 3.
+/// Returns a Wavefront OBJ of the profile rotated around the y axis. The x of a point is its
+/// radius, >= 0, and its y is the height. A profile that goes up has its outside to the right.
+/// Edges sharper than 40 degrees stay sharp, others have smooth normals; uv is (turn, share of the
+/// profile's length). The profile has at least two points, no two consecutive ones equal. `around`,
+/// >= 3, is the number of faces of a ring.
 std::string lathe_obj(absl::Span<const Vec2> profile, int around);
 
 /// Returns points of a smooth curve through `corners` (at least two), `steps` (>= 1) for each span

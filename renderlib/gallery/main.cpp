@@ -1,5 +1,6 @@
-// bandsaw-gallery: generates the files of the gallery that are defined by formulas: globe maps,
-// which are too large for the repository, surfaces of revolution, and scenes of hundreds of shapes.
+// bandsaw-gallery: generates the files of the gallery that are defined by formulas, such as globe
+// maps, which are too large for the repository, surfaces of revolution, skies, and scenes of
+// hundreds of shapes.
 //
 //   bandsaw-gallery FOLDER    FOLDER/study/globe_512.png …; replaces existing files
 //

@@ -52,15 +52,17 @@ Image draw(Rgb (*sky)(const Vec3&), const Frame& frame, std::uint32_t face, std:
 
 constexpr double kSunAzimuth = 40;
 
-/// Returns a unit direction; angles in degrees from +x towards +z, and above the horizon.
+/// Returns a unit direction. Its azimuth is measured from +x towards +z, its height from the
+/// horizon.
 Vec3 direction(double azimuth_degrees, double height_degrees) {
   const SinCos azimuth = sincos_degrees(azimuth_degrees);
   const SinCos height = sincos_degrees(height_degrees);
   return {height.cos * azimuth.cos, height.sin, height.cos * azimuth.sin};
 }
 
-/// Returns the amount of cloud in a direction above the horizon, in [0, 1]: turbulence at the point
-/// where the direction intersects a layer above, stretched along x.
+/// Returns the amount of cloud in a direction above the horizon, in [0, 0.85]: turbulence at the
+/// point where the direction intersects a layer above, stretched along x. A larger `from` leaves
+/// less cloud.
 float cover(const Vec3& unit, double from) {
   const double layer = 1 / (unit.y + 0.12);
   const double cloud =

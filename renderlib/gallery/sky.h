@@ -1,6 +1,6 @@
 #pragma once
 
-// An invented evening sky, for the gallery's environments.
+// Two invented skies, of an evening and of dusk, for the gallery's environments.
 
 #include <cstdint>
 

@@ -26,7 +26,7 @@ double asin(double x);
 /// Returns a value in [0, pi]; x is clamped to [-1, 1].
 double acos(double x);
 
-/// Overflows to infinity and underflows to 0.
+/// Returns e^x, which overflows to infinity and underflows to 0.
 double exp(double x);
 /// Returns exp(x) - 1 without cancellation near 0.
 double expm1(double x);

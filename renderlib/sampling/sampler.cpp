@@ -82,9 +82,9 @@ constexpr std::array<std::uint32_t, 32> reversed_directions(const Polynomial& p)
   return direction;
 }
 
-/// The table has a row for each four bits of a bit-reversed index, and in it an entry for each of
-/// their 16 values: the bits that they flip in each dimension, bit-reversed. It has 2 KB. Dimension
-/// 0 is the index itself.
+/// The table has a row for each group of four bits of a bit-reversed index. A row has an entry for
+/// each of the 16 values of these bits. The entry holds the bits that this value flips in each
+/// dimension, bit-reversed. The table has 2 KB. Dimension 0 is the index itself.
 using Points = std::array<std::uint32_t, 4>;
 using PointTable = std::array<std::array<Points, 16>, 8>;
 

@@ -1,7 +1,8 @@
 #pragma once
 
 // Samples a sphere as seen from a point, uniformly in solid angle: the directions form a cone if
-// the point is outside. For a point on or inside the sphere, the area is sampled uniformly instead.
+// the point is outside. For a point inside the sphere, on it or very near it, the area is sampled
+// uniformly instead.
 
 #include <optional>
 
@@ -10,19 +11,19 @@
 namespace bandsaw {
 
 struct SphereSample {
-  Vec3 position;   ///< on the sphere; on the side that faces the point if that is outside
+  Vec3 position;   ///< on the sphere; on the side that faces the point if a cone is sampled
   Vec3 normal;     ///< unit, outward
   double pdf = 0;  ///< pdf of the direction from the point to `position`, by solid angle
 };
 
-/// Returns std::nullopt if the sampled direction has no finite pdf (a point on the sphere, a
-/// direction tangent to it).
+/// Samples a point of the sphere as seen from `point`. Returns std::nullopt if the sampled
+/// direction has no finite pdf (a point on the sphere, a direction tangent to it).
 std::optional<SphereSample> sample_sphere_light(const Vec3& center, double radius,
                                                 const Vec3& point, double u, double v);
 
 /// Returns the pdf, by solid angle, with which `sample_sphere_light` samples the direction from
-/// `point` to `position`, a point of the sphere with outward unit normal `normal`. 0 on the far
-/// side, which can only be seen through the sphere.
+/// `point` to `position`, a point of the sphere with outward unit normal `normal`. If a cone is
+/// sampled, the pdf is 0 on the far side, which can only be seen through the sphere.
 double sphere_light_pdf(const Vec3& center, double radius, const Vec3& point, const Vec3& position,
                         const Vec3& normal);
 

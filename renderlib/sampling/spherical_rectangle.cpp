@@ -14,7 +14,8 @@ namespace {
 
 /// Largest cosine of an angle that counts as right.
 constexpr double kRightAngle = 1e-9;
-/// Below this the inversion loses precision, and area sampling is equally good. Steradians.
+/// Below this solid angle, in steradians, the inversion loses precision, and area sampling is
+/// equally good.
 constexpr double kMinSolidAngle = 1e-9;
 
 }  // namespace

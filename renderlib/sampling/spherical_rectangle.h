@@ -23,7 +23,7 @@ class SphericalRectangle {
   static std::optional<SphericalRectangle> seen_from(const Vec3& point, const Vec3& corner,
                                                      const Vec3& u, const Vec3& v);
 
-  /// Steradians. The pdf of every direction is 1 / solid_angle().
+  /// Returns the solid angle in steradians. The pdf of every direction is 1 / solid_angle().
   double solid_angle() const { return solid_angle_; }
 
   /// Returns the coordinates (a, b) in [0, 1]^2 of the rectangle's point in the sampled direction.

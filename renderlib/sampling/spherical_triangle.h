@@ -22,7 +22,7 @@ class SphericalTriangle {
   static std::optional<SphericalTriangle> seen_from(const Vec3& point, const Vec3& a, const Vec3& u,
                                                     const Vec3& v);
 
-  /// Steradians. The pdf of every direction is 1 / solid_angle().
+  /// Returns the solid angle in steradians. The pdf of every direction is 1 / solid_angle().
   double solid_angle() const { return solid_angle_; }
 
   /// Returns the coordinates (s, t), with s, t >= 0 and s + t <= 1, of the triangle's point a + s u

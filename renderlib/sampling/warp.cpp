@@ -13,7 +13,7 @@ namespace bandsaw {
 namespace {
 
 /// Returns sine and cosine of x pi / 4 for x in [-1, 1] to a few units in the last place, by Taylor
-/// series. A third of the cost of `sincos_turns`, which is more accurate.
+/// series. This takes a third of the time of `sincos_turns`, which is more accurate.
 SinCos sincos_eighths(double x) {
   static constexpr double kSin[] = {
       0x1.921fb54442d18p-1,  -0x1.4abbce625be53p-4,  0x1.466bc6775aae2p-9,  -0x1.32d2cce62bd86p-15,
@@ -31,7 +31,7 @@ SinCos sincos_eighths(double x) {
   return {x * polynomial(square, kSin), polynomial(square, kCos)};
 }
 
-/// Returns (y, x) if all bits of `mask` are set, (x, y) if none is. Branch-free.
+/// Returns (y, x) if all bits of `mask` are set, (x, y) if none is, without a branch.
 Vec2 swapped(const Vec2& v, std::uint64_t mask) {
   const auto x = std::bit_cast<std::uint64_t>(v.x);
   const auto y = std::bit_cast<std::uint64_t>(v.y);
@@ -58,8 +58,8 @@ Vec2 sample_disk(double u, double v) {
   if (a == 0 && b == 0) {
     return {0, 0};
   }
-  // The angle is pi / 4 b / a or pi / 2 - pi / 4 a / b. Which one is unpredictable, so there is no
-  // branch.
+  // The angle is pi / 4 b / a or pi / 2 - pi / 4 a / b. The choice between them is unpredictable,
+  // so there is no branch.
   const std::uint64_t swap = std::abs(a) > std::abs(b) ? 0 : ~std::uint64_t{0};
   const Vec2 ordered = swapped({a, b}, swap);
   const SinCos angle = sincos_eighths(ordered.y / ordered.x);

@@ -1,7 +1,8 @@
 #pragma once
 
-// Checks that a scene has no more primitives than BVHs can hold and their numbers can count. Only
-// counts are needed, so the check can run before memory is allocated.
+// Checks that a scene has no more primitives than BVHs can hold, and that no mesh has more
+// positions than 32-bit indices can count. Only counts are needed, so the check can run before
+// memory is allocated.
 
 #include <cstdint>
 

@@ -8,10 +8,12 @@
 namespace bandsaw {
 
 /// The albedo of the first surface that is no mirror and no glass, times the tint of the mirrors
-/// and panes before it. If there is no such surface: L / (1 + L), L the background's radiance.
+/// and panes before it. If there is no such surface, the value is L / (1 + L), where L is the
+/// background's radiance.
 inline constexpr Integrator kGuideAlbedo{10};
-/// (x, y, d): components of that surface's shading normal to the right and upwards in the camera's
-/// view, each as (n + 1) / 2, and the path length d to the surface. No such surface: (0.5, 0.5, 0).
+/// The values (x, y, d) of the same surface as for kGuideAlbedo. x and y are the components n of
+/// its shading normal to the right and upwards in the camera's view, each as (n + 1) / 2. d is the
+/// path length to the surface. If there is no such surface, the values are (0.5, 0.5, 0).
 inline constexpr Integrator kGuideShape{11};
 inline constexpr int kLastGuideIntegrator = 11;
 

@@ -20,8 +20,9 @@ class MediumSpaces {
   /// Computes the maps of boundaries that are static, as at `time`.
   void prepare(const Geometry& boundaries, double time);
 
-  /// Returns the map from the world to the space of the medium in a boundary: Hit::id.instance, 0
-  /// for loose spheres. prepare() MUST have been called, with the same geometry.
+  /// Returns the map from the world to the space of the medium in a boundary. `boundary` is
+  /// Hit::id.instance, which is 0 for loose spheres. prepare() MUST have been called, with the same
+  /// geometry.
   Transform to_medium(const Geometry& boundaries, std::uint32_t boundary, double time) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace bandsaw {
 
-/// Maximum magnitude of coordinates and lengths: beyond it their fourth powers would overflow a
+/// Maximum magnitude of coordinates and lengths. Their fourth powers stay far within the range of
 /// double.
 inline constexpr double kMaxCoordinate = 1e30;
 

@@ -1,5 +1,5 @@
-// CheckKind checks the parameters of each kind of material; check_common() those that every kind
-// has.
+// CheckKind checks the parameters of each kind of material, and check_common() checks the
+// properties that every kind has.
 
 #include <initializer_list>
 #include <optional>
@@ -34,7 +34,7 @@ absl::Status check_unit(const std::string& field, double value) {
                                   : invalid(field, absl::StrCat("must be in [0, 1], is ", value));
 }
 
-/// Maximum magnitude of the scale of a normal map and of an alpha cutoff.
+/// Maximum magnitude of the scale of a normal map or height map, and of an alpha cutoff.
 constexpr double kMaxScale = 1e30;
 
 absl::Status check_range(const std::string& field, double value, double min) {
@@ -274,7 +274,8 @@ struct CheckKind {
 };
 
 /// Checks the parts of materials[index] if it is a mixture. `parts` has the number of parts of each
-/// material before it (1 if that is no mixture), and gets the number of this one.
+/// material before this one, which is 1 for a material that is no mixture. The number of this
+/// material is appended.
 absl::Status check_mixture(const std::vector<Material>& materials, std::size_t index,
                            std::vector<std::uint64_t>& parts) {
   const std::string field = item("materials", index);

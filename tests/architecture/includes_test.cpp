@@ -1,6 +1,6 @@
 // Rules about the source text: which folder includes which (the README of each part shows the
-// allowed dependencies), which functions renderlib may call, and that each type has one header. A
-// test whose name begins with a number such as Y5 is that case of tests/hard_cases/cases.txt.
+// allowed dependencies), which functions renderlib may call, and that each type has one header. An
+// id such as Y5 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -80,7 +80,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"coordinator/cli/base", {"coordinator/scheduler/model"}},
     {"coordinator/cli/options", {"coordinator/cli/base", "proto/link"}},
     {"coordinator/cli/progress", {"coordinator/cli/options", "coordinator/convert"}},
-    // `web` for the add-on for Blender, which is among the files that the dashboard offers.
+    // This folder includes `web` because of the add-on for Blender, which is among the files that
+    // the dashboard offers.
     {"coordinator/cli/scene", {"coordinator/cli/options", "coordinator/web", "renderlib/package"}},
     {"coordinator/cli/image",
      {"coordinator/cli/progress", "coordinator/cli/scene", "renderlib/compare"}},

@@ -58,8 +58,8 @@ std::vector<Walkthrough> walkthroughs() {
   return found;
 }
 
-/// Returns the file names and paths in a text: in backquotes everything with a slash or the suffix
-/// of a source file, elsewhere (in diagrams) names of source files.
+/// Returns the file names and paths in a text. In backquotes these are all words with a slash or
+/// the suffix of a source file. Elsewhere (in diagrams) they are the names of source files.
 std::vector<std::string> paths_in(const std::string& text) {
   static const std::regex kQuoted("`([A-Za-z0-9_./-]+)`");
   static const std::regex kSource(R"(.*\.(h|cpp|proto|md|sh|txt))");

@@ -40,7 +40,7 @@ using Clock = std::chrono::steady_clock;
 using Stream = grpc::ClientReaderWriter<farm::FromWorker, farm::ToWorker>;
 
 constexpr std::chrono::milliseconds kLong{600'000};  // deadline of calls; longer than any takes
-// The image: rows of few bytes, because the costs of bands are measured, and many of them.
+// The image has many rows. They have few bytes, because the costs of bands are measured.
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 4096;
 
@@ -95,7 +95,8 @@ void put_blob(farm::Farm::Stub& stub, const link::JoinString& join, const std::s
   check(writer->Finish());
 }
 
-/// Submits a job of so many pixels whose samples (2^20 a pixel) do not end during the measurement.
+/// Submits a job of `width` x `height` pixels. It has 2^20 samples a pixel, so that it does not end
+/// during the measurement.
 void submit(const link::JoinString& join, std::uint32_t width, std::uint32_t height) {
   const link::Connected farm = connect(join);
   const auto stub = farm::Farm::NewStub(farm.control);
@@ -222,7 +223,8 @@ struct Coordinator {
   link::JoinString people() const { return join_from(folder / "data/farm"); }
 };
 
-/// Prints how many bands so many workers get acknowledged in `seconds`, and what each cost.
+/// Prints the number of bands that `workers` null workers get acknowledged in `seconds`, and the
+/// cost of a band.
 void bands(double seconds, int workers) {
   Coordinator farm;
   submit(farm.people(), kWidth, kHeight);

@@ -101,7 +101,8 @@ Figures begun(const std::string& folder) {
   return out;
 }
 
-/// Measures `begun`. The package is made in another process, so that it does not add to the memory.
+/// Measures begun() in a process of its own. The package is made in another process, so that it
+/// does not add to the memory.
 Figures from_disk(const Family& family, double size) {
   const std::string folder =
       (std::filesystem::temp_directory_path() / ("growth-" + std::to_string(getpid()))).string();
@@ -139,7 +140,7 @@ constexpr Column kColumns[] = {
     {"peak, MB", "memory", &Figures::peak_bytes, 1e-6},
     {"first rows from disk, s", "first_rows", &Figures::first_rows_s, 1}};
 
-/// The figures of one family, by size. The exponent is that of size^exponent.
+/// The figures of one family, by size. An exponent e means that a figure grows as size^e.
 struct Grown {
   std::string name;
   std::vector<std::pair<double, Figures>> by_size;

@@ -1,5 +1,5 @@
 // Families of scenes for growth_bench: in each, one quantity grows (triangles, spheres, instances,
-// lights, texels or pixels) and the rest stays alike.
+// lights, texels, pixels or the depth of paths) and the rest stays alike.
 
 #include "tests/bench/growth_scenes.h"
 
@@ -44,7 +44,8 @@ GrownScene hills(double triangles) {
   return grown(std::move(maker));
 }
 
-/// Spheres, or instances of one mesh, that fill a cube with the same density at every count.
+/// Returns the radius of `count` spheres, or instances of one mesh, with which they fill a cube
+/// with the same density at every count.
 double radius_of(double count) { return 0.6 / std::cbrt(count); }
 
 GrownScene spheres(double count) {
@@ -104,7 +105,8 @@ GrownScene textured(double texels) {
   return grown(std::move(maker));
 }
 
-/// The same total number of samples at every resolution.
+/// A Cornell box of this many pixels. The total number of samples is the same at every resolution,
+/// unless that is less than one a pixel.
 GrownScene pixels(double count) {
   GrownScene out = grown(test::cornell_box());
   const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(count)));

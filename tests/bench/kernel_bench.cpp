@@ -25,14 +25,16 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// Bandsaw or a mode of Embree, with one of the two queries.
 struct Kernel {
   std::string name;
-  /// Traces the rays from the first to before the second, and returns the number that hit.
+  /// Traces the rays from the first pointer up to the second, which is excluded, and returns the
+  /// number of hits.
   std::function<std::size_t(const Ray*, const Ray*)> trace;
   double seconds = 0;  ///< sum over chunks of the minimum time of any pass
   std::size_t hits = 0;
 };
 
-/// The kernels take turns chunk by chunk, so that the machine is the same for all; for each chunk
-/// the best of several passes counts. The order of the kernels changes with every pass.
+/// Times the kernels. They take turns chunk by chunk, so that other load on the machine affects all
+/// of them equally. For each chunk the best of several passes counts. The order of the kernels
+/// changes with every pass.
 void race(const std::vector<Ray>& rays, std::vector<Kernel>& kernels) {
   for (std::size_t first = 0; first < rays.size(); first += kChunk) {
     const Ray* begin = rays.data() + first;
@@ -75,7 +77,8 @@ Kernel any_kernel(const std::string& name, const Traced& traced) {
           }};
 }
 
-/// Prints one line: millions of rays a second, and our speed relative to each Embree.
+/// Prints one line: millions of rays a second of each kernel, the speed of Bandsaw relative to each
+/// mode of Embree, and the numbers of hits.
 void report(const char* set, const std::vector<Ray>& rays, std::vector<Kernel> kernels) {
   race(rays, kernels);
   std::printf("%-8s", set);

@@ -35,7 +35,7 @@ Mesh from_file(const std::string& path) {
   return mesh;
 }
 
-/// A box of twelve triangles around everything.
+/// Returns the mesh with a box of twelve triangles around it.
 Mesh in_a_room(Mesh mesh) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   for (std::uint32_t i = 0; i < 8; ++i) {

@@ -1,5 +1,5 @@
-// The rays of kernel_bench: camera rays in tiles of 8 x 8 pixels, and from the surfaces that they
-// hit a ray in a random direction and a shadow ray to a light.
+// The rays of kernel_bench: camera rays in tiles of 8 x 8 pixels. From each surface that they hit,
+// there is a ray in a random direction and a shadow ray to a light.
 
 #include "tests/bench/kernel_rays.h"
 
@@ -68,7 +68,8 @@ RaySets make_rays(const Mesh& mesh, const Accel& accel, bool from_within) {
     Vec3 normal = normal_of(mesh, hit.id.primitive);
     normal = dot(normal, ray.direction) > 0 ? -normal : normal;
     const Vec3 at = to_float(ray.origin + hit.t * ray.direction + 1e-4 * size * normal);
-    // Normal plus a random unit vector is cosine-distributed. 1.0001: the sum is never zero.
+    // Normal plus a random unit vector is cosine-distributed. The factor 1.0001 keeps the sum from
+    // being zero.
     const Vec3 out = test::random_direction(random);
     sets.bounce.push_back({at, to_float(normalize(normal * 1.0001 + out))});
     const Vec3 spot = test::random_point(random);

@@ -1,6 +1,7 @@
 // Formats the results of the phone study as tables, answers, CSV and a plot. The study is another
-// author's: it rendered 23 images on a laptop and on phones. We render the same images on one
-// thread, on all threads and on a farm, and compare the times with those that the study states.
+// author's: it rendered 23 images on a laptop and on phones. The same images are rendered on one
+// thread, on all threads and on a farm, and their times are shown beside those that the study
+// states.
 
 #include <algorithm>
 

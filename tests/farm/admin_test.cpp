@@ -164,8 +164,8 @@ TEST_F(Administration, ALinkForBrowsersLastsUntilItIsRevokedOrASecretIsRenewed) 
 }
 
 // The job is one band of a million samples, so each worker is killed while it renders this band.
-// The first loss makes the band suspect; five more are needed on a farm that has not stored a band
-// before (coordinator/scheduler/liveness/crash_attribution.h).
+// The first loss makes the band suspect. On a farm that has not stored a band before, the job fails
+// after five more losses (coordinator/scheduler/liveness/crash_attribution.h).
 TEST_F(Administration, ABandThatCrashesEveryWorkerFailsItsJob) {
   EXPECT_EQ(
       say({"submit", kCornell, "--width", "65536", "--height", "1", "--samples", "16", "--detach"})

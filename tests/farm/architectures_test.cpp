@@ -1,6 +1,7 @@
-// `invite` and the line to paste install on x86-64 and ARM64 machines the worker for their
-// architecture. The ARM64 machines are simulated by a uname that prints their architecture, and the
-// program for them is a file with an ARM64 ELF header (tests/support/worker_file.h).
+// Tests that `invite`, and the line that `serve` prints for other machines to paste, install the
+// worker for the architecture of the machine, x86-64 or ARM64. The ARM64 machines are simulated by
+// a uname that prints their architecture, and the program for them is a file with an ARM64 ELF
+// header (tests/support/worker_file.h).
 
 #include <elf.h>
 #include <gmock/gmock.h>

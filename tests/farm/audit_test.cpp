@@ -1,5 +1,6 @@
 // A farm of real processes in which one machine sends wrong pixels (liar/main.cpp). Audits, which
-// render a band on a second machine and compare, find it; then it is quarantined.
+// render a band on a second machine and compare the two results, find this machine. Then it is
+// quarantined.
 
 #include <gtest/gtest.h>
 

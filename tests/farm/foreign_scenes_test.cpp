@@ -1,6 +1,6 @@
 // Scenes of pbrt and Mitsuba. The image of a farm that loses a worker has the same bytes as that of
-// `bandsaw render`. So has the image of the scene file that `bandsaw import` writes. The scenes are
-// defined here, and each has many features.
+// `bandsaw render`. The scene file that `bandsaw import` writes also gives these bytes. The scenes
+// are defined here, and each has many features.
 
 #include <gtest/gtest.h>
 

@@ -86,7 +86,7 @@ class Frames : public testing::Test {
     ASSERT_EQ(finished.code, 0) << finished.err;
   }
 
-  /// Waits until so many frames are written.
+  /// Waits until `count` frames are written. Returns false as Process::wait_until() does.
   static bool wait_for_frames(Process& client, std::size_t count) {
     return client.wait_until([&](const std::string& out, const std::string&) {
       std::size_t found = 0;
@@ -180,7 +180,7 @@ TEST_F(Frames, WithoutANameDoNotReplaceFilesOfTheModel) {
 TEST_F(Frames, ThatWereNotSentAreNamedIfAFileCannotBeWritten) {
   farm_.add_worker("one", 1);
   std::filesystem::create_directory(file_of(1));
-  // So many that most are not sent when the first one is done.
+  // There are so many frames that most of them are not sent when the first one is done.
   const Finished failed = run(submit("1-2000", {"-o", outputs_}));
   EXPECT_EQ(failed.code, 1);
   EXPECT_THAT(failed.err, HasSubstr("w.0001.pfm"));
@@ -301,7 +301,7 @@ TEST_F(Frames, AreAVideo) {
       run({"/usr/bin/ffprobe", "-v", "error", "-count_frames", "-show_entries",
            "stream=codec_name,width,height,nb_read_frames,r_frame_rate", "-of", "csv=p=0", video});
   EXPECT_EQ(probe.out, "h264,24,24,12/1,6\n") << probe.err;
-  // ffmpeg takes no part of the name for a protocol.
+  // ffmpeg must not take the part of the name before the colon for a protocol.
   const Finished colon = run(in_the_folder(farm_.command({"watch", "1", "--video", "a:b.mp4"})));
   EXPECT_EQ(colon.code, 0) << colon.err;
   EXPECT_TRUE(std::filesystem::exists(farm_.path("a:b.mp4")));

@@ -32,8 +32,8 @@ class FullDiskFarm : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_EQ(mkdir(disk_.c_str(), 0700), 0);
-    // Room for the coordinator's reserve (16 MiB, freed when the disk is full), and for the 64 MiB
-    // that must be free before jobs continue.
+    // There must be room for the coordinator's reserve (16 MiB, freed when the disk is full), and
+    // for the 64 MiB that must be free before jobs continue.
     if (mount("tmpfs", disk_.c_str(), "tmpfs", 0, "size=192m") != 0) {
       GTEST_SKIP() << "needs the right to mount a small tmpfs (run as root)";
     }

@@ -1,8 +1,8 @@
 #pragma once
 
-// Simulated machines of one test: network namespaces that are connected by one switch, another
-// namespace. The test creates and removes them. Addresses are 10.77.0.1, .2, … in the order of the
-// names.
+// Simulated machines of one test: network namespaces that are connected by one switch, which is a
+// namespace too. The test creates and removes them. Addresses are 10.77.0.1, .2, … in the order of
+// the names.
 
 #include <memory>
 #include <string>
@@ -29,7 +29,8 @@ class Hosts {
     int home_;  ///< file descriptor of the thread's own namespace
   };
 
-  /// PERMISSION_DENIED: namespaces cannot be created here (this needs root and the command `ip`).
+  /// Creates the machines of these names and the switch. PERMISSION_DENIED: namespaces cannot be
+  /// created here (this needs root and the command `ip`).
   static absl::StatusOr<std::unique_ptr<Hosts>> create(std::vector<std::string> names);
   ~Hosts();
   Hosts(const Hosts&) = delete;

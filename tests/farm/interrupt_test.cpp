@@ -52,7 +52,8 @@ bool is_imported(const std::string& temporary) {
   return false;
 }
 
-/// Returns true if the process has no child. `pid`: that of its first thread, which starts them.
+/// Returns true if the process has no child. `pid` is the id of its first thread, which starts its
+/// children.
 bool has_no_child(pid_t pid) {
   std::ifstream children(absl::StrCat("/proc/", pid, "/task/", pid, "/children"));
   std::string first;

@@ -53,7 +53,7 @@ TEST(InviteSsh, ThroughARealServer) {
     GTEST_SKIP() << "needs the packages openssh-server and openssh-client";
   }
   if (geteuid() == 0) {
-    // sshd requires it as root; the package creates it at boot
+    // As root, sshd requires this folder, which its package creates at boot.
     fs::create_directories("/run/sshd");
   }
   FarmProcesses farm;

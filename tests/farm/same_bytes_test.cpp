@@ -39,7 +39,7 @@ std::vector<std::string> with_settings(std::vector<std::string> arguments) {
 
 class SameBytes : public testing::Test {
  protected:
-  // The image that all other methods must equal.
+  // Returns the bytes of the image that `render` makes, which all other methods must equal.
   std::string rendered(const std::string& scene) {
     const std::string& file = rendered_[scene];
     if (file.empty()) {

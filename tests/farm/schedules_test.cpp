@@ -1,7 +1,7 @@
 // Random schedules of events on a farm of real processes: workers are killed, frozen, drained and
-// disconnected, others join, the coordinator is killed; the image has the same bytes each time. 10
-// schedules by default; BANDSAW_SCHEDULES=n runs n, BANDSAW_SEED=n runs only that one. The events
-// are a function of the seed; their timing relative to bands is not.
+// disconnected, others join, the coordinator is killed; the image has the same bytes each time. The
+// default is 10 schedules. BANDSAW_SCHEDULES=n runs n of them, BANDSAW_SEED=n runs only the
+// schedule of seed n. The events are a function of the seed; their timing relative to bands is not.
 
 #include <gtest/gtest.h>
 
@@ -95,7 +95,7 @@ class Schedule {
     farm_.add_worker(names_.back(), 1 + static_cast<int>(random_.below(2)));
   }
 
-  // Keeps at least one working worker.
+  // Lets at most one event happen. At least one worker goes on working.
   void one_thing_happens() {
     const std::string name = one_of(working());
     const bool others = working().size() > 1;

@@ -62,8 +62,8 @@ TEST_F(Survive, AKilledCoordinator) {
   job_.expect_nothing_rendered_again();
 }
 
-// All light has passed glass, so each worker makes photon maps. One is killed, and the coordinator
-// is killed while the one that joins in its place makes its own.
+// All light has passed glass, so each worker makes photon maps. One worker is killed. The
+// coordinator is killed while the worker that joins in its place makes its own maps.
 TEST_F(Survive, AKilledWorkerAndCoordinatorWherePhotonMapsPay) {
   Survival job(farm_, BANDSAW_GALLERY "/hard_light/lamp_in_glass.textproto");
   farm_.add_worker("victim", 1);

@@ -33,8 +33,9 @@ class Sender {
  public:
   explicit Sender(const std::string& folder) : folder_(folder), store_(*BlobStore::open(folder)) {}
 
-  /// Does the next thing; `what` selects the kind: 0 the sender is interrupted, 1 the coordinator
-  /// restarts, 2 a stored byte is damaged, 3 the sender ends, otherwise a chunk is sent.
+  /// Does the next step. `what` modulo 6 selects its kind: 0 the sender is interrupted, 1 the
+  /// coordinator restarts, 2 a stored byte is damaged, 3 the sender ends, otherwise a chunk is
+  /// sent.
   void step(std::uint8_t what, std::uint32_t number) {
     switch (what % 6) {
       case 0:

@@ -135,7 +135,7 @@ TreeItems items_of(const Mesh& mesh) {
   return items;
 }
 
-/// Returns the number of boxes in the tree that a ray intersects.
+/// Returns the mean number of boxes in the tree that a ray intersects.
 double boxes_met(const BinaryTree& tree, const std::vector<Ray>& rays) {
   double met = 0;
   for (const Ray& ray : rays) {

@@ -40,7 +40,7 @@ MetallicRoughness layered(double roughness) {
   return m;
 }
 
-// M2: no 0 / 0 if a pdf is nearly zero, also at the limits of the number range.
+// M2: there is no 0 / 0 if a pdf is nearly zero, also at the limits of the number range.
 TEST(MaterialHardCases, M2DensitiesNearZeroGiveFiniteNumbers) {
   const Material materials[] = {layered(0.01), layered(1), Dielectric{1.5, 0.02},
                                 Dielectric{1.0000001, 0.5}, Metal{TextureId{0}, 1e-5}};
@@ -67,7 +67,8 @@ TEST(MaterialHardCases, M2DensitiesNearZeroGiveFiniteNumbers) {
       "M2", "0 NaN of " + std::to_string(10 * std::int64_t{tries}) + " samples and values");
 }
 
-// Snell and Fresnel in 64 bits of mantissa (Born and Wolf, 1.5.2), from the same double cosine.
+// Returns the Fresnel reflectance, computed with 64 bits of mantissa from the same double cosine
+// (Born and Wolf, 1.5.2).
 long double exact_fresnel(double cosine, double eta) {
   const long double c = cosine;
   const long double n = eta;
@@ -151,7 +152,7 @@ TEST(MaterialHardCases, M11M12PathsEnd) {
 }
 
 // Weak white furnace (Heitz 2014, section 5.3): the visible facets, each by its projected area, sum
-// up to the projected area: the integral of G1 D max(0, o.h) / |o.z| over h is 1.
+// up to the projected area of the surface. So the integral of G1 D max(0, o.h) / |o.z| over h is 1.
 TEST(Ggx, SeenFacetsCoverTheWholeDirection) {
   for (const double alpha : {0.05, 0.2, 0.5, 1.0}) {
     for (const double z : {1.0, 0.7, 0.3, 0.1}) {

@@ -68,7 +68,7 @@ TEST(SphericalRectangle, L5_SmallOnesKeepTheirSolidAngle) {
       const auto seen = SphericalRectangle::seen_from({0, 0, 0}, {aside - h, -h, 1}, {2 * h, 0, 0},
                                                       {0, 2 * h, 0});
       ASSERT_TRUE(seen);
-      // The corners themselves are rounded: aside - h and 2 h are not aside + h.
+      // The corners themselves are rounded: the sum of aside - h and 2 h is not exactly aside + h.
       error.see(std::abs(static_cast<double>(seen->solid_angle() / solid_angle(h, aside) - 1)));
     }
     test::at_most("L5", aside == 0 ? "relative error ahead, 4e-4 to 4e-8" : "3 aside",
@@ -151,7 +151,8 @@ TEST(Sampler, R9_FinerThanAPixelIsNoWorseThanIndependent) {
   test::at_most("R9", "RMSE over that of independent samples", ratio.value(), 1.1);
 }
 
-// The nodes of a pixel's tree up to 2^30 samples, each the sum in double of floats from [0, 2).
+// Adds the nodes of a pixel's summation tree up to 2^30 samples. Each node is the sum, in double,
+// of floats from [0, 2).
 TEST(Film, A1_LongSumsKeepTheirDigits) {
   auto film = Film::create(1, 1, "");
   ASSERT_TRUE(film.ok());

@@ -130,7 +130,7 @@ TEST(Offset, O5_NoPathEscapesFromACrease) {
       const double middle = angle * random.uniform(0.1, 0.9);
       const double r = random.uniform(0.01, 0.5);
       const Vec3 from = {r * std::cos(middle), r * std::sin(middle), 0};
-      // Towards the crease, at about the height of its origin.
+      // The first ray is aimed at a point near the crease, close to the origin of the scene.
       const Vec3 aim = {0, 0.2 * r * angle * random.uniform(-1, 1), 0.1 * random.uniform(-1, 1)};
       Ray ray = {from, normalize(aim - from)};
       Hit hit = accel.closest(ray);

@@ -77,7 +77,8 @@ TEST(Ceiling, Q4_ALightInItsPlaneGivesTheClosedForm) {
   EXPECT_EQ(test::radiance_along(*maker.build(), up, {}, 16).mean(), 1);
 }
 
-// (1 - R) / (1 + R) with R = 0.04: the sum over all reflections within the pane.
+// The pane transmits (1 - R) / (1 + R) with R = 0.04, which is the sum over all reflections within
+// it.
 TEST(Pane, O6_TransmitsTheSameShareAtAnyThickness) {
   for (const double thickness : {1e-3, 1e-6, 1e-9}) {
     test::SceneMaker maker;

@@ -180,7 +180,8 @@ TEST(Sphere, S4_FromWithinTheFarSideIsHit) {
     }
   }
   test::at_most("S4", "relative error of the far root", error.value(), 1e-12);
-  // For a grazing chord, the last bit of the discriminant, u R^2, is 1 / cos^2 of the whole.
+  // A grazing chord has the discriminant R^2 cos^2, of which the last bit, u R^2, is the share u /
+  // cos^2.
   test::at_most("S4", "times cos^2, for chords flatter than 1.7 degrees", flat_error.value(),
                 1e-15);
   test::at_most("S4", "these over what the last bit of the origin is worth", over_last_bits.value(),
@@ -291,8 +292,9 @@ std::string pass_through(const Geometry& g, const Accel& accel, Vec3& direction,
   return order;
 }
 
-// A ray at distance b from the centre is bent by asin(b / R) - asin(b / nR) where it enters the
-// glass, back by the same at radius r where it leaves the glass, and once more when it leaves.
+// A ray at distance b from the centre meets the outer sphere twice and the inner sphere twice. At a
+// sphere of radius r it turns by asin(b / r) - asin(b / (n r)). At the outer sphere it turns
+// towards the centre, at the inner sphere away from it.
 TEST(Sphere, S10M9_ShellsAndBubblesRefractBySnellsLaw) {
   for (const long double inner : {1 - 1e-9L, 0.5L}) {
     Geometry g;
@@ -302,7 +304,7 @@ TEST(Sphere, S10M9_ShellsAndBubblesRefractBySnellsLaw) {
     test::Random random(8);
     test::Worst error;
     for (int i = 0; i < 20'000; ++i) {
-      // Beyond the critical angle of the bubble everything is reflected.
+      // Rays beyond the critical angle of the bubble are left out, because they are reflected.
       const double b = 0.95 * random.uniform() * static_cast<double>(inner);
       Vec3 direction = {0, 0, 1};
       ASSERT_EQ(pass_through(g, accel, direction, {b, 0, -3}), "oiio");

@@ -27,8 +27,9 @@ int bin_of(double ratio) {
 }
 
 /// Second moments of two sampling techniques. They estimate the irradiance at a point below the
-/// middle of a square light of radiance 1 / pi; f is its integrand, p the pdf of cosine-weighted
-/// sampling, q that of light sampling. Each integral is split into bins of the ratio p / q.
+/// middle of a square light of radiance 1 / pi; f is the integrand of the irradiance, p the pdf of
+/// cosine-weighted sampling, q that of light sampling. Each integral is split into bins of the
+/// ratio p / q.
 struct Seen {
   std::vector<double> cosine_sampling = std::vector<double>(kBins);  ///< integral of f^2 / p
   std::vector<double> light_sampling = std::vector<double>(kBins);   ///< integral of f^2 / q
@@ -67,8 +68,8 @@ double sum(const std::vector<double>& values) {
   return all;
 }
 
-/// Variance of one sample of each technique, with the weight of cosine-weighted sampling in each
-/// bin.
+/// Returns the variance of the sum of one weighted sample of each technique. `weights` has the
+/// weight of cosine-weighted sampling in each bin.
 double variance(const Seen& seen, const std::vector<double>& weights) {
   double squares = 0;
   double by_cosine = 0;
@@ -93,8 +94,8 @@ struct Place {
   double scale = 0;  ///< factor of the variance
 };
 
-/// Returns the weights that minimise the sum of the scaled variances: where its gradient is zero, a
-/// system of equations whose matrix is positive definite.
+/// Returns the weights that minimise the sum of the scaled variances. There the gradient of the sum
+/// is zero, which is a system of equations whose matrix is positive definite.
 std::vector<double> best_weights(const std::vector<Place>& places) {
   std::vector<std::vector<double>> rows(kBins, std::vector<double>(kBins + 1));
   for (const auto& [seen, scale] : places) {
@@ -129,8 +130,9 @@ std::vector<double> best_weights(const std::vector<Place>& places) {
 
 TEST(Weights, Q5_NoWeightsByThePdfRatioAreCloseToTheBetterTechnique) {
   // Let r and s be the ratios of variance for the two places. The weights are to make the larger of
-  // r and s small. It is at least any mean, share r + (1 - share) s, so the smallest possible mean
-  // is a lower bound of it. Any shares give a bound; those below were found by a search.
+  // r and s small. The larger one is at least any mean, share r + (1 - share) s, so the smallest
+  // possible mean is a lower bound of it. Any shares give a bound; those below were found by a
+  // search.
   constexpr double kShareNear = 0.96;
   std::vector<Place> places;
   for (const auto& [height, share] :

@@ -1,5 +1,5 @@
-// Every `sh` block of the README runs, unchanged, in a new folder that contains the checkout's
-// files.
+// Every `sh` block of the README, except the one that runs the tests, runs unchanged in a new
+// folder with links to the checkout's files.
 
 #include <gtest/gtest.h>
 
@@ -34,8 +34,8 @@ std::vector<std::string> shell_blocks(const std::string& path) {
   return blocks;
 }
 
-// The checkout, as symbolic links, so that a block may write files beside them without changing the
-// checkout.
+// Makes symbolic links to the checkout in a folder, so that a block may write files beside them
+// without changing the checkout.
 void link_checkout(const std::string& folder) {
   for (const char* name : {"renderlib", "deploy", "tests", "proto", "CMakeLists.txt"}) {
     fs::create_symlink(fs::path(BANDSAW_SOURCE) / name, fs::path(folder) / name);

@@ -5,13 +5,15 @@
 // FOLDER is a copy of Mitsuba's test data: tests/scenes/*/*.xml, and beside them
 // refs/NAME_ref_rgb.exr and refs/NAME_ref_rgb_var.exr, the variance of one sample. Each scene is
 // rendered with --seeds seeds (default 16), which together take --budget samples of all pixels
-// (default 2 million, as Mitsuba's tests) or --samples per pixel. --out gets the images, for scenes
-// that fail.
+// (default 2 million, as Mitsuba's tests) or --samples per pixel. --out gets a PNG for each scene
+// that has a reference of the same size.
 //
 // A channel of a pixel fails if the p-value of its difference is below Sidak's level for the image
 // at 0.01. As in Mitsuba's tests, up to 0.25 % of the channels may fail. The variance of the
-// difference is that of the reference for as many samples, at least 1e-4 for a sample, or ours from
-// the seeds if it is larger, and that of the reference image itself (32,000 samples).
+// difference is the sum of two variances. The first is that of the rendered image: the variance of
+// one sample, as the reference states it and at least 1e-4, over the number of samples, or the
+// variance that the seeds show if it is larger. The second is that of the reference image, which
+// has 32,000 samples.
 
 #include <algorithm>
 #include <array>
@@ -61,7 +63,8 @@ struct Rendered {
   std::vector<std::string> warnings;
 };
 
-/// Renders a scene of Mitsuba with all seeds. Fails if it cannot be imported.
+/// Renders a scene of Mitsuba with all seeds. Fails if the scene cannot be imported, built or
+/// rendered.
 absl::StatusOr<Rendered> render(const std::string& path, const Options& options, Pool& pool) {
   ImportChoices choices;
   choices.folder = options.folder;
@@ -176,8 +179,8 @@ Comparison compare(const Rendered& ours, const Image& reference, const Image& va
   return out;
 }
 
-/// Writes ours, the reference and z side by side: red where ours is brighter, blue where it is
-/// darker, full at 5 standard deviations.
+/// Writes the rendered image, the reference and z side by side. z is shown red where the rendered
+/// image is brighter and blue where it is darker, fully at 5 standard deviations.
 void write_images(const std::string& path, const Rendered& ours, const Image& reference,
                   const Comparison& found) {
   Image all{3 * ours.width, ours.height, {}};

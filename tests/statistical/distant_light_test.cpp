@@ -19,7 +19,7 @@ using test::float_image;
 using test::Moments;
 using test::SceneMaker;
 
-/// A white patch at the origin, tilted by `tilt` degrees about z towards -x.
+/// Adds a patch of this material at the origin, tilted by `tilt` degrees about z towards -x.
 void add_patch(SceneMaker& maker, double tilt, MaterialId material) {
   const SinCos turn = sincos_degrees(tilt);
   const Vec3 along{turn.cos * 0.02, turn.sin * 0.02, 0};
@@ -40,7 +40,7 @@ void expect_radiance(const SceneMaker& maker, const Ray& ray, double expected,
   EXPECT_LE(radiance.standard_error(), 1e-3 * expected + 1e-12);
 }
 
-/// An environment of one image.
+/// Sets an environment of one image.
 void set_environment(SceneMaker& maker, ImageTexture image) {
   Environment environment;
   environment.images = {maker.texture(std::move(image))};
@@ -268,7 +268,7 @@ TEST(DeltaLight, AProjectorShowsItsImageOnAPlane) {
   expect(1.49, -4.49, 4);
   expect(1.51, 0, 0);
   expect(0, -4.51, 0);
-  // A placement keeps the image's sides; a mirrored one mirrors it.
+  // A placement keeps the sides of the image, and a mirrored placement mirrors the image.
   maker.scene.lights = {placed(light, translation({2, 0, 0}) * scaling({-1, 1, 1}))};
   expect(0.1, 0.1, 1);
   expect(-1.49, -4.49, 4);
@@ -294,8 +294,8 @@ TEST(DeltaLight, ASpotsImageCoversTheSquareAroundItsCone) {
                  .cos_outer = sincos_degrees(45).cos};
   spot.image = ProjectedImage{maker.texture(four_values()), {1, 0, 0}, {0, 0, -1}, 1, 1};
   maker.scene.lights = {spot};
-  // Intensity 8 times the image at the distance sqrt(4 + r^2), from an angle of cosine 2 /
-  // distance.
+  // The intensity is 8 times the image. The distance is sqrt(4 + r^2), and the cosine of the angle
+  // is 2 / distance.
   for (const auto& [x, z, value] :
        {std::array<double, 3>{-1, 1, 1}, std::array<double, 3>{1, 1, 2},
         std::array<double, 3>{-1, -1, 3}, std::array<double, 3>{1, -1, 4}}) {

@@ -201,8 +201,8 @@ TEST(Enclosure, WallsHaveTheRadiositySolution) {
   }
   const auto scene = maker.build();
   for (const std::size_t i : {0, 2, 3, 4, 5}) {
-    // The error of the solution is proportional to the square of the patches' size: extrapolates to
-    // the limit.
+    // The error of the solution is proportional to the square of the patches' size, so it is
+    // extrapolated to the limit.
     const double expected = (4 * fine[i] - coarse[i]) / 3;
     EXPECT_NEAR(expected, fine[i], 1e-3 * expected) << i;
     expect_mean(mean_radiance(*scene, walls[i], {.max_depth = 1000}, 8192), expected, 5e-4);

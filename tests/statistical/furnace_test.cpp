@@ -1,6 +1,6 @@
 // Scenes whose light after any number of bounces is known, and estimators that must agree on scenes
-// whose light is not. All within 4 standard errors. An id such as O6 in a test's name is that of a
-// case in tests/hard_cases/cases.txt.
+// whose light is not. All means must lie within 4 standard errors. An id such as O6 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -137,15 +137,16 @@ TEST(Techniques, AllTechniquesHaveTheSameMean) {
 
 TEST(Techniques, Q5_NearALightMisIsCloseToTheBetterTechnique) {
   // The points are below a 2 x 2 light: close to it, BSDF sampling has hardly any noise; far from
-  // it, light sampling. (If lights were sampled by area, the standard deviation at the nearest
-  // point would be 32 times the mean.)
+  // it, light sampling has hardly any. (If lights were sampled by area, the standard deviation at
+  // the nearest point would be 32 times the mean.)
   for (const double h : {0.02, 0.3, 3.0}) {
     SceneMaker maker;
     maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
     maker.quad({-1, h, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1));
     const auto scene = maker.build();
     const Ray down{.origin = {0, 1e-3, 0}, .direction = {0, -1, 0}};
-    // One sample of each of many seeds: relative standard deviation of a single sample.
+    // Returns the relative standard deviation of a single sample, from one sample of each of many
+    // seeds.
     const auto spread = [&](Technique technique) {
       const Moments moments =
           test::radiance_along(*scene, down, {.max_depth = 1, .technique = technique}, 1, 20000);

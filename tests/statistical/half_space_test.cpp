@@ -47,8 +47,8 @@ std::shared_ptr<const Scene> half_space(float albedo, float density) {
   return maker.build();
 }
 
-/// `density`: as in half_space(). `error`: the largest standard error that is accepted, relative to
-/// the reflectance.
+/// Expects the reflectance of the closed form. `density`: as in half_space(). `error`: the largest
+/// standard error that is accepted, relative to the reflectance.
 void expect_half_space(const Seen& seen, float density, double error, std::uint64_t samples) {
   const Ray ray{.origin = {0, 1 / density, 0},
                 .direction = {std::sqrt(1 - seen.mu * seen.mu), -seen.mu, 0}};
@@ -73,7 +73,7 @@ TEST(HalfSpace, ReflectanceIsThatOfTheHFunctionWithinAThousandth) {
   expect_half_space({0.8f, 0.5, 0.36796976}, 1, 1e-3, 16384);
 }
 
-/// A very dense medium, in units of the scene: the same result, and every path ends.
+/// A medium that is very dense in units of the scene gives the same result, and every path ends.
 TEST(HalfSpace, V3ReflectanceDoesNotDependOnDensity) {
   for (const float density : {1e6f, 1e10f}) {
     expect_half_space({0.8f, 1, 0.28525450}, density, 4e-3, 1024);

@@ -74,7 +74,7 @@ TEST(HiddenLamp, TheCameraSeesThroughIt) {
   }
 }
 
-// Mirrors show its emitting side and what is behind it.
+// Mirrors show the emitting side of a hidden lamp, and the light from behind the lamp.
 TEST(HiddenLamp, IsSeenInAMirror) {
   SceneMaker maker;
   add_square(maker, hidden_lamp(maker, 1));

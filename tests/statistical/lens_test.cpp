@@ -67,7 +67,7 @@ double share_of_lens(double radius, double distance, double aperture) {
 }
 
 TEST(Lens, ALightBeyondTheFocusIsADisk) {
-  // The last is visible from a millionth of the lens: of 8,192 rays, hardly one would hit it.
+  // The last light is visible from a millionth of the lens: of 8,192 rays, hardly one would hit it.
   for (const double radius : {0.1, 0.01, 3e-4}) {
     SceneMaker maker;
     maker.sphere({0, 0, -10}, radius, maker.lamp(7));
@@ -87,7 +87,7 @@ TEST(Lens, ALightBeforeTheFocusIsADisk) {
 
 void expect_the_same(const SceneMaker& maker, const PerspectiveCamera& camera,
                      std::uint64_t samples = 4096) {
-  // The middle, the edge of a disk, between disks, a corner.
+  // The places are the middle, the edge of a disk, a point between disks and a corner.
   for (const double place : {10.0, 10.7, 12.5, 19.5}) {
     const Moments sampled =
         seen(maker, camera, place, 20 - place, Technique::kLightSampling, samples);

@@ -203,7 +203,8 @@ TEST(MotionBlur, C9_AMovingEdgeIsALinearRamp) {
     }
   }
   // A point of a pixel is bright while the edge, at x = 5 + 10 t, is to the right of it. The
-  // expected value of a pixel is the share of the time in which its points are bright, as a mean.
+  // expected value of a pixel is the share of the time in which a point is bright, as a mean over
+  // its points.
   const auto integral = [](double x) {  // integral of clamp(x, 0, 10) / 10
     return x < 0 ? 0 : x < 10 ? x * x / 20 : x - 5;
   };

@@ -1,8 +1,8 @@
 #pragma once
 
 // Estimates the mean radiance along the rays of pixels that share the second vertices of their
-// paths (path reuse, renderlib/integrate/path_reuse.h), with standard errors. Otherwise as
-// radiance_along() in estimate.h.
+// paths (path reuse, renderlib/integrate/path_reuse.h), with standard errors. Everything else is as
+// in radiance_along() (estimate.h).
 
 #include <array>
 #include <vector>

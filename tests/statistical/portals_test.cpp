@@ -23,7 +23,8 @@ test::SceneMaker floor_under_sky() {
   return maker;
 }
 
-/// Expects the radiance along kDown by each technique, within 4 standard errors and 1e-3 of it.
+/// Expects the radiance along kDown by each technique, within 4 standard errors plus 1e-3 of its
+/// value.
 void expect_radiance(const Scene& scene, const Portals& portals, double radiance) {
   for (const Technique technique :
        {Technique::kBoth, Technique::kLightsOnly, Technique::kScatteringOnly}) {
@@ -49,7 +50,8 @@ TEST(PortalsInScenes, AUniformSkyHasItsClosedForm) {
 }
 
 TEST(PortalsInScenes, AGradientHasItsClosedForm) {
-  // radiance(d) = (1 + d.y) / 2 of the top: the mean of d.y by the cosine is 2/3.
+  // The radiance in direction d is (1 + d.y) / 2 times that of the top. The cosine-weighted mean of
+  // d.y is 2/3.
   test::SceneMaker maker = floor_under_sky();
   maker.background({0, 0, 0}, {3, 3, 3});
   expect_radiance(*maker.build(), some_portals(), 0.5 * 3 * (1 + 2.0 / 3) / 2);

@@ -1,6 +1,7 @@
 // Adaptive sampling of scenes in which few paths find light: pixels that found light and pixels
-// that found none have different noise estimates, but the image is unbiased. 64 seeds, a bias of at
-// most 3 standard errors (hard case A5 tests the same for pixels without a scene).
+// that found none have different noise estimates, but the image is unbiased. The tests take 64
+// seeds and accept a bias of at most 3 standard errors (hard case A5 tests the same for pixels
+// without a scene).
 
 #include <gtest/gtest.h>
 
@@ -23,8 +24,8 @@ using test::SceneMaker;
 constexpr TileGrid kGrid{128, 2};  // the image has 128 x 2 pixels
 constexpr std::uint64_t kSeeds = 64;
 
-/// Returns a camera that sees a strip of the floor from above, and a small lamp over one end of it.
-/// The renders below do not sample the lamp, so few paths find it.
+/// Returns a scene with a camera that sees a strip of the floor from above, and a small lamp over
+/// one end of it. The renders below do not sample the lamp, so few paths find it.
 SceneMaker strip(const Vec3& lamp, double radius) {
   SceneMaker maker;
   maker.camera({0, 2, 0}, {0, 0, 0.001}, 1);

@@ -22,7 +22,8 @@ using test::SceneMaker;
 
 constexpr double kThin[] = {1e-3, 1e-6, 1e-7, 1e-9};
 
-/// A ball of radius 1, squashed along one axis and stretched along another, rotated and moved.
+/// Returns the placement of a ball of radius 1 that is squashed by the factor `by` along one axis
+/// and stretched along another, rotated and moved.
 Transform squashed(double by) {
   return translation({0.3, -0.2, 0.1}) * rotation({1, 2, 3}, 40) * scaling({1, by, 3}) *
          rotation({2, 1, -1}, 70);

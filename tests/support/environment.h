@@ -1,6 +1,6 @@
 #pragma once
 
-// Test parameters from the environment.
+// Reads parameters of tests from environment variables.
 
 #include <cstdint>
 #include <cstdlib>

@@ -11,7 +11,7 @@
 namespace bandsaw::test {
 
 FullDisk::FullDisk(std::uint64_t bytes) {
-  std::signal(SIGXFSZ, SIG_IGN);  // so that the call fails instead
+  std::signal(SIGXFSZ, SIG_IGN);  // the write fails; otherwise this signal would end the process
   rlimit limit{};
   BANDSAW_CHECK(::getrlimit(RLIMIT_FSIZE, &limit) == 0, "a process may read its limits");
   before_ = limit.rlim_cur;

@@ -1,7 +1,8 @@
 #pragma once
 
 // Simulates a full disk by limiting the size of files that this process may write. So the write
-// itself fails, where it would fail on a full disk, but with EFBIG instead of ENOSPC.
+// itself fails, at the place where it would fail on a full disk. The error is EFBIG instead of
+// ENOSPC.
 
 #include <cstdint>
 

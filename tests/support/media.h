@@ -6,8 +6,8 @@
 
 namespace bandsaw::test {
 
-/// `absorption`, `scattering`: coefficients per unit of length, grey. `g`: of the phase function
-/// of Henyey and Greenstein.
+/// Returns a grey medium. `absorption`, `scattering`: coefficients per unit of length. `g`: the
+/// parameter of the phase function of Henyey and Greenstein.
 inline Medium medium(float absorption, float scattering, double g = 0) {
   return {.absorption = gray(absorption), .scattering = gray(scattering), .g = g};
 }

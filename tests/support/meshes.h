@@ -18,7 +18,8 @@ Mesh icosphere(int levels);
 /// stacks give needle-shaped triangles.
 Mesh rough_sphere(int slices, int stacks, double spread, std::uint64_t seed);
 
-/// `count` triangles with edges up to `size`, at random places of the cube [-1, 1]^3.
+/// `count` triangles around random places of the cube [-1, 1]^3. The corners of a triangle lie
+/// within a cube whose edges have the length `size`.
 Mesh triangle_soup(int count, double size, std::uint64_t seed);
 
 /// `moved` translates all vertices by `by`, `scaled` multiplies them by it, both in double; the

@@ -1,8 +1,9 @@
 #pragma once
 
-// A reference for tests of Accel, the renderer's BVH. It is as simple as possible:
-// brute force, or a binary tree of boxes in double, split at the median. It uses only the
-// double-precision intersection tests of renderlib/geometry.
+// A reference for tests of Accel, the renderer's BVH. It is as simple as possible: brute force, or
+// a binary tree of boxes in double, split at the median. It uses only the double-precision
+// intersection tests of renderlib/geometry. It supports spheres, quads, triangles, and meshes in
+// instances that do not move.
 
 #include <cstdint>
 #include <optional>

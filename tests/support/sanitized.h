@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether this build has a sanitizer, which makes every test several times slower.
+// Tells whether this build has a sanitizer, which makes every test several times slower.
 
 namespace bandsaw::test {
 

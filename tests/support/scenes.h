@@ -29,7 +29,7 @@ class SceneMaker {
   void camera(const Vec3& position, const Vec3& look_at, double vertical_fov);
   void background(const Rgb& bottom, const Rgb& top);
 
-  SceneDescription scene;  ///< for what has no call here
+  SceneDescription scene;  ///< for parts that have no call here
 
   /// The scene MUST be valid; otherwise the program is aborted.
   std::shared_ptr<const Scene> build() const;

@@ -8,7 +8,7 @@
 namespace bandsaw::test {
 
 /// Leases samples [0, 16) of the two rows from `first_row` of an image of 8 x 80 pixels. The
-/// manifest's digest is all zeros. `id`: of the lease; 7 is an arbitrary job.
+/// manifest's digest is all zeros. `id` is that of the lease. The job 7 is arbitrary.
 inline farm::ToWorker lease(std::uint64_t id, std::uint32_t first_row, std::uint64_t job = 7) {
   farm::ToWorker message;
   farm::Lease* l = message.mutable_lease();

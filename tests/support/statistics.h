@@ -30,7 +30,8 @@ class Moments {
 };
 
 /// Result of Pearson's chi-squared test of counts against expected counts with the same sum. All
-/// cells with an expected count below 5 are pooled into one.
+/// cells with an expected count below 5 are pooled into one. If this cell has an expected count
+/// below 5 too, it is left out. If it then has more than 20 counts, the statistic is infinite.
 struct ChiSquared {
   double statistic = 0;
   int degrees = 0;  ///< of freedom

@@ -39,12 +39,12 @@ class Browser {
   google::protobuf::Value run(const std::string& body, const std::string& argument = "");
   /// Returns the value of a JavaScript expression as text.
   std::string text(const std::string& expression);
-  /// Waits in the page until the expression is true. Returns false after three minutes.
+  /// Waits in the page until the expression is true. Returns false after 170 seconds.
   bool wait(const std::string& expression);
   /// Elements are given by a CSS selector.
   void click(const std::string& selector);
   void type(const std::string& selector, const std::string& keys);
-  /// From now on, requests for addresses that match the pattern fail, as in "*.png"; "": none.
+  /// Lets requests fail from now on if their address matches the pattern, as in "*.png"; "": none.
   void block(const std::string& pattern);
   /// Writes a PNG of the window's content to the file.
   void screenshot(const std::string& path);

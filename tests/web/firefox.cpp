@@ -34,7 +34,8 @@ Struct parsed(const std::string& json) {
   return out;
 }
 
-/// Returns the port that Firefox has written into its profile; 0: it did not within a minute.
+/// Returns the port that Firefox has written into its profile; 0: Firefox did not write it within a
+/// minute.
 int port_in(const std::string& profile) {
   for (int i = 0; i < 600; ++i) {
     int port = 0;

@@ -33,7 +33,7 @@ class Firefox {
   google::protobuf::Value run(const std::string& body);
   /// Returns an expression's value as text.
   std::string text(const std::string& expression);
-  /// Waits in the page until the expression is true. Returns false after three minutes.
+  /// Waits in the page until the expression is true. Returns false after 170 seconds.
   bool wait(const std::string& expression);
   /// Returns the process from which all others of this Firefox descend.
   pid_t pid() const { return firefox_->pid(); }

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the processes that descend from `parent`, and itself.
+/// Returns `parent` and all processes that descend from it.
 std::vector<pid_t> family(pid_t parent) {
   std::multimap<pid_t, pid_t> children;
   for (const auto& entry : fs::directory_iterator("/proc")) {
@@ -72,7 +72,7 @@ void start(Kind& tab, int cores) {
       << tab.text("document.body.innerText");
 }
 
-/// Waits until the tab has rendered a row; returns false after three minutes.
+/// Waits until the tab has rendered a row; returns false after 170 seconds.
 template <class Kind>
 bool has_rendered(Kind& tab) {
   return tab.wait("Number(document.body.dataset.rows) > 0");
@@ -260,8 +260,8 @@ TEST_F(BothBrowsersTest, ChromiumAndFirefoxGiveTheBytesOfANativeWorker) {
   expect_same_bytes(client, what);
 }
 
-/// The coordinator, a native worker, the tab and a user are on a machine each, a network namespace
-/// with a cable of its own. The dashboard is not on loopback, so tabs reach it by TLS.
+/// The coordinator, a native worker, the tab and a user are each on a machine of its own, which is
+/// a network namespace with a cable. The dashboard is not on loopback, so tabs reach it by TLS.
 template <class Kind>
 class PulledCableTest : public JoinTest<Kind> {
  protected:
@@ -279,8 +279,8 @@ class PulledCableTest : public JoinTest<Kind> {
     visit_ = this->hosts_->visit("tab");
   }
 
-  /// Pulls the cable of a tab that renders, and waits until both ends have noticed: its leases are
-  /// over.
+  /// Pulls the cable of a tab that renders, and waits until both ends have noticed. Then the leases
+  /// of the tab are over.
   void pull_cable(Kind& tab) {
     this->hosts_->unplug("tab");
     const std::regex lost("@browser.*(closed|disconnected|answers no more)");
@@ -291,7 +291,7 @@ class PulledCableTest : public JoinTest<Kind> {
     ASSERT_TRUE(tab.wait("document.body.dataset.phase === 'connecting'"));
   }
 
-  std::unique_ptr<Hosts::Visit> visit_;  ///< of the test, which drives the browser from there
+  std::unique_ptr<Hosts::Visit> visit_;  ///< the test drives the browser from the tab's machine
 };
 
 TYPED_TEST_SUITE(PulledCableTest, Kinds, KindName);
@@ -322,8 +322,8 @@ TYPED_TEST(PulledCableTest, AJobGoesOnWithoutATabThatReturnsForTheNext) {
   this->expect_same_bytes(client, next);
 }
 
-/// Returns the WebAssembly module with another bound of its memory: `pages` of 64 KiB. The number
-/// keeps its length in bytes.
+/// Returns the WebAssembly module with another bound of its memory: `pages` of 64 KiB. The encoding
+/// of the number keeps its length in bytes.
 std::string with_memory(std::string module, std::uint32_t pages) {
   std::size_t at = 8;
   const auto number = [&] {  // LEB128
