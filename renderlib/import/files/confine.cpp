@@ -66,6 +66,9 @@ constexpr std::array kForbidden = {
     SYS_process_vm_readv,
     SYS_process_vm_writev,
     SYS_kill,
+    SYS_tkill,
+    SYS_rt_sigqueueinfo,
+    SYS_rt_tgsigqueueinfo,
     SYS_pidfd_open,
     SYS_pidfd_getfd,
     SYS_pidfd_send_signal,
@@ -121,6 +124,12 @@ std::vector<sock_filter> program() {
       jump(kEqual, SYS_clone, 0, 4),
       statement(kLoad, offsetof(seccomp_data, args)),
       jump(kAnyBit, CLONE_THREAD, 1, 0),
+      answer(EPERM),
+      statement(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+      // abort() and pthread_kill() send signals with tgkill, to threads of this process.
+      jump(kEqual, SYS_tgkill, 0, 4),
+      statement(kLoad, offsetof(seccomp_data, args)),
+      jump(kEqual, static_cast<std::uint32_t>(getpid()), 1, 0),
       answer(EPERM),
       statement(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
   };

@@ -20,7 +20,7 @@ struct Confinement {
 
 /// Confines this process; cannot be undone. Sets resource limits and forbids core dumps and new
 /// privileges. With seccomp, calls for network, new programs, new processes, signals to other
-/// processes (kill, pidfd_send_signal) and access to them fail with EPERM. If the kernel has
+/// processes and access to them fail with EPERM. If the kernel has
 /// Landlock (5.13), only the two folders are accessible. A kernel without Landlock is not an error:
 /// then SceneFolder alone restricts which files are opened. Returns the system's error.
 absl::Status confine_this_process(const Confinement& to);

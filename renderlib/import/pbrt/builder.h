@@ -127,8 +127,6 @@ absl::Status add_shape(const std::string& type, const Parameters& parameters, co
                        Builder& builder);
 absl::Status add_light(const std::string& type, const Parameters& parameters, const State& state,
                        Builder& builder);
-absl::Status set_camera(const std::string& type, const Parameters& parameters,
-                        const Transforms& to_camera, Builder& builder);
 
 /// Returns a texture of colours by a parameter that is a colour or names a texture.
 absl::StatusOr<scene::Texture> color_texture(const Parameters& parameters, const std::string& name,

@@ -63,6 +63,13 @@ TEST(Confine, LeavesNoNetworkNoProgramsAndNoProcesses) {
             EPERM);
   EXPECT_EQ(confined(folders, [] { return fork() < 0 ? errno : 0; }), EPERM);
   EXPECT_EQ(confined(folders, [] { return kill(getppid(), 0) < 0 ? errno : 0; }), EPERM);
+  EXPECT_EQ(confined(folders, [] { return syscall(SYS_tkill, getppid(), 0) < 0 ? errno : 0; }),
+            EPERM);
+  const auto signal_thread = [](pid_t process) {
+    return syscall(SYS_tgkill, process, process, 0) < 0 ? errno : 0;
+  };
+  EXPECT_EQ(confined(folders, [&] { return signal_thread(getppid()); }), EPERM);
+  EXPECT_EQ(confined(folders, [&] { return signal_thread(getpid()); }), 0);
 }
 
 TEST(Confine, StillAllowsThreadsAndMemory) {
