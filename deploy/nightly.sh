@@ -128,7 +128,7 @@ part_machines() {
 
 part_calibration() {
   preset release bandsaw bandsaw-import bandsaw-gallery &&
-    tests/statistical/calibrate.sh --minutes "$calibration_minutes" build/release/bin/bandsaw build/calibration
+    tests/statistical/calibrate.sh build/release/bin/bandsaw build/calibration --minutes "$calibration_minutes"
 }
 
 count() { sed -n "$1" "$2" | awk '{ sum += $1 } END { print sum + 0 }'; }
