@@ -64,12 +64,11 @@ constexpr std::uint32_t kLongChain = 8;
 constexpr double kSurvival = 0.75;
 
 /// Follows the photon, which has left an origin, and adds it to `out` at each receiver: at the
-/// first one with `of_first` times its power, or not at all if that is 0.
+/// first one with `share` times its power, or not at all if that is 0.
 void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler& sampler,
-            std::uint64_t number, Ray ray, Rgb power, float of_first, TracedPhotons& out) {
+            std::uint64_t number, Ray ray, Rgb power, float share, TracedPhotons& out) {
   NestedDielectrics nesting;
   std::uint32_t uncounted = 0;  // scatterings that do not count towards max_depth
-  float share = of_first;
   for (std::uint32_t chain = 1; chain - uncounted < sources.max_depth && uncounted < kMaxUncounted;
        ++chain) {
     const std::optional<SurfacePoint> hit =
@@ -160,25 +159,25 @@ TracedPhotons trace_indirect_photons(const Scene& scene, const PhotonSources& so
   TracedPhotons out;
   for (std::uint64_t first = chunk.first, next = first; first < chunk.last; first = next) {
     const std::size_t chosen = origin_of(first);
+    ++next;
     while (next < chunk.last && origin_of(next) == chosen) {
       ++next;
     }
     const PhotonOrigin& origin = origins[chosen];
     const std::optional<Place> place = place_of(scene, sources, of_origins, origin.number);
     const Rgb power = origin.power * static_cast<float>(each / luminance(origin.power));
+    // Photons with one direction arrive at the same point: there the first stands for all.
+    // Otherwise their density would be infinite, and their disks points.
+    float share = origin.diffuse ? 1 : static_cast<float>(next - first);
     for (std::uint64_t number = first; number < next; ++number) {
       const Sample4 toward = sampler.group(number, kGroupCamera);
       const std::optional<Vec3> direction =
           origin.diffuse ? direction_from(place->normal, toward[0], toward[1]) : place->direction;
-      // Photons with one direction arrive at the same point: there the first stands for all.
-      // Otherwise their density would be infinite, and their disks points.
-      const auto of_first = static_cast<float>(origin.diffuse    ? 1
-                                               : number == first ? next - first
-                                                                 : 0);
       if (direction) {
-        follow(scene, sources, sampler, number, spawn_ray(place->point, *direction), power,
-               of_first, out);
+        follow(scene, sources, sampler, number, spawn_ray(place->point, *direction), power, share,
+               out);
       }
+      share = origin.diffuse ? 1 : 0;
     }
   }
   return out;

@@ -99,6 +99,7 @@ struct Case {
   std::string name;
   SceneMaker maker;
   std::uint32_t max_depth = 8;
+  std::uint32_t maps = 12;
 };
 
 /// A room whose lamp lights only a spot of its ceiling, so that many photons start at each point
@@ -127,7 +128,11 @@ std::vector<Case> cases() {
   rough.quad({-1.9, -1.9, -1.9}, {3.8, 0, 0}, {0, 3.8, 0}, rough.metal(0.9f, 0.8));
   SceneMaker& coat = add("walls with a smooth coat").maker;
   coat.scene.materials.front() = Plastic{.reflectance = TextureId{0}};
-  SceneMaker& spot = all.emplace_back(Case{"a lit spot of a rough coat", room_with_a_spot()}).maker;
+  // Few points are lit, so the brightness differs from map to map.
+  SceneMaker& spot =
+      all.emplace_back(
+             Case{.name = "a lit spot of a rough coat", .maker = room_with_a_spot(), .maps = 16})
+          .maker;
   spot.scene.materials.front() =
       Plastic{.reflectance = TextureId{0}, .surface = {.alpha_u = 0.4, .alpha_v = 0.4}};
   SceneMaker& screen = add("a half transparent screen").maker;
@@ -151,10 +156,10 @@ TEST(IndirectPhotons, ChangeNoMean) {
     const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{1.2, 1, -1.5})};
     test::expect_same_mean(*scene, sources, ray,
                            {.max_depth = of.max_depth,
-                            .maps = 12,
+                            .maps = of.maps,
                             .paths = 4096,
                             .photons = 1 << 15,
-                            .max_deviation = 0.06});
+                            .max_deviation = 0.05});
   }
 }
 
