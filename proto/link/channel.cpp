@@ -81,8 +81,7 @@ absl::StatusOr<Connected> connect_plain(const std::string& address, const Deadli
   Connected connected = open_channels(address, grpc::InsecureChannelCredentials(), false);
   while (!connected.control->WaitForConnected(std::chrono::system_clock::now() +
                                               Deadline::kInterval)) {
-    if (std::chrono::steady_clock::now() >= deadline.end ||
-        (deadline.stopped && deadline.stopped())) {
+    if (std::chrono::steady_clock::now() >= deadline.end || deadline.is_stopped()) {
       return absl::UnavailableError(
           "the server there does not speak plaintext gRPC: was the coordinator started with "
           "--insecure?");
@@ -105,11 +104,11 @@ absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseco
   // farm.
   bool wrong_elsewhere = false;
   for (const std::string& address : join.addresses) {
-    if (stopped && stopped()) {
+    const Deadline deadline{std::chrono::steady_clock::now() + timeout, stopped};
+    if (deadline.is_stopped()) {
       reasons.push_back("interrupted");
       break;
     }
-    const Deadline deadline{std::chrono::steady_clock::now() + timeout, stopped};
     absl::StatusOr<Socket> socket = Socket::connect(address, deadline);
     if (!socket.ok()) {
       reasons.push_back(absl::StrCat(address, ": ", socket.status().message()));

@@ -39,7 +39,7 @@ absl::Status wait_for(int fd, short events, const Deadline& deadline) {
     if (ready < 0 && errno != EINTR) {
       return unavailable(errno);
     }
-    if (deadline.stopped && deadline.stopped()) {
+    if (deadline.is_stopped()) {
       return absl::UnavailableError("interrupted");
     }
     if (ready == 0 && left <= slice) {

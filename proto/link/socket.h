@@ -19,6 +19,8 @@ struct Deadline {
   static constexpr std::chrono::milliseconds kInterval{100};
   std::chrono::steady_clock::time_point end;
   std::function<bool()> stopped = {};
+
+  bool is_stopped() const { return stopped && stopped(); }
 };
 
 /// Owns a connected, non-blocking socket. Every wait ends at the deadline with UNAVAILABLE. Only

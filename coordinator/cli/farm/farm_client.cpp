@@ -88,25 +88,16 @@ absl::Status FarmClient::try_once(milliseconds deadline,
 }
 
 absl::Status FarmClient::call(milliseconds deadline,
-                              const std::function<grpc::Status(grpc::ClientContext&)>& body) {
-  absl::Status status = try_once(deadline, body);
+                              const std::function<grpc::Status(grpc::ClientContext&)>& body,
+                              bool starts_job) {
+  absl::Status status = try_once(deadline, body, !starts_job);
+  bool was_unknown = false;
   for (int tries = 1; tries < kTries && outcome_unknown(status); ++tries) {
+    was_unknown = true;
     pause(kRetryPause);
-    status = try_once(deadline, body);
+    status = try_once(deadline, body, !starts_job);
   }
-  return given_up(status);
-}
-
-absl::Status FarmClient::call_to_start(
-    milliseconds deadline, const std::function<grpc::Status(grpc::ClientContext&)>& body) {
-  absl::Status status = try_once(deadline, body, false);
-  bool may_have_started = false;
-  for (int tries = 1; tries < kTries && outcome_unknown(status); ++tries) {
-    may_have_started = true;
-    pause(kRetryPause);
-    status = try_once(deadline, body, false);
-  }
-  return may_have_started && absl::IsCancelled(status)
+  return starts_job && was_unknown && absl::IsCancelled(status)
              ? absl::CancelledError(
                    "interrupted before the farm answered; if it has accepted the "
                    "job, `bandsaw jobs` lists it")
@@ -143,9 +134,10 @@ absl::StatusOr<std::vector<FarmClient::MissingBlob>> FarmClient::missing_blobs(
 
 absl::StatusOr<JobId> FarmClient::submit(const farm::SubmitRequest& request) {
   farm::SubmitReply reply;
-  RETURN_IF_ERROR(call_to_start(kCallTimeout, [&](grpc::ClientContext& context) {
+  const auto body = [&](grpc::ClientContext& context) {
     return control_->Submit(&context, request, &reply);
-  }));
+  };
+  RETURN_IF_ERROR(call(kCallTimeout, body, true));
   return reply.job();
 }
 

@@ -152,14 +152,11 @@ class FarmClient {
 
   /// Calls `body` with a new context for each attempt, at most kTries times, while the farm does
   /// not answer within `deadline`.
+  /// If the call starts a job, stop() ends only the pauses between attempts; after an attempt whose
+  /// outcome is unknown, the message of CANCELLED then says where the user finds the job.
   absl::Status call(std::chrono::milliseconds deadline,
-                    const std::function<grpc::Status(grpc::ClientContext&)>& body) EXCLUDES(mutex_);
-  /// The same for calls that start a job: stop() ends only the pauses between attempts. If stop()
-  /// is called after an attempt whose outcome is unknown, the message of CANCELLED says where the
-  /// user finds the job.
-  absl::Status call_to_start(std::chrono::milliseconds deadline,
-                             const std::function<grpc::Status(grpc::ClientContext&)>& body)
-      EXCLUDES(mutex_);
+                    const std::function<grpc::Status(grpc::ClientContext&)>& body,
+                    bool starts_job = false) EXCLUDES(mutex_);
   /// Streams have no deadline, because large transfers take long. gRPC's keepalive detects a dead
   /// connection.
   static constexpr std::chrono::milliseconds kNoDeadline{0};

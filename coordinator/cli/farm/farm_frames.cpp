@@ -16,9 +16,10 @@ constexpr std::chrono::milliseconds kTimeout{20'000};
 
 absl::StatusOr<JobId> FarmClient::submit_sequence(const farm::SubmitSequenceRequest& request) {
   farm::SubmitReply reply;
-  RETURN_IF_ERROR(call_to_start(kTimeout, [&](grpc::ClientContext& context) {
+  const auto body = [&](grpc::ClientContext& context) {
     return control_->SubmitSequence(&context, request, &reply);
-  }));
+  };
+  RETURN_IF_ERROR(call(kTimeout, body, true));
   return reply.job();
 }
 
