@@ -1,6 +1,6 @@
-// For each strip of the image: prepares planes, filters them with a narrow and a wide filter
-// (fit.h), estimates the squared error of both and of the rendered value (squared_error.h), and
-// blends the three by these errors (Selection).
+// For each strip of the image, denoise() prepares planes, filters them with a narrow and a wide
+// filter (fit.h), estimates the squared error of both and of the rendered value (squared_error.h),
+// and blends the three by these errors (Selection).
 //
 // The samples of each pixel are divided into two parts. Their means are the two halves of the
 // image, and `first_share` is the share of the first part in a pixel's samples. Each half is

@@ -7,8 +7,8 @@
 
 namespace bandsaw {
 
-/// Returns the mean of the second part of the samples. Pixels whose share is not in (0, 1) are
-/// those of `input.mean`.
+/// Returns the mean of the second part of the samples. Pixels whose `first_share` is not in (0, 1)
+/// have the value of `input.mean`.
 Image second_part(const DenoiseInput& input);
 
 /// Returns `clean` with an estimate of its error. `clean_first` and `clean_second` are the two

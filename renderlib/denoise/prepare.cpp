@@ -42,7 +42,7 @@ SplitPlane plane_of(const MapSize& size, Pool& pool, F f) {
   return plane;
 }
 
-/// The two halves; 0 where `valid` is 0.
+/// The two halves. Their values are 0 where `valid` is 0.
 struct Parts {
   std::array<std::vector<Channels>, 2> values;
   Map valid;
@@ -139,7 +139,7 @@ FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const R
   out.width = size.width;
   out.height = size.height;
   Map noise(size.pixels());   // squared differences of the halves, then their mean around a pixel
-  Map around(size.pixels());  // mean of the channels, then the same around a pixel
+  Map around(size.pixels());  // mean of the channels, then its mean around a pixel
   {
     Parts parts = parts_of(input, first_pixel, size);
     const std::array halves{limited(parts.values[0], parts.values[1], size, pool),

@@ -1,7 +1,7 @@
 // Fits the balls of a cell (guiding_cell.h) to its records. The directions of the light, as seen
 // from the cell's middle, begin as one cluster; clusters are split as long as that explains the
-// records better. Each becomes a ball. Then cross-validation finds the share of the directions that
-// should be sampled towards the balls.
+// records better. Each cluster becomes a ball. Then cross-validation finds the share of the
+// directions that should be sampled towards the balls.
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +21,8 @@ constexpr std::size_t kMinRecordsOfBall = 6;
 /// Shares of guided directions to choose from.
 constexpr std::array<double, 4> kShares = {0.125, 0.25, 0.375, 0.5};
 
-/// Wider cones, as 1 - cos of the half-angle, are left to the BSDF: much of them would lie below
-/// the surface.
+/// 1 - cos of the half-angle of the widest cone. Wider cones are left to the BSDF, because much of
+/// them would lie below the surface.
 constexpr double kWidest = 0.5;
 
 /// A single record has at most this share of a cell's light: a path that found a small lamp by
@@ -55,7 +55,7 @@ struct Cluster {
 
 /// A split of a cluster into directions whose component `axis` is below `at`, and the others.
 struct Split {
-  double gain = 0;  ///< of the sum of the scores; 0: there is no split
+  double gain = 0;  ///< increase of the sum of the scores; 0: there is no split
   int axis = 0;
   double at = 0;
 };
@@ -231,8 +231,9 @@ Split best_split(const Place& place, absl::Span<Seen> seen, const Cluster& clust
   return best;
 }
 
-/// Splits the cluster whose split gains most until none gains or there are enough. A cluster that
-/// is split keeps a part of its weight: between its parts, light is as likely as around them.
+/// Splits clusters, each time the one whose split gains most, until no split gains or there are
+/// enough clusters. A cluster that is split keeps a part of its weight, because light is as likely
+/// between its parts as around them.
 std::vector<Cluster> clusters_of(const Place& place, absl::Span<Seen> seen) {
   double squares = 0;  // the weights sum to 1
   for (const Seen& one : seen) {

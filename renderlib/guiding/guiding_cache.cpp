@@ -1,5 +1,5 @@
-// Keeps the newest fields and maps. A thread that needs one which another thread is making waits
-// for it.
+// Keeps the newest fields and maps. While one thread makes a field or maps, other threads that call
+// the cache wait.
 
 #include "renderlib/guiding/guiding_cache.h"
 

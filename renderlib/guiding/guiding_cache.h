@@ -56,8 +56,8 @@ struct PhotonMapKey {
 struct TracedMaps {
   PhotonMap caustics;  ///< empty if caustics are left to paths
   PhotonMap indirect;  ///< light that receivers scattered (integrate/indirect_photons.h)
-  /// In scene units: a path takes indirect light from the map if its length since the last receiver
-  /// is at least this. 0 if the map is empty; then it is never used.
+  /// A path takes indirect light from the map if its length since the last receiver is at least
+  /// this distance, in scene units. It is 0 and not used if the map is empty.
   double gather_distance = 0;
   /// Effective number of the points at which the photons of `indirect` start: the squared sum of
   /// their powers over the sum of the squares (Kish 1965, "Survey Sampling").
@@ -70,7 +70,7 @@ struct TracedMaps {
   std::size_t bytes() const { return caustics.bytes() + indirect.bytes(); }
 };
 
-/// Thread-safe.
+/// The fields and maps of one scene. All functions may be called from any thread.
 class GuidingCache {
  public:
   using Trained = std::shared_ptr<const TrainedGuiding>;
@@ -87,8 +87,8 @@ class GuidingCache {
  private:
   /// Number of fields that are kept. When there are more, the oldest one is dropped.
   static constexpr std::size_t kMaxFields = 4;
-  /// Memory of the maps that are kept, in bytes. When they have more, the oldest are dropped,
-  /// except the newest one.
+  /// Maximum memory of the maps that are kept, in bytes. When they take more, the oldest maps are
+  /// dropped. The newest map is always kept.
   static constexpr std::size_t kMaxMapBytes = std::size_t{512} << 20;
   struct FieldEntry {
     GuidingKey key;

@@ -27,12 +27,12 @@ struct GuidingBall {
   float weight = 0;  ///< share of the light, > 0; the weights of a cell sum to 1 at most
 };
 
-/// Made by fit_cell(); a GuidingField (guiding_field.h) holds many.
+/// fit_cell() makes a cell, and a GuidingField (guiding_field.h) holds many cells.
 struct GuidingCell {
   std::uint32_t count = 0;  ///< number of balls
   float irradiance = 0;     ///< at the place, estimated from the cell's records
-  /// Probability with which a direction is best sampled towards the balls if there is no other
-  /// light, in [0, 1/2]; otherwise it is sampled from the BSDF.
+  /// Probability, in [0, 1/2], with which a direction is best sampled towards the balls if there is
+  /// no other light. The other directions are sampled from the BSDF.
   float share = 0;
   /// Expected second moment of a sampled direction's contribution at a diffuse surface without
   /// guiding, in units of the squared mean. Estimated from light that was left out of the fit.
@@ -41,9 +41,9 @@ struct GuidingCell {
   std::array<GuidingBall, kMaxBalls> balls;
 };
 
-/// Returns the cell that fits the records, which are of one kind and whose normals are similar; one
-/// without balls if they are too few or too unequal. The result depends on nothing but the records
-/// and their order.
+/// Returns the cell that fits the records. They are of one kind, and their normals are similar. If
+/// the records are too few or too unequal, the cell has no balls. The result depends on nothing but
+/// the records and their order.
 GuidingCell fit_cell(absl::Span<const GuidingRecord> records);
 
 /// The cells that guide the directions at a point: one fitted to paths and one fitted to photons.

@@ -60,7 +60,7 @@ void GuidingCones::add(const GuidingCell& cell, double share, const Vec3& positi
     const double radius = ball.radius;
     const double distance2 = length_squared(to);
     const double sin2 = radius * radius / distance2;
-    // Left out: balls around the point, and balls that are wholly below the surface.
+    // Balls around the point, and balls that are wholly below the surface, are left out.
     if (!(sin2 < 1) || dot(to, normal) <= -radius) {
       continue;
     }

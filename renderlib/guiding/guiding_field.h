@@ -15,8 +15,9 @@
 
 namespace bandsaw {
 
-/// A binary tree over space. Each leaf has up to six cells (guiding_cell.h), by the main direction
-/// of the surface's normal. All are fitted to one kind of records: paths or photons.
+/// A binary tree over space. Each leaf has up to six cells (guiding_cell.h), one for each main
+/// direction of the surface's normal. All cells of a tree are fitted to one kind of records: paths
+/// or photons.
 class GuidingTree {
  public:
   /// A node is divided further while its effective number of records is above this: the square of

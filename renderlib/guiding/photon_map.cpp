@@ -1,3 +1,7 @@
+// The constructor finds the radii of the photons' disks in a temporary tree of places
+// (with_disks()). Then it builds the tree of boxes in which visit() finds the disks that contain a
+// point.
+
 #include "renderlib/guiding/photon_map.h"
 
 #include <algorithm>
@@ -24,7 +28,7 @@ constexpr int kMaxTreeDepth = 48;
 /// of the length.
 constexpr double kFirstPart = 3.0 / 8;
 /// In even places (see below) of at most kMostOfEven photons, each disk has the part kPartOfEven of
-/// the area of its place.
+/// the area of its place, but at least the area that kPhotonsOfDisk photons occupy.
 constexpr std::uint32_t kMostOfEven = 1024;
 constexpr double kPartOfEven = 1.0 / 4;
 // A place is even if its photons are as good as uniform on a flat surface. Two conditions hold in
@@ -121,7 +125,7 @@ void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::ui
   const absl::Span<const StoredPhoton> own(photons.data() + first, last - first);
   const Box box = box_of(own);
   Place place{.first = first, .last = last, .area = area, .normal = {}};
-  // Photons at one point tell no area.
+  // If all photons are at one point, they do not tell an area.
   if (own.size() >= kEnough && area_of(box) > 0) {
     // The outermost photons lie on the sides of the box, so it holds about one photon less.
     place.area = area_of(box) / static_cast<double>(own.size() - 1);

@@ -1,9 +1,9 @@
 #pragma once
 
-// Openings through which the background lights a room, for example windows. Light sampling of the
-// background chooses a direction through one of them, uniformly by solid angle (Bitterli, Novák and
-// Jarosz 2015, "Portal-Masked Environment Map Sampling", section 2: portals), in place of
-// directions that mostly end at a wall.
+// Openings through which the background lights a room, for example windows. At a surface, path
+// tracing also samples a direction through one of them, uniformly by solid angle (Bitterli, Novák
+// and Jarosz 2015, "Portal-Masked Environment Map Sampling", section 2: portals), because most
+// other directions end at a wall.
 
 #include <array>
 #include <cstdint>
@@ -26,7 +26,7 @@ struct Portal {
   bool passes(const Vec3& from, const Vec3& direction) const;
 };
 
-/// The portals of a scene; immutable. Without portals it samples nothing.
+/// The portals of a scene; immutable. If there are none, nothing is sampled.
 class Portals {
  public:
   static constexpr std::size_t kMaxPortals = 8;
@@ -37,23 +37,23 @@ class Portals {
   };
 
   Portals() = default;
-  /// There are at most kMaxPortals.
+  /// `portals` MUST have at most kMaxPortals elements.
   explicit Portals(std::vector<Portal> portals) : portals_(std::move(portals)) {}
 
   bool empty() const { return portals_.empty(); }
   const std::vector<Portal>& portals() const { return portals_; }
 
-  /// Returns a direction from `from` through one of the portals; std::nullopt if it sees none of
-  /// them, as its solid angle is too small. choice, u, v in [0, 1).
+  /// Returns a direction from `from` through one of the portals; std::nullopt if none is seen from
+  /// there, because the solid angle of each is too small. choice, u, v in [0, 1).
   std::optional<Sample> sample(const Vec3& from, double choice, double u, double v) const;
   /// Returns the pdf, by solid angle, with which sample() returns this unit direction.
   double pdf(const Vec3& from, const Vec3& direction) const;
 
  private:
-  /// The portals as seen from a point: solid angles, 0 if one is not seen.
+  /// The portals as seen from a point. `rectangles` has std::nullopt for a portal that is not seen.
   struct View {
     std::array<std::optional<SphericalRectangle>, kMaxPortals> rectangles;
-    double solid_angle = 0;  ///< of all
+    double solid_angle = 0;  ///< sum over the portals that are seen
   };
   View view_from(const Vec3& from) const;
   /// Returns the number of portals of the view through which the ray passes.

@@ -15,8 +15,8 @@ namespace {
 constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 18;
 
 /// Metals rougher than this are no casters, because they cast no sharp light. A material that
-/// blends several kinds of surface is a caster if its factor of metal or of transmission is above
-/// this.
+/// blends several kinds of surface is a caster if its roughness is at most this and its factor of
+/// metal is above this. A Principled material may have a factor of transmission above this instead.
 constexpr double kRoughest = 0.5;
 
 bool is_caster(const Material& material) {

@@ -28,8 +28,8 @@ class Casters {
   bool casts(MaterialId id) const { return casting_[index_of(id)]; }
 
   /// Returns a point at this time: first a material is chosen, each with the same probability, then
-  /// a point of its surfaces. The numbers and the result are those of SurfaceSampler::sample().
-  /// There MUST be casters.
+  /// a point of its surfaces. `material` is in [0, 1); the other numbers and the result are those
+  /// of SurfaceSampler::sample(). There MUST be casters.
   std::optional<SurfaceSample> sample(double material, double primitive, double u, double v,
                                       double time) const;
 

@@ -13,9 +13,9 @@
 
 namespace bandsaw {
 
-/// Traces paths from the camera, and returns the portals of the rays that leave their surfaces. A
-/// pure function of the scene and the shape of the image. Returns std::nullopt if stopped. Adds the
-/// number of rays to `traced`.
+/// Traces paths from the camera, and returns the portals of the rays that leave their surfaces. The
+/// result is a pure function of the scene and of the width and height of the image. Returns
+/// std::nullopt if stopped, otherwise adds the number of rays to `traced`.
 std::optional<Portals> find_portals(const Scene& scene, const GuidingKey& key,
                                     const Preparation& preparation, std::uint64_t& traced);
 

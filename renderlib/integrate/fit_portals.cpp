@@ -1,8 +1,8 @@
-// Portals are found one after the other. Candidates are rectangles in planes: those of the walls,
-// and in each direction the plane in which the crossings of the escaping rays are closest together,
-// as in an opening without a wall. A plane may have several openings, so its crossings are divided
-// where they have gaps. The best rectangle of all becomes a portal, and the search goes on with the
-// rays that do not pass through it.
+// Portals are found one after the other. Candidates are rectangles in planes. These are the planes
+// of the walls and, in each direction, the plane in which the crossings of the escaping rays are
+// closest together, as in an opening without a wall. A plane may have several openings, so its
+// crossings are divided where they have gaps. The best rectangle of all becomes a portal, and the
+// search goes on with the rays that do not pass through it.
 
 #include "renderlib/integrate/fit_portals.h"
 
@@ -18,7 +18,8 @@ namespace {
 
 /// Fewer escaping rays do not tell where an opening is.
 constexpr std::size_t kMinRays = 24;
-/// At least this part of the rays towards a portal escapes, and this many times the part of all.
+/// At least the part kMinPrecision of the rays towards a portal escapes. This part is also at least
+/// kMinLift times the part of all rays that escape.
 constexpr double kMinPrecision = 0.35;
 constexpr double kMinLift = 3;
 /// A portal has at least this part of the escaping rays.
@@ -27,31 +28,33 @@ constexpr double kMinPart = 0.04;
 /// Normals of planes are searched among the axes and the most frequent normals of the surfaces.
 constexpr std::size_t kMaxNormals = 9;
 constexpr double kSameDirection = 0.9995;
-/// The largest walls are considered, so many in each direction, that have at least this part of the
-/// rays. The offsets of the surfaces of a wall differ by at most this part of the scene's size from
-/// one to the next.
+/// In each direction, the kMaxWalls largest walls are considered, if more than the part
+/// kMinPartOfWall of the rays start there. From one surface of a wall to the next, the offset
+/// differs by at most the part kThickness of the scene's size.
 constexpr std::size_t kMaxWalls = 8;
 constexpr double kMinPartOfWall = 0.005;
 constexpr double kThickness = 1e-4;
-/// Openings may lie outside the places from which rays start by this part of the scene's size.
+/// Openings may lie outside the box of the places from which rays start, by at most this part of
+/// the scene's size.
 constexpr double kMarginOfBox = 0.01;
 /// Rays at a smaller cosine to the normal do not decide where the plane is.
 constexpr double kMinCosine = 0.1;
 
-/// This part of the crossings may lie outside the rectangle on each of its four sides: there may be
-/// other openings.
+/// This part of the crossings may lie outside the rectangle on each of its four sides, because it
+/// may belong to other openings.
 constexpr double kTrimmed = 0.01;
 /// Crossings are divided where a gap is this part of their extent.
 constexpr double kGap = 0.15;
 /// Crossings beside the rectangle by up to this part of its size belong to the same opening.
 constexpr double kBeside = 0.05;
-/// A portal is larger than the rectangle of its crossings by this part on each side, and by so many
-/// times the mean distance between the crossings of neighbouring rays along it.
+/// A portal is larger than the rectangle of its crossings. On each side, the part kMargin of the
+/// size is added, and kMarginInRays times the mean distance between the crossings of neighbouring
+/// rays along that size.
 constexpr double kMargin = 0.01;
 constexpr double kMarginInRays = 4;
 
-/// A family of parallel planes: unit vectors, perpendicular to each other. Rays cross them along
-/// `normal`.
+/// A family of parallel planes, described by unit vectors that are perpendicular to each other.
+/// Rays cross the planes in the direction of `normal`.
 struct Planes {
   Vec3 normal;
   Vec3 u;
@@ -76,7 +79,8 @@ struct Rectangle {
   double area() const { return u.size() * v.size(); }
 };
 
-/// Returns the distance at which the ray crosses the plane; negative: the plane is behind it.
+/// Returns the distance at which the ray crosses the plane. It is negative if the plane is behind
+/// the ray's origin.
 double distance_to(const ScatteredRay& ray, const Planes& planes, double offset) {
   return (offset - dot(ray.origin, planes.normal)) / dot(ray.direction, planes.normal);
 }
@@ -86,7 +90,8 @@ double crossing(const ScatteredRay& ray, const Planes& planes, double offset, co
   return dot(ray.origin, axis) + distance_to(ray, planes, offset) * dot(ray.direction, axis);
 }
 
-/// Returns the interval of the values without a part on each side. Reorders the values.
+/// Returns the interval of the values, without the part `part` of the values at each end. Reorders
+/// the values.
 Bounds trimmed(std::vector<double>& values, double part) {
   const auto skip = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size()));
   std::nth_element(values.begin(), values.begin() + skip, values.end());
@@ -235,10 +240,10 @@ Planes planes_of(const Vec3& normal, const std::vector<Vec3>& normals) {
   return {normal, u, cross(normal, u)};
 }
 
-/// Returns the portal of these rays, nearly all of which pass through the rectangle: it holds all
-/// crossings in and a little beside the rectangle, and a margin, because the border of an opening
-/// is farther outside than any of the few rays. Light beside a portal would be found by BSDF
-/// sampling alone, which shows as bright dots.
+/// Returns the portal of these rays, nearly all of which pass through the rectangle. The portal
+/// holds all crossings in the rectangle and a little beside it. It has a margin, because the border
+/// of an opening is farther outside than any of the few rays. Light beside a portal would be found
+/// by BSDF sampling alone, which shows as bright dots.
 Portal portal_of(const Rays& rays, const Rectangle& rectangle, const Planes& planes) {
   const auto widened = [](const Bounds& of, double by) {
     return Bounds{of.low - by * of.size(), of.high + by * of.size()};
@@ -292,7 +297,7 @@ std::vector<double> offsets_of_walls(absl::Span<const ScatteredRay> rays, const 
   return out;
 }
 
-/// A portal, and how many of the rays pass through it.
+/// A portal, and how many of the escaping rays pass through it.
 struct Found {
   Portal portal;
   std::size_t escaping = 0;
@@ -316,7 +321,7 @@ Found judge(const Portal& portal, absl::Span<const ScatteredRay> rays) {
 /// The input of the search for one portal.
 struct Search {
   absl::Span<const ScatteredRay> rays;
-  Box box;  ///< in which openings lie: that of all places from which rays start, a little larger
+  Box box;  ///< of all places from which rays start, a little larger; openings lie in it
   std::vector<Planes> planes;
   std::vector<std::vector<double>> walls;  ///< offsets of walls in each of the planes
 };
@@ -357,12 +362,13 @@ Rays crossing_in_box(const Rays& rays, const Planes& planes, double offset, cons
   return out;
 }
 
-/// Returns the best portal for escaping rays: the one to which the most rays go, times its
-/// precision.
+/// Returns the portal with the highest Found::score(); std::nullopt if there is no candidate.
+/// Candidates are fitted to the rays `escaping`.
 std::optional<Found> best_portal(const Rays& escaping, const Search& search) {
   std::optional<Found> best;
   const auto consider = [&](const Rays& rays, const Rectangle& rectangle, const Planes& planes) {
-    // No more than about these rays pass through it.
+    // Hardly more escaping rays than these pass through their portal, so their number limits its
+    // score.
     const bool may_be_best = !best || static_cast<double>(rays.size()) > 0.9 * best->score();
     if (!may_be_best || !(rectangle.area() > 0)) {
       return;

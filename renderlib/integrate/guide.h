@@ -18,7 +18,7 @@ Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
                 const PixelSampler& sampler, std::uint64_t sample, std::uint64_t& rays);
 
 inline constexpr std::uint32_t kMaxGuideBounces = 8;
-/// Metal of at most this fuzz is followed.
+/// In metal of at most this fuzz, the guide shows the reflection and not the metal itself.
 inline constexpr double kMaxGuideFuzz = 0.1;
 
 }  // namespace bandsaw

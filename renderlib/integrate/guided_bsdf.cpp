@@ -8,7 +8,8 @@
 namespace bandsaw {
 namespace {
 
-/// Samples a direction from the cones; std::nullopt if the BSDF scatters no light from there.
+/// Samples a direction from the cones. Returns std::nullopt if the BSDF scatters no light from this
+/// direction.
 std::optional<GuidedSample> sample_cones(const Bsdf& bsdf, const GuidingCones& cones, double choice,
                                          double u, double v) {
   const Vec3 wi = cones.sample(choice, u, v);

@@ -38,12 +38,13 @@ struct GuidedSample {
   double scaling = 1;
 };
 
-/// As sample() below, for cones whose share is not 0.
+/// Does what sample() below does, for cones whose share() is not 0.
 std::optional<GuidedSample> sample_mixture(const Bsdf& bsdf, const GuidingCones& cones, double u,
                                            double v, double lobe);
 
-/// Samples a direction from the mixture; the other arguments, and when it returns std::nullopt, are
-/// as for sample() in material/bsdf.h. `lobe` first chooses between BSDF and cones, and is then
+/// Samples a direction from the mixture. `u`, `v` and `lobe` are those of sample() in
+/// material/bsdf.h. Returns std::nullopt in the same cases, and if a cone gives a direction from
+/// which the BSDF scatters no light. `lobe` first chooses between BSDF and cones, and is then
 /// stretched to [0, 1) again.
 inline std::optional<GuidedSample> sample(const Bsdf& bsdf, const GuidingCones& cones, double u,
                                           double v, double lobe) {

@@ -1,3 +1,7 @@
+// A few samples of some pixels are taken. Their variance is measured, and the cells of the field
+// predict how much of it guiding and photon maps would remove. The constants are the limits from
+// which each method pays.
+
 #include "renderlib/integrate/guiding_gain.h"
 
 #include <algorithm>
@@ -22,7 +26,7 @@ constexpr double kDarkest = 1.0 / 16;
 
 /// Below this share of the variance, the cells of paths cost more than they gain (NOTES.md,
 /// "Whether it pays"). kMinShareOfMaps is the same limit for photon maps, and kMinShareOfPhotons
-/// that for the cells of photons.
+/// for the cells of photons.
 constexpr double kMinShareOfPaths = 0.15;
 /// Where the variance is above this, guiding pays: paths find light so rarely that the field, which
 /// was trained with few of them, cannot show it.

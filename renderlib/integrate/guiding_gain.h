@@ -42,11 +42,11 @@ struct GuidingGain {
 /// rays much smaller. `before` was measured without these maps, and `with` was measured with them.
 bool gathering_pays(const GuidingGain& before, const GuidingGain& with);
 
-/// Measures the variance with 8 samples in each of 512 pixels. Estimates the parts from the cells
-/// of `field` at the first surface of each sample that can be guided: they hold the irradiance, and
-/// the second moment of a sampled direction's contribution (GuidingCell). `options.guiding` MUST be
-/// null. The result is a pure function of all arguments except `preparation`. Returns std::nullopt
-/// if it was stopped.
+/// Measures the variance with 8 samples in each of 512 pixels. Follows each sample to its first
+/// surface that can be guided, and estimates the parts from the cells of `field` there. A cell
+/// holds the irradiance, and the second moment of a sampled direction's contribution (GuidingCell).
+/// `options.guiding` MUST be null. The result is a pure function of all arguments except
+/// `preparation`. Returns std::nullopt if it was stopped.
 std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& key,
                                          const GuidingField& field, const PathOptions& options,
                                          const Preparation& preparation);

@@ -25,7 +25,7 @@ namespace {
 /// threads.
 constexpr std::uint32_t kChunks = 64;
 
-/// Smaller and larger images are trained like images of this many pixels.
+/// The number of pixels on which the training depends is clamped to this range.
 constexpr std::uint64_t kMinTrainingPixels = 1 << 15;
 constexpr std::uint64_t kMaxTrainingPixels = 1 << 18;
 /// The pilot, from which the gain of guiding is estimated, is trained like an image of this many
@@ -84,8 +84,8 @@ std::optional<TrainedGuiding> train(const Scene& scene, const GuidingKey& key, s
   return trained;
 }
 
-/// Trains a field with few paths and photons, and returns the gain that it predicts; std::nullopt
-/// if stopped. Adds to `rays`.
+/// Trains a field with few paths and photons, and returns the gain that the field predicts;
+/// std::nullopt if stopped. Adds the number of rays to `rays`.
 std::optional<GuidingGain> pilot(const Scene& scene, const GuidingKey& key, const Casters& casters,
                                  const PathOptions& options, const Preparation& preparation,
                                  std::uint64_t& rays) {
@@ -106,8 +106,8 @@ struct Mapping {
   std::optional<PhotonMaps> of_paths;  ///< holds the maps for all samples
 };
 
-/// Makes the maps of these sources with this number of photons; std::nullopt if stopped. Adds to
-/// `rays`.
+/// Makes the maps of these sources with this number of photons; std::nullopt if stopped. Adds the
+/// number of rays to `rays`.
 std::optional<Mapping> make_mapping(const Scene& scene, PhotonSources sources,
                                     std::uint64_t photons, const Preparation& preparation,
                                     std::uint64_t& rays) {

@@ -5,8 +5,8 @@
 // field. The paths and photons of the training are divided among a fixed number of chunks, whose
 // records are joined in order, so that neither threads nor machines change a bit.
 //
-// Photons come first (training_photons.h); the field of their records guides the first round of
-// paths (training_paths.h), and the field of all records so far the second, larger round.
+// Photons come first (training_photons.h). The field of their records guides the first round of
+// paths (training_paths.h). The field of all records up to then guides the second, larger round.
 
 #include <cstdint>
 #include <memory>

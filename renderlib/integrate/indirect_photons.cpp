@@ -1,3 +1,7 @@
+// find_origins() samples points of receivers and directions from there, and measures with a path
+// how much light leaves each point in its direction. trace_indirect_photons() starts photons there,
+// and stores them at the receivers that they meet.
+
 #include "renderlib/integrate/indirect_photons.h"
 
 #include <algorithm>
@@ -15,7 +19,7 @@
 namespace bandsaw {
 namespace {
 
-/// The random numbers of origins and of photons; those of caustics use column kBeyondImages.
+/// The random numbers of origins and of photons. Photons of caustics use column kBeyondImages.
 PixelSampler sampler_of_origins(const PhotonChunk& chunk) {
   return {chunk.seed, kBeyondImages + 1, kBeyondImages + chunk.map};
 }
@@ -26,7 +30,7 @@ PixelSampler sampler_of_photons(const PhotonChunk& chunk) {
 /// A random point of a receiver, and a direction.
 struct Place {
   SurfacePoint point;
-  Vec3 normal;     ///< geometric normal of one side, each with probability 1/2
+  Vec3 normal;     ///< geometric normal of one side; each side has probability 1/2
   Vec3 direction;  ///< unit, on that side; sampled with the pdf cosine / pi
   double pdf = 0;  ///< pdf of the point by area, > 0
 };
@@ -57,9 +61,9 @@ std::optional<Place> place_of(const Scene& scene, const PhotonSources& sources,
   return direction ? std::optional(Place{at->point, normal, *direction, at->pdf}) : std::nullopt;
 }
 
-/// Number of scatterings after which Russian roulette ends a photon even if nothing is absorbed,
-/// and the probability with which it survives each further one. So the mean number of photons that
-/// are stored for each one that starts is at most kLongChain + 1 / (1 - kSurvival).
+/// After kLongChain scatterings, Russian roulette may end a photon even if nothing is absorbed. The
+/// photon survives each further scattering with a probability of at most kSurvival. So for each
+/// photon that starts, at most kLongChain + 1 / (1 - kSurvival) are stored on average.
 constexpr std::uint32_t kLongChain = 8;
 constexpr double kSurvival = 0.75;
 
@@ -131,8 +135,8 @@ PhotonOrigins find_origins(const Scene& scene, const PhotonSources& sources, con
       path.ends_at_receiver = true;
       trace_path(context, 1, path);
     }
-    // Radiance times cosine, divided by the pdf of the direction, is pi times radiance. Factor 2,
-    // because one of the two sides was chosen.
+    // Radiance times cosine, divided by the pdf of the direction, is pi times radiance. The factor
+    // 2 is needed because one of the two sides was chosen.
     const double weight = 2 * kPi / (place->pdf * static_cast<double>(chunk.photons)) *
                           opacity(scene.material(point.material), scene.textures(), point);
     const Rgb power = path.radiance * static_cast<float>(weight);
@@ -166,8 +170,9 @@ TracedPhotons trace_indirect_photons(const Scene& scene, const PhotonSources& so
     const PhotonOrigin& origin = origins[chosen];
     const std::optional<Place> place = place_of(scene, sources, of_origins, origin.number);
     const Rgb power = origin.power * static_cast<float>(each / luminance(origin.power));
-    // Photons with one direction arrive at the same point: there the first stands for all.
-    // Otherwise their density would be infinite, and their disks points.
+    // Photons that start in the same direction arrive at the same point. There, the first one is
+    // stored with the power of all. Otherwise the density of the photons would be infinite, and
+    // their disks would be points.
     float share = origin.diffuse ? 1 : static_cast<float>(next - first);
     for (std::uint64_t number = first; number < next; ++number) {
       const Sample4 toward = sampler.group(number, kGroupCamera);

@@ -1,9 +1,9 @@
 #pragma once
 
 // Photons of indirect light, for final gathering (Jensen 1996, "Global Illumination Using Photon
-// Maps", section 4): where a path from the camera has left a receiver (caustics.h) and arrives at
-// another one, the light that receivers scattered to that point is estimated from photons, and the
-// path ends at the next receiver that it meets.
+// Maps", section 4). A path from the camera leaves a receiver (caustics.h) and arrives at another
+// receiver. There, the light that receivers scattered to that point is estimated from photons. The
+// path then ends at the next receiver that it meets.
 //
 // All light that a receiver scatters is thus divided into two parts. The first part arrives from
 // lamps without meeting another receiver, directly or over mirrors, glass and other surfaces. It is
@@ -43,8 +43,8 @@ struct PhotonOrigins {
 
 /// Finds origins of photons; here `chunk.photons` is the number of points that are tried, and
 /// [first, last) are numbers of points. Each origin is a pure function of the scene, the sources,
-/// the seed, the map and its number. `sources.surfaces` MUST be set and not empty; `maps` has the
-/// photon map of caustics that is used for all samples.
+/// the seed, the number of the map and the number of the point. `sources.surfaces` MUST be set and
+/// not empty; `maps` has the photon map of caustics that is used for all samples.
 PhotonOrigins find_origins(const Scene& scene, const PhotonSources& sources, const PhotonMaps& maps,
                            const PhotonChunk& chunk);
 

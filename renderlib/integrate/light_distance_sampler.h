@@ -27,8 +27,9 @@ class LightDistanceSampler {
       : flight_(flight), extinction_(mean_extinction(medium)) {}
 
   /// Adds equiangular sampling towards `pivot`, a point on a light; the arguments are those of
-  /// `Equiangular`. All pivots have the same total weight in the mixture; within it, the share of
-  /// free-flight sampling is between 1/16 and 1/2 and grows with the optical depth up to the pivot.
+  /// `Equiangular`. All pivots have the same total weight in the mixture. Within the weight of a
+  /// pivot, the share of free-flight sampling is between 1/16 and 1/2 and grows with the optical
+  /// depth up to the pivot.
   void add(const Vec3& origin, const Vec3& direction, double length, const Vec3& pivot) {
     if (pivots_ == kMaxPivots) {
       return;

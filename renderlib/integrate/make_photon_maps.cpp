@@ -163,7 +163,7 @@ bool has_emissive_surface(const Scene& scene) {
   });
 }
 
-/// Returns true if photons travel through surfaces of this material otherwise than paths:
+/// Returns true if photons do not travel through surfaces of this material as paths do:
 /// - Hidden lamps: paths pass through them, but a photon ends at any emitter that it hits.
 /// - Nested glass: its index of refraction depends on the other glasses around the point, which a
 ///   photon that starts there does not know.

@@ -14,9 +14,10 @@
 namespace bandsaw {
 
 /// Returns the number of photons of caustics that are started for each map of an image of this size
-/// in pixels. It is 4 for each pixel, half as many as the paths that share one of the first maps,
-/// but between 2^14 and 2^18. There are a quarter as many indirect photons, but at least 2^15.
-/// Fewer are enough, because paths see these photons from afar and average their noise.
+/// in pixels. It is 4 for each pixel, clamped to [2^14, 2^18]. Within these limits, that is half
+/// the number of paths that share one of the first maps. The number of indirect photons is a
+/// quarter of the number for caustics, but at least 2^15. Fewer are enough, because paths see these
+/// photons from afar and average their noise.
 std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height);
 
 /// Makes the map of caustics if the sources have casters, and the map of indirect light if they
@@ -28,9 +29,10 @@ std::shared_ptr<const TracedMaps> make_photon_maps(const Scene& scene, const Pho
                                                    const PhotonMapKey& key,
                                                    const Preparation& preparation);
 
-/// Returns true if caustics can come from maps: the scene has casters, all of which can be sampled,
-/// and emissive surfaces; and it has no motion, no glass with priorities, no mixtures with casters
-/// and no hidden lamps. With those, photons would not travel exactly as paths do.
+/// Returns true if caustics can come from maps. The scene must have casters, all of which can be
+/// sampled, and emissive surfaces. It must have no motion, no glass with priorities, no mixtures
+/// with casters and no hidden lamps, because with any of these, photons would not travel exactly as
+/// paths do.
 bool can_have_caustic_maps(const Scene& scene, const Casters& casters);
 
 /// Returns true if photon maps of caustics are better than paths: photons arrive, and the lamps are
@@ -45,7 +47,7 @@ bool has_enough_origins(const TracedMaps& maps);
 /// Returns the surfaces at which indirect photons start (PhotonSources::surfaces). Returns
 /// std::nullopt if indirect light cannot come from maps: the scene has no such surface or more than
 /// 2^21 primitives of them, or it has motion, media, mixtures, glass with priorities or hidden
-/// lamps. With those, photons would not travel exactly as paths do.
+/// lamps, with which photons would not travel exactly as paths do.
 std::optional<SurfaceSampler> surfaces_of_indirect_light(const Scene& scene,
                                                          const Casters& casters);
 

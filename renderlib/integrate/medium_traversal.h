@@ -74,8 +74,9 @@ class MediumTraversal {
     /// negative counts to 0: a ray may enter a shape that is not closed more often than it leaves
     /// it.
     void forget_negative();
-    /// Returns the region that fills the point: of those with a positive count, the one with the
-    /// largest medium id, and of these the largest boundary. std::nullopt if there is none.
+    /// Returns the region that fills the point; std::nullopt if there is none. Among the regions
+    /// with a positive count it is the one with the largest medium id, and among those of this
+    /// medium the one with the largest boundary.
     std::optional<Region> top() const;
 
    private:
@@ -108,7 +109,8 @@ class MediumTraversal {
   void find_around_origin();
   /// Returns the next crossing of the walk along the ray: a stored one, or one that is found again.
   std::optional<Crossing> take_crossing();
-  /// Returns the segment's medium at the current place, without its begin and end.
+  /// Returns a segment with the medium at the current place. Its begin and end are not set. Its
+  /// medium is nullptr if there is no medium or a clear one.
   MediumSegment here() const;
 
   const Scene& scene_;

@@ -87,8 +87,9 @@ struct CompetingStrategies {
   const Portals* portals = nullptr;
 };
 
-/// Returns true if photons find the light that emissive surfaces send to this caster, before which
-/// the path met `casters` casters since the last receiver of caustics (PathState::chain).
+/// Returns true if photons find the light that emissive surfaces send to a caster. `casters`: the
+/// number of casters that the path met before this one, since the last receiver of caustics
+/// (PathState::chain).
 bool is_left_to_photons(const PathContext& context, std::uint32_t casters) {
   return context.options.maps != nullptr && casters != kNoChain && casters < kMaxCausticChain;
 }
@@ -205,8 +206,8 @@ bool has_free_passage(const Material& material) {
 }
 
 /// Counts a sampled scattering. Returns false, and marks the path as truncated, if `max_depth`
-/// forbids it. A scattering that does not count towards `max_depth` is forbidden after
-/// kMaxUncounted of them.
+/// forbids it. After kMaxUncounted scatterings that do not count towards `max_depth`, no further
+/// one of them is allowed.
 bool count(const PathContext& context, const BsdfSample& next, std::uint32_t depth,
            PathState& path) {
   const bool ends = next.counts ? context.is_at_end(path, depth) : path.uncounted == kMaxUncounted;

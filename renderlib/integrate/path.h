@@ -67,7 +67,7 @@ struct PathCounts {
 
 /// A camera ray for one sample of a pixel.
 struct CameraRay {
-  /// Implicit, so that a plain ray can be passed where no lens is involved.
+  /// The constructor is implicit, so that a plain ray can be passed where no lens is involved.
   CameraRay(const Ray& of_camera) : ray(of_camera) {}
 
   Ray ray;  ///< unit direction

@@ -144,8 +144,8 @@ void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std:
                          const PathOptions& options) {
   BANDSAW_CHECK(pixels.size() <= kMaxReusePixels, "more pixels than can reuse paths together");
   PrimaryVertices primary;
-  // Not members of `primary`, because std::optional zeroes its memory, which would be large with
-  // them.
+  // The cones are not members of `primary`, because std::optional zeroes its memory, which would be
+  // large with them.
   std::array<GuidingCones, kMaxReusePixels> cones;
   std::array<std::optional<SharedVertex>, kMaxReusePixels> shared;
   for (std::size_t i = 0; i < pixels.size(); ++i) {

@@ -19,15 +19,15 @@ inline constexpr std::uint32_t kNoChain = 0xffffffffu;
 
 /// The state that changes along a path.
 struct PathState {
-  /// Starts a path with this ray. (As an aggregate, all of it would be zeroed first, including the
-  /// large `NestedDielectrics`.)
+  /// Starts a path with this ray. (If this struct were an aggregate, all of it would be zeroed
+  /// first, including the large `NestedDielectrics`.)
   explicit PathState(const Ray& from) : ray(from) {}
 
   Ray ray;            ///< unit direction
   Rgb radiance = {};  ///< found so far, as seen by the camera
   Rgb throughput = gray(1);
   /// Product of the factors by which refraction and guiding scaled the throughput. Russian roulette
-  /// divides it out, because it is no loss of energy.
+  /// divides it out, because this scaling is no loss of energy.
   double compression = 1;
   PreviousVertex previous = {};
   /// Number of scatterings that do not count towards `max_depth` (BsdfSample::counts), and of

@@ -21,7 +21,7 @@ inline constexpr std::uint32_t kMaxCausticChain = 16;
 /// A random point of a caster, and a light that is sampled from there.
 struct PhotonStart {
   SurfacePoint point;
-  Vec3 normal;  ///< geometric normal of one side, each with probability 1/2
+  Vec3 normal;  ///< geometric normal of one side; each side has probability 1/2
   LightSample light;
   double pdf = 0;  ///< pdf of the point by area, > 0
 };

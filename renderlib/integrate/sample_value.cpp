@@ -36,7 +36,7 @@ float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, do
 }
 
 /// Returns the value of an integrator that shows only the first surface. Where the ray leaves the
-/// scene the value is black, for ambient occlusion white.
+/// scene, the value is white for ambient occlusion, otherwise black.
 Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const PixelSampler& sampler,
              std::uint64_t sample, std::uint64_t& rays) {
   NestedDielectrics nesting;

@@ -58,8 +58,9 @@ PhotonScattering path_value(const Scene& scene, const SurfacePoint& point, const
   return {out, evaluate(of_path, in).value * static_cast<float>(std::abs(cosines) / pdf)};
 }
 
-/// Scatters at a mirror or at smooth glass about a normal. `bsdf`: that seen from `in`; `number`
-/// selects reflection or refraction. Returns std::nullopt if a path would use the other normal.
+/// Scatters at a mirror or at smooth glass about a normal. `bsdf`: the BSDF seen from `in`;
+/// `number` selects reflection or refraction. Returns std::nullopt if a path would use the other
+/// normal.
 std::optional<PhotonScattering> scatter_about(const Scene& scene, const SurfacePoint& point,
                                               const Bsdf& bsdf, const Vec3& in,
                                               const PhotonNormals& normals, const Vec3& normal,

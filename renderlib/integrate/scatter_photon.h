@@ -15,7 +15,7 @@ namespace bandsaw {
 
 struct PhotonScattering {
   Vec3 out;            ///< unit; the direction in which the photon leaves
-  Rgb factor;          ///< of its power
+  Rgb factor;          ///< by which its power changes
   bool counts = true;  ///< counts towards `max_depth` (BsdfSample::counts)
 };
 

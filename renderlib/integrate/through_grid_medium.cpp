@@ -37,7 +37,7 @@ struct Segment {
 /// along the ray, for a throughput of 1.
 Rgb sample_light(const Segment& segment, const Vec3& position) {
   const PathContext& context = segment.context;
-  const Sample4 which = segment.numbers(2);  // the fourth refines the selection among many lights
+  const Sample4 which = segment.numbers(2);  // the fourth number refines the selection of a light
   const std::optional<LightSample> light =
       context.scene.lights().sample({position, std::nullopt, segment.ray.time},
                                     which[0] + which[3] * 0x1p-32, which[1], which[2]);

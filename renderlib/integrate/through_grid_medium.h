@@ -2,8 +2,8 @@
 
 // Transport of a path through one segment of a medium that varies in space (medium/tracking.h).
 //
-// The path is scattered at a collision that delta tracking finds, or passes; light is sampled at
-// that collision. Emission is collected at tentative collisions.
+// The path passes the segment, or it is scattered at a collision that delta tracking finds. Light
+// is sampled at that collision. Emission is collected at tentative collisions.
 
 #include <cstdint>
 

@@ -174,8 +174,8 @@ MediumEvent through_homogeneous_medium(const PathContext& context, const Ray& ra
 }
 
 /// Recomputes the nested dielectrics of a path that scattered at the end of `ray`, before the
-/// surface that intersect_visible() found: only the boundaries of nested glass up to there are
-/// passed.
+/// surface that intersect_visible() found. The path has passed only the boundaries of nested glass
+/// up to there.
 void recompute_nesting(const PathContext& context, const Ray& ray, std::uint32_t depth,
                        NestedDielectrics& nesting) {
   nesting.here = nesting.before;

@@ -1,3 +1,7 @@
+// A photon starts at a caster with the light of a lamp, is scattered at casters, and is stored at
+// the first receiver of caustics that it meets. share_on_surface() measures with short rays how
+// much of a photon's disk lies on surfaces.
+
 #include "renderlib/integrate/trace_photons.h"
 
 #include <algorithm>
@@ -85,7 +89,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Nu
   }
   const Rgb passing =
       transmittance(scene, spawn_ray_to(point, light.target, 0), numbers.stream(0), rays);
-  // Factor 2, because one of the two sides of the caster was chosen.
+  // The factor 2 is needed because one of the two sides of the caster was chosen.
   const double weight = 2 * cosine / (light.pdf * at->pdf * static_cast<double>(photons)) *
                         opacity(scene.material(point.material), scene.textures(), point);
   Photon photon{.ray = {},

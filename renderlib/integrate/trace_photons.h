@@ -32,21 +32,21 @@ struct TracedPhotons {
   double power_by_angle = 0;
 };
 
-/// Traces the photons, each of which is a pure function of the scene, the seed, the map and its
-/// number. A photon starts at a random point of a caster, from which a light is sampled as for a
-/// surface. `casters` MUST be complete (Casters::complete).
+/// Traces the photons. Each is a pure function of the scene, the seed, the number of the map and
+/// the number of the photon. A photon starts at a random point of a caster, from which a light is
+/// sampled as for a surface. `casters` MUST be complete (Casters::complete).
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk);
 
-/// Returns the photon of this power as a map holds it: it arrived at the receiver `hit` from
-/// direction `from` after `chain` scatterings. A partly transparent receiver, or one in a mixture,
-/// is present with some probability, and paths look up photons only where it is present. So the map
-/// holds `power` divided by this probability.
+/// Returns the photon as a map holds it. It arrived with the power `power` at the receiver `hit`,
+/// from direction `from`, after `chain` scatterings. A partly transparent receiver, or one in a
+/// mixture, is present with some probability, and paths look up photons only where it is present.
+/// So the map holds `power` divided by this probability.
 StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const SurfacePoint& hit,
                            const Vec3& from, std::uint32_t chain, Rgb power);
 
 /// Returns the share, in [1/4, 1], of the photon's disk that lies on surfaces. It is estimated by
 /// short rays, first at the rim and, if some miss, all over the disk. PhotonMap divides the power
-/// by it; otherwise a photon near an edge would lose the power that falls beyond the edge.
+/// by this share; otherwise a photon near an edge would lose the power that falls beyond the edge.
 double share_on_surface(const Scene& scene, const StoredPhoton& photon);
 
 }  // namespace bandsaw

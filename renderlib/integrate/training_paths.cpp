@@ -25,11 +25,11 @@ constexpr std::size_t kMaxVertices = 8;
 /// A vertex of a training path.
 struct Vertex {
   Vec3 position;
-  Vec3 normal;               ///< on the side of the path
-  Vec3 direction;            ///< direction of the path from here
-  double length = -1;        ///< length of the ray from here; negative: it left the scene
-  Rgb radiance;              ///< PathState::radiance before the ray was traced
-  Rgb throughput;            ///< PathState::throughput of the ray
+  Vec3 normal;         ///< on the side of the path
+  Vec3 direction;      ///< direction of the path from here
+  double length = -1;  ///< length of the ray from here; negative or infinite: it left the scene
+  Rgb radiance;        ///< PathState::radiance before the ray was traced
+  Rgb throughput;      ///< PathState::throughput of the ray
   double cosine_by_pdf = 0;  ///< cosine / pdf of `direction`; 0: the path ended here
 };
 

@@ -49,9 +49,9 @@ bool append_chunks(std::uint32_t first, std::uint32_t last, const Preparation& p
   return true;
 }
 
-/// Traces the paths of a chunk through random places of the image. Returns a record for each of the
-/// first eight vertices of a path whose direction can be guided. It holds the light that the path
-/// found after that vertex; light sampling at the vertex itself is excluded.
+/// Traces the paths of a chunk through random places of the image. Of each path, returns records
+/// for the first eight vertices at which the direction can be guided. A record holds the light that
+/// the path found after its vertex; light sampling at the vertex itself is excluded.
 TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
                                const TrainingChunk& chunk, const PathOptions& options);
 

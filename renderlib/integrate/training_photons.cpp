@@ -57,7 +57,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Pi
                                        : spawn_ray_to(at->point, light.target, 0);
   const double passing = visibility(scene, shadow_ray, out.rays);
   Photon photon;
-  // Factor 2, because one of the two sides of the caster was chosen.
+  // The factor 2 is needed because one of the two sides of the caster was chosen.
   photon.power = 2 * passing * luminance(light.radiance) / light.pdf *
                  std::abs(dot(light.direction, at->normal)) / at->pdf;
   if (!(photon.power > 0) || !scatter_photon(scene, at->point, light.direction,
@@ -67,7 +67,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Pi
   return photon;
 }
 
-/// Follows the photon until it arrives at a surface that can be guided, and records that.
+/// Follows the photon until it arrives at a surface that can be guided, and adds a record there.
 /// `longest`: maximum number of scatterings up to there; `photons`, `mapped`: as for
 /// training_photons().
 void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sample,

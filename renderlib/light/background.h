@@ -15,7 +15,7 @@
 namespace bandsaw {
 
 /// An environment map or, without one, a vertical gradient: radiance(d) = lerp(bottom, top, (d.y +
-/// 1) / 2) for a unit direction d, which is constant if both colours are equal.
+/// 1) / 2) for a unit direction d. The gradient is constant if both colours are equal.
 struct Background {
   Rgb bottom;
   Rgb top;

@@ -1,6 +1,6 @@
 // All candidates are weighted by their importance, and one is chosen with a probability in
-// proportion. Candidates are lights, and the light tree as a whole. If the tree is chosen, the
-// random number is rescaled and chooses a light in it.
+// proportion to it. Candidates are lights, and the light tree as a whole. If the tree is chosen,
+// the random number is rescaled and chooses a light in it.
 
 #include "renderlib/light/light_choice.h"
 

@@ -124,7 +124,7 @@ struct Split {
 
 }  // namespace
 
-/// The constructor does all the work.
+/// Builds the nodes of a LightTree. The constructor does all the work.
 class LightTreeBuilder {
  public:
   LightTreeBuilder(const std::vector<LightBound>& lights, LightTree& tree)

@@ -18,7 +18,7 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the position of a delta light.
+/// Returns the pivot of a delta light: its position, or `distant` for a directional light.
 LightPivot pivot_of(const DeltaLight& light) {
   return std::visit(
       [](const auto& kind) -> LightPivot {

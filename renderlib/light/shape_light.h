@@ -37,7 +37,7 @@ inline bool is_flat(const ShapeView& shape) {
 /// Returns the area of one side. For an ellipsoid it is accurate only to a few percent, which is
 /// enough for the selection of lights.
 double area(const ShapeView& shape);
-/// Returns u x v oriented to the outside, not normalised. For flat shapes only.
+/// Returns u x v oriented to the outside, not normalised. The shape MUST be flat.
 Vec3 flat_normal(const ShapeView& shape);
 
 /// Bounding sphere of a shape.

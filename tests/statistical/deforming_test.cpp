@@ -1,7 +1,7 @@
-// Meshes that deform while the shutter is open, against closed forms and against rigid motion. Each
-// comparison allows 4 standard errors; with the fixed seeds a correct program always passes (the
-// false-alarm rate over seeds is below 1 % for all of them together). An id such as C9 in a test's
-// name is that of a case in tests/hard_cases/cases.txt.
+// Compares meshes that deform while the shutter is open with closed forms and with rigid motion.
+// Each comparison allows 4 standard errors; with the fixed seeds a correct program always passes
+// (the false-alarm rate over seeds is below 1 % for all of them together). An id such as C9 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

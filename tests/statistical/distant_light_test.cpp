@@ -1,6 +1,6 @@
-// Light of environments and delta lights against closed forms and quadrature, within 4 standard
-// errors; the standard error is at most 1e-3 of the value. An id such as L8 in a test's name is
-// that of a case in tests/hard_cases/cases.txt.
+// Compares the light of environments and delta lights with closed forms and quadrature, within 4
+// standard errors. The standard error is at most 1e-3 of the value. An id such as L8 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

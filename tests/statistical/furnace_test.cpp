@@ -24,9 +24,9 @@ void expect_value(const Moments& radiance, double expected, double relative_erro
   EXPECT_LE(radiance.standard_error(), relative_error * expected);
 }
 
-/// A diffuse sphere of radius 1 around a light of radius r in its middle: from every point of the
-/// wall, the light covers the share f = r^2 of the cosine-weighted hemisphere and the wall the
-/// rest, and the wall has the same radiance everywhere.
+/// A diffuse sphere of radius 1 around a light of radius r in its middle. From every point of the
+/// wall, the light covers the share f = r^2 of the cosine-weighted hemisphere, and the wall covers
+/// the rest. So the wall has the same radiance everywhere.
 SceneMaker enclosure(float reflectance, double f) {
   SceneMaker maker;
   maker.sphere({0, 0, 0}, 1, maker.diffuse(reflectance));

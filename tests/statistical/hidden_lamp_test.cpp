@@ -1,6 +1,6 @@
-// Lamps that the camera does not see and that stop no light (Emissive::hidden), against closed
-// forms within 4 standard errors of 32 seeds: a correct change of the sampling fails a test with a
-// probability of about 1 / 2 700.
+// Compares lamps that the camera does not see and that stop no light (Emissive::hidden) with closed
+// forms, within 4 standard errors of 32 seeds. After a correct change of the sampling, a test fails
+// with a probability of about 1 / 2 700.
 
 #include <gtest/gtest.h>
 

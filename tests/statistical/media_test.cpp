@@ -1,5 +1,5 @@
-// Media against closed forms and quadratures, within 4 standard errors; if there is no noise, to
-// the precision of a float. An id such as V6 in a test's name is that of a case in
+// Compares media with closed forms and quadratures, within 4 standard errors or, if there is no
+// noise, to the precision of a float. An id such as V6 in a test's name is that of a case in
 // tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
@@ -249,7 +249,7 @@ TEST(Media, O8WithoutLossAreInvisibleInAWhiteSky) {
   test::report_hard_case("O8", "invisible in a white sky");
 }
 
-/// The same slab absorbs according to its thickness.
+/// A slab as thin as that of the previous test absorbs according to its thickness.
 TEST(Media, O8ThinSlabIsNotSteppedOver) {
   SceneMaker maker = white_sky();
   test::fill_box(maker, {-9, 0, -9}, {9, 1e-5, 9}, test::add(maker, medium(1e5f, 0)));

@@ -143,7 +143,7 @@ TEST(MovingLight, EmitsFromItsPositionAtTheTime) {
         moving_lamp(ball, Key(-1, translation({0, 1.5, 0})), Key(3, translation({0, 4, 0}))),
         kPi * 0.25 / (1.5 * 4), 4096, technique);
   }
-  // A disk that rotates about its middle; it emits from both sides, so one is always visible.
+  // A disk that rotates about its middle; it emits from both sides, so one side is always visible.
   Shapes disk;
   disk.disks.push_back({{0, 0, 0}, {0, 1, 0}, 0.05, MaterialId{0}});
   // The irradiance of a small disk is A |cos| / d^2; the mean of |cos| over half a turn is 2 / pi.

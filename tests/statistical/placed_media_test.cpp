@@ -1,5 +1,5 @@
-// Media whose boundaries are instanced and move while the shutter is open, against closed forms:
-// within 4 standard errors. An id such as V6 in a test's name is that of a case in
+// Compares media whose boundaries are instanced and move while the shutter is open with closed
+// forms, within 4 standard errors. An id such as V6 in a test's name is that of a case in
 // tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ void expect_mean(const Moments& seen, double expected) {
   EXPECT_LE(seen.standard_error(), 1e-3 * expected);
 }
 
-// A ball that grows from radius 0.5 to 1.5: the mean of exp(-2 s r) over r.
+// A ball grows from radius 0.5 to 1.5. The expected value is the mean of exp(-2 s r) over r.
 TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
   const double s = 0.8;
   const Medium smoke = test::medium(0.8f, 0);
@@ -64,8 +64,9 @@ TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
               (std::exp(-s) - std::exp(-3 * s)) / (2 * s));
 }
 
-// A ball that moves through the ray: its centre has y from -2 to 2. The mean is that of
-// exp(-2 s sqrt(1 - y^2)) where |y| < 1, by Simpson's rule in the angle, and of 1 elsewhere.
+// A ball moves through the ray, and the y of its centre goes from -2 to 2. The expected value is
+// the mean over y of exp(-2 s sqrt(1 - y^2)) where |y| < 1, by Simpson's rule in the angle, and of
+// 1 elsewhere.
 TEST(MovingMedia, V6MovingBallAbsorbsByTheMeanOverTheShutter) {
   const double s = 0.8;
   const auto scene =

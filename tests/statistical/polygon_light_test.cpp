@@ -1,5 +1,5 @@
-// Irradiance under triangles against Lambert's formula for polygons. An id such as X9 in a test's
-// name is that of a case in tests/hard_cases/cases.txt.
+// Compares the irradiance under triangles with Lambert's formula for polygons. An id such as X9 in
+// a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -65,7 +65,8 @@ TEST(PolygonLight, TrianglesOfAnySizeAndSlant) {
   }
 }
 
-// An occluder halfway, whose edge is in front of the light: the visible part of the light counts.
+// An occluder is halfway to the light, and its edge is in front of the light. The visible part of
+// the light counts.
 TEST(PolygonLight, APartlyOccludedLightCountsByItsVisiblePart) {
   for (const double edge : {-0.6, 0.1, 0.9}) {
     SceneMaker maker;

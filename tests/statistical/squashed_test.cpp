@@ -1,5 +1,5 @@
-// Balls of glass and media that are squashed or stretched by many orders of magnitude, under a
-// white sky, against closed forms. An id such as S12 in a test's name is that of a case in
+// Compares balls of glass and media that are squashed or stretched by many orders of magnitude,
+// under a white sky, with closed forms. An id such as S12 in a test's name is that of a case in
 // tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>

@@ -114,7 +114,8 @@ TEST(Denoise, FlatImageLosesItsNoise) {
 }
 
 TEST(Denoise, LinearRampIsNotBent) {
-  // A ramp in two directions: the mean over many seeds is the ramp, up to the noise that is left.
+  // The ramp rises in two directions. The mean over the seeds is the ramp, up to the noise that is
+  // left.
   Image mean = image_of([](auto, auto) { return Rgb{}; });
   constexpr int kSeeds = 6;
   for (int seed = 0; seed < kSeeds; ++seed) {

@@ -44,14 +44,15 @@ TEST(GuidingCones, PdfIntegratesToOne) {
   EXPECT_NEAR(sum * 4 * kPi / (kRows * kColumns), 1, 1e-3);
 }
 
-// Each direction belongs to one of eight classes, according to which of the three balls it hits.
-// The share of samples in a class must equal the integral of the pdf over the class, which is
-// estimated from uniform directions.
+// Each direction belongs to one of eight classes, according to which of its three coordinates are
+// above a limit. The share of samples in a class must equal the integral of the pdf over the class,
+// which is estimated from uniform directions.
 TEST(GuidingCones, SamplesHaveThePdf) {
   const GuidingCell cell = three_balls();
   const GuidingCones cones({.paths = &cell}, {}, kUp);
   constexpr int kSamples = 100'000;
-  // E[f / pdf] over the samples is the integral of f over the cones: of 1 in each octant.
+  // E[f / pdf] over the samples is the integral of f over the cones. Here f is 1 in one class and 0
+  // in the others.
   std::array<test::Moments, 8> sampled;
   std::array<test::Moments, 8> uniform;
   const PixelSampler sampler(1, 2, 3);
@@ -99,7 +100,7 @@ TEST(GuidingShares, PhotonsGetTheShareOfTheirLight) {
     return shares_of({&paths, &photons}).photons;
   };
   EXPECT_EQ(share_of_photons(0), 0);
-  EXPECT_EQ(share_of_photons(1e-4f), 0);  // too little guidance to be worth a technique
+  EXPECT_EQ(share_of_photons(1e-4f), 0);  // so little light that it is not worth guiding
   EXPECT_EQ(share_of_photons(0.1f), 0.125);
   EXPECT_NEAR(share_of_photons(1.0f / 3), 0.25, 1e-6);
   EXPECT_EQ(share_of_photons(100), 0.5);

@@ -1,6 +1,6 @@
-// Path guiding stores in cells from where light comes; the cells of a whole scene are in a tree
-// over position and normal of a surface. They are made from records of light that paths or photons
-// found.
+// A cell of path guiding holds the directions from which light comes to a place. The cells of a
+// scene are in a tree over the position and the normal of surfaces. The tree is built from records
+// of light that paths or photons found.
 
 #include "renderlib/guiding/guiding_field.h"
 

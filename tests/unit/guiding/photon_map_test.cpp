@@ -16,7 +16,7 @@ namespace {
 
 constexpr Vec3 kAbove{0, 0, 1};
 
-/// For PhotonMap: the whole disk of each photon lies on the surface.
+/// The argument `share_on_surface` of PhotonMap: the whole disk of each photon lies on the surface.
 double whole(const StoredPhoton&) { return 1; }
 
 /// Photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4.

@@ -15,7 +15,8 @@ namespace {
 
 /// A window of 3 x 2 in the wall x = 1.
 constexpr Portal kWindow = {{1, -1.5, -0.5}, {0, 3, 0}, {0, 0, 2}};
-/// Another one in the wall z = 2, and one that overlaps with the first as seen from the origin.
+/// A second window in the wall z = 2, and a third one that overlaps with the first as seen from the
+/// origin.
 constexpr Portal kSkylight = {{-2, -1, 2}, {3, 0, 0}, {0, 3, 0}};
 constexpr Portal kFarther = {{2, 0, 0}, {0, 4, 0}, {0, 0, 3}};
 
@@ -25,7 +26,8 @@ TEST(Portals, SamplesDirectionsWithTheClaimedPdf) {
       {kWindow}, {kWindow, kSkylight}, {kWindow, kSkylight, kFarther}};
   for (const std::vector<Portal>& set : sets) {
     const Portals portals(set);
-    // One number chooses the portal and its rest the height, so the test needs two numbers only.
+    // The high bits of one number choose the portal, and its other bits are the u of the sample. So
+    // the test needs two numbers only.
     test::expect_samples_match_density(
         [&](double u, double v) {
           const double steps = u * 0x1p20;

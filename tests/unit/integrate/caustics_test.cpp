@@ -76,8 +76,8 @@ void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expe
 }
 
 // Glass that hardly refracts stops shadow rays, but the lamp lights the wall as if the lamp were
-// bare. A sphere of radius r and radiance L at distance d gives a surface that is wholly on one
-// side of it the irradiance pi L (r / d)^2 cos.
+// bare. A sphere of radius r and radiance L at distance d, wholly on one side of a surface's plane,
+// gives the surface the irradiance pi L (r / d)^2 cos.
 TEST(Caustics, MeetTheClosedFormOfALampInGlassThatDoesNotRefract) {
   const auto scene = lamp_in_glass(1.00001, 0.2).build();
   std::vector<Expected> expected;
@@ -191,7 +191,7 @@ TEST(Caustics, NoPowerIsLostAtEdges) {
   EXPECT_GT(lost, 0.02 * raw);  // the power that would be lost without the correction
 }
 
-// Fog so dense that no light arrives: a photon without power must not stand for others.
+// The fog is so dense that no light arrives. A photon without power must not replace other photons.
 TEST(Caustics, PhotonsWithoutPowerAreNotStored) {
   SceneMaker maker = lamp_in_glass(1.5, 0.02);
   maker.scene.media.fog = test::add(maker, test::medium(100, 0));
@@ -255,8 +255,8 @@ TEST(Caustics, TheShareOnTheSurfaceIgnoresTransparentSurfaces) {
 }
 
 // With an empty map, paths bring just the light that is not left to the photons. In a room whose
-// lamp is in glass this is none, because all light passes the glass before it meets a surface of
-// the room.
+// lamp is in glass there is no such light, because all light passes the glass before it meets a
+// surface of the room.
 TEST(Caustics, PathsLeaveOutJustTheLightOfThePhotons) {
   const auto scene = lamp_in_glass(1.5, 0.2).build();
   const Casters casters(*scene);
@@ -272,7 +272,7 @@ TEST(Caustics, PathsLeaveOutJustTheLightOfThePhotons) {
     const PathOptions options{.max_depth = 12, .maps = &caustics};
     ASSERT_EQ(path_radiance(*scene, ray, sampler, 0, options, counts), Rgb{});
     plain += path_radiance(*scene, ray, sampler, 0, {.max_depth = 12}, counts).g;
-    // The camera sees the lamp itself as before.
+    // The camera sees the lamp itself as without maps.
     ASSERT_EQ(
         path_radiance(*scene, to_lamp, sampler, 0, {.max_depth = 2, .maps = &caustics}, counts),
         path_radiance(*scene, to_lamp, sampler, 0, {.max_depth = 2}, counts));

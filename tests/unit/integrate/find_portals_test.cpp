@@ -1,4 +1,5 @@
-// Finding the openings through which the sky lights a room, from the rays that surfaces scatter.
+// Tests how the openings through which the sky lights a room are found from the rays that surfaces
+// scatter.
 
 #include "renderlib/integrate/find_portals.h"
 
@@ -34,8 +35,8 @@ struct Axes {
 
 /// Returns `count` rays in cosine-distributed directions from random points of the walls of the
 /// room. They escape through the windows, which are in the coordinates of the room. The seed is one
-/// of those with which the portals cover the windows: in 4 of 120 rooms (three tests, seeds 1 to
-/// 40) a portal misses more than a hundredth of a window, because so few rays pass there.
+/// with which the portals cover the windows. In 4 of 120 rooms (three tests, seeds 1 to 40) a
+/// portal misses more than a hundredth of a window, because few rays pass there.
 std::vector<ScatteredRay> rays_of_room(const std::vector<Portal>& windows, const Axes& axes,
                                        int count) {
   test::Random random(1);
@@ -47,7 +48,7 @@ std::vector<ScatteredRay> rays_of_room(const std::vector<Portal>& windows, const
     Vec3 normal;
     (axis == 0 ? at.x : axis == 1 ? at.y : at.z) = wall % 2 == 0 ? 0 : kRoom[axis];
     (axis == 0 ? normal.x : axis == 1 ? normal.y : normal.z) = wall % 2 == 0 ? 1 : -1;
-    const double u = random.uniform();  // not as arguments, whose order differs between compilers
+    const double u = random.uniform();  // the evaluation order of arguments is unspecified
     const double v = random.uniform();
     const Vec3 direction = orthonormal_basis(normal).to_world(sample_cosine_hemisphere(u, v));
     const bool escapes = std::any_of(windows.begin(), windows.end(), [&](const Portal& window) {
@@ -66,7 +67,7 @@ constexpr Portal kBeside = {{0, 1, 5}, {0, 1, 0}, {0, 0, 1}};
 double area(const Portal& portal) { return length(portal.u) * length(portal.v); }
 
 /// Returns true if the portal covers the window except for a hundredth of its size, is at most a
-/// quarter larger, and is within 0.02 of its plane.
+/// quarter larger, and is within 0.02 of the window's plane.
 bool covers(const Portal& portal, const Portal& window) {
   bool inside = area(portal) < 1.25 * area(window);
   for (const Vec3& corner : {window.corner, window.corner + window.u, window.corner + window.v,
@@ -80,7 +81,7 @@ bool covers(const Portal& portal, const Portal& window) {
   return inside;
 }
 
-/// Expects that there is one portal for each window, which covers it.
+/// Expects that there is one portal for each window, and that it covers the window.
 void expect_windows(const Portals& portals, const std::vector<Portal>& windows, const Axes& axes) {
   ASSERT_EQ(portals.portals().size(), windows.size());
   for (const Portal& window : windows) {
@@ -121,7 +122,7 @@ TEST(FindPortals, LeavesWideOpeningsToTheBsdf) {
 }
 
 TEST(FindPortals, FindsNoneWhereRaysEscapeHereAndThere) {
-  // As through the leaves of a tree: every tenth ray, wherever it goes.
+  // As through the leaves of a tree, every tenth ray escapes, wherever it goes.
   std::vector<ScatteredRay> rays = rays_of_room({}, {}, 20000);
   for (std::size_t i = 0; i < rays.size(); i += 10) {
     rays[i].escapes = true;

@@ -1,5 +1,6 @@
-// Media that vary in space, in whole paths: against homogeneous media and against themselves in
-// other places. Fixed seeds; z-tests at 4 standard errors.
+// Tests whole paths through media that vary in space. These media are compared with homogeneous
+// media, and with the same media in other places. The seeds are fixed, and the z-tests allow 4
+// standard errors.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ Medium varying(Medium medium, GridId density) {
   return medium;
 }
 
-/// A lumpy density in the box from -1 to 1, denser to +x.
+/// A lumpy density in the box from -1 to 1, which is denser towards +x.
 VolumeGrid lumps() {
   return test::grid_of({12, 12, 12}, {-1, -1, -1}, {1, 1, 1}, [](auto x, auto y, auto z) {
     return 0.2f * static_cast<float>(x) + static_cast<float>((x * 5 + y * 3 + z * 7) % 4);
@@ -141,7 +142,7 @@ TEST(GridMedia, EachTechniqueReachesTheSameMean) {
   EXPECT_LT(z(both, mean(*scene, kAhead, {.technique = Technique::kScatteringOnly})), 4);
 }
 
-// Without emission: media do not light each other in `direct`.
+// The medium does not emit, because media do not light each other in `direct`.
 TEST(GridMedia, DirectEqualsPathsOfOneScattering) {
   SceneMaker maker;
   maker.sphere({2, 2, 1}, 0.5, maker.lamp(20));
@@ -188,7 +189,7 @@ TEST(GridMedia, AMovedGridIsTheSameGridElsewhere) {
   // paths differ; their means are the same.
   EXPECT_LT(z(mean(*there, kAhead), mean(*here, moved)), 4);
   EXPECT_GT(z(mean(*there, kAhead), mean(*here, kAhead)), 4) << "it is not where it was";
-  // The grid's own map makes the same of an unplaced box.
+  // A grid whose own map holds the placement gives the same.
   SceneMaker mapped;
   lit(mapped);
   VolumeGrid grid = lumps();
@@ -280,7 +281,8 @@ TEST(GridMedia, ShadowsOfAGridFollowTheClosedForm) {
   VolumeGrid steps = test::grid_of({1, 64, 1}, {-1, 1, -1}, {1, 3, 1},
                                    [](auto, auto y, auto) { return static_cast<float>(y % 5); });
   steps.border = VolumeGrid::Border::kClamp;
-  // The sum of all numbers but for the interpolation at the ends, which clamping keeps.
+  // The mean density along the ray is the sum of all numbers over their count. Interpolation at the
+  // ends does not change it, because the border is clamped.
   double sum = 0;
   for (int y = 0; y < 64; ++y) {
     sum += y % 5;
@@ -294,8 +296,8 @@ TEST(GridMedia, ShadowsOfAGridFollowTheClosedForm) {
 }
 
 TEST(GridMedia, FireLightsItsSurroundings) {
-  // Heat alone, without density: the light that a diffuse floor reflects is that of the same
-  // homogeneous emission.
+  // The medium has heat alone, and no density. The light that a diffuse floor reflects is that of
+  // the same homogeneous emission.
   SceneMaker fire;
   fire.quad({-4, -2, 4}, {8, 0, 0}, {0, 0, -8}, fire.diffuse(0.6f));
   SceneMaker glow = fire;

@@ -22,8 +22,8 @@ constexpr std::uint32_t kDepth = 6;
 GuidingGain gain_of(const Scene& scene, int threads = 2) {
   Pool pool(threads);
   const GuidingKey key{kWidth, kHeight, kDepth};
-  return *expected_gain(scene, key, train_guiding(scene, key, {pool, kGoOn})->field, {.max_depth = kDepth},
-                        {pool, kGoOn});
+  return *expected_gain(scene, key, train_guiding(scene, key, {pool, kGoOn})->field,
+                        {.max_depth = kDepth}, {pool, kGoOn});
 }
 
 BandPixels pixels_of(const Scene& scene, Integrator integrator) {
@@ -33,8 +33,8 @@ BandPixels pixels_of(const Scene& scene, Integrator integrator) {
       {{0, 16}, {0, kHeight}}, pool, kGoOn, {});
 }
 
-/// A wall at a distance of 2, seen from where the lamp is not in view, and lit by a lamp of radius
-/// `lamp` in glass that does not refract, so that all of its light is a caustic.
+/// A wall at a distance of 2 from a lamp of radius `lamp`. The lamp is in glass that does not
+/// refract, so that all of its light is a caustic. The camera does not see the lamp.
 std::shared_ptr<const Scene> wall_lit_through_glass(double lamp) {
   test::SceneMaker maker;
   maker.quad({-0.2, -0.2, -2}, {0.4, 0, 0}, {0, 0.4, 0}, maker.diffuse(0.5f));
@@ -44,8 +44,9 @@ std::shared_ptr<const Scene> wall_lit_through_glass(double lamp) {
   return maker.build();
 }
 
-// Directions by the cosine reach a lamp of solid angle w in front of the wall with probability
-// w / pi, and all that do carry the same light: the second moment is pi / w squared means.
+// A direction that is sampled by the cosine reaches a lamp of solid angle w in front of the wall
+// with probability w / pi. All directions that reach it carry the same light. So the second moment
+// is pi / w times the squared mean.
 TEST(GuidingGain, OfPhotonsMeetsTheClosedForm) {
   for (const double lamp : {0.05, 0.1, 0.2, 0.3, 0.4}) {
     const double solid_angle = kPi * lamp * lamp / 4;
@@ -79,7 +80,7 @@ TEST(GuidingGain, IsNoneWhereNothingIsNoisy) {
   EXPECT_EQ(gain.share_of(1), 1);
 }
 
-// The light of a lamp under the ceiling is found by light sampling; that of a lamp in glass is not.
+// Light sampling finds the light of a lamp under the ceiling, but not the light of a lamp in glass.
 TEST(GuidingGain, DecidesWhatTheIntegratorPathDoes) {
   const auto easy = test::cornell_box().build();
   EXPECT_EQ(pixels_of(*easy, Integrator::kPath).sums,

@@ -56,16 +56,16 @@ TEST(Guiding, ChangesNoMeanAndFindsTheLampInGlass) {
   EXPECT_LT(with.variance(), without.variance() / 8);
 }
 
-// Glass that hardly refracts stops shadow rays all the same, but the lamp lights the wall as if it
-// were bare. Closed form: a sphere of radius r and radiance L at distance d gives a surface that is
-// wholly on one side of it the irradiance pi L (r / d)^2 cos.
+// Glass that hardly refracts stops shadow rays all the same, but the lamp lights the wall as if the
+// lamp were bare. A sphere of radius r and radiance L at distance d, wholly on one side of a
+// surface's plane, gives the surface the irradiance pi L (r / d)^2 cos.
 TEST(Guiding, MeetsTheClosedFormOfALampInGlassThatDoesNotRefract) {
   SceneMaker maker = lamp_in_glass(1.00001, 0.2, 0.5f);
   const auto scene = maker.build();
   const auto guiding = trained(*scene);
   const test::Moments with = moments_of(*scene, kToCorner, &guiding->field, 60'000, 2);
-  // The camera ray meets the wall x = 2. Two scatterings are that at the wall and the one at the
-  // glass, so there is no indirect light.
+  // The camera ray meets the wall x = 2. The two scatterings are at the wall and at the glass, so
+  // there is no indirect light.
   const Vec3 at = kToCorner.origin + kToCorner.direction * (2 / kToCorner.direction.x);
   const double distance = length(at);
   const double cosine = at.x / distance;

@@ -275,7 +275,7 @@ TEST(IndirectPhotons, AreUsedWhereTheyPay) {
   add_room(bright, bright.diffuse(0.2f));
   bright.quad({-1, -1, 1.9}, {0, 2, 0}, {2, 0, 0}, bright.lamp(10));
   EXPECT_FALSE(are_used(bright));
-  // A room on a large plain: hardly any of the points at which photons may start is in it.
+  // A room on a large plain: hardly any of the points at which photons may start is in the room.
   SceneMaker lost = uplit_room();
   lost.quad({-200, -200, -10}, {400, 0, 0}, {0, 400, 0}, MaterialId{0});
   EXPECT_FALSE(are_used(lost));

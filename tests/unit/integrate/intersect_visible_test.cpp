@@ -1,5 +1,5 @@
-// Alpha, nested glass and glTF's material along whole paths. An id such as M6 in a test's name is
-// that of a case in tests/hard_cases/cases.txt.
+// Tests alpha, nested glass and glTF's material along whole paths. An id such as M6 in a test's
+// name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ TEST(Alpha, CoplanarBlendedSurfacesAreHitOneAfterTheOther) {
       maker.triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, half);
     }
     const Ray ray{.origin = {0.1, 0.2, 3}, .direction = {0, 0, -1}};
-    // Black if the surface is present, except for the reflection at it.
+    // The path sees black if a surface is present, except for the reflection at the surface.
     const double through = std::pow(0.75, 2 * layers);
     const Moments sum = light_along(maker, ray, 20000);
     EXPECT_NEAR(sum.mean(), through, 0.045 * (1 - through) + 4 * sum.standard_error());
@@ -114,8 +114,8 @@ TEST(Alpha, ATransparentLightEmitsFromBothSides) {
   expect_techniques_agree(maker, {.origin = {2, 3, 0}, .direction = normalize({-0.5, -1, 0})}, 0.1);
 }
 
-// A ball of index 1 between an area light, a delta light and a floor, rough or not: the same bits
-// as without it.
+// A ball of index 1, rough or not, is between two lights (an area light and a delta light) and a
+// floor. The radiance has the same bits as without the ball.
 TEST(SeeThrough, M6_GlassOfIndexOneCastsNoShadow) {
   const auto light = [](std::optional<double> roughness) {
     SceneMaker maker;
@@ -191,7 +191,8 @@ TEST(SeeThrough, DeltaLightsAreVisibleThroughRoughTransmission) {
 }
 
 TEST(NestedGlass, M9_TheHigherPriorityRefractsInOverlaps) {
-  // Water (priority 1) that overlaps its tumbler (priority 2): a slab of each, overlapping by 0.1.
+  // Water (priority 1) overlaps its tumbler (priority 2). Each is a slab, and they overlap by
+  // `overlap`.
   const auto stack = [](double overlap) {
     SceneMaker maker = white_sky();
     const MaterialId water = maker.material(Dielectric{1.33, 0, 1});
@@ -202,7 +203,7 @@ TEST(NestedGlass, M9_TheHigherPriorityRefractsInOverlaps) {
     };
     slab(1 - overlap, 2, water);
     slab(0, 1, glass);
-    // Emission only next to the point where the refracted ray leaves.
+    // Only a narrow strip emits, at the place that the refracted ray reaches.
     maker.background({0, 0, 0}, {0, 0, 0});
     const double s0 = std::sqrt(0.5);
     const double tan_water = (s0 / 1.33) / std::sqrt(1 - s0 * s0 / 1.33 / 1.33);
@@ -237,7 +238,8 @@ TEST(NestedGlass, M9_AnAirBubbleInGlassRefractsOutwards) {
   test::report_hard_case("M9", "bubble of air");
 }
 
-// Walls inside two overlapping bodies of one glass are not present: on the axis it is one pane.
+// Walls inside three overlapping bodies of one glass are not present. A ray along the axis meets
+// one pane.
 TEST(NestedGlass, OverlappingBodiesOfOneGlassAreOne) {
   SceneMaker maker = white_sky();
   maker.background({0, 0, 0}, {0, 0, 0});
@@ -251,8 +253,8 @@ TEST(NestedGlass, OverlappingBodiesOfOneGlassAreOne) {
   EXPECT_LE(seen.standard_error(), 0.002);
 }
 
-// A bubble that extends out of a block of glass. The part of the block's face inside the bubble is
-// not present for paths, but occludes shadow rays: light behind it is found by BSDF sampling alone.
+// A bubble extends out of a block of glass. The part of the block's face inside the bubble is not
+// present for paths, but occludes shadow rays. So light behind it is found by BSDF sampling alone.
 TEST(NestedGlass, EmissionBehindAHiddenBoundaryCounts) {
   SceneMaker maker = white_sky();
   maker.background({0, 0, 0}, {0, 0, 0});
@@ -264,9 +266,9 @@ TEST(NestedGlass, EmissionBehindAHiddenBoundaryCounts) {
   expect_techniques_agree(maker, ray, 0.05);
 }
 
-// Milk in a tumbler of glass (priority 2) with water (priority 1) that overlaps its wall, all
-// without loss in a white sky. A path that scatters before the hidden boundary of the water has not
-// passed it.
+// Milk is in a tumbler of glass (priority 2), and water (priority 1) overlaps the tumbler's wall.
+// All are without loss, under a white sky. A path that scatters before the hidden boundary of the
+// water has not passed it.
 TEST(NestedGlass, ScatteringBeforeAHiddenBoundaryIsStillInTheGlass) {
   SceneMaker maker = white_sky();
   maker.sphere({0, 0, 0}, 1, maker.material(Dielectric{1.5, 0, 2}));
@@ -284,7 +286,8 @@ TEST(NestedGlass, ScatteringBeforeAHiddenBoundaryIsStillInTheGlass) {
   EXPECT_LE(seen.standard_error(), 0.01);
 }
 
-// A mirror shows a white wall. A faint hidden lamp between them takes none of the two scatterings.
+// A mirror shows a diffuse wall. A faint hidden lamp between them does not count as one of the two
+// scatterings.
 TEST(HiddenLamps, TakeNoScatteringOfTheMaximumDepth) {
   const auto seen = [](bool with_lamp) {
     SceneMaker maker = white_sky();

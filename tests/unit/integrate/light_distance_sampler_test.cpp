@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kLength = 6;
 
-/// Returns the integral over the segment; steps are small near a light source 3 ahead.
+/// Returns the integral of f over the segment. Steps are small near a light source at distance 3
+/// along the segment.
 double integral(double aside, const std::function<double(double)>& f) {
   constexpr int kSteps = 20000;
   const double low = std::atan(-3 / aside);

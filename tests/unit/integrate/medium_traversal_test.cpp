@@ -24,7 +24,7 @@ using test::SceneMaker;
 using Inside = std::function<int(const Vec3&)>;
 
 /// Checks that segments are in order, not empty, and have the right medium at every point of the
-/// ray. Points closer to a boundary than rounding may belong to either side.
+/// ray. Points that are closer to a boundary than the rounding error may belong to either side.
 void expect_walk(const Scene& scene, const Ray& ray, double length, const Inside& inside) {
   std::uint64_t rays = 0;
   MediumTraversal walk(scene, ray, length, rays);

@@ -89,7 +89,7 @@ TEST(Mixture, InARoomReusesPaths) {
   EXPECT_FALSE(maker.build()->reuses_paths());
 }
 
-// The lamp is behind the sheet: lights are sampled on both sides of it.
+// There is a lamp on each side of the sheet, and lights are sampled on both sides.
 TEST(Sheet, LightFromBehindIsFoundByAllTechniques) {
   SceneMaker maker = with_sky(0);
   const MaterialId sheet = maker.material(DiffuseTransmission{TextureId{0}, TextureId{0}});
@@ -134,8 +134,8 @@ TextureId coordinate(SceneMaker& maker, RampTexture::Over over) {
   return maker.texture(ramp);
 }
 
-// The height is the coordinate u or x times the scale. The wall is 2 units wide: u rises by 1 over
-// these, a slope of 1/2, and x by 2, a slope of 1.
+// The height is the coordinate u or x times the scale. The wall is 2 units wide. Over this width u
+// rises by 1, which is a slope of 1/2, and x by 2, which is a slope of 1.
 TEST(HeightMap, TiltsTheNormalByItsSlope) {
   for (const double scale : {0.5, 1.0, -1.0}) {
     for (const bool in_space : {false, true}) {

@@ -195,7 +195,8 @@ TEST(Path, CountsItsRays) {
   EXPECT_EQ(counts.rays, 42u);
 }
 
-// In a closed sphere every path is truncated, and counted once. In the open none is.
+// In a closed sphere every path is truncated, and counted once. Under an open sky no path is
+// truncated.
 TEST(Path, CountsTruncatedPaths) {
   SceneMaker closed;
   closed.sphere({0, 0, 0}, 10, closed.diffuse(0.5f));

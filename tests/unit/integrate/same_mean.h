@@ -26,7 +26,7 @@ struct MeanComparison {
 
 /// Expects paths along rays near `ray` to have the same mean with maps of these sources and
 /// without, within 4 standard errors (a false alarm in 1 of 16,000 comparisons) and 1 % for the
-/// blur. The paths without maps are guided, because they would be too noisy otherwise.
+/// blur of the maps. The paths without maps are guided, because they would be too noisy otherwise.
 inline void expect_same_mean(const Scene& scene, const PhotonSources& sources, const Ray& ray,
                              const MeanComparison& size) {
   const std::atomic<bool> go_on = false;

@@ -39,7 +39,7 @@ double mean(const SceneMaker& maker, Integrator integrator, const Ray& ray, doub
 
 const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
 
-/// A wall in z = 0 whose front is visible.
+/// Adds a wall in the plane of this z. Its front faces +z.
 void wall(SceneMaker& maker, MaterialId material, double z = 0) {
   maker.quad({-50, -50, z}, {100, 0, 0}, {0, 100, 0}, material);
 }
@@ -152,9 +152,10 @@ TEST(SampleValue, ABallAboveOccludesItsViewFactor) {
   mean(maker, Integrator::kAmbientOcclusion, below, 0.75);
   maker.scene.local_shading.occlusion_distance = 2.5;
   const double near = mean(maker, Integrator::kAmbientOcclusion, below,
-                           // Rays that hit the ball before 2.5: within the cone of tan^2 given by
-                           // the sphere of radius 2.5 about the point; z of the circle they share
-                           // is (2.5^2 + 4^2 - 2^2) / 8, and sin^2 of its cone 1 - (z / 2.5)^2.
+                           // Rays that hit the ball before 2.5 are in a cone. Its rim is the circle
+                           // in which the ball meets a sphere of radius 2.5 about the point. The
+                           // circle is at z = (2.5^2 + 4^2 - 2^2) / 8, so sin^2 of the half-angle
+                           // is 1 - (z / 2.5)^2.
                            std::pow((2.5 * 2.5 + 12) / 8 / 2.5, 2));
   EXPECT_GT(near, 0.75);
   maker.scene.local_shading.occlusion_distance = 1.9;

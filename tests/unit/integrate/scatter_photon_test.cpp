@@ -1,5 +1,6 @@
-// At a caster, photons carry the light that paths find there: for both, the integral over both
-// directions of the light that passes is the same, whatever part of the directions is counted.
+// Tests that photons carry the light at a caster that paths find there. The integral of the
+// scattered light over the directions from which it comes and to which it goes must be the same for
+// both, also over a part of these directions.
 
 #include "renderlib/integrate/scatter_photon.h"
 
@@ -20,8 +21,8 @@ namespace {
 
 using test::SceneMaker;
 
-/// Parts of the pairs of directions: all, those whose light comes from +x, those whose light goes
-/// to +x, and those of refractions to +x.
+/// Parts of the pairs of directions: all pairs, pairs whose light comes from +x, pairs whose light
+/// goes to +x, and pairs of refractions to +x.
 constexpr std::size_t kParts = 4;
 using Parts = std::array<test::Moments, kParts>;
 
@@ -35,7 +36,7 @@ void add(const Vec3& in, const Vec3& out, double amount, Parts& parts) {
 
 /// Returns a direction on either side of z = 0, with the pdf |cos| / (2 pi).
 Vec3 direction(test::Random& random) {
-  const double u = random.uniform();  // not as arguments, whose order differs between compilers
+  const double u = random.uniform();  // the evaluation order of arguments is unspecified
   const double v = random.uniform();
   const Vec3 up = sample_cosine_hemisphere(u, v);
   return random.uniform() < 0.5 ? up : -up;
@@ -72,7 +73,7 @@ void expect_the_light_of_paths(const SceneMaker& maker, MaterialId material) {
   EXPECT_GT(of_paths[0].mean(), 1);
 }
 
-/// Adds something that can be seen, which a scene needs.
+/// A maker with a floor, because a scene needs something that can be seen.
 SceneMaker maker_with_floor() {
   SceneMaker maker;
   maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.diffuse(0.5f));

@@ -132,7 +132,7 @@ TEST(Environment, C10_SidesOfACubeMapHaveTheirDirections) {
 TEST(Environment, AGradientAcrossACubeMapHasNoSeams) {
   constexpr std::uint32_t kSide = 32;
   Sky sky = cube("gradient", kSide, [](auto, auto, auto) { return 0.0f; });
-  // Each texel holds the height of its own direction, so neighbours agree across the edges.
+  // Each texel holds a linear function of its own direction, so neighbours agree across the edges.
   for (std::uint32_t i = 0; i < 6; ++i) {
     sky.textures[i] = float_image(kSide, kSide, [&](std::uint32_t x, std::uint32_t y) {
       const Vec3 d =

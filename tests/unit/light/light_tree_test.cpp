@@ -121,7 +121,8 @@ TEST(LightTree, PrefersANearLightToABrighterDistantOne) {
   }
   const LightTree tree(lights);
   const Receiver receiver{{500, 0, 0}, Vec3{0, 1, 0}};
-  // Exact importance: 1 of 2 sum 1 / (k^2 + 1)^(3/2), about 0.43; the tree's bounds are looser.
+  // With the exact importance, it would be 1 / (sum over all integers k of 1 / (k^2 + 1)^(3/2)),
+  // which is about 0.49. The tree's bounds are looser.
   EXPECT_GT(tree.probability(receiver, 500), 0.1);
   EXPECT_LT(tree.probability(receiver, 0), 1e-4);
 }
@@ -153,8 +154,8 @@ TEST(LightTree, NestedLightsStayWithinTheMaximumDepth) {
 }
 
 /// A light whose ball is hit by a direction within the cone may be selected. A light that is
-/// further from the axis than the sum of the angles may not, up to 1.5e-8, the angle that cosines
-/// resolve.
+/// further from the axis than the sum of the angles may not be selected. The sum may be exceeded by
+/// 1.5e-8, the angle that cosines resolve.
 TEST(LightChoice, AConeSelectsTheLightsThatOverlapIt) {
   Random random(4);
   int met = 0;

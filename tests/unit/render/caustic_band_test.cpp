@@ -66,7 +66,7 @@ TEST(CausticBand, HasTheSameBitsForAnyThreadsAndRows) {
   }
 }
 
-// A node of 16 blocks needs more maps than are held at once, and is rendered in parts.
+// A node of 32 blocks needs more maps than are held at once, and is rendered in parts.
 TEST(CausticBand, ANodeIsTheSumOfItsHalvesToTheBit) {
   const auto rendered = scene(false);
   const BandPixels whole = render(*scene(false), {{0, 256}, {9, 10}}, 2);
