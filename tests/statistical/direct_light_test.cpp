@@ -36,7 +36,7 @@ void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples 
 Vec3 at(double d, double angle) { return {d * std::sin(angle), d * std::cos(angle), 0}; }
 
 // The irradiance is pi (radius / d)^2 cos(angle).
-TEST(DirectLight, OfASphereAboveTheHorizon) {
+TEST(DirectLight, OfASphereAboveTheHorizonMeetsTheClosedForm) {
   const auto sphere = [](double d, double angle, double radius) {
     SceneMaker maker;
     maker.sphere(at(d, angle), radius, maker.lamp(1));
@@ -47,7 +47,7 @@ TEST(DirectLight, OfASphereAboveTheHorizon) {
   expect_irradiance(sphere(1000, 1, 0.01), kPi * 1e-10 * std::cos(1.0));
 }
 
-TEST(DirectLight, L4_OfASphereThatCrossesTheHorizon) {
+TEST(DirectLight, L4_OfASphereThatCrossesTheHorizonMeetsTheIntegral) {
   // The irradiance is the integral of the cosine over the part of the sphere's cone that is above
   // the horizon.
   struct Row {
@@ -72,7 +72,7 @@ TEST(DirectLight, L3_InsideASphereIsPi) {
 }
 
 // The values are those of Lambert's formula for polygons (polygon_light_test.cpp).
-TEST(DirectLight, OfASquareAboveItsCenterAndItsCorner) {
+TEST(DirectLight, OfASquareAboveTheReceiverMeetsTheClosedForm) {
   const auto square = [](double h, double shift) {
     SceneMaker maker;
     maker.quad({-1 + shift, h, -1 + shift}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1));

@@ -51,7 +51,7 @@ ImageTexture half_white() {
   return float_image(1, 2048, [](auto, auto y) { return y < 1024 ? 1.0f : 0.0f; });
 }
 
-TEST(EnvironmentLight, AHalfWhiteOneOnATiltedPlane) {
+TEST(EnvironmentLight, AHalfWhiteImageGivesTheClosedFormOnATiltedPlane) {
   for (const double tilt : {0.0, 30.0, 90.0, 150.0}) {
     SceneMaker maker;
     set_environment(maker, half_white());
@@ -63,7 +63,7 @@ TEST(EnvironmentLight, AHalfWhiteOneOnATiltedPlane) {
   }
 }
 
-TEST(EnvironmentLight, L8OneTexel) {
+TEST(EnvironmentLight, L8OneTexelGivesTheLightOfTheQuadrature) {
   for (const std::uint32_t row : {0u, 3u, 70u}) {
     constexpr std::uint32_t kWidth = 400;
     constexpr std::uint32_t kHeight = 200;
@@ -167,7 +167,7 @@ TEST(EnvironmentLight, C10AMirrorShowsTheEnvironmentInItsDirection) {
   test::report_hard_case("C10", "mirrors show what lies in their direction");
 }
 
-TEST(EnvironmentLight, C10LosslessObjectsAreInvisibleInAWhiteOne) {
+TEST(EnvironmentLight, C10LosslessObjectsAreInvisibleInAWhiteEnvironment) {
   SceneMaker maker;
   set_environment(maker, float_image(8, 4, [](auto, auto) { return 1.0f; }));
   maker.sphere({-2, 0, 0}, 0.9, maker.metal(1, 0));

@@ -65,7 +65,7 @@ void expect_mean(const Moments& seen, double expected, double slack = 2e-6) {
 
 /// A white wall has as radiance the share of the ceiling's light that reaches it: the form factor
 /// of opposite faces of a cube, 0.1998, or of adjacent ones, 0.2000.
-TEST(Enclosure, FormFactorsOfACube) {
+TEST(Enclosure, OfACubeHasItsFormFactors) {
   const std::array<Wall, 6> walls = room(1, 1, 1);
   for (const auto& [receiver, factor] :
        {std::pair(0, 0.199824895698387), std::pair(2, 0.200043776075403),
@@ -81,7 +81,7 @@ TEST(Enclosure, FormFactorsOfACube) {
 
 /// A light of intensity I in the middle of a sphere: the direct irradiance is I / R^2, and
 /// interreflection multiplies it by 1 / (1 - rho).
-TEST(Enclosure, APointLightInASphere) {
+TEST(Enclosure, OfASphereAroundAPointLightHasTheClosedForm) {
   SceneMaker maker;
   maker.sphere({0, 0, 0}, 2, maker.diffuse(0.5f));
   maker.scene.lights = {PointLight{{0, 0, 0}, gray(4 * static_cast<float>(kPi))}};

@@ -41,7 +41,7 @@ void expect_irradiance(SceneMaker maker, double expected) {
   EXPECT_LE(radiance.standard_error(), 0.01 * value);
 }
 
-TEST(HiddenLamp, LightsAsAVisibleOne) {
+TEST(HiddenLamp, LightsASurfaceLikeAVisibleLamp) {
   SceneMaker maker;
   add_square(maker, hidden_lamp(maker, 1));
   expect_irradiance(maker, kOfSquare);

@@ -54,7 +54,7 @@ void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples 
   EXPECT_LE(means.standard_error(), 1e-3 * value);
 }
 
-TEST(DiskLight, IsItsClosedForm) {
+TEST(DiskLight, HasItsClosedForm) {
   for (const double d : {0.3, 1.0, 4.0}) {
     SceneMaker maker;
     maker.scene.geometry.disks.push_back({{0, d, 0}, {0, -1, 0}, 1.5, maker.lamp(1, true)});

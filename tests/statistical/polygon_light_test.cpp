@@ -49,7 +49,7 @@ TEST(PolygonLight, TheFormulaGivesTheKnownValuesOfASquare) {
   EXPECT_NEAR(irradiance_of(square(5), kUp), 0.151918069683, 1e-10);
 }
 
-TEST(PolygonLight, TrianglesOfAnySizeAndSlant) {
+TEST(PolygonLight, TrianglesOfAnySizeAndSlantMeetTheFormula) {
   const std::vector<std::vector<Vec3>> all = {
       {{-2, 1, -1}, {2, 1.5, -1}, {0.5, 1, 3}},          // large
       {{-9, 0.1, -9}, {9, 0.1, -9}, {0, 0.1, 14}},       // nearly all of the sky

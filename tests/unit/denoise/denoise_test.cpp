@@ -237,7 +237,7 @@ TEST(Denoise, TheErrorLeavesOutPixelsThatAreNotFinite) {
   EXPECT_NEAR(clean.total.rmse_raw / 0.05, 1, 0.05);
 }
 
-TEST(Denoise, PartsMayDifferInSize) {
+TEST(Denoise, AcceptsPartsOfDifferentSizes) {
   // The second part has three times as many samples as the first.
   DenoiseInput input = noisy(flat, 0.05f, 10);
   test::Random random(11);
@@ -256,7 +256,7 @@ TEST(Denoise, PartsMayDifferInSize) {
   EXPECT_LT(rmse(clean.image, truth), rmse(input.mean, truth) / 3);
 }
 
-TEST(Denoise, SameBitsForAnyNumberOfThreads) {
+TEST(Denoise, HasTheSameBitsForAnyNumberOfThreads) {
   const DenoiseInput input = noisy(ramp, 0.05f, 12);
   const Denoised one = denoised(input, 1);
   for (const int threads : {2, 3}) {
@@ -269,7 +269,7 @@ TEST(Denoise, SameBitsForAnyNumberOfThreads) {
 
 // The image is denoised in strips of rows. There are no seams between them: a pixel depends only on
 // its strip and the margin of rows around it, and not on where the strips begin.
-TEST(Denoise, SameBitsForAnyHeightOfTheStrips) {
+TEST(Denoise, HasTheSameBitsForAnyHeightOfTheStrips) {
   const DenoiseInput input = noisy(
       [](std::uint32_t x, std::uint32_t y) { return gray(x / 13 % 2 == y / 9 % 2 ? 0.2f : 0.8f); },
       0.1f, 21);
@@ -283,7 +283,7 @@ TEST(Denoise, SameBitsForAnyHeightOfTheStrips) {
   }
 }
 
-TEST(Denoise, SmallestImages) {
+TEST(Denoise, WorksOnTheSmallestImages) {
   for (const std::uint32_t width : {1u, 2u, 3u, 17u}) {
     Image one{width, 1, std::vector<Rgb>(width, gray(0.5f))};
     Image first = one;

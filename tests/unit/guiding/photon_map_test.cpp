@@ -141,7 +141,7 @@ TEST(PhotonMap, DividesByTheShareOnTheSurface) {
   EXPECT_NEAR(totals_of(map).power, 12'000, 1);
 }
 
-TEST(PhotonMap, DependsNotOnThreads) {
+TEST(PhotonMap, IsTheSameForAnyNumberOfThreads) {
   Pool one(1);
   Pool three(3);
   const PhotonMap a(on_floor(5000), 1, 0, one, whole);

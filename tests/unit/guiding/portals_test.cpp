@@ -42,7 +42,7 @@ TEST(Portals, SamplesDirectionsWithTheClaimedPdf) {
   }
 }
 
-TEST(Portals, HaveThePdfThatTheirSamplesTell) {
+TEST(Portals, SamplesHaveThePdfOfTheirDirection) {
   const Portals portals({kWindow, kSkylight, kFarther});
   for (int i = 0; i < 1000; ++i) {
     const double choice = (i + 0.5) / 1000;
@@ -62,7 +62,7 @@ TEST(Portals, HaveTheSolidAngleOfAClosedForm) {
   EXPECT_EQ(face.pdf({}, {0, 1, 0}), 0);
 }
 
-TEST(Portals, AreNotSampledFromTheirPlaneOrWithoutAny) {
+TEST(Portals, AreNotSampledFromTheirOwnPlaneOrIfThereAreNone) {
   EXPECT_FALSE(Portals().sample({}, 0.5, 0.5, 0.5));
   EXPECT_EQ(Portals().pdf({}, {1, 0, 0}), 0);
   const Portals window(std::vector<Portal>{kWindow});

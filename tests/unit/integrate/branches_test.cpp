@@ -87,7 +87,7 @@ TEST(Branches, ATruncatedPathCountsOnce) {
 
 // Paths in a scene with lights are not split. In other scenes they have two branches, or four if
 // there are meshes, which can occlude the sky at their own surface (integrate/README.md).
-TEST(Branches, OnlyInScenesWithoutLightSampling) {
+TEST(Branches, AreUsedOnlyInScenesWithoutLights) {
   SceneMaker shapes = corner(false);
   EXPECT_EQ(branches_for(*shapes.build()), 2u);
   SceneMaker lit = shapes;

@@ -203,7 +203,7 @@ TEST(Caustics, PhotonsWithoutPowerAreNotStored) {
   }
 }
 
-TEST(Caustics, TheShareOnTheSurfaceKnowsEdges) {
+TEST(Caustics, TheShareOnTheSurfaceIsOneHalfAtAnEdge) {
   SceneMaker maker;
   const MaterialId wall = maker.diffuse(0.5f);
   maker.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, wall);
@@ -387,7 +387,7 @@ TEST(Caustics, MapsOfOtherSeedsAndNumbersDiffer) {
 
 // train_guiding() lets caustics come from photon maps if its pilot, a few paths, shows that this
 // pays.
-TEST(Caustics, PayForSmallLampsOnly) {
+TEST(Caustics, ComeFromMapsForSmallLampsOnly) {
   Pool pool(1);
   const auto come_from_maps = [&](const Scene& scene) {
     const auto trained = train_guiding(scene, {16, 16, 8}, {pool, kGoOn}, true);

@@ -210,7 +210,7 @@ TEST(GridMedia, ScalingAGridKeepsItsCoefficients) {
   EXPECT_NEAR(mean(*small.build(), kAhead).mean(), std::exp(-0.3 * 0.5), 1e-5);
 }
 
-TEST(GridMedia, InstancesShareAMediumEachInItsPlace) {
+TEST(GridMedia, EachInstanceHasTheSharedMediumInItsOwnPlace) {
   // The density is 0 in the half at -x.
   const VolumeGrid half = [] {
     VolumeGrid grid = test::grid_of({16, 8, 8}, {-1, -1, -1}, {1, 1, 1},
@@ -237,7 +237,7 @@ TEST(GridMedia, InstancesShareAMediumEachInItsPlace) {
   EXPECT_NEAR(seen(0.01), std::exp(-2), 1e-3);
 }
 
-TEST(GridMedia, OfOverlappingBoundariesTheLastCounts) {
+TEST(GridMedia, TheLastOfOverlappingBoundariesCounts) {
   VolumeGrid slope = test::grid_of({16, 8, 8}, {-1, -1, -1}, {1, 1, 1},
                                    [](auto x, auto, auto) { return static_cast<float>(x); });
   slope.filter = VolumeGrid::Filter::kNearest;

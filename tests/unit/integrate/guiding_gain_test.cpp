@@ -59,7 +59,7 @@ TEST(GuidingGain, OfPhotonsMeetsTheClosedForm) {
   }
 }
 
-TEST(GuidingGain, IsTheSameForAnyThreads) {
+TEST(GuidingGain, IsTheSameForAnyNumberOfThreads) {
   const auto scene = test::lamp_in_glass(1.5, 0.05).build();
   const GuidingGain one = gain_of(*scene, 1);
   const GuidingGain three = gain_of(*scene, 3);
@@ -68,7 +68,7 @@ TEST(GuidingGain, IsTheSameForAnyThreads) {
   EXPECT_EQ(one.by_photons, three.by_photons);
 }
 
-TEST(GuidingGain, IsNoneWhereNothingIsNoisy) {
+TEST(GuidingGain, IsZeroWhereNothingIsNoisy) {
   test::SceneMaker maker;
   maker.quad({-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, maker.lamp(1));
   maker.camera({0, 0, 0}, {0, 0, -1}, 40);
@@ -99,7 +99,7 @@ TEST(GuidingGain, AStoppedPilotReturnsNothing) {
   EXPECT_EQ(train_guiding(*scene, {kWidth, kHeight, kDepth, true}, {pool, stop}, true), nullptr);
 }
 
-TEST(GuidingGain, ThePilotTellsThatItGoesOn) {
+TEST(GuidingGain, ThePilotReportsItsProgress) {
   Pool pool(2);
   std::atomic<int> steps = 0;
   const auto scene = test::cornell_box().build();

@@ -76,7 +76,7 @@ TEST(Guiding, MeetsTheClosedFormOfALampInGlassThatDoesNotRefract) {
 
 // In a closed room of uniform emission and reflectance the radiance is Le / (1 - rho) everywhere,
 // up to what max_depth cuts off.
-TEST(Guiding, KeepsTheFurnace) {
+TEST(Guiding, KeepsTheRadianceOfAFurnace) {
   SceneMaker maker;
   Material wall{Diffuse{maker.texture(ConstantTexture{{0.5f, 0.5f, 0.5f}})}};
   wall.emission.radiance = {maker.texture(ConstantTexture{{1, 1, 1}}), {1, 1, 1}};
@@ -132,7 +132,7 @@ TEST(Guiding, TheFieldIsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(Guiding, TrainingStops) {
+TEST(Guiding, StoppedTrainingReturnsNothing) {
   const auto scene = lamp_in_glass(1.5, 0.2, 0.5f).build();
   Pool pool(1);
   const std::atomic<bool> stop = true;

@@ -213,7 +213,7 @@ TEST(IndirectPhotons, EndWithoutAbsorption) {
 
 // A pane divides the room. The light that passes it does not count as scattered, so with two
 // scatterings nearly all photons arrive at a wall; a few meet the lamp, or the pane reflects them.
-TEST(IndirectPhotons, PassAPaneThatTakesNoDepth) {
+TEST(IndirectPhotons, PassAPaneThatDoesNotCountAsAScattering) {
   SceneMaker maker;
   add_room(maker, maker.diffuse(0.6f));
   maker.sphere({-1.2, 0, 0}, 0.2, maker.lamp(10));

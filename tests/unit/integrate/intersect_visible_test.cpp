@@ -288,7 +288,7 @@ TEST(NestedGlass, ScatteringBeforeAHiddenBoundaryIsStillInTheGlass) {
 
 // A mirror shows a diffuse wall. A faint hidden lamp between them does not count as one of the two
 // scatterings.
-TEST(HiddenLamps, TakeNoScatteringOfTheMaximumDepth) {
+TEST(HiddenLamps, DoNotCountTowardsTheMaximumDepth) {
   const auto seen = [](bool with_lamp) {
     SceneMaker maker = white_sky();
     maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.metal(1, 0));
@@ -315,7 +315,7 @@ TEST(HiddenLamps, TakeNoScatteringOfTheMaximumDepth) {
 }
 
 // A ray that crosses a ball of glass that does not refract sees its emission twice, and the sky.
-TEST(GlassThatDoesNotRefract, EmitsAsOtherGlass) {
+TEST(GlassThatDoesNotRefract, EmitsLikeOtherGlass) {
   SceneMaker maker = white_sky();
   Material glass = Dielectric{1};
   glass.emission.radiance = {TextureId{0}, {2, 3, 4}};

@@ -77,7 +77,7 @@ TEST(Mixture, OfALightIsALight) {
   expect_techniques_agree(maker, {.origin = {2, 3, 0}, .direction = normalize({-0.5, -1, 0})}, 0.1);
 }
 
-TEST(Mixture, InARoomReusesPaths) {
+TEST(Mixture, AllowsPathReuseUnlessItHasHoles) {
   SceneMaker maker = with_sky(0);
   const TextureId half = maker.texture(ConstantTexture{{0.5f, 0.5f, 0.5f}});
   wall(maker, maker.material(Mix{maker.diffuse(0.2f), maker.diffuse(0.8f), half}));
@@ -156,7 +156,7 @@ TEST(HeightMap, TiltsTheNormalByItsSlope) {
 
 // On a ball of radius 2, v rises by 1 along half of a great circle. On a disk of radius 2, u rises
 // by 1 over the diameter. The height is 3 times the coordinate.
-TEST(HeightMap, KnowsTheLengthsOfUvsOnBallsAndDisks) {
+TEST(HeightMap, UsesTheLengthsOfUvsOnBallsAndDisks) {
   SceneMaker ball = with_sky(1);
   Material bumped = Diffuse{TextureId{0}};
   bumped.relief.height = coordinate(ball, RampTexture::Over::kV);

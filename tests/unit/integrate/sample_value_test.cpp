@@ -131,7 +131,7 @@ TEST(SampleValue, ANormalMapTiltsAlongItsUvSet) {
   EXPECT_GT(value(maker, Integrator::kNormals, ahead).r, 0.99f);
 }
 
-TEST(SampleValue, AMissIsBlackAndOpen) {
+TEST(SampleValue, AMissIsBlackAndUnoccluded) {
   SceneMaker maker;
   maker.sphere({50, 0, 0}, 1, maker.diffuse(0.5f));
   maker.background(gray(3), gray(3));

@@ -236,7 +236,7 @@ TEST(EnvironmentLight, TheExcessIsTheLightAboveTheMean) {
   EXPECT_NEAR(light.excess(), 2 * kPi, 1e-4);
 }
 
-TEST(Environment, InvalidOnesAreRefusedWithTheField) {
+TEST(Environment, InvalidEnvironmentsAreRefusedWithTheNameOfTheField) {
   const Sky good = skies().front();
   const auto message = [](const Sky& sky) {
     Background background;

@@ -127,7 +127,7 @@ TEST(LightTree, PrefersANearLightToABrighterDistantOne) {
   EXPECT_LT(tree.probability(receiver, 0), 1e-4);
 }
 
-TEST(LightTree, HandlesCoincidentLights) {
+TEST(LightTree, SelectsCoincidentLightsWithEqualProbability) {
   std::vector<LightBound> lights(50000);
   for (LightBound& light : lights) {
     light.ball = {{1, 2, 3}, 0.5};
