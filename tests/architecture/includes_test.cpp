@@ -195,7 +195,7 @@ TEST(Architecture, Y5_RenderlibCallsNoMachineDependentFunction) {
 }
 
 // Every dimension of a sample has a fixed index (sampling/sampler.h), so there is no rejection
-// sampling: where samples are mapped, every loop has a count.
+// sampling. The test therefore forbids loops without a count in the folders that map samples.
 TEST(Architecture, R7_NoRejectionSampling) {
   const std::regex loop(R"(\b(while|do)\b\s*[({]|for \(;;\))");
   for (const fs::path& source : sources()) {
@@ -240,8 +240,8 @@ std::map<std::string, std::set<std::string>> types_of_headers() {
   return found;
 }
 
-// If two headers define types of the same name and no file includes both, no compiler reports it.
-// The linker takes the two for one type and mixes their inline members.
+// If two headers define types of the same name and no file includes both, no compiler reports the
+// clash. The linker takes the two types for one and mixes their inline members.
 TEST(Architecture, ATypeIsDefinedInOneHeader) {
   const auto found = types_of_headers();
   EXPECT_GT(found.size(), 300u);  // fewer: the patterns have missed some

@@ -24,7 +24,7 @@ struct Walkthrough {
 void add_walkthroughs(const fs::path& readme, std::vector<Walkthrough>& to) {
   static const std::regex kHeading("(#+) (.*)");
   std::ifstream in(readme);
-  std::size_t level = 0;  // of the walkthrough that is being read; 0: none
+  std::size_t level = 0;  // heading level of the walkthrough that is being read; 0: none
   bool fenced = false;
   for (std::string line; std::getline(in, line);) {
     fenced = fenced != line.starts_with("```");

@@ -39,8 +39,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Stream = grpc::ClientReaderWriter<farm::FromWorker, farm::ToWorker>;
 
-constexpr std::chrono::milliseconds kLong{600'000};  // deadline of calls; longer than any takes
-// The image has many rows. They have few bytes, because the costs of bands are measured.
+constexpr std::chrono::milliseconds kLong{600'000};  // deadline of calls, longer than each takes
+// The image has many rows of few bytes each, because the cost of bands is measured, not that of
+// their bytes.
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 4096;
 
@@ -159,8 +160,8 @@ class NullWorker {
     stream_->Write(message);
   }
 
-  /// Answers leases until the time is up. Returns for each the seconds from lease to
-  /// acknowledgement.
+  /// Answers leases until the time is up. Returns, for each lease, the seconds from its arrival to
+  /// the acknowledgement of its band.
   std::vector<double> work(Clock::time_point until) {
     std::vector<double> took;
     farm::ToWorker message;
@@ -194,8 +195,8 @@ class NullWorker {
     header.set_instance(instance_);
     header.set_size(black.size());
     header.set_sha256(wire::sha256(black).raw());
-    // Reports so low a speed that the scheduler leases bands of one row: the costs of a band are to
-    // be measured, not those of its bytes.
+    // Reports a speed so low that the scheduler leases bands of one row. So the measurement shows
+    // the cost of a band and not that of its bytes.
     header.mutable_counters()->set_render_s(2.0 * (band.last_row() - band.first_row()));
     chunk.set_data(black);
     farm::PutBandReply reply;
@@ -259,7 +260,8 @@ void bands(double seconds, int workers) {
       1e6 * (after.cpu_s - before.cpu_s) / static_cast<double>(all.size()), after.resident_mb);
 }
 
-/// Measures the lower bound for a band: appending and syncing a row, with nothing else to do.
+/// Measures a lower bound for the time of a band: the time to append and sync one row, with nothing
+/// else to do.
 void disk(double seconds) {
   const test::TempDir folder;
   auto file = File::open(folder / "rows", O_CREAT | O_WRONLY);

@@ -25,7 +25,7 @@ std::vector<Figure> loss_figures();
 /// Time from the start of `bandsaw submit` to the first finished rows that it reports.
 std::vector<Figure> first_pixel_figures();
 
-/// Number of bands that were finished and rendered again after the coordinator's kill -9.
+/// Number of finished bands that were rendered again after the coordinator was killed by SIGKILL.
 Figure rendered_again_figure();
 
 /// Error, in percent, of the remaining time that is reported after a quarter of a job's time.

@@ -17,7 +17,7 @@ using test::Hosts;
 using test::Process;
 
 constexpr int kKills = 10;
-constexpr int kSilences = 3;  // each takes seconds to be detected
+constexpr int kSilences = 3;  // losses by freeze or pulled cable; each takes seconds to be detected
 
 /// Submits a job that does not end during the measurement.
 void keep_busy(const FarmProcesses& farm) {
@@ -28,7 +28,8 @@ void keep_busy(const FarmProcesses& farm) {
 }
 
 /// Starts a worker and waits until one of its bands is stored. Then calls `lose`, which kills,
-/// freezes or disconnects the worker. Returns the seconds from then to the coordinator's report.
+/// freezes or disconnects the worker. Returns the seconds from that call to the coordinator's
+/// report of the loss.
 double seen_after(FarmProcesses& farm, const std::string& worker,
                   const std::function<void()>& lose) {
   farm.add_worker(worker, 1);
@@ -43,8 +44,8 @@ double seen_after(FarmProcesses& farm, const std::string& worker,
   return seconds_since(begin);
 }
 
-/// Measures the loss of a worker that gets the signal `number`. Measures it `times` times, each
-/// time with a new worker.
+/// Measures the time until the coordinator reports the loss of a worker that gets the signal
+/// `number`. Does so `times` times, each time with a new worker.
 Figure signalled(const std::string& name, const std::string& aim, int number, int times) {
   Figure figure{name, aim, " s", {}, ""};
   FarmProcesses farm;

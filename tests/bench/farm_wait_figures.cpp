@@ -55,7 +55,7 @@ double first_pixels(const FarmProcesses& farm, const std::string& scene, int see
 }
 
 /// Writes a scene with a height field of 522,242 triangles (10 MB as a file, 9.4 MB as blobs) and
-/// returns its path. It differs for each `seed`, so that no machine has it already.
+/// returns its path. The scene differs for each `seed`, so that no machine has it already.
 std::string hills(const FarmProcesses& farm, int seed) {
   constexpr int kSide = 512;
   const std::string name = "hills" + std::to_string(seed);

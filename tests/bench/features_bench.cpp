@@ -27,8 +27,8 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// One scene with some features, and the time of each of its renders relative to the scene with its
-/// own features in the same round.
+/// One scene with its own features or with forced ones, and the times of its renders. Each time is
+/// relative to that of the scene with its own features in the same round.
 struct Variant {
   std::string name;
   std::shared_ptr<const Scene> scene;

@@ -101,8 +101,8 @@ Figures begun(const std::string& folder) {
   return out;
 }
 
-/// Measures begun() in a process of its own. The package is made in another process, so that it
-/// does not add to the memory.
+/// Measures begun() in a process of its own. The package is made in another process, so that making
+/// it does not add to the peak memory.
 Figures from_disk(const Family& family, double size) {
   const std::string folder =
       (std::filesystem::temp_directory_path() / ("growth-" + std::to_string(getpid()))).string();
@@ -131,7 +131,7 @@ struct Column {
   const char* name;
   const char* file;  ///< part of the plot's file name
   double Figures::*figure;
-  double unit;  ///< factor of the figure
+  double unit;  ///< factor by which the figure is multiplied
 };
 constexpr Column kColumns[] = {
     {"build, s", "build", &Figures::build_s, 1},
@@ -196,7 +196,8 @@ Grown measure(const Family& family) {
   return out;
 }
 
-/// Returns the speed of all threads relative to one: minimum times of alternating rounds.
+/// Returns the speed of all threads relative to that of one thread, from the minimum times of
+/// alternating rounds.
 double thread_speedup() {
   const Family cornell = families(true).back();  // "depth": a Cornell box
   GrownScene grown = cornell.scene(8);           // paths of at most 8 scatterings

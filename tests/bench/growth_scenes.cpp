@@ -1,5 +1,5 @@
 // Families of scenes for growth_bench: in each, one quantity grows (triangles, spheres, instances,
-// lights, texels, pixels or the depth of paths) and the rest stays alike.
+// lights, texels, pixels or the depth of paths) and everything else stays the same.
 
 #include "tests/bench/growth_scenes.h"
 
@@ -44,8 +44,8 @@ GrownScene hills(double triangles) {
   return grown(std::move(maker));
 }
 
-/// Returns the radius of `count` spheres, or instances of one mesh, with which they fill a cube
-/// with the same density at every count.
+/// Returns the radius of each of `count` spheres, or instances of one mesh, in a cube. With this
+/// radius the cube is filled with the same density at every count.
 double radius_of(double count) { return 0.6 / std::cbrt(count); }
 
 GrownScene spheres(double count) {
@@ -106,7 +106,7 @@ GrownScene textured(double texels) {
 }
 
 /// A Cornell box of this many pixels. The total number of samples is the same at every resolution,
-/// unless that is less than one a pixel.
+/// except that each pixel has at least one sample.
 GrownScene pixels(double count) {
   GrownScene out = grown(test::cornell_box());
   const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(count)));

@@ -1,5 +1,5 @@
-// kernel_bench [MESH...]: rays a second of Accel and of Embree on the same rays (README.md). A mesh
-// is a name (tests/bench/kernel_meshes.h) or a file.
+// kernel_bench [MESH...] measures how many rays a second Accel and Embree trace; both get the same
+// rays (README.md). A mesh is a name (tests/bench/kernel_meshes.h) or a file.
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 #pragma once
 
-// Rays as in a renderer. Their origins and directions are floats, so that every kernel traces the
-// same rays.
+// Sets of rays for kernel_bench, as a renderer traces them. Their origins and directions are
+// floats, so that every kernel traces the same rays.
 
 #include <vector>
 

@@ -22,8 +22,8 @@ Mesh rough_sphere(int slices, int stacks, double spread, std::uint64_t seed);
 /// within a cube whose edges have the length `size`.
 Mesh triangle_soup(int count, double size, std::uint64_t seed);
 
-/// `moved` translates all vertices by `by`, `scaled` multiplies them by it, both in double; the
-/// results are rounded to float.
+/// `moved` adds `by` to all vertices, and `scaled` multiplies them by `by`. Both compute in double
+/// and round the results to float.
 Mesh moved(Mesh mesh, const Vec3& by);
 Mesh scaled(Mesh mesh, double by);
 

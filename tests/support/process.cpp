@@ -65,8 +65,8 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
   return out;
 }
 
-// Adds the test's own variables that `environment` does not set. No name may occur twice, because
-// shells would use the later entry.
+// Adds the environment variables of this process that `environment` does not set. No name may occur
+// twice, because shells would use the later entry.
 void inherit(std::vector<std::string>& environment) {
   const std::size_t given = environment.size();
   for (char** e = environ; *e != nullptr; ++e) {

@@ -1,4 +1,4 @@
-// Browsers as workers of a farm. Whoever opens the link for browsers renders in a tab, with the
+// Browsers as workers of a farm. Users who open the link for browsers render in a tab, with the
 // renderer as WebAssembly. A job has the same bytes as a local render, whatever the tabs do.
 
 #include <gmock/gmock.h>
@@ -354,7 +354,7 @@ std::string with_memory(std::string module, std::uint32_t pages) {
 }
 
 TYPED_TEST(JoinTest, ASceneThatExhaustsTheMemoryIsGivenBackAndNotTakenAgain) {
-  // A coordinator whose browsers get 20 MB; "instances" needs twice as much.
+  // The browsers of this coordinator get 20 MB. The scene "instances" needs twice as much.
   const TempDir folder;
   fs::create_directories(folder / "bin");
   fs::create_directories(folder / "share/bandsaw/browser");

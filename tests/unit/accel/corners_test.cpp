@@ -1,5 +1,5 @@
 // A hit on a mesh points to the triangle's corners as the BVH stores them, so that they need not be
-// looked up. They are those of the mesh, to the bit.
+// looked up. These corners equal those of the mesh, to the bit.
 
 #include <gtest/gtest.h>
 

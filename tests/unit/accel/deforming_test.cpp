@@ -1,5 +1,5 @@
-// Meshes that deform: at each time they are hit as the ordinary mesh with the interpolated
-// positions, to the bit.
+// Tests meshes that deform. At each time, rays hit such a mesh as they hit an ordinary mesh with
+// the interpolated positions, to the bit.
 
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ using test::Random;
 
 constexpr Interval kShutter = {0.25, 1.5};
 
-/// A closed mesh whose vertices move along straight ways, some not at all; it contains the ball
-/// around `at` of half its `size` at all times.
+/// A closed mesh. Its vertices move along straight lines, except for some that do not move. It
+/// contains the ball around `at` of radius `size` / 2 at all times.
 Mesh breathing(double size, const Vec3& at, int slices = 24, int stacks = 12) {
   const auto placed = [&](double spread, std::uint64_t seed) {
     return test::moved(test::scaled(test::rough_sphere(slices, stacks, spread, seed), size), at);
@@ -136,7 +136,8 @@ TEST(Deforming, IsHitAsTheMeshOfThatTime) {
   }
 }
 
-// Placed, mirrored, in a frame that moves too, and beside static geometry.
+// The deforming mesh is placed and mirrored, is in a frame that moves too, and is beside static
+// geometry.
 TEST(Deforming, EqualsBruteForceInInstances) {
   Pool pool(1);
   Random random(3);
@@ -164,7 +165,7 @@ TEST(Deforming, EqualsBruteForceInInstances) {
   EXPECT_GT(hits, 1'000);
 }
 
-// Rays from inside, aimed at corners and edges as they are at the ray's time.
+// Rays start inside and aim at corners and edges where these are at the ray's time.
 TEST(Deforming, DoesNotLeakAtAnyTime) {
   Pool pool(1);
   Random random(4);
@@ -193,7 +194,7 @@ TEST(Deforming, DoesNotLeakAtAnyTime) {
   for (const double scale : {0x1p-40, 1e-6, 0x1p40}) {
     EXPECT_EQ(lost(breathing(scale, {}), {}, scale, 20'000), 0) << scale;
   }
-  // Vertices that cross the whole mesh: a sphere that is turned by a right angle.
+  // The vertices cross the whole mesh, because the sphere turns by a right angle.
   Mesh turned = test::icosphere(3);
   for (const std::array<float, 3>& p : turned.positions) {
     turned.positions_at_close.push_back({p[1], -p[0], p[2]});
@@ -298,8 +299,9 @@ TEST(Deforming, BoxesHoldIfTheirChangeOverflows) {
   }
 }
 
-// Triangles with a broken vertex at either end, or whose corners coincide at both, are left out and
-// change no bit of the others.
+// A bad triangle has two equal corners, or a vertex that does not exist, that is not finite at an
+// end of the shutter interval, or that moves farther than the range of floats. Bad triangles are
+// left out and change no bit of the hits on the others.
 TEST(Deforming, BadTrianglesDoNotChangeTheOthers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();

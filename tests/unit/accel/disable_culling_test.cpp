@@ -70,8 +70,8 @@ TEST(DisableCulling, HitsAreTheSameToTheBit) {
   EXPECT_GT(hits, 1'000);
 }
 
-// A ray passes two boxes without a hit. The traversal enters neither of them with culling, and both
-// without culling.
+// A ray misses two boxes. The traversal enters neither of them with culling, and both without
+// culling.
 TEST(DisableCulling, EveryBoxIsEntered) {
   WideTree tree;
   WideNode node;

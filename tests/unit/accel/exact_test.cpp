@@ -166,7 +166,8 @@ TEST(AccelExact, RaysThatStartOnAPrimitiveDoNotHitItAgain) {
   expect_exact(g, rays);
 }
 
-// Every triangle twice, in different orders: the lowest id is hit.
+// The mesh has every triangle twice, in random order, and there are two instances of it. A ray hits
+// the triangle with the lowest id.
 TEST(AccelExact, T7_TiesGoToTheLowestIdInAnyOrder) {
   test::Random random(11);
   const Mesh mesh = test::icosphere(2);

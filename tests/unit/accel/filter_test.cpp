@@ -110,7 +110,8 @@ Pair adversarial_pair(Random& random, bool in_float) {
   return pair;
 }
 
-/// How often the double test hit, the filter was sure of a hit, and the filter was wrong.
+/// Counts how often the test in double found a hit, how often the filter was sure of one, and how
+/// often the filter was wrong.
 struct Verdicts {
   int hits = 0;
   int sure = 0;

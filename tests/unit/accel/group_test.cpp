@@ -52,7 +52,7 @@ void expect_exact(const Geometry& g, int rays, double size, std::uint64_t seed) 
       continue;
     }
     ++hits;
-    // A ray that starts at the hit, and the next hit of the same ray.
+    // Checks a second ray, which starts at the hit, and the next hit along the first ray.
     const Ray on{ray.origin + expected.t * ray.direction, ray.direction, kInfinity, expected.id};
     ASSERT_TRUE(test::same_hit(test::closest_by_brute_force(g, on), accel.closest(on)));
     const Hit next = accel.closest_after(ray, expected);
@@ -111,7 +111,7 @@ TEST(Group, AllSurfacesAlongARayAreHitInOrder) {
   }
 }
 
-// A stretched sphere has the normals of the ellipsoid's gradient.
+// The normals of a stretched sphere point along the gradient of the ellipsoid's equation.
 TEST(Group, X2_AStretchedSphereIsAnEllipsoid) {
   const Vec3 axes = {1, 1, 1e-3};
   const Transform turn = rotation({1, 2, 3}, 40);
@@ -139,14 +139,15 @@ TEST(Group, X2_AStretchedSphereIsAnEllipsoid) {
     ASSERT_LE(length(cross(normalize(turn.direction(gradient)), p.geometric_normal)), 1e-10);
     ASSERT_GT(dot(turn.direction(gradient), p.geometric_normal), 0);
     ASSERT_LE(length(p.position - (ray.origin + hit.t * ray.direction)), 1e-11);
-    // Rays that leave outwards do not hit it again; those that go inwards hit its other side.
+    // Rays that leave outwards do not hit the ellipsoid again. Rays that leave inwards hit its
+    // other side.
     ASSERT_FALSE(accel.occluded(spawn_ray(p, p.geometric_normal + 1e-3 * ray.direction)));
     ASSERT_TRUE(accel.occluded(spawn_ray(p, -p.geometric_normal)));
   }
   EXPECT_GT(hits, 3000);
 }
 
-// Mirrored shapes keep their outside.
+// Mirroring a shape does not exchange its inside and its outside.
 TEST(Group, X1_MirroredInstancesEqualMirroredShapes) {
   Geometry mirrored;
   mirrored.groups.resize(1);

@@ -73,7 +73,7 @@ TEST(Instance, X1_MirroredKeepsItsOutside) {
   test::report_hard_case("X1", "5,000 normals within 1e-12 of those mirrored by hand");
 }
 
-// Normals of an instance that is an ellipsoid are its gradient.
+// The instance is an ellipsoid. Its shading normals point along the gradient of its equation.
 TEST(Instance, X2_StretchedInstancesHaveTheNormalsOfTheirShape) {
   const Vec3 axes = {1, 1, 1e-3};
   const Transform turn = rotation({1, 2, 3}, 40);
@@ -151,7 +151,8 @@ TEST(Instance, X6_TheFirstOfCoincidentInstancesIsHit) {
   test::report_hard_case("X6", "the first of 21 in one place in 3,000 rays");
 }
 
-// The world box of a rotated instance contains it: rays at its outermost corners hit it.
+// The box of a rotated instance in world space contains the instance: rays from its middle hit each
+// corner of the mesh.
 TEST(Instance, B11_BoxesContainTheirInstances) {
   Pool pool(1);
   test::Random random(5);
@@ -177,7 +178,7 @@ TEST(Instance, B11_BoxesContainTheirInstances) {
 
 TEST(Instance, X3_SingularOnesAreNeverHit) {
   Geometry g = placed(test::icosphere(1), scaling({1, 0, 1}));
-  g.instances.push_back({MeshId{7}, {}, {}});  // does not exist
+  g.instances.push_back({MeshId{7}, {}, {}});  // this mesh does not exist
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);
   EXPECT_FALSE(accel.closest({{0, -3, 0}, {0, 1, 0}}));

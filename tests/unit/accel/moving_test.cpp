@@ -127,8 +127,8 @@ TEST(Moving, EqualsBruteForceAtTheRaysTime) {
   }
 }
 
-// A million rays at the silhouette of a moving ball hit it as they hit a ball at its place at that
-// time (S11, B10).
+// 1,050,000 rays aim at the silhouette of a moving ball. Each has the same result as in a search
+// without a BVH, which places the ball at the ray's time (S11, B10).
 TEST(Moving, S11_ABallIsHitAtItsPlaceAtTheRaysTime) {
   Pool pool(1);
   Random random(8);
@@ -170,7 +170,7 @@ TEST(Moving, S11_ABallIsHitAtItsPlaceAtTheRaysTime) {
   test::report_hard_case("S11", "0 misses of 1,050,000");
 }
 
-// The sides of a node, computed in float, contain its shapes at every time.
+// The sides of the boxes are computed in float. The boxes still contain their shapes at every time.
 TEST(Moving, B10_BoxesContainTheirShapesAtEveryTime) {
   Pool pool(1);
   Random random(9);

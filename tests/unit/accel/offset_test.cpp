@@ -63,7 +63,7 @@ TEST(Offset, O1_NoRayHitsTheMeshPlaneItLeaves) {
   test::report_hard_case("O1", "80,000 bounces off squashed, mirrored and moved meshes: none");
 }
 
-// A sphere that nearly touches a plane: rays from the plane below hit it.
+// A sphere nearly touches a plane. Rays that leave the plane below the sphere hit it.
 TEST(Offset, O2_NarrowGapsAreNotSkipped) {
   Pool pool(1);
   test::Random random(3);

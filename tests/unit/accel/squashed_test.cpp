@@ -43,7 +43,8 @@ std::vector<Case> cases() {
   return all;
 }
 
-/// One sphere of radius 1, or one unit cube around 0, placed.
+/// Returns a geometry of one sphere of radius 1, or of one unit cube around 0, with the placement
+/// `to_world`.
 Geometry placed(const Transform& to_world, bool cube) {
   Geometry g;
   Instance instance;
@@ -77,8 +78,8 @@ struct Lost {
   int outside = 0;  ///< rays that left outwards and hit it again
 };
 
-/// Traces rays from outside, which continue inwards from each surface several times; at each hit
-/// also one that leaves outwards.
+/// Traces rays from outside. Each continues inwards from every surface that it hits, up to 20
+/// times. At each hit, one more ray leaves outwards.
 Lost bounce(const Geometry& g, const Transform& to_world, int rays, std::uint64_t seed) {
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);

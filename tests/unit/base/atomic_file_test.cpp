@@ -1,4 +1,4 @@
-// Files that are written completely or not at all, and the errors when they cannot be.
+// Files that are written completely or not at all, and the errors if they cannot be written.
 
 #include "renderlib/base/atomic_file.h"
 
@@ -106,8 +106,8 @@ TEST(AtomicFile, LeavesNoFileInAReadOnlyFolder) {
   EXPECT_EQ(files_in(dir.path()), 0u);
 }
 
-/// A file that may not grow fails in write() half-way, as a full disk does. The test runs in a
-/// child process, because the limit applies to the whole process.
+/// Writing to a file that may not grow fails in write() half-way, as on a full disk. The test runs
+/// in a child process, because the limit applies to the whole process.
 int write_with_limit(const std::string& path) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit = {1000, 1000};

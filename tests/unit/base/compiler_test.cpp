@@ -22,7 +22,8 @@ struct DoublePair {
   double y;
 };
 
-/// g++ 12.2 -O2 stores the doubles it read, unless -fno-tree-slp-vectorize is given.
+/// g++ 12.2 at -O2 breaks this function unless -fno-tree-slp-vectorize is given: it stores the
+/// doubles that it read, without rounding them.
 [[gnu::noinline]] void round_to_float(const double* in, DoublePair* out) {
   const FloatPair f{static_cast<float>(in[0]), static_cast<float>(in[1])};
   *out = DoublePair{f.x, f.y};

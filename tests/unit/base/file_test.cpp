@@ -1,5 +1,5 @@
-// Opening files for reading: pipes and folders are refused, links only followed if that is allowed.
-// The error of a bad sector differs from other errors of reading.
+// Opening files for reading: pipes and folders are refused, and links are followed only if that is
+// allowed. The error of a bad sector differs from other errors of reading.
 
 #include "renderlib/base/file.h"
 

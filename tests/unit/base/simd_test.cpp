@@ -125,8 +125,8 @@ TEST(Simd, EveryOperationIsEqualToPlain) {
   }
 }
 
-// x86 instructions return the second operand. NEON's min and max would return NaN, and order the
-// zeros.
+// Where neither operand is less, the instructions of x86 return the second one. NEON's min and max
+// would return NaN if an operand is NaN, and would treat -0 as less than 0.
 TEST(Simd, MinAndMaxReturnTheSecondOperandWhereNeitherIsLess) {
   const float nan = std::nanf("");
   const Lanes a = {nan, 1, nan, 0.0f, -0.0f, 2, nan, -HUGE_VALF};

@@ -1,7 +1,7 @@
 // The renderer in a browser's tab, called through the functions that it exports. Its pixels have
-// the same bytes as those of a native worker. It renders a band in parts of a few rows. If the
-// scene shares paths between pixels, the row step, 16, says that a part should have whole rows of
-// tiles; otherwise the row step is 1.
+// the same bytes as those of a native worker. It renders a band in parts of a few rows. Parts
+// should end at multiples of the row step. If the scene shares paths between pixels, the row step
+// is 16, the height of a tile; otherwise it is 1.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

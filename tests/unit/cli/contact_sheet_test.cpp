@@ -26,7 +26,7 @@ TEST(ContactSheet, ShowsEachFrameOnceAndCrossesOutMissingOnes) {
   ContactSheet sheet({-1, 2, 10}, 40, 30);
   sheet.add(-1, flat(40, 30, red), {});
   sheet.add(10, flat(40, 30, green), {});
-  sheet.add(11, flat(40, 30, green), {});  // no frame of the sheet
+  sheet.add(11, flat(40, 30, green), {});  // the sheet has no frame 11
   const Image picture = sheet.picture();
   EXPECT_EQ(picture.pixels.size(), std::size_t{picture.width} * picture.height);
   EXPECT_EQ(count(picture, red), 40u * 30);

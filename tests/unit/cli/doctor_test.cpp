@@ -58,7 +58,8 @@ TEST(Doctor, AMissingFolderIsCheckedByItsParent) {
   EXPECT_THAT(check_data_folder(folder / "a/b").found, HasSubstr("does not exist yet"));
 }
 
-// A program listens on a port of 127.0.0.1, and perhaps the farm is this program.
+// A program listens on a port of 127.0.0.1. The check of this port passes only if the program is
+// the farm.
 TEST(Doctor, ATakenPortIsTheFarmsIfTheFarmListensThere) {
   const int taken = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};

@@ -68,7 +68,8 @@ TEST(LocalPlan, ATimeRuleGivesAtLeastOneBlock) {
   EXPECT_FALSE(plan.next(16, -1, 5).has_value());
 }
 
-// 5 rows of 10 pixels take 64 samples each: 3,200, of which 1,600 are done after 2 s.
+// Each of the 50 pixels in 5 rows takes 64 samples. After 2 s, 1,600 of these 3,200 samples are
+// done.
 TEST(LocalMeter, ReportsTheProgressOfARender) {
   JobSpec spec;
   spec.settings = {.width = 10, .height = 10, .max_depth = 1, .seed = 0};

@@ -21,7 +21,8 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// Collects what a console prints. `terminal`: it is one, so that lines can be redrawn.
+/// Collects what a console prints. `terminal`: the console is a terminal, so that lines can be
+/// redrawn.
 struct Screen {
   std::string out;
   std::string err;

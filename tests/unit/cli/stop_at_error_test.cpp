@@ -33,8 +33,8 @@ double normal(Random& random) {
 /// within each group of pixels that may share their paths.
 enum class Errors { kOwn, kFew, kShared };
 
-/// An image whose true value is 1 everywhere. Some 70 of its pixels, or of its groups of pixels,
-/// have most of the noise.
+/// An image whose true value is 1 everywhere. Its noise is uneven: with kOwn, some 70 pixels have
+/// most of it; with kShared, some 70 groups of pixels have most of it.
 class NoisyImage {
  public:
   NoisyImage(Errors errors, Random& random) : errors_(errors), random_(random) {
@@ -109,8 +109,8 @@ double true_error(const Image& image) {
   return std::sqrt(squares);
 }
 
-/// Runs one job until it stops. `with_margin`: it compares the upper bound of the error with the
-/// target, as jobs do; otherwise the estimate itself.
+/// Runs one job until it stops. `with_margin`: the job compares the upper bound of the error with
+/// the target, as jobs do; otherwise it compares the estimate itself.
 Stopped run(Errors errors, bool adaptive, bool with_margin, Random& random) {
   NoisyImage image(errors, random);
   LocalPlan plan(StopAtError{.relative_rmse = kTarget, .adaptive = adaptive}, kGrid);
@@ -139,7 +139,7 @@ constexpr int kJobs = 400;
 
 struct Jobs {
   int met = 0;      ///< number of jobs whose true error is at most the target
-  double cost = 0;  ///< mean
+  double cost = 0;  ///< mean over the jobs
 };
 
 Jobs of_many(Errors errors, bool adaptive, bool with_margin) {
@@ -174,7 +174,7 @@ TEST(StopAtError, AlsoWhereRareBrightPathsDecide) {
   EXPECT_LE(even.cost, 2);
 }
 
-// The reason for the margin: jobs stop preferably when their estimate is too low.
+// The margin is needed because a job tends to stop when its estimate is too low.
 TEST(StopAtError, WithoutAMarginManyImagesAreNot) {
   EXPECT_LE(of_many(Errors::kOwn, false, false).met, 0.8 * kJobs);
   EXPECT_LE(of_many(Errors::kShared, false, false).met, 0.8 * kJobs);

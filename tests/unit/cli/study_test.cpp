@@ -83,7 +83,7 @@ TEST(Study, WithoutATechniqueTheErrorIsLargerAndTheMeanIsUnbiased) {
   EXPECT_NEAR(*slope_of(line(study, Method::kIndependent)), -0.5, 0.1);
 }
 
-// All light has passed glass: paths hardly find it, photons do.
+// All visible light has passed through glass. Paths from the camera rarely find it, but photons do.
 TEST(Study, WhereGuidingPaysThereIsALineWithoutIt) {
   test::SceneMaker maker = test::lamp_in_glass(1.5, 0.05);
   maker.camera({0, 0, 1}, {0, 0, 2}, 60);  // a wall; the lamp is behind the camera
@@ -191,7 +191,7 @@ TEST(StudyText, AnEmptyPlotIsOne) {
   EXPECT_THAT(svg_of({.x = "x", .y = "y", .panels = {{}}}), Not(HasSubstr("nan")));
 }
 
-// A clean image is the image as rendered, plus the guides and the filter: so it costs more.
+// A clean image needs the image as rendered, the guides and the filter, so it costs more.
 TEST(Study, CleanImagesAreComparedWithThoseAsRendered) {
   const StudyOfScene study =
       study_of(*test::cornell_box().build(),

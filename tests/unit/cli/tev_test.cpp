@@ -8,7 +8,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// The string contains zero bytes.
+// Returns the literal as a string, with the zero bytes that it contains.
 template <std::size_t n>
 std::string bytes(const char (&text)[n]) {
   return std::string(text, n - 1);

@@ -31,7 +31,8 @@ TEST(ErrorMetrics, AConstantDifferenceIsItsOwnRmse) {
   EXPECT_DOUBLE_EQ(metrics.max_difference, 0.25);
 }
 
-// The sRGB code of linear 1 is 1, that of 0.0031308 / 12.92 is about 0.
+// The sRGB code of linear 1 is 1. Near 0 the curve is linear with the slope 12.92, so the code of
+// 0.001 is 0.01292. Values above 1 are clamped.
 TEST(ErrorMetrics, PeakSignalToNoiseIsOfCodedValues) {
   EXPECT_NEAR(error_metrics(uniform(2, 2, 1), uniform(2, 2, 0)).psnr, 0, 1e-12);
   EXPECT_NEAR(error_metrics(uniform(2, 2, 0.001F), uniform(2, 2, 0)).psnr,

@@ -41,8 +41,9 @@ TEST(Flip, EqualImagesDoNotDiffer) {
   EXPECT_EQ(mean(hdr_flip(waves(40, 30), waves(40, 30))), 0);
 }
 
-// Computed by hand from equations 7 to 9 of the paper, without features. Black against white: HyAB
-// 100; the largest distance, green against blue, is 203.3.
+// Computed by hand from equations 7 to 9 of Andersson et al. 2020 (compare/flip.h), without
+// features. The HyAB distance of black and white is 100. The largest distance, that of green and
+// blue, is 203.3.
 TEST(Flip, BlackAgainstWhiteInClosedForm) {
   const double largest = std::pow(203.31, 0.7);
   const double expected = 0.95 + 0.05 * (std::pow(100, 0.7) - 0.4 * largest) / (0.6 * largest);

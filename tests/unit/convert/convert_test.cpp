@@ -117,7 +117,7 @@ TEST(Convert, JobsRoundTrip) {
   const JobView back = job_view_of(message);
   farm::JobStatus again = to_message(back);
   EXPECT_EQ(message.bad_sample_at(), "pixel (3, 4), sample 5");
-  again.set_bad_sample_at(message.bad_sample_at());  // only a text in the message
+  again.set_bad_sample_at(message.bad_sample_at());  // a text, which job_view_of() does not read
   EXPECT_EQ(again.SerializeAsString(), message.SerializeAsString());
   EXPECT_EQ(back.spec, job.spec);
   EXPECT_EQ(back.bands_audited, 15u);

@@ -1,5 +1,5 @@
-// The collector, which forgets jobs that are over by age, bytes and number, and then removes the
-// blobs that no known job needs. By default it keeps jobs for 30 days and unused blobs for one day.
+// Tests the collector. It forgets final jobs by age, bytes and number, and then removes the blobs
+// that no known job needs. By default it keeps jobs for 30 days and unused blobs for one day.
 // A KeptJob here is written {id, is it final?, manifests, frame jobs}.
 
 #include "coordinator/engine/collector.h"

@@ -12,9 +12,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// An effect is done only after its records are durable. A completion is called in either case,
-/// with the status of the journal. Both append their names to `done_`, a failed completion "!" and
-/// its name.
+/// An effect is done only after its records are durable. A completion is called whether or not they
+/// are durable, with the status of the journal. In these tests both append their names to `done_`.
+/// A failed completion appends "!" and its name.
 class CommitQueueTest : public testing::Test {
  protected:
   void effect(const std::string& name) {

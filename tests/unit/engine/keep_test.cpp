@@ -77,7 +77,7 @@ TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
   cancel(over);
   EXPECT_EQ(jobs().size(), 990u);
   submit(20);
-  // Waits until the store's thread has run its first collection.
+  // Waits until the collection at the thousandth job has removed the oldest job.
   for (int asked = 0; asked < 1'000'000 && is_known(over.front()); ++asked) {
   }
   const std::vector<JobView> left = jobs();

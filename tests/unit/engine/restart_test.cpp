@@ -1,4 +1,5 @@
-// The coordinator is stopped or killed during a job.
+// The coordinator is stopped or killed during a job. After its restart, acknowledged bands are not
+// rendered again unless they are damaged on disk, and the image is the same.
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -173,8 +174,8 @@ TEST(Restart, ASecondResultOnDiskIsCompared) {
   EXPECT_TRUE(quarantined) << "the second machine agrees with the first";
 }
 
-/// Runs a coordinator and two workers in this (child) process. It writes each band that was
-/// acknowledged to the pipe `out`.
+/// Runs a coordinator and two workers in this process, a child of the test. Writes each
+/// acknowledged band to the pipe `out`, and ends the process when the job is final.
 [[noreturn]] void run_farm(TestFarm& farm, int out) {
   const auto tell = [out](const Band& band, const absl::StatusOr<BandOutcome>& outcome) {
     if (outcome.ok() && *outcome == BandOutcome::kStored &&

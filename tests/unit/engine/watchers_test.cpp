@@ -1,5 +1,5 @@
-// Delivery of a job's states to those who watch it: at most ten a second, at least one a second,
-// and always the final one.
+// Delivery of a job's states to its watchers: at most ten a second, at least one a second, and
+// always the final one.
 
 #include "coordinator/engine/watchers.h"
 

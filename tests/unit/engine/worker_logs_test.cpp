@@ -1,5 +1,5 @@
-// WorkerLogs keeps the last lines of each worker's log. Its limits here are lines of each log, and
-// bytes of all logs together.
+// WorkerLogs keeps the last lines of each worker's log. Its constructor takes two limits: the
+// number of lines of each log, and the bytes of all logs together.
 
 #include "coordinator/engine/worker_logs.h"
 

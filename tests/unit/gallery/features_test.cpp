@@ -93,7 +93,7 @@ TEST_F(GalleryFeatures, AllTogetherGiveTheSameBitsOnEveryScene) {
   }
 }
 
-// Scenes with few features, so that most are forced; all integrators.
+// Renders scenes with few features, so that most features are forced, with all integrators.
 TEST_F(GalleryFeatures, EachAloneGivesTheSameBitsByEveryIntegrator) {
   for (const char* scene : {"cornell.textproto", "spheres.textproto", "textured.textproto",
                             "study/lights_0.textproto"}) {

@@ -1,5 +1,5 @@
-// The globe is a generated map of a planet, a texture of scenes in gallery/study. The memory to
-// render with it is little more than the bytes of its texels.
+// The globe is a generated map of a planet, a texture of scenes in gallery/study. Rendering with it
+// takes little more memory than the bytes of its texels.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,8 @@ namespace {
 
 using test::TempDir;
 
-// The scene of the study and its map, alone in a folder.
+// Writes the scene of the study and its map, which has `rows` rows, to the folder. Returns the path
+// of the scene.
 std::string scene_in(const TempDir& folder, std::uint32_t rows) {
   Pool pool(2);
   const auto png = encode_png(2 * rows, rows, globe_map(rows, pool));
@@ -49,7 +50,8 @@ bool forget_peak() {
   return file.good();
 }
 
-// Renders the scene so large that every texel is read, and reports the memory.
+// Imports the scene and renders it with 400 x 400 pixels. Returns the peak resident memory after
+// the import, in bytes.
 std::uint64_t peak_of_render(const std::string& scene_path) {
   coordinator::ImportLimits limits;
   limits.program = BANDSAW_IMPORT_BIN;
@@ -80,7 +82,8 @@ TEST(GlobeMemory, IsAtMostAFifthAboveTheTexels) {
   const std::uint64_t taken = peak_of_render(large) - base;
   RecordProperty("bytes_over_texel_bytes",
                  std::to_string(static_cast<double>(taken) / static_cast<double>(texels(2048))));
-  // Otherwise nothing was measured. The other memory of the two renders differs by a few pages.
+  // A lower value would mean that nothing was measured. The other memory of the two renders differs
+  // by a few pages.
   EXPECT_GE(static_cast<double>(taken), 0.95 * static_cast<double>(texels(2048)));
   EXPECT_LE(static_cast<double>(taken), 1.2 * static_cast<double>(texels(2048)));
 }

@@ -120,7 +120,8 @@ TEST(Lathe, TurnsClosedMeshesWithNormalsOutwards) {
   }
 }
 
-// A cone of 2n + 2n faces: its edge at the foot is sharp, so that the foot's normals point down.
+// A cone turned in n steps has n faces at its foot and n at its side. The edge of the foot is
+// sharp, so the foot's normals point down.
 TEST(Lathe, KeepsSharpEdges) {
   const Obj cone = parse(lathe_obj(std::array<Vec2, 3>{{{0, 0}, {1, 0}, {0, 1}}}, 8));
   EXPECT_EQ(cone.faces.size(), 16u);

@@ -27,7 +27,7 @@ TEST(Closed, ACubeIsClosedAlsoWithSplitCorners) {
   EXPECT_EQ(open_edges(split), 0u);
 }
 
-// Corners of one place that part until the shutter closes leave a hole.
+// If corners at the same place move apart before the shutter closes, they leave a hole.
 TEST(Closed, AMeshThatDeformsIsClosedIfItIsAtBothEnds) {
   Mesh cube = unit_cube();
   cube.positions_at_close = cube.positions;

@@ -37,7 +37,7 @@ TEST(Disk, FacingUpHasItsAxesAlongXAndMinusZ) {
   }
 }
 
-// A normal that is nearly along an axis, as in exported files: the box contains the rim.
+// The normal is nearly along an axis, as in exported files. The box still contains the rim.
 TEST(Disk, IsNotClippedByItsBoxNearlyAlongAnAxis) {
   for (const double tilt : {1e-9, 1e-8, 4.371139e-8, 1e-7, 1e-6, 1e-3}) {
     const Disk disk{{0, 4, 0}, normalize(Vec3{tilt, -1, 0}), 1, {}};
@@ -68,7 +68,7 @@ TEST(Disk, IsHitWithinItsRim) {
     const TracedRay ray = trace_setup(origin, target - origin, kInfinity);
     Crossing c;
     const bool hit = intersect(ray, disk, c);
-    // Computed in higher precision.
+    // The expected hit is computed in higher precision.
     const WideVec o(origin);
     const WideVec d = WideVec(target - origin);
     const WideVec n(disk.normal);

@@ -59,7 +59,7 @@ TEST(Triangle, T5_EdgeOnHitsAreFiniteAndInsideTheBox) {
   test::report_hard_case("T5", "20,000 rays within the plane: hits finite and inside the box");
 }
 
-// A ray through an edge hits at least one of its two triangles, from anywhere.
+// A ray from anywhere through an edge hits at least one of the two triangles that share the edge.
 TEST(Triangle, SharedEdgesDoNotLeak) {
   test::Random random(3);
   for (int i = 0; i < 100000; ++i) {
@@ -98,7 +98,7 @@ TEST(Quad, ReturnsTheCoordinatesAlongItsSides) {
   EXPECT_FALSE(hit({5.01, 2, 1}, {0, 0, -1}, q));
 }
 
-/// The parameters of the intersection of a ray with the plane of a quad, without rounding.
+/// The parameters of the intersection of a ray with the plane of a quad, in higher precision.
 struct Truth {
   Wide t;
   Wide u;
@@ -164,8 +164,8 @@ TEST(Quad, Q3_GrazingRaysFromFarAwayHitCorrectly) {
                          "20,000 hits and misses as in 113 bits, except within 1e-9 of the edge");
 }
 
-// A light in the plane of the ceiling: both have the same t, so the lower id wins and the shadow
-// ray ends before the ceiling.
+// A light lies in the plane of the ceiling. Both quads are hit at the same t, so the lower id wins
+// and the shadow ray ends before the ceiling.
 TEST(Quad, Q4_CoplanarQuadsAreHitAtTheSameDistance) {
   test::Random random(7);
   const Quad light = {{213, 554, 227}, {130, 0, 0}, {0, 0, 105}, {}};

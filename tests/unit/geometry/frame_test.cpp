@@ -29,7 +29,7 @@ double difference(const Transform& a, const Transform& b) {
 TEST(Quaternions, RepresentTheirRotations) {
   Random random(1);
   for (int i = 0; i < 10'000; ++i) {
-    // Including half turns, for which the trace is smallest.
+    // A third of the rotations are half turns, for which the trace is smallest.
     const double degrees = i % 3 == 0 ? 180 : random.uniform(-360, 360);
     const Transform turn = rotation(test::random_direction(random), degrees);
     const Quaternion q = quaternion(turn);
@@ -62,7 +62,7 @@ TEST(Transforms, X7_ManySmallRotationsDoNotDrift) {
   test::at_most("X7", "entries off", difference(sum, {}), 1e-13);
 }
 
-// Eight nested placements, far away and back.
+// Eight nested placements lead far away and back.
 TEST(Transforms, X4_ChainsOfPlacementsKeepTheirPrecision) {
   Transform chain;
   for (int i = 0; i < 8; ++i) {
@@ -116,7 +116,7 @@ TEST(Frames, MoveWithinFramesThatMove) {
   const std::vector<Frame> frames = {
       {kNoFrame, translation({0, 1, 0}), {Key(0, {}), Key(1, rotation({0, 0, 1}, 90))}},
       {FrameId{0}, translation({2, 0, 0}), {Key(0, {}), Key(1, translation({1, 0, 0}))}}};
-  // At half time: 2.5 along a direction 45 degrees up, around (0, 1, 0).
+  // At half time, the origin is 2.5 away from (0, 1, 0), in a direction 45 degrees up.
   const double s = 2.5 * std::sqrt(0.5);
   EXPECT_LE(length(frame_at(frames, FrameId{1}, 0.5).point({}) - Vec3{s, 1 + s, 0}), 1e-15);
 }

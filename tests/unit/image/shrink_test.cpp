@@ -23,8 +23,8 @@ TEST(Shrink, CellsAreMeansAlsoAtTheEdges) {
   const Image small = shrunk(numbered(5, 3), 2, 2);
   ASSERT_EQ(small.width, 3u);
   ASSERT_EQ(small.height, 2u);
-  EXPECT_EQ(small.at(0, 0), (Rgb{3, 1, 0}));     // 0 1 5 6
-  EXPECT_EQ(small.at(2, 0), (Rgb{6.5f, 1, 0}));  // 4 9
+  EXPECT_EQ(small.at(0, 0), (Rgb{3, 1, 0}));     // mean of 0, 1, 5 and 6
+  EXPECT_EQ(small.at(2, 0), (Rgb{6.5f, 1, 0}));  // mean of 4 and 9
   EXPECT_EQ(small.at(2, 1), (Rgb{14, 1, 0}));
 }
 
