@@ -196,7 +196,7 @@ TEST(Architecture, Y5_RenderlibCallsNoMachineDependentFunction) {
 
 // Every dimension of a sample has a fixed index (sampling/sampler.h), so there is no rejection
 // sampling. The test therefore forbids loops without a count in the folders that map samples.
-TEST(Architecture, R7_NoRejectionSampling) {
+TEST(Architecture, R7_SamplesAreMappedWithoutRejection) {
   const std::regex loop(R"(\b(while|do)\b\s*[({]|for \(;;\))");
   for (const fs::path& source : sources()) {
     const std::string folder = source.parent_path().string();

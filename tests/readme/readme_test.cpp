@@ -65,7 +65,7 @@ TEST(Readme, EveryShellBlockRuns) {
 }
 
 // The README has these commands and headings, and a picture that exists.
-TEST(Readme, HasItsParts) {
+TEST(Readme, HasItsCommandsHeadingsAndPicture) {
   std::ifstream file(std::string(BANDSAW_SOURCE) + "/README.md");
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   for (const char* part : {"deploy/demo.sh", "deploy/test.sh", "## Guarantees", "## Limits",

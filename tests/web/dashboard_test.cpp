@@ -300,7 +300,7 @@ TEST_F(DashboardTest, APictureThatWasNotLoadedIsRequestedAgain) {
   EXPECT_TRUE(browser.wait("document.querySelector('.thumb')?.naturalWidth > 0"));
 }
 
-TEST_F(DashboardTest, TheGalleryOnAPhone) {
+TEST_F(DashboardTest, TheGalleryFitsAPhoneAndRendersAScene) {
   Browser browser({.width = 390, .height = 844, .pixel_ratio = 2, .phone = true});
   enter(browser);
   EXPECT_TRUE(fits(browser));
@@ -333,7 +333,7 @@ TEST_F(DashboardTest, TheGalleryOnAPhone) {
   EXPECT_THAT(browser.console_errors(), IsEmpty());
 }
 
-TEST_F(DashboardTest, TheGalleryOnADeskInTheDark) {
+TEST_F(DashboardTest, TheGalleryRendersScenesInDarkMode) {
   Browser browser({.dark = true});
   enter(browser);
   browser.click("nav a[href='#/gallery']");

@@ -296,7 +296,7 @@ class PulledCableTest : public JoinTest<Kind> {
 
 TYPED_TEST_SUITE(PulledCableTest, Kinds, KindName);
 
-TYPED_TEST(PulledCableTest, ATabComesBackWithWhatItHas) {
+TYPED_TEST(PulledCableTest, ATabContinuesAfterItsCableIsPluggedInAgain) {
   const auto tab = this->open(1);
   EXPECT_EQ(this->link_.substr(0, 8), "https://");
   const auto what = this->settings("cornell", "200");
@@ -307,7 +307,7 @@ TYPED_TEST(PulledCableTest, ATabComesBackWithWhatItHas) {
   this->expect_same_bytes(client, what);
 }
 
-TYPED_TEST(PulledCableTest, AJobGoesOnWithoutATabThatReturnsForTheNext) {
+TYPED_TEST(PulledCableTest, AJobContinuesWithoutATabThatReturnsForTheNextJob) {
   Process& native = this->farm_->add_worker("native", 1);
   const auto tab = this->open(1);
   const auto what = this->settings("cornell", "500");

@@ -75,7 +75,7 @@ double time_of(int i, Random& random) {
   }
 }
 
-TEST(ShutterTime, IsExactAtBothEndsAndNeverLeavesThem) {
+TEST(ShutterTime, IsExactAtBothEndsAndStaysBetweenThem) {
   Random random(1);
   const auto number = [&] {
     return static_cast<float>(
@@ -100,7 +100,7 @@ TEST(ShutterTime, IsExactAtBothEndsAndNeverLeavesThem) {
   EXPECT_EQ(ShutterTime({2, 2}, 2).share, 0);
 }
 
-TEST(Deforming, IsHitAsTheMeshOfThatTime) {
+TEST(Deforming, HitsEqualThoseOfTheInterpolatedMesh) {
   Pool pool(2);
   Random random(2);
   for (const double offset : {0.0, 1e4}) {
@@ -331,7 +331,7 @@ TEST(Deforming, BadTrianglesDoNotChangeTheOthers) {
   }
 }
 
-TEST(Deforming, ItsSurfaceIsThatOfTheMeshOfThatTime) {
+TEST(Deforming, SurfacePointsEqualThoseOfTheInterpolatedMesh) {
   Random random(8);
   Mesh mesh = breathing(1, {});
   mesh.normals = mesh.positions;

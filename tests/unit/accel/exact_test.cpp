@@ -89,18 +89,18 @@ Mesh lattice(std::uint64_t seed) {
   return mesh;
 }
 
-TEST(AccelExact, RandomTriangles) {
+TEST(AccelExact, HitsOnRandomTrianglesEqualBruteForce) {
   expect_exact(of_mesh(test::triangle_soup(300, 0.5, 1)), random_rays(3000, 2, 2));
   expect_exact(of_mesh(test::triangle_soup(1000, 0.02, 3)), random_rays(1000, 1, 4));
 }
 
-TEST(AccelExact, T5_RaysAlongPlanesEdgesAndCorners) {
+TEST(AccelExact, T5_HitsOfRaysAlongPlanesEdgesAndCornersEqualBruteForce) {
   expect_exact(of_mesh(lattice(1)), grid_rays(4000, 2));
   test::report_hard_case(
       "T5", "4,000 rays within planes answered as by testing all, in any place of a pack");
 }
 
-TEST(AccelExact, NeedlesAndSpikesFarFromTheOrigin) {
+TEST(AccelExact, HitsOnNeedlesAndSpikesFarFromTheOriginEqualBruteForce) {
   const Mesh spikes = test::rough_sphere(60, 8, 6, 3);
   for (const double offset : {0.0, 1e3, 1e5}) {
     const Vec3 by = {offset, -offset, offset / 3};
@@ -112,7 +112,7 @@ TEST(AccelExact, NeedlesAndSpikesFarFromTheOrigin) {
   }
 }
 
-TEST(AccelExact, RaysAimedAtEdgesAndCorners) {
+TEST(AccelExact, HitsOfRaysAimedAtEdgesAndCornersEqualBruteForce) {
   for (const double offset : {0.0, 1e5}) {
     const Mesh mesh = test::moved(test::icosphere(2), {offset, 0, 0});
     test::Random random(6);
@@ -131,7 +131,7 @@ TEST(AccelExact, RaysAimedAtEdgesAndCorners) {
   }
 }
 
-TEST(AccelExact, LooseShapesOfEveryKind) {
+TEST(AccelExact, HitsOnLooseShapesOfEveryKindEqualBruteForce) {
   test::Random random(7);
   Geometry g;
   for (int i = 0; i < 60; ++i) {
@@ -183,7 +183,7 @@ TEST(AccelExact, T7_TiesGoToTheLowestIdInAnyOrder) {
   test::report_hard_case("T7", "the lowest id of 1,500 rays, to the bit as by testing all");
 }
 
-TEST(AccelExact, B7_BoxesInBoxes) {
+TEST(AccelExact, B7_HitsOnTrianglesOfHalvingSizesEqualBruteForce) {
   Geometry g;
   for (int i = 0; i < 200; ++i) {
     const double size = std::ldexp(1, 60 - i);

@@ -10,7 +10,7 @@
 namespace bandsaw::test {
 namespace {
 
-TEST(HardCases, B8_NothingToHit) {
+TEST(HardCases, B8_AnEmptySceneIsNeverHit) {
   Pool pool(2);
   Geometry geometry;
   EXPECT_FALSE(Accel::build(geometry, pool).closest({{0, 0, 0}, {0, 0, 1}}));
@@ -19,7 +19,7 @@ TEST(HardCases, B8_NothingToHit) {
   report_hard_case("B8", "nothing is hit where nothing is");
 }
 
-TEST(HardCases, T9_ManyEqualTriangles) {
+TEST(HardCases, T9_TheFirstOfManyEqualTrianglesIsHit) {
   Pool pool(2);
   Mesh mesh;
   mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
@@ -31,7 +31,7 @@ TEST(HardCases, T9_ManyEqualTriangles) {
   report_hard_case("T9", "the first of 100,000 equal triangles is hit");
 }
 
-TEST(HardCases, B7_SizesThatHalveAHundredTimes) {
+TEST(HardCases, B7_HitsOnTrianglesOfHalvingSizesEqualBruteForce) {
   Pool pool(1);
   Mesh mesh;
   for (int i = 0; i < 120; ++i) {

@@ -37,7 +37,7 @@ Ray aimed(test::Random& random, const Vec3& center, double spread) {
 
 // A mirrored instance equals a mesh mirrored explicitly with reversed winding: the outside stays
 // outside.
-TEST(Instance, X1_MirroredKeepsItsOutside) {
+TEST(Instance, X1_AMirroredInstanceKeepsItsOutside) {
   const Mesh mesh = smooth_sphere(2);
   Mesh by_hand = mesh;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -176,7 +176,7 @@ TEST(Instance, B11_BoxesContainTheirInstances) {
   test::report_hard_case("B11", "300 placements hold their 42 corners");
 }
 
-TEST(Instance, X3_SingularOnesAreNeverHit) {
+TEST(Instance, X3_SingularInstancesAreNeverHit) {
   Geometry g = placed(test::icosphere(1), scaling({1, 0, 1}));
   g.instances.push_back({MeshId{7}, {}, {}});  // this mesh does not exist
   Pool pool(1);

@@ -224,7 +224,7 @@ TEST(Moving, B10_BoxesContainTheirShapesAtEveryTime) {
 }
 
 // At the time of a key, a moving instance equals a static one with the key's placement, to the bit.
-TEST(Moving, X8_AtAKeyEqualsTheStaticInstance) {
+TEST(Moving, X8_AMovingInstanceEqualsAStaticOneAtEachKey) {
   Random random(10);
   Geometry moving;
   moving.shutter = {0, 1};

@@ -23,7 +23,7 @@ Geometry of_mesh(Mesh mesh) {
   return g;
 }
 
-TEST(AccelRobust, Q7B8_EmptyAndSinglePrimitives) {
+TEST(AccelRobust, Q7B8_EmptyScenesAreMissedAndASingleQuadIsHit) {
   Pool pool(1);
   const Geometry nothing;
   EXPECT_FALSE(Accel::build(nothing, pool).closest({{0, 0, 0}, {0, 0, 1}}));
@@ -86,7 +86,7 @@ TEST(AccelRobust, T10_BadTrianglesDoNotChangeTheOthers) {
   test::report_hard_case("T10", "7 bad primitives change no bit of the hits of 5,000 rays");
 }
 
-TEST(AccelRobust, OneHundredThousandEqualTriangles) {
+TEST(AccelRobust, TheFirstOfManyEqualTrianglesIsHit) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles.assign(100000, {0, 1, 2});

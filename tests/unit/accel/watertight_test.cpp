@@ -38,25 +38,25 @@ int escapes(Mesh mesh, const Vec3& inside, double size, int count, std::uint64_t
   return lost;
 }
 
-TEST(Watertight, RoundSphere) {
+TEST(Watertight, RoundSpheresDoNotLeak) {
   EXPECT_EQ(escapes(test::rough_sphere(48, 24, 1, 1), {}, 1, 100000, 1), 0);
   EXPECT_EQ(escapes(test::icosphere(4), {}, 1, 100000, 2), 0);
 }
 
-TEST(Watertight, NeedlesAndSpikes) {
+TEST(Watertight, NeedlesAndSpikesDoNotLeak) {
   EXPECT_EQ(escapes(test::rough_sphere(200, 12, 1, 1), {}, 1, 100000, 3), 0);
   EXPECT_EQ(escapes(test::rough_sphere(48, 24, 6, 2), {}, 1, 100000, 4), 0);
   EXPECT_EQ(escapes(test::rough_sphere(200, 12, 6, 3), {}, 1, 100000, 5), 0);
 }
 
-TEST(Watertight, FarFromTheOrigin) {
+TEST(Watertight, MeshesFarFromTheOriginDoNotLeak) {
   for (const double offset : {1e3, 1e5}) {
     const Vec3 by = {offset, offset / 7, -offset};
     EXPECT_EQ(escapes(test::moved(test::icosphere(3), by), by, 1, 50000, 6), 0) << offset;
   }
 }
 
-TEST(Watertight, Flattened) {
+TEST(Watertight, AFlattenedMeshDoesNotLeak) {
   Mesh mesh = test::icosphere(3);
   for (auto& p : mesh.positions) {
     p[1] *= 1e-6f;
@@ -64,7 +64,7 @@ TEST(Watertight, Flattened) {
   EXPECT_EQ(escapes(mesh, {}, 0, 20000, 7), 0);
 }
 
-TEST(Watertight, T3_AtEveryScaleWithTheSameHits) {
+TEST(Watertight, T3_MeshesOfEveryScaleDoNotLeakAndHaveEqualHits) {
   const Mesh mesh = test::rough_sphere(48, 24, 1.5, 8);
   for (const double scale : {0x1p-40, 0x1p-20, 1e-6, 0x1p20, 0x1p40}) {
     EXPECT_EQ(escapes(test::scaled(mesh, scale), {}, scale, 20000, 9), 0) << scale;

@@ -67,7 +67,7 @@ TEST(AtomicFile, HasTheModeOfAnyNewFile) {
   EXPECT_EQ(a.st_mode, b.st_mode);
 }
 
-TEST(AtomicFile, NamesTheCauseOfAMissingFolder) {
+TEST(AtomicFile, NamesTheFileIfItsFolderIsMissing) {
   const test::TempDir dir;
   const absl::Status status = write_file_atomically(dir / "no/such/a.png", bytes("x"));
   EXPECT_EQ(status.code(), absl::StatusCode::kNotFound);

@@ -66,7 +66,7 @@ TEST(FloatingPointState, Y2_IsTheDefaultInEveryThread) {
   test::report_hard_case("Y2", "the default mode in every thread of a pool");
 }
 
-TEST(FloatingPointState, AnotherModeIsSeen) {
+TEST(FloatingPointState, AnotherModeIsDetected) {
   const int before = std::fegetround();
   ASSERT_EQ(std::fesetround(FE_UPWARD), 0);
   const bool seen = !float_mode_is_default();

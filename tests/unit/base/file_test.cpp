@@ -15,7 +15,7 @@
 namespace bandsaw {
 namespace {
 
-TEST(File, OtherThanRegularFilesAreRefusedAtOnce) {
+TEST(File, FilesThatAreNotRegularAreRefusedAtOnce) {
   const test::TempDir folder;
   const std::string pipe = folder / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

@@ -23,7 +23,7 @@ void expect_usable(MappedBuffer& buffer, std::size_t size) {
   EXPECT_EQ(buffer.as<double>().back(), 2.5);
 }
 
-TEST(MappedBuffer, IsZeroMemory) {
+TEST(MappedBuffer, IsFilledWithZeros) {
   absl::StatusOr<MappedBuffer> buffer = MappedBuffer::create(80000, "");
   ASSERT_TRUE(buffer.ok()) << buffer.status();
   expect_usable(*buffer, 80000);

@@ -91,7 +91,7 @@ TEST(Simd, PlainFusedMultiplyAddRoundsOnce) {
   }
 }
 
-TEST(Simd, EveryOperationIsEqualToPlain) {
+TEST(Simd, EveryOperationEqualsThePlainOne) {
   test::Random random(2);
   using simd_plain::Float8;
   using Fast = bandsaw::Float8;

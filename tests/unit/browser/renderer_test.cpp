@@ -195,7 +195,7 @@ TEST_F(BrowserRendererTest, MeshesAndTexturesGiveTheBytesOfANativeWorker) {
   }
 }
 
-TEST_F(BrowserRendererTest, HalfTilesTakeTheirOwnSamples) {
+TEST_F(BrowserRendererTest, HalfTilesWithDifferentSamplesGiveTheBytesOfANativeWorker) {
   for (const SceneDescription& scene : {test::cornell_box().scene, textured_meshes(0)}) {
     const wire::Digest manifest = add(scene);
     load(manifest);
@@ -238,7 +238,7 @@ TEST_F(BrowserRendererTest, ShowsTheRowsThatItRendered) {
   EXPECT_NE(picture.substr(0, 3), std::string(3, '\0')) << "the sky is not black";
 }
 
-TEST_F(BrowserRendererTest, RefusesWhatDoesNotBelongToTheScene) {
+TEST_F(BrowserRendererTest, RefusesInvalidCalls) {
   const wire::Digest manifest = add(textured_meshes(0));
   const std::vector<std::byte> some(7);
   EXPECT_THAT(error_of(build(manifest)), HasSubstr("no scene was begun"));

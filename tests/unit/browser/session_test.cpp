@@ -105,7 +105,7 @@ class BrowserSessionTest : public ::testing::Test {
   BandsawSession* session_ = make();
 };
 
-TEST(JsonText, EscapesWhatJsonCannotContain) {
+TEST(JsonText, EscapesCharactersThatJsonCannotContain) {
   EXPECT_EQ(json_text("a\"b\\c\n\x1f ü"), "\"a\\\"b\\\\c\\u000a\\u001f ü\"");
 }
 
@@ -120,7 +120,7 @@ TEST_F(BrowserSessionTest, SendsItsIdentityInHello) {
   EXPECT_EQ(message.hello().canary(), canary());
 }
 
-TEST_F(BrowserSessionTest, OffersOtherCoresInTheNextHello) {
+TEST_F(BrowserSessionTest, SendsTheOfferedCoresAndMemoryInTheNextHello) {
   EXPECT_EQ(good(bandsaw_session_offer(session_, 2, 1e9)), "");
   const farm::FromWorker message = message_of(good(bandsaw_session_hello(session_)));
   EXPECT_EQ(message.hello().threads(), 2U);
@@ -180,7 +180,7 @@ TEST_F(BrowserSessionTest, HandsOutALeaseAndSendsItsBand) {
   EXPECT_THAT(error_of(header(task)), HasSubstr("not held"));
 }
 
-TEST_F(BrowserSessionTest, TellsWhatBecameOfABand) {
+TEST_F(BrowserSessionTest, ReportsTheOutcomeOfABand) {
   receive(welcome("e1"));
   EXPECT_EQ(good(reply(start(1, 0), farm::PutBandReply::OUTCOME_DUPLICATE)), "duplicate");
   EXPECT_EQ(good(reply(start(2, 2), farm::PutBandReply::OUTCOME_UNWANTED)), "unwanted");
@@ -238,7 +238,7 @@ TEST_F(BrowserSessionTest, RefusesAnInvalidLease) {
   EXPECT_EQ(message_of(bytes).failed().lease(), 10U);
 }
 
-TEST_F(BrowserSessionTest, PassesADismissalOn) {
+TEST_F(BrowserSessionTest, PassesOnADismissal) {
   receive(welcome("e1"));
   const std::uint32_t task = start(10, 0);
   farm::ToWorker bye;

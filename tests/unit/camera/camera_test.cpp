@@ -39,7 +39,7 @@ TEST(Camera, TheMiddleLooksAheadAndTheEdgesAreHalfTheAngleOff) {
   expect_near(rays.ray(0, 50, 0, 0).direction, Vec3{-2, 0, -1} / std::sqrt(5.0), 1e-15);
 }
 
-TEST(Camera, C1_FarFromTheOriginDirectionsAreTheSame) {
+TEST(Camera, C1_DirectionsAreTheSameFarFromTheOrigin) {
   PerspectiveCamera near = camera(60);
   near.look_at = {0.1, -0.2, -1};
   PerspectiveCamera far = near;

@@ -78,7 +78,7 @@ TEST(LensView, DoesNotExistForPinholesParallelRaysAndVeryWideLenses) {
   EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
 }
 
-TEST(LensView, OfAVeryDistantFocusIsFinite) {
+TEST(LensView, IsFiniteForAVeryDistantFocus) {
   PerspectiveCamera camera = lens();
   camera.focus_distance = kMaxLens;
   const auto view = RayGenerator(camera, 60, 40).lens_view(30, 20);

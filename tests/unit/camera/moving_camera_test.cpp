@@ -29,7 +29,7 @@ TEST(MovingCamera, RaysStartWhereTheCameraIsAtTheirTime) {
   }
 }
 
-TEST(MovingCamera, AtBothEndsItIsTheCameraThatStandsThere) {
+TEST(MovingCamera, EqualsTheStaticCamerasAtBothEnds) {
   PerspectiveCamera last = at(3);
   last.look_at = {1, 2, 0};
   last.vertical_fov = 60;
@@ -48,7 +48,7 @@ TEST(MovingCamera, AtBothEndsItIsTheCameraThatStandsThere) {
 }
 
 // The lens' view and the ray through the lens agree at each time.
-TEST(MovingCamera, TheViewThroughTheLensIsThatOfTheRay) {
+TEST(MovingCamera, TheLensViewAgreesWithTheRay) {
   PerspectiveCamera first = at(0);
   first.aperture = 0.4;
   first.focus_distance = 5;

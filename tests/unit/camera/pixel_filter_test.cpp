@@ -85,7 +85,7 @@ TEST(PixelFilter, SamplesFollowTheDensity) {
   }
 }
 
-TEST(PixelFilter, ZeroRadiusLooksAtTheCentre) {
+TEST(PixelFilter, ARadiusOfZeroGivesTheCentre) {
   for (const Kind kind : {Kind::kBox, Kind::kTent, Kind::kGaussian}) {
     EXPECT_EQ(sample({kind, 0}, 0.3, 0.8), (Vec2{0, 0}));
   }

@@ -33,7 +33,7 @@ TEST(ComeBack, QuotesNamesForTheShell) {
   EXPECT_EQ(come_back(options, "FILE"), R"(Come back with: bandsaw watch 7 -o 'it'\''s mine.png')");
 }
 
-TEST(ComeBack, RepeatsTheSettingsAndWhatIsMadeOfTheImages) {
+TEST(ComeBack, RepeatsTheSettingsAndTheStepsAfterTheImages) {
   WatchOptions options = of_job_7();
   options.outputs = {"w.#.exr"};
   options.display = {.exposure = -1.5, .tone = Tone::kFilmic, .half = true};

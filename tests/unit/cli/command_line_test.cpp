@@ -60,7 +60,7 @@ TEST(CommandLine, EnvironmentAndCameraOverrideTheScene) {
   EXPECT_EQ(parsed<RenderOptions>("render a.glb").image.choices.camera, "");
 }
 
-TEST(CommandLine, AFrameHasItsTimeAndItsName) {
+TEST(CommandLine, AFrameNumberSetsTheTimeAndTheFileNames) {
   const auto options = parsed<RenderOptions>(
       "render a.glb --frame 7 --fps 30 --shutter 0.5 --animation walk -o out/w.####.exr -o w#.png "
       "-o w.pfm");
@@ -260,7 +260,7 @@ TEST(CommandLine, ALinkForBrowsersIsShownMadeOrRevoked) {
   EXPECT_TRUE(parsed<LinkOptions>("link --revoke --json").revoke);
 }
 
-TEST(CommandLine, StandardInputCanBeTheFarm) {
+TEST(CommandLine, TheFarmMayComeFromStandardInput) {
   EXPECT_EQ(parsed<JobsOptions>("jobs --farm -").farm.farm, "-");
 }
 

@@ -44,7 +44,7 @@ TEST(ContactSheet, ShowsBrightnessAsAnEightBitFileDoes) {
   EXPECT_EQ(count(sheet.picture(), {0.5f, 0.5f, 0.5f}), 64u);
 }
 
-TEST(ContactSheet, OfManyFramesShowsSomeAtEqualDistancesInABoundedPicture) {
+TEST(ContactSheet, ShowsSomeOfManyFramesAtEqualDistancesInABoundedPicture) {
   std::vector<std::int64_t> numbers;
   for (std::int64_t i = 0; i < 10'000; ++i) {
     numbers.push_back(i);

@@ -46,7 +46,7 @@ TEST(Doctor, VersionsMustBeEqual) {
   EXPECT_FALSE(versions_check(about).ok);
 }
 
-TEST(Doctor, ADiskNeedsRoom) {
+TEST(Doctor, ADiskNeedsFreeSpace) {
   EXPECT_TRUE(disk_space_check("disk", "/x", 2ull << 30).ok);
   const Check full = disk_space_check("disk", "/x", 100'000'000);
   EXPECT_FALSE(full.ok);
@@ -60,7 +60,7 @@ TEST(Doctor, AMissingFolderIsCheckedByItsParent) {
 
 // A program listens on a port of 127.0.0.1. The check of this port passes only if the program is
 // the farm.
-TEST(Doctor, ATakenPortIsTheFarmsIfTheFarmListensThere) {
+TEST(Doctor, ATakenPortIsFineOnlyIfTheFarmListensThere) {
   const int taken = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -85,7 +85,7 @@ TEST(Doctor, ATakenPortIsTheFarmsIfTheFarmListensThere) {
   close(taken);
 }
 
-TEST(Doctor, NoFarmIsNotFoundAndAWrongOneIsReported) {
+TEST(Doctor, AMissingFarmIsNotFoundAndAWrongOneIsInvalid) {
   const test::TempDir folder;
   EXPECT_TRUE(absl::IsNotFound(doctor_join({}, folder.path()).status()));
   EXPECT_TRUE(absl::IsInvalidArgument(doctor_join({.farm = "bsw1-x"}, folder.path()).status()));

@@ -84,7 +84,7 @@ TEST(FarmClient, IsCancelledByStop) {
   EXPECT_EQ(client->jobs().status().code(), absl::StatusCode::kCancelled);
 }
 
-TEST(FarmClient, TellsTheJobThatTheFarmAcceptedWhenItWasStopped) {
+TEST(FarmClient, ReturnsTheAcceptedJobEvenAfterStop) {
   AcceptingFarm farm;
   const auto client = farm.connect();
   farm.accepted = [&] { client->stop(); };

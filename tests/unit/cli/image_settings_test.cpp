@@ -22,7 +22,7 @@ RenderSettings settings_for(std::optional<std::uint32_t> width,
   return image_settings(options, scene).value();
 }
 
-TEST(ImageSettings, AreTheScenesByDefault) {
+TEST(ImageSettings, AreThoseOfTheSceneByDefault) {
   EXPECT_EQ(settings_for({}, {}),
             (RenderSettings{.width = 600, .height = 400, .max_depth = 9, .seed = 0}));
 }
@@ -40,7 +40,7 @@ TEST(ImageSettings, EachFrameHasASeedOfItsOwnUnlessItIsFixed) {
   EXPECT_EQ(image_settings(options, scene)->seed, 5u);
 }
 
-TEST(ImageSettings, TheIntegratorIsTheScenesByDefault) {
+TEST(ImageSettings, TheIntegratorIsThatOfTheSceneByDefault) {
   PackageInfo scene;
   scene.integrator = Integrator::kDirect;
   ImageOptions options;
@@ -56,7 +56,7 @@ TEST(ImageSettings, OneSideAloneKeepsTheAspectRatio) {
   EXPECT_EQ(settings_for(300, 300).width, 300u);
 }
 
-TEST(ImageSettings, TooLargeIsAnError) {
+TEST(ImageSettings, AnImageThatIsTooLargeIsAnError) {
   ImageOptions options;
   options.width = 65536;
   options.height = 65536;

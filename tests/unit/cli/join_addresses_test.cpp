@@ -17,7 +17,7 @@ const std::vector<LocalAddress> kLocal = {
     {"eth0", "2001:db8::5", true, false},
 };
 
-TEST(JoinAddresses, ANamedHostIsItself) {
+TEST(JoinAddresses, AGivenHostIsTheOnlyAddress) {
   EXPECT_THAT(join_addresses("127.0.0.1", 7878, kLocal), ElementsAre("127.0.0.1:7878"));
   EXPECT_THAT(join_addresses("farm.example", 1, kLocal), ElementsAre("farm.example:1"));
 }
@@ -38,7 +38,7 @@ TEST(JoinAddresses, AreAtMostEight) {
   EXPECT_EQ(addresses.back(), "127.0.0.1:7");
 }
 
-TEST(JoinAddresses, WithoutAnInterfaceItIsLoopback) {
+TEST(JoinAddresses, WithoutInterfacesTheAddressIsLoopback) {
   EXPECT_THAT(join_addresses("0.0.0.0", 7, {}), ElementsAre("127.0.0.1:7"));
   EXPECT_THAT(join_addresses("[::]", 7, {}), ElementsAre("127.0.0.1:7"));
   EXPECT_THAT(join_addresses("0.0.0.0", 7, {kLocal[3]}), ElementsAre("127.0.0.1:7"));

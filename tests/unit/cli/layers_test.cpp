@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-TEST(Layers, AreNamedOnceEach) {
+TEST(Layers, EachKnownLayerMayBeNamedOnce) {
   EXPECT_THAT(parse_layers("depth,albedo").value(),
               ElementsAre(LayerKind::kDepth, LayerKind::kAlbedo));
   EXPECT_THAT(parse_layers("albedo,normal,depth,samples").value().size(), 4u);
@@ -46,7 +46,7 @@ TEST(Layers, EqualTheImagesOfTheirIntegrators) {
   EXPECT_EQ((*layers)[2].name, "depth");
 }
 
-TEST(Layers, OfAnAdaptiveImageShowEachPixelsNumberOfSamples) {
+TEST(Layers, ShowTheSampleCountOfEachPixelOfAnAdaptiveImage) {
   const auto render = [](const RenderSettings&, std::uint64_t) -> absl::StatusOr<Image> {
     return absl::InternalError("nothing is to be rendered");
   };

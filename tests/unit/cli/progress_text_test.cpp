@@ -109,7 +109,7 @@ TEST(ProgressText, TheLastLineShowsTheCost) {
   EXPECT_EQ(final_line(progress, "cornell.png"), "cornell.png · 21.4 s · 1 thread");
 }
 
-TEST(ProgressText, TheErrorOfACleanImageIsItsOwn) {
+TEST(ProgressText, ACleanImageShowsItsOwnError) {
   Progress progress = some_progress();
   progress.job.error = 0.16;
   progress.clean_error = 0.06;

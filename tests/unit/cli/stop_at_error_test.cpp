@@ -162,20 +162,20 @@ TEST(StopAtError, NineteenOfTwentyImagesAreAtTheirTarget) {
   EXPECT_GE(of_many(Errors::kOwn, true, true).met, 0.95 * kJobs);
 }
 
-TEST(StopAtError, AlsoWherePixelsShareTheirPaths) {
+TEST(StopAtError, ImagesWhosePixelsSharePathsMeetTheirTarget) {
   const Jobs even = of_many(Errors::kShared, false, true);
   EXPECT_GE(even.met, 0.95 * kJobs);
   EXPECT_LE(even.cost, 1.7);
 }
 
-TEST(StopAtError, AlsoWhereRareBrightPathsDecide) {
+TEST(StopAtError, ImagesWithRareBrightPathsMeetTheirTarget) {
   const Jobs even = of_many(Errors::kFew, false, true);
   EXPECT_GE(even.met, 0.95 * kJobs);
   EXPECT_LE(even.cost, 2);
 }
 
 // The margin is needed because a job tends to stop when its estimate is too low.
-TEST(StopAtError, WithoutAMarginManyImagesAreNot) {
+TEST(StopAtError, ManyImagesMissTheirTargetWithoutAMargin) {
   EXPECT_LE(of_many(Errors::kOwn, false, false).met, 0.8 * kJobs);
   EXPECT_LE(of_many(Errors::kShared, false, false).met, 0.8 * kJobs);
 }

@@ -135,7 +135,7 @@ TEST(Study, ObjectsAreCountedPerPlacement) {
   EXPECT_EQ(objects_of(scene), loose + 6);
 }
 
-TEST(Study, AStopEndsIt) {
+TEST(Study, AStopRequestEndsTheStudy) {
   Pool pool(1);
   const std::atomic<bool> stop{true};
   EXPECT_EQ(study_scene("a", *test::cornell_box().build(), nullptr, kSettings, {}, pool, stop,
@@ -168,7 +168,7 @@ TEST(StudyText, ShowsTheCostOfOnePercent) {
   EXPECT_THAT(table, HasSubstr("| – |"));
 }
 
-TEST(StudyText, TheCsvHasALineAPoint) {
+TEST(StudyText, TheCsvHasALineForEachPoint) {
   const std::string csv = study_csv(known());
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
   EXPECT_THAT(csv,
@@ -187,12 +187,12 @@ TEST(StudyText, ThePlotIsSvgOfAllLines) {
   EXPECT_THAT(svg, HasSubstr("<polyline points=\"62.0,34.0 "));
 }
 
-TEST(StudyText, AnEmptyPlotIsOne) {
+TEST(StudyText, AnEmptyPlotHasNoInvalidNumbers) {
   EXPECT_THAT(svg_of({.x = "x", .y = "y", .panels = {{}}}), Not(HasSubstr("nan")));
 }
 
 // A clean image needs the image as rendered, the guides and the filter, so it costs more.
-TEST(Study, CleanImagesAreComparedWithThoseAsRendered) {
+TEST(Study, CleanImagesAreComparedWithRenderedImages) {
   const StudyOfScene study =
       study_of(*test::cornell_box().build(),
                {.samples = 64, .seeds = 2, .reference = 1024, .denoise = true});

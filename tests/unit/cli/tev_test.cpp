@@ -14,7 +14,7 @@ std::string bytes(const char (&text)[n]) {
   return std::string(text, n - 1);
 }
 
-TEST(Tev, AnImageIsMadeByItsNameSizeAndChannels) {
+TEST(Tev, AnImageIsCreatedWithItsNameSizeAndChannels) {
   EXPECT_EQ(tev::create_image("box", 258, 2),
             bytes("\x1c\0\0\0"  // number of bytes of the packet, 28
                   "\x04"        // create

@@ -61,7 +61,7 @@ TEST(Text, FitCountsColumnsAndTruncatesBetweenCharacters) {
   EXPECT_EQ(pad_left("ü", 3), "  ü");
 }
 
-TEST(Text, AWordOfAShellIsQuotedIfItHasTo) {
+TEST(Text, AWordForTheShellIsQuotedOnlyIfNecessary) {
   EXPECT_EQ(shell_word("out/walk.####.png"), "out/walk.####.png");
   EXPECT_EQ(shell_word("a b.png"), "'a b.png'");
   EXPECT_EQ(shell_word("it's.png"), R"('it'\''s.png')");

@@ -37,7 +37,7 @@ TEST(WorkerProgram, IsIdentifiedByItsHeaderAndItsMark) {
       checked_worker_program(worker_file(EM_X86_64, fitting_mark()), Machine::kX86_64).ok());
 }
 
-TEST(WorkerProgram, ForAnotherArchitectureIsRefused) {
+TEST(WorkerProgram, IsRefusedForAnotherArchitecture) {
   EXPECT_EQ(error_of(worker_file(EM_X86_64, fitting_mark())),
             "is a program for x86_64, not for aarch64");
   EXPECT_EQ(error_of(worker_file(EM_AARCH64, fitting_mark()), Machine::kX86_64),
@@ -46,7 +46,7 @@ TEST(WorkerProgram, ForAnotherArchitectureIsRefused) {
             "is a program for another architecture (ELF machine 243), not for aarch64");
 }
 
-TEST(WorkerProgram, CutOffAnywhereIsRefused) {
+TEST(WorkerProgram, IsRefusedIfItIsCutOffAnywhere) {
   const std::string bytes = worker_file(EM_AARCH64, fitting_mark());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const std::string error = error_of(bytes.substr(0, size));
@@ -83,7 +83,7 @@ TEST(WorkerProgram, OtherFilesAreRefused) {
   EXPECT_THAT(error_of(worker_file(EM_AARCH64, none)), HasSubstr("is no bandsaw-worker"));
 }
 
-TEST(WorkerProgram, OfAnotherVersionIsRefused) {
+TEST(WorkerProgram, IsRefusedIfItsVersionIsIncompatible) {
   wire::WorkerMark mark = fitting_mark();
   mark.protocol += 1;
   EXPECT_THAT(error_of(worker_file(EM_AARCH64, mark)),

@@ -88,7 +88,7 @@ TEST_F(WorkerLine, TheProgramOfAnotherArchitectureIsNotStarted) {
   EXPECT_THAT(pasted.out, Not(HasSubstr("started")));
 }
 
-TEST_F(WorkerLine, WithoutAProgramForItNothingIsDownloaded) {
+TEST_F(WorkerLine, NothingIsDownloadedIfThereIsNoProgramForTheArchitecture) {
   digests_.erase(Machine::kAarch64);
   const Finished pasted = paste("aarch64\n");
   EXPECT_EQ(pasted.code, 1);

@@ -33,7 +33,7 @@ TEST(Bias, NoiseAloneIsNotBias) {
 
 // Every pixel lacks 0.001: a hundredth of the range of its noise, and a fifth of a per cent of the
 // light, whose mean is 1/2.
-TEST(Bias, AHundredthOfTheNoiseIsFound) {
+TEST(Bias, ABiasOfAHundredthOfTheNoiseIsFound) {
   Image darker = noisy(waves(512, 512), 0.1F, kSeed);
   for (Rgb& pixel : darker.pixels) {
     pixel += gray(-0.001F);
@@ -98,7 +98,7 @@ TEST(Bias, EveryPixelCountsAlike) {
   EXPECT_NEAR(test_bias(image, uniform(33, 32, 1)).relative_bias, 0.5 / 33, 1e-6);
 }
 
-TEST(Bias, EqualImagesAndTinyOnes) {
+TEST(Bias, EqualImagesHaveNoBiasAndTinyOnesHaveNoBlocks) {
   EXPECT_EQ(test_bias(waves(20, 20), waves(20, 20)).t, 0);
   EXPECT_EQ(test_bias(uniform(2, 2, 1), uniform(2, 2, 0)).blocks, 0u);
 }

@@ -21,7 +21,7 @@ TEST(ErrorMetrics, EqualImagesAreIdentical) {
   EXPECT_EQ(metrics.psnr, std::numeric_limits<double>::infinity());
 }
 
-TEST(ErrorMetrics, AConstantDifferenceIsItsOwnRmse) {
+TEST(ErrorMetrics, TheRmseOfAConstantDifferenceIsTheDifference) {
   const ErrorMetrics metrics = error_metrics(uniform(4, 4, 0.75F), uniform(4, 4, 0.5F));
   EXPECT_FALSE(metrics.identical);
   EXPECT_DOUBLE_EQ(metrics.rmse, 0.25);
@@ -33,14 +33,14 @@ TEST(ErrorMetrics, AConstantDifferenceIsItsOwnRmse) {
 
 // The sRGB code of linear 1 is 1. Near 0 the curve is linear with the slope 12.92, so the code of
 // 0.001 is 0.01292. Values above 1 are clamped.
-TEST(ErrorMetrics, PeakSignalToNoiseIsOfCodedValues) {
+TEST(ErrorMetrics, PeakSignalToNoiseComparesSrgbCodes) {
   EXPECT_NEAR(error_metrics(uniform(2, 2, 1), uniform(2, 2, 0)).psnr, 0, 1e-12);
   EXPECT_NEAR(error_metrics(uniform(2, 2, 0.001F), uniform(2, 2, 0)).psnr,
               -20 * std::log10(0.01292), 1e-5);
   EXPECT_NEAR(error_metrics(uniform(2, 2, 9), uniform(2, 2, 0)).psnr, 0, 1e-12);
 }
 
-TEST(ErrorMetrics, OneChannelOfOnePixelIsFound) {
+TEST(ErrorMetrics, ADifferenceInOneChannelOfOnePixelIsFound) {
   Image a = uniform(4, 3, 1);
   a.pixels[2 * 4 + 1].g = 4;
   const ErrorMetrics metrics = error_metrics(a, uniform(4, 3, 1));

@@ -23,7 +23,7 @@ void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
 }
 
 // Published values of sRGB's primaries.
-TEST(Perceived, LabOfThePrimaries) {
+TEST(Perceived, LabOfThePrimariesHasThePublishedValues) {
   expect_near(lab(xyz_over_white({1, 1, 1})), {100, 0, 0}, 1e-9);
   expect_near(lab(xyz_over_white({1, 0, 0})), {53.24, 80.09, 67.20}, 0.05);
   expect_near(lab(xyz_over_white({0, 1, 0})), {87.74, -86.18, 83.18}, 0.05);
@@ -44,7 +44,7 @@ TEST(Flip, EqualImagesDoNotDiffer) {
 // Computed by hand from equations 7 to 9 of Andersson et al. 2020 (compare/flip.h), without
 // features. The HyAB distance of black and white is 100. The largest distance, that of green and
 // blue, is 203.3.
-TEST(Flip, BlackAgainstWhiteInClosedForm) {
+TEST(Flip, BlackAgainstWhiteEqualsTheClosedForm) {
   const double largest = std::pow(203.31, 0.7);
   const double expected = 0.95 + 0.05 * (std::pow(100, 0.7) - 0.4 * largest) / (0.6 * largest);
   const Plane error = flip(uniform(30, 30, 0), uniform(30, 30, 1));
@@ -54,7 +54,7 @@ TEST(Flip, BlackAgainstWhiteInClosedForm) {
   EXPECT_NEAR(expected, 0.9674, 1e-4);
 }
 
-TEST(Flip, GreenAgainstBlueIsTheMost) {
+TEST(Flip, GreenAgainstBlueHasTheLargestError) {
   const Image green = uniform(30, 30, Rgb{0, 1, 0});
   EXPECT_NEAR(mean(flip(green, uniform(30, 30, Rgb{0, 0, 1}))), 1, 1e-9);
 }
@@ -89,7 +89,7 @@ TEST(Flip, AMissingEdgeCountsMoreThanItsColour) {
 }
 
 // A difference in a highlight is invisible at one exposure and seen at another.
-TEST(Flip, HighDynamicRangeSeesHighlights) {
+TEST(Flip, HdrFlipSeesDifferencesInHighlights) {
   Image a = uniform(40, 40, 0.1F);
   Image b = a;
   for (std::size_t i = 0; i < 400; ++i) {
@@ -102,14 +102,14 @@ TEST(Flip, HighDynamicRangeSeesHighlights) {
   EXPECT_FALSE(beyond_screen(uniform(2, 2, 1)));
 }
 
-TEST(Ssim, UniformImagesInClosedForm) {
+TEST(Ssim, UniformImagesEqualTheClosedForm) {
   const double a = srgb_curve(0.2F);
   const double b = srgb_curve(0.6F);
   EXPECT_NEAR(ssim(uniform(20, 20, 0.2F), uniform(20, 20, 0.6F)),
               (2 * a * b + 1e-4) / (a * a + b * b + 1e-4), 1e-7);
 }
 
-TEST(Ssim, EqualIsOneAndInvertedIsBelowZero) {
+TEST(Ssim, EqualImagesGiveOneAndInvertedImagesLessThanZero) {
   const Image a = waves(40, 30);
   EXPECT_NEAR(ssim(a, a), 1, 1e-12);
   Image inverted = a;
@@ -133,7 +133,7 @@ TEST(FalseColor, LightGrowsFromBlackToNearlyWhite) {
 }
 
 // An infinitely bright light that is missing in the reference counts as much as a very bright one.
-TEST(Flip, InfiniteIsVeryBright) {
+TEST(Flip, AnInfiniteValueCountsAsVeryBright) {
   Image reference = uniform(32, 32, 0);
   reference.pixels[0] = gray(2);
   Image bright = reference;

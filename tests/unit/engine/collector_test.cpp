@@ -92,7 +92,7 @@ TEST_F(CollectorTest, KeepsJobsWithoutFilesAsLongAsOthers) {
   EXPECT_THAT(collector({}).to_forget(jobs, kNow), ElementsAre(1));
 }
 
-TEST_F(CollectorTest, ForgetsTheOldestBeyondTheBytes) {
+TEST_F(CollectorTest, ForgetsTheOldestJobsBeyondTheMaximumBytes) {
   for (const JobId job : {1, 2, 3}) {
     result(job, 1'000, kNow - static_cast<double>(10 - job) * kDay);
   }
@@ -125,7 +125,7 @@ TEST_F(CollectorTest, AFreshResultIsNotForgottenForItsSize) {
               ElementsAre(1));
 }
 
-TEST_F(CollectorTest, ForgetsTheOldestBeyondTheNumber) {
+TEST_F(CollectorTest, ForgetsTheOldestJobsBeyondTheMaximumNumber) {
   std::vector<KeptJob> jobs;
   for (const JobId job : {1, 2, 3, 4}) {
     result(job, 1, kNow - kDay);

@@ -34,7 +34,7 @@ class CommitQueueTest : public testing::Test {
   std::size_t records_when_done_ = 0;
 };
 
-TEST_F(CommitQueueTest, NoEffectBeforeItsRecordsAreDurable) {
+TEST_F(CommitQueueTest, AnEffectWaitsUntilItsRecordsAreDurable) {
   commit_queue_.record(record::WorkerJoined{"a"});
   effect("a");
   commit_queue_.record(record::WorkerJoined{"b"});

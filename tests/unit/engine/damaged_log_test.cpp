@@ -104,14 +104,14 @@ class DamagedLog : public testing::TestWithParam<Damage> {
   TestFarm farm_;
 };
 
-TEST_P(DamagedLog, FoundWhileItRunsIsRenderedAgain) {
+TEST_P(DamagedLog, BandsAreRenderedAgainIfDamageIsFoundWhileTheCoordinatorRuns) {
   const JobId job = begin_and_render_a_part();
   ASSERT_NO_FATAL_FAILURE(do_damage(farm_.bands_file(job), GetParam()));
   ASSERT_NO_FATAL_FAILURE(find_damage(job));
   render_the_rest(job);
 }
 
-TEST_P(DamagedLog, FoundAtARestartIsRenderedAgain) {
+TEST_P(DamagedLog, BandsAreRenderedAgainIfDamageIsFoundAtARestart) {
   const JobId job = begin_and_render_a_part();
   farm_.stop();
   ASSERT_NO_FATAL_FAILURE(do_damage(farm_.bands_file(job), GetParam()));

@@ -131,7 +131,7 @@ TEST_F(EngineTest, ANameThatIsNotCleanIsRefused) {
   EXPECT_TRUE(farm_.submit(spec).ok());
 }
 
-TEST_F(EngineTest, ABrowserSendsNoBandOfAWorkerThatIsNoBrowser) {
+TEST_F(EngineTest, ABrowserMaySendBandsOnlyForABrowserThatHasJoined) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 8}});
   EXPECT_EQ(farm_.put(job, top, 0, true).status().code(), absl::StatusCode::kFailedPrecondition)
@@ -139,7 +139,7 @@ TEST_F(EngineTest, ABrowserSendsNoBandOfAWorkerThatIsNoBrowser) {
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);
 }
 
-TEST_F(EngineTest, ABandIsStoredOnceThenADuplicateAndUnwantedWhenTheJobIsOver) {
+TEST_F(EngineTest, ARepeatedBandIsADuplicateOrUnwantedIfTheJobIsOver) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 7}});
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);
@@ -172,7 +172,7 @@ TEST_F(EngineTest, ABandThatIsNotOfTheJobIsRefused) {
   EXPECT_EQ(farm_.put(job, band).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
-TEST_F(EngineTest, AResultIsGivenOnlyOfADoneJob) {
+TEST_F(EngineTest, OnlyADoneJobHasAResult) {
   EXPECT_EQ(farm_.result(99).status().code(), absl::StatusCode::kNotFound);
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   EXPECT_EQ(farm_.result(job).status().code(), absl::StatusCode::kFailedPrecondition);

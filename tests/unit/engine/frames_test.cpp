@@ -49,7 +49,7 @@ JobId begin(TestFarm& farm, FrameNumber count) {
   return *id;
 }
 
-TEST(EngineFrames, EachHasItsImageAfterARestartAndIsRenderedOnce) {
+TEST(EngineFrames, EachFrameHasItsImageAfterARestartAndIsRenderedOnce) {
   TestFarm farm;
   ASSERT_TRUE(farm.start().ok());
   const JobId id = begin(farm, 8);

@@ -137,7 +137,7 @@ TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalCannotBeWritten) {
   expect_local_image(job);
 }
 
-TEST_F(FullDiskTest, NothingIsAcknowledgedThatTheJournalDoesNotHold) {
+TEST_F(FullDiskTest, NothingIsAcknowledgedBeforeTheJournalHoldsIt) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   disk_->break_it();
   // This is the last band: the job's state kFinishing must be journalled before the answer.
@@ -189,7 +189,7 @@ TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
 
 // The reserve is a file that occupies disk space. When the journal cannot be written, the file is
 // deleted, so that the journal has space; new jobs are still refused.
-TEST_F(FullDiskTest, TheReserveIsForTheJournal) {
+TEST_F(FullDiskTest, TheReserveIsFreedForTheJournal) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   JobSpec another = farm_.spec(StopAtSamples{.samples = 8});
   another.request_id = "another request id";

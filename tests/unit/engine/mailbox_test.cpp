@@ -31,7 +31,7 @@ TEST(Mailbox, DoesTasksInOrderOnOneThread) {
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
 }
 
-TEST(Mailbox, AfterBatchRunsWithoutTasksToo) {
+TEST(Mailbox, AfterBatchAlsoRunsWithoutTasks) {
   std::atomic<int> runs{0};
   Box<int> box;
   Mailbox mailbox([&] { box.put(++runs); }, milliseconds(1));

@@ -12,7 +12,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST(WorkerLogs, KeepsTheLastLinesOfEach) {
+TEST(WorkerLogs, KeepsTheLastLinesOfEachLog) {
   WorkerLogs logs(3, 1'000'000);
   logs.add("desk", {"1", "2"});
   logs.add("laptop", {"a"});
@@ -28,7 +28,7 @@ TEST(WorkerLogs, AnErrorListsTheWorkersWithLogs) {
   EXPECT_THAT(std::string(logs.of("desk").status().message()), HasSubstr("laptop"));
 }
 
-TEST(WorkerLogs, BeyondTheBytesTheLogThatIsSilentForLongestIsDropped) {
+TEST(WorkerLogs, DropsTheLogThatIsSilentForLongestBeyondTheMaximumBytes) {
   WorkerLogs logs(100, 3'000);
   logs.add("one", {std::string(1'000, 'x')});
   logs.add("two", {std::string(1'000, 'x')});

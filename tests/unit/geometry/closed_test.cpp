@@ -28,7 +28,7 @@ TEST(Closed, ACubeIsClosedAlsoWithSplitCorners) {
 }
 
 // If corners at the same place move apart before the shutter closes, they leave a hole.
-TEST(Closed, AMeshThatDeformsIsClosedIfItIsAtBothEnds) {
+TEST(Closed, ADeformingMeshIsClosedIfItIsClosedAtBothEnds) {
   Mesh cube = unit_cube();
   cube.positions_at_close = cube.positions;
   cube.positions_at_close[3] = {2, 3, 0.5f};
@@ -51,7 +51,7 @@ TEST(Closed, CountsTheEdgesOfAHole) {
   EXPECT_EQ(open_edges(test::grid(3)), 12u);
 }
 
-TEST(Closed, AFlippedTriangleIsNotClosed) {
+TEST(Closed, AMeshWithAFlippedTriangleIsNotClosed) {
   Mesh cube = unit_cube();
   std::swap(cube.triangles[4][0], cube.triangles[4][1]);
   EXPECT_EQ(open_edges(cube), 3u);

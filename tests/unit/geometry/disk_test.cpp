@@ -24,7 +24,7 @@ Disk random_disk(Random& random) {
           {}};
 }
 
-TEST(Disk, FacingUpHasItsAxesAlongXAndMinusZ) {
+TEST(Disk, ADiskThatFacesUpHasAxesAlongXAndMinusZ) {
   const DiskAxes axes = axes_of({{0, 0, 0}, {0, 1, 0}, 1, {}});
   EXPECT_EQ(axes.u, (Vec3{1, 0, 0}));
   EXPECT_EQ(axes.v, (Vec3{0, 0, -1}));
@@ -38,7 +38,7 @@ TEST(Disk, FacingUpHasItsAxesAlongXAndMinusZ) {
 }
 
 // The normal is nearly along an axis, as in exported files. The box still contains the rim.
-TEST(Disk, IsNotClippedByItsBoxNearlyAlongAnAxis) {
+TEST(Disk, IsNotClippedByItsBoxIfTheNormalIsNearlyAlongAnAxis) {
   for (const double tilt : {1e-9, 1e-8, 4.371139e-8, 1e-7, 1e-6, 1e-3}) {
     const Disk disk{{0, 4, 0}, normalize(Vec3{tilt, -1, 0}), 1, {}};
     const Box box = bounds(disk);

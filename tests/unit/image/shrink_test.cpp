@@ -15,11 +15,11 @@ Image numbered(std::uint32_t width, std::uint32_t height) {
   return image;
 }
 
-TEST(Shrink, ByOneIsTheImage) {
+TEST(Shrink, AFactorOfOneKeepsTheImage) {
   EXPECT_EQ(shrunk(numbered(3, 2), 1, 1).pixels, numbered(3, 2).pixels);
 }
 
-TEST(Shrink, CellsAreMeansAlsoAtTheEdges) {
+TEST(Shrink, PixelsAreMeansOfCellsAlsoAtTheEdges) {
   const Image small = shrunk(numbered(5, 3), 2, 2);
   ASSERT_EQ(small.width, 3u);
   ASSERT_EQ(small.height, 2u);
@@ -28,7 +28,7 @@ TEST(Shrink, CellsAreMeansAlsoAtTheEdges) {
   EXPECT_EQ(small.at(2, 1), (Rgb{14, 1, 0}));
 }
 
-TEST(Shrink, AcrossAlone) {
+TEST(Shrink, MayChangeTheWidthAlone) {
   const Image small = shrunk(numbered(4, 2), 4, 1);
   ASSERT_EQ(small.height, 2u);
   EXPECT_EQ(small.at(0, 1), (Rgb{5.5f, 1, 0}));

@@ -101,7 +101,7 @@ TEST(WriteImage, ImagesWithTheWrongNumberOfPixelsAreRefused) {
   EXPECT_FALSE(encode_image({}, ImageFormat::kPfm).ok());
 }
 
-TEST(WriteImage, TheSuffixDecidesInAnyCase) {
+TEST(WriteImage, TheSuffixDecidesTheFormatInAnyCase) {
   EXPECT_EQ(*image_format_of("a.PNG"), ImageFormat::kPng);
   EXPECT_EQ(*image_format_of("x/b.pfm.Ppm"), ImageFormat::kPpm);
   EXPECT_EQ(*image_format_of(".pfm"), ImageFormat::kPfm);
@@ -120,7 +120,7 @@ TEST(WriteImage, FilesContainTheEncodedBytesAndReplaceOlderFiles) {
   EXPECT_EQ(file(path), encoded(two_by_two(), ImageFormat::kPfm));
 }
 
-TEST(WriteImage, UnwritableFilesAreDetectedBefore) {
+TEST(WriteImage, UnwritableFilesAreDetectedBeforehand) {
   const test::TempDir folder;
   EXPECT_TRUE(check_writable(folder / "a.png").ok());
   EXPECT_TRUE(check_writable("a.png").ok());
