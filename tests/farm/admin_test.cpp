@@ -23,7 +23,8 @@ class Administration : public testing::Test {
     return run(arguments);
   }
 
-  // Repeats the command until its output contains `text`; limited only by the test's own timeout.
+  // Repeats the command until its output contains `text`, and returns the output. Only the test's
+  // own timeout limits the time.
   std::string ask_until(const std::vector<std::string>& arguments, const std::string& text) {
     std::string out;
     while (!HasFailure() && out.find(text) == std::string::npos) {

@@ -10,7 +10,7 @@
 
 namespace bandsaw::test {
 
-/// The job is Survival's own; the test does the harm between submit() and expect_the_same_bytes().
+/// Submits a job of its own. The test harms the farm between submit() and expect_the_same_bytes().
 class Survival {
  public:
   /// `farm` MUST outlive this object. `scene`: the file to render; the default is a gallery scene.

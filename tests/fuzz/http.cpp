@@ -20,7 +20,8 @@ namespace {
 
 using namespace bandsaw::coordinator;
 
-/// Answers like the dashboard's login, after the checks that all its requests pass.
+/// Runs the checks that the dashboard makes for each request, without regard to their results, and
+/// answers like the dashboard's login.
 HttpReply answer(Access& access, const HttpRequest& request, const HttpBody& body) {
   access.check(request).IgnoreError();
   access.logged_in(request);

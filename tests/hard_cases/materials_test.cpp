@@ -127,7 +127,7 @@ TEST(MaterialHardCases, M8DirectionsStayUnitOverAThousandMirrors) {
 }
 
 // M11: in a closed white sphere nothing is lost; the path ends at the maximum depth. M12: with a
-// low reflectance Russian roulette ends it after few surfaces.
+// low reflectance Russian roulette ends the path after few surfaces.
 TEST(MaterialHardCases, M11M12PathsEnd) {
   for (const float reflectance : {1.0f, 1e-3f}) {
     test::SceneMaker maker;

@@ -60,7 +60,7 @@ TEST(SmoothNormals, T13_CoarseMeshesAreShadedAlmostAsFineOnes) {
 
 // A light in the plane of the ceiling: the ceiling neither hides nor occludes it. At the middle of
 // the floor, each quarter of the light gives E = a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)), where a
-// is its side over its height.
+// is the side of a quarter over its height.
 TEST(Ceiling, Q4_ALightInItsPlaneGivesTheClosedForm) {
   test::SceneMaker maker;
   maker.quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, maker.diffuse(1));

@@ -180,8 +180,8 @@ TEST(Sphere, S4_FromWithinTheFarSideIsHit) {
     }
   }
   test::at_most("S4", "relative error of the far root", error.value(), 1e-12);
-  // A grazing chord has the discriminant R^2 cos^2, of which the last bit, u R^2, is the share u /
-  // cos^2.
+  // A grazing chord has the discriminant R^2 cos^2. The last bit, u R^2, is the share u / cos^2 of
+  // the discriminant.
   test::at_most("S4", "times cos^2, for chords flatter than 1.7 degrees", flat_error.value(),
                 1e-15);
   test::at_most("S4", "these over what the last bit of the origin is worth", over_last_bits.value(),

@@ -35,7 +35,8 @@ struct Seen {
   std::vector<double> light_sampling = std::vector<double>(kBins);   ///< integral of f^2 / q
 };
 
-/// The light is 2 x 2, at `height`. p = cos / pi, q = 1 / its solid angle, f = p.
+/// Returns the moments for a light of 2 x 2 at `height`. There p = cos / pi, q = 1 / the solid
+/// angle of the light, and f = p.
 Seen seen_from(double height) {
   constexpr int kSteps = 600;
   const double solid_angle = 4 * std::atan(1 / (height * std::sqrt(2 + height * height)));

@@ -43,7 +43,8 @@ TEST(Curve, CubicSplinesReproduceACubic) {
   }
 }
 
-// Between inner keys the tangents of Catmull and Rom are exact for a parabola with even keys.
+// Between inner keys the tangents of Catmull and Rom are exact for a parabola whose keys are evenly
+// spaced.
 TEST(Curve, SmoothReproducesAParabolaBetweenInnerKeys) {
   const Curve curve = numbers({0, 1, 2, 3}, {0, 1, 4, 9}, Interpolation::kSmooth);
   for (const double x : {1.0, 1.3, 1.9, 2.0}) {
@@ -80,7 +81,8 @@ TEST(Curve, KnowsWhereItRests) {
       << "equal keys with tangents";
 }
 
-// Between the equal keys at 1 and 2 the curve swings, as the tangent at 2 depends on the key at 3.
+// The keys at 1 and 2 have the same value. Between them the curve is not constant, because the
+// tangent at 2 depends on the key at 3.
 TEST(Curve, ASmoothOneMovesWhereATangentDoesNotVanish) {
   const Curve curve = numbers({0, 1, 2, 3, 4}, {5, 5, 5, 6, 6}, Interpolation::kSmooth);
   EXPECT_TRUE(curve.rests(-2, 0.9));

@@ -79,8 +79,9 @@ class DeformingModel : public ::testing::Test {
     return imported.ok() ? *std::move(imported) : ImportedScene();
   }
 
-  /// Renders the model, which emits 1, seen along -z, one unit a pixel, from (x, y) on, for the
-  /// exposure [0, 1].
+  /// Renders the model with 32 seeds for the exposure [0, 1], and returns the moments of each
+  /// pixel. The model emits 1 and is seen along -z. A pixel covers one unit, and the lower left
+  /// corner of the image is at (x, y).
   std::vector<Moments> pixels(GltfWriter& file, double x, double y, std::uint32_t width,
                               std::uint32_t height) {
     file.write(folder_, "m.gltf");
@@ -171,7 +172,7 @@ TEST_F(DeformingModel, AMeshWhosePoseRestsDoesNotDeform) {
   EXPECT_EQ(later.info.warnings, std::vector<std::string>());
 }
 
-// A vertex that a weight of a morph target makes infinite only when the shutter closes.
+// The weight of a morph target makes one vertex infinite at the end of the exposure only.
 TEST_F(DeformingModel, TrianglesThatAreNotFiniteAtEitherEndAreLeftOut) {
   GltfWriter file = quad(0, 1, 0, 1);
   file.primitive()["targets"] =
@@ -185,7 +186,8 @@ TEST_F(DeformingModel, TrianglesThatAreNotFiniteAtEitherEndAreLeftOut) {
   EXPECT_THAT(mesh.positions_at_close, SizeIs(3));
 }
 
-// The right edge of a half-plane moves by ten pixels, by a morph target: a linear ramp.
+// A morph target moves the right edge of a half-plane by ten pixels, so the coverage is a linear
+// ramp.
 TEST_F(DeformingModel, AMorphTargetInLinearMotionIsALinearRamp) {
   constexpr int kWidth = 24;
   GltfWriter file = quad(-100, 5, -9, 9);
@@ -221,8 +223,8 @@ TEST_F(DeformingModel, ASwingingBarCoversTheMeanOfItsArea) {
   const double expected = kArea * (2 + turn.cos) / 3;
   EXPECT_NEAR(sum, expected, 4 * std::sqrt(variance));
   EXPECT_LT(std::sqrt(variance), 5e-3 * expected);
-  // Each pixel: the mean over t and over the pixel of whether its point, mapped back, is in the
-  // bar.
+  // The expected value of a pixel is the share of its points and of the times t for which the
+  // point, mapped back, is in the bar.
   constexpr int kParts = 48;
   for (int y = 0; y < 14; ++y) {
     for (int x = 0; x < 14; ++x) {

@@ -288,7 +288,8 @@ TEST_F(GltfAccessors, JsonThatIsBrokenOrTooDeepIsRefused) {
   EXPECT_THAT(message(R"({"a": 1e999})"), HasSubstr("a number that is too large"));
 }
 
-// The lists of glTF 1.0 are objects by name; some programs write its version as a number.
+// In glTF 1.0 the lists are JSON objects whose keys are names. Some programs write the version as a
+// number.
 TEST_F(GltfAccessors, TheFirstVersionIsStillRead) {
   write_text(folder_, "f.bin", test::bytes_of(kTriangle));
   for (const std::string version : {"\"1.0\"", "1"}) {

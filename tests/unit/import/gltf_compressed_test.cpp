@@ -148,7 +148,7 @@ TEST(Meshopt, FilteredNormalsAndPositionsAreWithinTheirPrecision) {
       found.insert(vertex);
       for (std::size_t c = 0; c < 3; ++c) {
         ASSERT_NEAR(mesh.normals[i][c], square.normals[3 * vertex + c], step);
-        // 15 bits with a sign of a number up to 1.
+        // The mantissa of 15 bits includes a sign, and the numbers are up to 1.
         ASSERT_NEAR(mesh.positions[i][c], square.positions[3 * vertex + c], 1.0 / (1 << 13));
       }
     }

@@ -74,7 +74,8 @@ TEST(ImageFormats, TgaMayBeRunsAndBeginAtTheTop) {
   EXPECT_THAT(codes(image), ElementsAre(3, 2, 1, 3, 2, 1, 6, 5, 4));
 }
 
-// BITMAPINFOHEADER, 24 bits, rows from the bottom, each filled up to four bytes.
+// BITMAPINFOHEADER, 24 bits. The rows go from the bottom up, and each is padded to a multiple of
+// four bytes.
 TEST(ImageFormats, BmpFillsUpItsRows) {
   const std::string header = "BM" + bytes({70, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0}) +
                              bytes({40, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 1, 0, 24, 0}) +

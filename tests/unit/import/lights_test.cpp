@@ -227,7 +227,8 @@ TEST(RepairLight, L9InvalidTexelsAreRepairedAndCounted) {
   test::report_hard_case("L9", "repaired and counted");
 }
 
-/// One triangle, and lights at two nodes, one of which is moved, rotated and scaled.
+/// Returns a glTF file with one triangle and lights at three nodes, which are moved, rotated or
+/// scaled.
 std::string gltf_with_lights() {
   return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3]}],
 "extensionsUsed": ["KHR_lights_punctual"],

@@ -296,7 +296,8 @@ TEST_F(MitsubaScene, AConductorWithoutAMetalIsAMirror) {
   EXPECT_EQ(metal("0.6.0", "").eta().rgb(0), copper.eta().rgb(0)) << "the default of version 0.6";
 }
 
-/// The linear RGB of the same tables under equal energy, as the renderer Tungsten lists it.
+/// The expected values are the linear RGB of the same tables under equal energy, as the renderer
+/// Tungsten lists them.
 TEST(MitsubaMetals, HaveTheirPublishedColours) {
   struct Published {
     const char* name;
@@ -317,7 +318,8 @@ TEST(MitsubaMetals, HaveTheirPublishedColours) {
     const auto metal = mitsuba::metal_of(published.name);
     ASSERT_TRUE(metal.ok()) << metal.status();
     const auto expect_near = [&](float ours, float theirs) {
-      // Our tables have a value for every 30 nm: the edge of copper and gold is not sharper.
+      // Our tables have a value for every 30 nm, so the edges in the spectra of copper and gold are
+      // not sharper than that.
       EXPECT_NEAR(ours, theirs, std::max(0.015f * theirs, 0.02f)) << published.name;
     };
     for (const auto& [ours, theirs] :
@@ -364,7 +366,7 @@ TEST_F(MitsubaScene, ACheckerboardBeginsAtTheTop) {
   const scene::CheckerTexture& flat = from.material(0).diffuse().texture().checker();
   EXPECT_THAT(flat.size(), ElementsAre(0.1, 0.1));
   EXPECT_NEAR(flat.even().color().rgb(0), 0.4, 1e-7);
-  // On the sphere v is counted from the other end: ten rows later the other colour begins.
+  // On the sphere v is counted from the other end of the ten rows, where the other colour is.
   EXPECT_NEAR(from.material(1).diffuse().texture().checker().even().color().rgb(0), 0.2, 1e-7);
 }
 
@@ -386,7 +388,8 @@ TEST_F(MitsubaScene, TexturesKeepTheirPlacement) {
                       "x=\"2\" y=\"3\"/>"
                       "<translate x=\"0.5\" y=\"0.25\"/></transform></texture></bsdf>"));
   const scene::ImageTexture& image = from.material(0).diffuse().texture().image();
-  // Row from the top 3 v + 0.25, so from the bottom 1 - 0.25 - 3 v.
+  // Counted from the top, the coordinate in the image is 3 v + 0.25. So counted from the bottom, it
+  // is 1 - 0.25 - 3 v.
   EXPECT_THAT(image.uv_scale(), ElementsAre(2, -3));
   EXPECT_THAT(image.uv_offset(), ElementsAre(0.5, 0.75));
 }

@@ -19,8 +19,8 @@ using test::write_text;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A triangle; "left" and "right", which share one camera; and "tower" with another below it, which
-/// Assimp loads first.
+/// Writes a glTF file with a triangle and four nodes with cameras, and returns its path. "left" and
+/// "right" share one camera. Below "tower" there is another camera, which Assimp loads first.
 std::string write_cameras(const TempDir& folder, const std::string& name) {
   GltfTriangle file;
   file.more = R"("cameras": [

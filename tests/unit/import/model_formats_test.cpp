@@ -151,8 +151,8 @@ TEST_F(Obj, ABumpMapOfHeightsIsTheirSlope) {
   EXPECT_LE(length(middle("map_Bump -bm 2 h.pgm\n") - normalize({-0.4, 0, 1})), 1e-6);
 }
 
-// About half of the reflectance of glass, whose F0 is 0.04; the index is stored with an error of
-// half a code.
+// The map scales the reflectance of glass, whose F0 is 0.04, to about half. The index is stored
+// with an error of half a code.
 TEST_F(Obj, ASpecularMapScalesTheReflection) {
   write_text(folder_, "s.ppm", ppm_of(188, 188, 188));
   const ImportedScene imported = read("illum 2\nKd 0.5 0 0\nKs 1 1 1\nNs 100\nmap_Ks s.ppm\n");

@@ -40,7 +40,7 @@ class Gltf : public ::testing::Test {
   TempDir folder_;
 };
 
-// F0 of index 1.5 is 0.04; a quarter of it is that of 1.1 / 0.9.
+// The index 1.5 has an F0 of 0.04. A quarter of that is the F0 of the index 1.1 / 0.9.
 TEST_F(Gltf, SpecularIsTheIndexOfTheSameReflection) {
   GltfTriangle file;
   file.more = R"("extensionsUsed": ["KHR_materials_specular"],)";

@@ -17,7 +17,7 @@ using test::write_text;
 constexpr std::uint32_t kWidth = 7;
 constexpr std::uint32_t kHeight = 5;
 
-/// Random codes; those of normals are limited to upward normals.
+/// Returns random 8-bit codes. If they are those of `normals`, the normals point upwards.
 std::string codes(bool normals) {
   test::Random random(9);
   std::string bytes;

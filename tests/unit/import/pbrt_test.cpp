@@ -228,7 +228,7 @@ TEST(Pbrt, MotionBecomesKeys) {
 }
 
 TEST(Pbrt, WhatIsShearedMovesAboutItsOrigin) {
-  // Half a unit of shear, at (5, 0, 0); it turns by 90 degrees and moves up by 2.
+  // A triangle with half a unit of shear at (5, 0, 0) turns by 90 degrees and moves up by 2.
   const auto scene = scene_of(
       "WorldBegin\nTranslate 5 0 0\nActiveTransform EndTime\nTranslate 0 2 0\nRotate 90 0 0 1\n"
       "ActiveTransform All\nConcatTransform [1 0 0 0  0.5 1 0 0  0 0 1 0  0 0 0 1]\n"
@@ -312,7 +312,8 @@ TEST(Pbrt, SpheresWhoseUvsMatterAreMeshes) {
   }
 }
 
-// As in pbrt. Such scenes could not be rendered: a reflectance must lie in [0, 1].
+// Textures are clamped as in pbrt. Without that, the scenes could not be rendered, because a
+// reflectance must lie in [0, 1].
 TEST(Pbrt, TexturesAboveOneAreClamped) {
   const std::string image = "\"imagemap\" \"string filename\" \"p.ppm\"";
   const std::string shape = "\nShape \"bilinearmesh\" \"point3 P\" [0 0 5 1 0 5 0 1 5 1 1 5]";
@@ -476,7 +477,7 @@ TEST(Pbrt, ClaimsAreCheckedBeforeMemoryIsTaken) {
   write_text(dir, "a.ply",
              "ply\nformat binary_little_endian 1.0\nelement vertex 900000000\nproperty float x\n"
              "property float y\nproperty float z\nend_header\n1234");
-  // Read here, not by the importer, because the shape emits.
+  // The converter reads this file, not the importer, because the shape emits.
   EXPECT_THAT(
       std::string(convert(dir,
                           "WorldBegin\nAreaLightSource \"diffuse\"\nShape \"plymesh\" "

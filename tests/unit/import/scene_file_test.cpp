@@ -88,7 +88,7 @@ image { filter { box { radius: 0 } } })");
   const auto turned = import_text(R"(camera {
   position: [1, 2, 3] rotate { axis: [0, 1, 0] degrees: 90 } rotate { axis: [0, 0, 1] degrees: 90 } })");
   ASSERT_TRUE(turned.ok()) << turned.status();
-  // First to -x, up along y; then -x to -y and y to -x.
+  // The first rotation turns the view to -x, with y up. The second one turns -x to -y and y to -x.
   const View view = view_of(turned->scene.camera);
   EXPECT_EQ(normalize(view.look_at - view.position), (Vec3{0, -1, 0}));
   EXPECT_EQ(view.up, (Vec3{-1, 0, 0}));

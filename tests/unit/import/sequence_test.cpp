@@ -23,8 +23,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// Chooses a frame by its number. `fps`, `shutter` (the share of a frame's time in which it is
-/// open): std::nullopt: those of the scene.
+/// Chooses a frame by its number. `shutter` is the share of a frame's time in which the shutter is
+/// open. If `fps` or `shutter` is std::nullopt, that of the scene is used.
 ImportChoices frame(double number, std::optional<double> fps = std::nullopt,
                     std::optional<double> shutter = std::nullopt) {
   ImportChoices choices;
@@ -50,7 +50,8 @@ class Sequence : public ::testing::Test {
     }
     return imported.ok() ? *std::move(imported) : ImportedScene();
   }
-  /// The package has the same bytes if other frames were imported with the same memory before.
+  /// Expects that the package has the same bytes if other frames were imported with the same memory
+  /// before.
   static void expect_the_same_after_other_frames(const std::string& path,
                                                  const ImportChoices& choices,
                                                  const ImportedScene& fresh) {
@@ -151,7 +152,7 @@ GltfWriter two_nodes() {
   return file;
 }
 
-/// The same with a camera at node 1, which is named "eye".
+/// The same with a camera at node 1. The node is named "eye".
 GltfWriter with_camera() {
   GltfWriter file = two_nodes();
   file.root["cameras"] =

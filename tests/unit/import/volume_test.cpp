@@ -119,7 +119,7 @@ TEST(VolFile, DamageIsOneClearError) {
   EXPECT_THAT(error_of(Vol{.channels = -1}.bytes()), HasSubstr("has -1 channels"));
   EXPECT_THAT(error_of(Vol{.cells = {0, 2, 1}}.bytes()), HasSubstr("has a side of 0 cells"));
   EXPECT_THAT(error_of(Vol{.cells = {3, -2, 1}}.bytes()), HasSubstr("has a side of -2 cells"));
-  // Claims of 10 GB and of 2^60 numbers.
+  // The headers claim 10 GB, and 2^60 cells of three channels.
   EXPECT_THAT(error_of(Vol{.cells = {1360, 1360, 1360}}.bytes()), HasSubstr("claims 1360 x 1360"));
   EXPECT_THAT(error_of(Vol{.cells = {1 << 20, 1 << 20, 1 << 20}, .channels = 3}.bytes()),
               HasSubstr("claims 1048576 x"));
@@ -192,7 +192,7 @@ TEST(VdbFile, HasTheNumbersAndThePlaceOfTheLibrary) {
 TEST(VdbFile, TilesVectorsDoublesAndHalvesAreRead) {
   const TempDir folder;
   auto tiles = named<openvdb::FloatGrid>("density");
-  // 16 x 16 x 16 voxels that the tree stores as tiles or dense leaves, and a part of a leaf.
+  // 128 x 128 x 128 voxels, which the tree stores as tiles or dense leaves, and a part of a leaf.
   tiles->fill(openvdb::CoordBBox({0, 0, 0}, {127, 127, 127}), 0.5f);
   tiles->tree().prune();
   tiles->fill(openvdb::CoordBBox({128, 0, 0}, {130, 7, 7}), 2.0f);
@@ -212,7 +212,7 @@ TEST(VdbFile, TilesVectorsDoublesAndHalvesAreRead) {
   EXPECT_EQ(reader.value(to_cells.point({129, 3, 3})), 2);
   EXPECT_EQ(reader.value(to_cells.point({131, 3, 3})), 0);
   EXPECT_EQ(reader.value(to_cells.point({-1, 3, 3})), 0);
-  // All full bricks are one, and the part of a leaf another.
+  // All full bricks are equal and stored as one. The part of a leaf is the other brick.
   EXPECT_EQ(density->grid.values.size(), 2 * 512 * 2u);
   const auto albedo = read_volume(path, "albedo", "");
   ASSERT_TRUE(albedo.ok()) << albedo.status();

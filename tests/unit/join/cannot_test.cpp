@@ -249,7 +249,7 @@ TEST_F(JoinCannotTest, ComeFromAnotherSite) {
                                            .target = "/join/band",
                                            .headers = {{"Authorization", "Bearer " + secret_}}});
   EXPECT_EQ(bare->status, 403);
-  // Without an Origin: not a browser's WebSocket.
+  // A request without an Origin does not come from a browser's WebSocket.
   const auto plain = test::http_call(
       dashboard_->port(),
       {.target = "/join/session",

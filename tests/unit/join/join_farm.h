@@ -25,7 +25,7 @@ class JoinTest : public WebTest {
   /// Returns the body of POST /join/band with all samples of the lease; the sum of each pixel is 8.
   static std::string band(const farm::Lease& lease, const std::string& name = "tab");
 
-  /// Requests with the link's secret.
+  /// Sends a request with the link's secret and returns the answer.
   Answer join_get(const std::string& path);
   Answer join_post(const std::string& path, const std::string& body);
   /// Returns the workers that are connected, by their names.

@@ -24,12 +24,13 @@ struct SocketOffer {
 
 class SocketClient {
  public:
-  /// Connects and sends the handshake. `receive_buffer`: of the socket, in bytes; 0: the system's.
+  /// Connects and sends the handshake. `receive_buffer`: size of the socket's receive buffer in
+  /// bytes; 0: the system's default.
   SocketClient(int port, const SocketOffer& offer, int receive_buffer = 0);
   ~SocketClient();
 
-  /// HTTP status of the response to the handshake: 101 (accepted) or that of a refusal; 0: none
-  /// came.
+  /// HTTP status of the response to the handshake: 101 (accepted) or that of a refusal; 0: no
+  /// response came.
   int status() const { return status_; }
   /// Body of a refusal.
   const std::string& refusal() const { return refusal_; }

@@ -28,7 +28,8 @@ namespace websocket = boost::beast::websocket;
 /// A browser that trusts the farm's certificate only.
 class SecureTab {
  public:
-  /// `secret`: of the link. `receive_buffer`: of the socket, in bytes; 0: the system's.
+  /// `secret`: that of the link. `receive_buffer`: size of the socket's receive buffer in bytes; 0:
+  /// the system's default.
   SecureTab(int port, const std::string& certificate_pem, const std::string& secret,
             int receive_buffer = 0) {
     tls_.add_certificate_authority(asio::buffer(certificate_pem));
@@ -130,7 +131,7 @@ class JoinTlsTest : public JoinTest {
     return std::make_unique<SecureTab>(secure_->port(), identity_.certificate_pem, secret_,
                                        receive_buffer);
   }
-  /// Opens a session, as soon as the place is free, and is admitted.
+  /// Opens a session as soon as the place is free, and expects that it is admitted.
   std::unique_ptr<SecureTab> join() {
     auto tab = open_secure();
     wait_until([&] {

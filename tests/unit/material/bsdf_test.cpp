@@ -33,9 +33,10 @@ Bsdf bsdf(const Material& material, const Vec3& wo, const Vec3& shading = {0, 0,
   return bsdf_at(material, kTextures, point({0, 0, 1}, shading), normalize(wo));
 }
 
-/// Counts sampled directions in cells of equal solid angle within `reach` (1 - cos) of `axis`, and
-/// compares with the integral of the density over each cell. Samples that are absorbed or fall
-/// outside are a cell of their own.
+/// Counts sampled directions in cells of equal solid angle around `axis`, and compares the counts
+/// with the integral of the density over each cell. The cells cover the directions whose 1 - cos of
+/// the angle to the axis is below `reach`. Samples that are absorbed or fall outside are a cell of
+/// their own.
 void expect_samples_follow_density(const Bsdf& bsdf, const Vec3& axis, double reach,
                                    const std::string& name) {
   constexpr int kCells = 12;
@@ -165,7 +166,7 @@ TEST(Bsdf, GlassReflectsTheFresnelShare) {
   const double share = 0.0891867128;
   EXPECT_GT(sample(bsdf(Dielectric{1.5}, wo), 0, 0, share - 1e-6)->wi.z, 0);
   EXPECT_LT(sample(bsdf(Dielectric{1.5}, wo), 0, 0, share + 1e-6)->wi.z, 0);
-  // From inside past the critical angle everything is reflected, inwards.
+  // From inside, beyond the critical angle, all light is reflected and stays inside.
   EXPECT_LT(sample(bsdf(Dielectric{1.5}, -wo), 0, 0, kOneMinusEpsilon)->wi.z, 0);
 }
 

@@ -70,8 +70,8 @@ TEST(Ggx, M5WeightsOfVisibleNormalsStayInTheUnitIntervalEvenAtGrazingDirections)
   test::report_hard_case("M5", "40,000 weights in [0, 1 + 1e-9]");
 }
 
-// Single scattering with F = 1: by quadrature in another program; in closed form 1 - ln 2 at alpha
-// 1 and normal incidence.
+// The expected values are those of single scattering with F = 1. They were computed by quadrature
+// in another program. At alpha 1 and normal incidence the closed form is 1 - ln 2.
 TEST(Ggx, TheAlbedoTableHoldsTheIntegrals) {
   struct Known {
     double alpha;

@@ -168,7 +168,8 @@ TEST(HeightMap, FollowsAShortRamp) {
   EXPECT_LE(length(normal - normalize({-1, 0, 1})), 1e-3);
 }
 
-/// Returns true if `mapped` equals `there` at u = 0.5 and `next` at u = 1.5, from all sides.
+/// Expects that `mapped` equals `there` at u = 0.5 and `next` at u = 1.5, for directions on all
+/// sides.
 void expect_same(const Material& mapped, const Material& there, const Material& next) {
   Random random(3);
   for (int i = 0; i < 2000; ++i) {

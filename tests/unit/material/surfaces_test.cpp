@@ -175,8 +175,8 @@ test::Moments albedo_of(const Bsdf& b, int samples) {
 
 Vec3 along(double mu) { return {std::sqrt(1 - mu * mu), 0, mu}; }
 
-// Mitsuba's principled definition adds its layers up, so its bound is not 1: this is the largest
-// value for these base colours, at grazing angles.
+// Mitsuba's principled definition adds its layers up, so its bound is not 1. The bounds 1.35 and
+// 2.5 are the largest values for these base colours, at grazing angles.
 TEST(Surfaces, ReflectNoMoreThanTheyReceive) {
   for (const Named& named : all_materials()) {
     for (const double mu : {1.0, 0.7, 0.3, 0.05, -0.4, -0.05}) {
@@ -289,8 +289,8 @@ TEST(ConductorFresnel, HasItsClosedForms) {
   }
 }
 
-// The probability of all facets, seen from a direction, is 1; for Beckmann up to the error of the
-// rational approximation of its masking.
+// The probabilities of all facets that are seen from a direction sum to 1. For Beckmann they do so
+// up to the error of the rational approximation of its masking.
 TEST(Facets, VisibleOnesSumToOne) {
   for (const Distribution distribution : {Distribution::kGgx, Distribution::kBeckmann}) {
     const Facets facets{0.3, 0.8, distribution, Masking::kSeparable};
@@ -382,7 +382,8 @@ TEST(PlasticCoat, InterpolatesWhereAlphaHasAMap) {
   }
 }
 
-// Along the normal: Fresnel's 0.04 times the distribution's peak, base / pi, and the coat's peak.
+// Along the normal the value is a sum of three terms: Fresnel's 0.04 times the distribution's peak,
+// base / pi, and the coat's peak.
 TEST(PrincipledBsdf, HasItsClosedFormAlongTheNormal) {
   Principled m;
   m.base_color = kTinted;

@@ -169,7 +169,7 @@ TEST(Equiangular, DistancesFollowThePdf) {
   }
 }
 
-/// A light on the ray itself, at its start, and far away.
+/// The light is on the ray itself, at its start, or far away.
 TEST(Equiangular, V8_IsFiniteForALightOnTheRay) {
   const Vec3 direction{0, 0, 1};
   for (const double length : {1e-3, 1.0, kInfinity}) {

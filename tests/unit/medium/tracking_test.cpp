@@ -18,8 +18,8 @@ namespace {
 using test::Moments;
 
 constexpr std::size_t kWalks = 40000;  ///< estimates in each mean
-/// A ray along x through the centres of the cells, from the first to the last.
 constexpr std::uint32_t kGridCells = 257;
+/// A ray along x through the centres of the cells, from the first to the last.
 const GridRay kAlong{{0.5, 0.5, 0.5}, {1, 0, 0}};
 constexpr double kLength = kGridCells - 1;
 
@@ -217,8 +217,9 @@ TEST(Tracking, CollectsEmissionWhereNothingIsDense) {
     ASSERT_EQ(flight.emitted.b, 0);
     seen.add(flight.emitted.g);
   }
-  // Emission 2 times the grid's factor 2 times 0.01 over 128 cells: half a cell before the first
-  // centre, 127 cells between centres, and half of the cell in which the density falls to 0.
+  // The expected value is the emission 2 times the grid's factor 2 times 0.01 over 128 cells. These
+  // are half a cell before the first centre, 127 cells between centres, and half of the cell in
+  // which the emission falls to 0.
   EXPECT_LT(std::abs(seen.z(2 * 2 * 0.01 * (0.5 + 127.5))), 4);
 }
 

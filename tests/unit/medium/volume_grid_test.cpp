@@ -51,7 +51,8 @@ TEST(Half, NumbersBetweenHalvesAreNotExact) {
   }
 }
 
-/// A grid of 19 x 9 x 23 cells with empty and full bricks.
+/// Returns the number of a cell of sparse(), a grid of 19 x 9 x 23 cells with empty and full
+/// bricks.
 float sparse_number(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   return x < 8 && z > 7 ? 0.0f : static_cast<float>((x * 7 + y * 13 + z * 29) % 31) * 0.1f;
 }

@@ -48,7 +48,8 @@ TEST(AdaptivePlan, UniformNoiseGivesUniformPasses) {
 }
 
 TEST(AdaptivePlan, SamplesAreProportionalToTheStandardDeviation) {
-  // 32 columns: half with noise 1, half with noise 1/64, so an eighth of the samples.
+  // Half of the 32 columns have the noise 1, the others 1/64, so these get an eighth of the
+  // samples.
   const TileGrid grid{512, 32};
   const auto tiles = errors(grid, [](std::uint32_t column) { return column < 16 ? 1 : 1.0 / 64; });
   const TilePlan plan = plan_tiles(grid, tiles, 64);
@@ -105,7 +106,8 @@ TEST(AdaptivePlan, ImagesOfOneTileOrOnePixelHaveAPlan) {
 /// Tiles of two rows, so that few pixels (16 in a half tile) determine the plan and each of them
 /// counts.
 constexpr TileGrid kThin{256, 2};
-/// A pixel's samples; expected value 1 on the left half of the image. The right half is black.
+/// Draws a sample of a pixel in the left half of the image, with the expected value 1. The right
+/// half is black.
 using Pixel = std::function<double(Random&)>;
 
 struct Rendered {
@@ -113,7 +115,8 @@ struct Rendered {
   bool planned = false;  ///< some half tiles take more samples than others
 };
 
-/// `naive`: each half tile is planned by its own samples instead of those of its other half.
+/// Renders an image adaptively with samples drawn by `pixel`. `naive`: each half tile is planned by
+/// its own samples instead of those of the other half of its tile.
 Rendered render_pixel(const Pixel& pixel, std::uint64_t seed, bool naive) {
   Random random(seed);
   Film film = *Film::create(kThin.width, kThin.height, "", Film::Grain::kHalfTiles);

@@ -14,8 +14,8 @@ namespace bandsaw {
 
 using test::Random;
 
-/// Returns a sample's value: different everywhere, and with rounding sums, so that another order of
-/// summation is detected.
+/// Returns a sample's value. Values differ everywhere and their sums are rounded, so that another
+/// order of summation is detected.
 inline double value(std::uint32_t y, std::size_t k, std::uint64_t sample) {
   Random random(y * 1000003u + k * 4099u + sample * 77777777u);
   return static_cast<float>(random.uniform() * std::exp2(random.uniform(-20, 20)));

@@ -88,7 +88,7 @@ class ChunksTest : public FarmTest {
     EXPECT_EQ(reply.there_size(), 1);
     return reply.there_size() == 1 ? reply.there(0) : 0;
   }
-  /// Waits until the coordinator has noticed the end of the sender.
+  /// Waits until the coordinator has noticed the end of the sender. Returns how many bytes it has.
   std::uint64_t wait_until_there(const std::string& bytes) {
     std::uint64_t there = 0;
     while (there == 0 && !HasFailure()) {

@@ -81,8 +81,8 @@ std::vector<Sample4> aligned_range(std::uint64_t seed, std::uint32_t group, int 
   return samples;
 }
 
-// The strength t of the net in these dimensions: 2^m points fill each elementary interval of volume
-// 2^(t-m) with 2^t points.
+// Expects that the 2^m samples are a net of strength t in these dimensions: each elementary
+// interval of volume 2^(t-m) has 2^t of the points.
 void expect_net(const std::vector<Sample4>& samples, int m,
                 const std::vector<std::size_t>& dimensions, int t) {
   const int bits = m - t;
@@ -148,8 +148,8 @@ TEST(Sampler, R4_IsUniformOverPairsOfDimensionsOfAnyGroups) {
     const std::size_t b = group_a == group_b ? (a + 1 + random.below(3)) % 4 : random.below(4);
     const std::uint64_t seed = random.bits();
     std::vector<std::uint64_t> counts(kSide * kSide);
-    // One sample of each of many pixels: independent, as the test assumes (samples of one pixel are
-    // better).
+    // Each pixel gives one sample, so that the numbers are independent, as the test assumes.
+    // Samples of one pixel are better distributed.
     for (std::uint32_t i = 0; i < kSamples; ++i) {
       const PixelSampler sampler(seed, i % 64, i / 64);
       const double x = sampler.group(i, group_a)[a];

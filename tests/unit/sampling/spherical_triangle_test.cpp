@@ -63,8 +63,8 @@ TEST(SphericalTriangle, SamplesUniformlyInSolidAngle) {
 }
 
 TEST(SphericalTriangle, HasSolidAnglesOfClosedForms) {
-  // An eighth of all directions; half the solid angle of a square; a cube's face is a sixth of all
-  // directions.
+  // The octant is an eighth of all directions. The other triangles are halves of squares, of which
+  // a cube's face is a sixth of all directions.
   const auto octant = SphericalTriangle::seen_from({0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {-1, 0, 1});
   ASSERT_TRUE(octant);
   EXPECT_NEAR(octant->solid_angle(), kPi / 2, 1e-14);

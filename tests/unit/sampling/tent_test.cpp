@@ -106,7 +106,7 @@ TEST(Tent, TheSolidAngleOfARowIsItsIntegral) {
        {std::pair(0u, 10u), std::pair(1u, 10u), std::pair(4u, 10u), std::pair(0u, 1000u)}) {
     constexpr int kFine = 200000;
     const double width = kPi / rows;
-    // The tent covers three rows; at the pole it ends at the pole.
+    // The tent covers three rows, or fewer if it is cut off at the pole.
     const double first = std::max(0.0, (row - 1.0) * width);
     const double step = ((row + 2.0) * width - first) / kFine;
     double sum = 0;

@@ -45,7 +45,7 @@ TEST(Counts, LimitLooseShapes) {
   }
 }
 
-/// A mesh of 131,072 triangles, with so many instances that they are 2^31.
+/// Adds a mesh of 131,072 triangles, with so many instances that there are 2^31 triangles.
 test::SceneMaker placed_many_times(MaterialId material, test::SceneMaker maker) {
   maker.instance(test::grid(256), {}, material);
   maker.scene.geometry.instances.resize(std::size_t{1} << 14, maker.scene.geometry.instances[0]);

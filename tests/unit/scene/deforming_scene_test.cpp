@@ -98,8 +98,8 @@ TEST(DeformingScene, PixelsAreTheSameForKernelsBandsAndTraversals) {
   EXPECT_EQ(rendered(next, {.earlier = earlier}), expected);
 }
 
-/// Returns the scene with ordinary meshes instead of deforming ones, as these are after the given
-/// share of the exposure.
+/// Returns the scene with ordinary meshes instead of deforming ones. They have the shapes of the
+/// deforming meshes after the given share of the exposure.
 SceneDescription frozen(SceneDescription scene, double share) {
   const ShutterTime now({0, 1}, share);
   for (MeshList* meshes : {&scene.geometry.meshes, &scene.media.boundaries.meshes}) {
@@ -116,8 +116,8 @@ SceneDescription frozen(SceneDescription scene, double share) {
   return scene;
 }
 
-// If both ends are equal, the pixels are those of the ordinary mesh, to the bit; so they are with a
-// shutter without duration.
+// If both ends are equal, the pixels are those of the ordinary mesh, to the bit. The same holds for
+// a shutter without duration.
 TEST(DeformingScene, WithoutChangeEqualsTheOrdinaryMesh) {
   SceneDescription scene = scene_of_all().scene;
   SceneDescription still = frozen(scene, 0.3);
@@ -156,7 +156,8 @@ TEST(DeformingScene, InvalidPositionsAreRefusedWithTheField) {
               HasSubstr("meshes[0].normals_at_close: must be none without normals"));
   EXPECT_THAT(error_after([](auto& s) { s.geometry.meshes.change(0).positions_at_close.clear(); }),
               HasSubstr("meshes[0].normals_at_close: must be none without normals"));
-  // A boundary whose corners part: closed when the shutter opens, and open afterwards.
+  // Two corners of the boundary move apart: it is closed when the shutter opens, and open
+  // afterwards.
   EXPECT_THAT(error_after([](auto& s) {
                 Mesh& mesh = s.media.boundaries.meshes.change(0);
                 for (auto* list : {&mesh.positions, &mesh.positions_at_close, &mesh.normals,

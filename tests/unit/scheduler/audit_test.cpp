@@ -306,7 +306,7 @@ TEST(Quarantine, LastsOverRestartsUntilItIsLifted) {
   next.take(next.scheduler.replayed(next.now));
   EXPECT_EQ(next.job(1).samples_done, 0u) << "what it rendered stays void";
   EXPECT_EQ(next.state_of("worker-a"), "quarantined");
-  // The same process, and the same machine with a new process.
+  // The same process and a new process on the same machine are both refused.
   EXPECT_EQ(in<action::Refuse>(next.hello(1, "a")).size(), 1u);
   WorkerHello again;
   again.instance = "a2";

@@ -57,7 +57,8 @@ TEST(Damage, BandsThatTheWorkerDidNotStoreStay) {
   EXPECT_TRUE(farm.all_records<record::BandLost>().empty());
 }
 
-/// Worker a stores the only band, worker b audits it with the same result.
+/// Lets worker a store the only band and worker b audit it with the same result. Returns the lease
+/// of a.
 action::Lease store_and_audit(FarmDriver& farm) {
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");

@@ -293,7 +293,8 @@ TEST(Liveness, ADrainingWorkerKeepsItsLeasesAndGetsNoMore) {
   EXPECT_EQ(farm.scheduler.workers(farm.now)[0].state, "draining");
 }
 
-/// Starts a new worker that renders bands until one of them holds the row, and is lost with it.
+/// Starts a new worker that renders bands until it is leased one that contains the row, and then is
+/// lost. Returns that band.
 Band lose_one_at(FarmDriver& farm, std::uint32_t row, SessionId session) {
   const std::string instance = std::to_string(session);
   farm.hello(session, instance, 1);

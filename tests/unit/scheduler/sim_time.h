@@ -19,11 +19,11 @@ class Chance {
   std::uint64_t bits() { return split_mix(state_ += kSplitMixIncrement); }
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double between(double low, double high) { return low + (high - low) * uniform(); }
-  /// Uniform in the logarithm; low > 0.
+  /// Returns a number in [low, high) that is uniform in the logarithm; low > 0.
   double between_log(double low, double high) {
     return low * std::exp(uniform() * std::log(high / low));
   }
-  /// [low, high]
+  /// Returns an integer in [low, high].
   std::uint64_t pick(std::uint64_t low, std::uint64_t high) {
     return low + bits() % (high - low + 1);
   }
@@ -33,8 +33,8 @@ class Chance {
   std::uint64_t state_;
 };
 
-/// The events of a simulation. They run in the order of their times, and of equal times in the
-/// order in which they were added.
+/// The events of a simulation. They run in the order of their times. Events of the same time run in
+/// the order in which they were added.
 class Agenda {
  public:
   double now() const { return now_; }

@@ -5,7 +5,7 @@
 // every job is final, and no row of a finished image is missing.
 //
 // Each test has its own range of seeds. A failure prints its seed; BANDSAW_SEED=n in the
-// environment repeats that one, BANDSAW_SEEDS=n runs n seeds of each test.
+// environment runs that seed alone, BANDSAW_SEEDS=n runs n seeds of each test.
 
 #include <optional>
 
@@ -87,7 +87,8 @@ class Simulation : SimulatedFarm {
   static constexpr double kEnd = 400'000;
 
   using SimulatedFarm::submit;
-  /// Submits a sequence, and sends the scenes of some of its frames; after the storm, of all.
+  /// Submits a sequence, and sends the scenes of some of its frames. After the storm it sends those
+  /// of all frames.
   void submit(const SequenceSpec& spec) {
     keep_sending([this, spec] {
       coordinator_.input(input::SubmitSequence{spec});

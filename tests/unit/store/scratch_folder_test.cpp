@@ -1,3 +1,6 @@
+// Temporary folders: only their owner can read them, they are removed with their contents, and an
+// error names the folder in which none can be made.
+
 #include "coordinator/store/scratch_folder.h"
 
 #include <gmock/gmock.h>

@@ -169,7 +169,7 @@ TEST(Texture, LooksUpWhereTheTransformOfItsUvSetPoints) {
   image.uv_set = UvSet::kSecond;
   image.uv_transform = {{0, -1, 1, 2, 0, 0}};
   const TextureCoordinates at{.uv = {9, 9}, .uv2 = {0.4, 0.3}};
-  // (1 - 0.3, 2 * 0.4): column 2, the row at the top.
+  // The transform gives (1 - 0.3, 2 * 0.4), which is in column 2 of the top row.
   EXPECT_EQ(bandsaw::evaluate(absl::MakeConstSpan(&texture, 1), TextureId{0}, at).g, 2);
 }
 

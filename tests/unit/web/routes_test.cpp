@@ -70,7 +70,7 @@ TEST_F(RoutesTest, EachArchitectureHasItsProgram) {
   EXPECT_EQ(get("/bandsaw-worker/")->status, 404);
 }
 
-// No Range header makes the server send more than the bytes.
+// The server sends no more bytes than the file has, whatever the Range header says.
 TEST_F(RoutesTest, RangesEndWithTheBytes) {
   const std::size_t size = 3 << 20;
   headers_ = {{"Range", "bytes=5-9"}};

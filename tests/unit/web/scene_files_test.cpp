@@ -19,7 +19,7 @@ using ::testing::StartsWith;
 
 std::string hex_of(const std::string& bytes) { return wire::sha256(bytes).hex(); }
 
-/// A file as the body of /api/files has it.
+/// Returns a file in the form of the body of /api/files: digest, size, and contents.
 std::string sent(const std::string& bytes) {
   return absl::StrCat(hex_of(bytes), " ", bytes.size(), "\n", bytes);
 }
