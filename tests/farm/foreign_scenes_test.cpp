@@ -161,11 +161,11 @@ class ForeignScenes : public testing::Test {
   FarmProcesses farm_;
 };
 
-TEST_F(ForeignScenes, OfPbrtHaveTheSameBytesAfterAWorkerDied) {
+TEST_F(ForeignScenes, PbrtScenesHaveTheSameBytesAfterAWorkerDied) {
   expect_the_same_bytes_of("kitchen.pbrt");
 }
 
-TEST_F(ForeignScenes, OfMitsubaHaveTheSameBytesAfterAWorkerDied) {
+TEST_F(ForeignScenes, MitsubaScenesHaveTheSameBytesAfterAWorkerDied) {
   expect_the_same_bytes_of("kitchen.xml");
 }
 

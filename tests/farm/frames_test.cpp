@@ -167,7 +167,7 @@ TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
   EXPECT_EQ(jobs_of_frames().size(), 18u);
 }
 
-TEST_F(Frames, WithoutANameDoNotReplaceFilesOfTheModel) {
+TEST_F(Frames, FramesWithoutANameDoNotReplaceFilesOfTheModel) {
   farm_.add_worker("one", 1);
   std::ofstream(farm_.path("walk.0002.png")) << "a texture";
   const Finished refused = run(in_the_folder(submit("1-3")));
@@ -177,7 +177,7 @@ TEST_F(Frames, WithoutANameDoNotReplaceFilesOfTheModel) {
   EXPECT_THAT(run(farm_.command({"jobs"})).out, HasSubstr("no jobs"));
 }
 
-TEST_F(Frames, ThatWereNotSentAreNamedIfAFileCannotBeWritten) {
+TEST_F(Frames, UnsentFramesAreNamedIfAFileCannotBeWritten) {
   farm_.add_worker("one", 1);
   std::filesystem::create_directory(file_of(1));
   // There are so many frames that most of them are not sent when the first one is done.
@@ -282,7 +282,7 @@ TEST_F(Frames, AreCleanedAsRenderDoes) {
   EXPECT_EQ(std::count(listed.out.begin(), listed.out.end(), '\n'), 3) << listed.out;
 }
 
-TEST_F(Frames, OfOneSampleAreNotCleaned) {
+TEST_F(Frames, FramesOfOneSampleAreNotCleaned) {
   samples_ = "1";
   const Finished refused = run(submit("1-2", {"-o", outputs_, "--denoise"}));
   EXPECT_EQ(refused.code, 2);
@@ -290,7 +290,7 @@ TEST_F(Frames, OfOneSampleAreNotCleaned) {
   EXPECT_THAT(run(farm_.command({"jobs"})).out, HasSubstr("no jobs"));
 }
 
-TEST_F(Frames, AreAVideo) {
+TEST_F(Frames, CanBeWrittenAsAVideo) {
   ASSERT_TRUE(std::filesystem::exists("/usr/bin/ffprobe")) << "apt-get install ffmpeg";
   farm_.add_worker("one", 1);
   farm_.add_worker("two", 1);

@@ -154,7 +154,7 @@ TEST_F(FullDiskFarm, StartsWithoutItsReserve) {
 }
 
 // Every write to /dev/full fails as on a full disk.
-TEST(FullDisk, OfStandardOutputIsAnError) {
+TEST(FullDisk, AFullDiskBehindStandardOutputIsAnError) {
   for (const std::string command : {"info", "completion"}) {
     const Finished done = run({"/bin/sh", "-c", "exec \"$@\" > /dev/full", "sh", BANDSAW_BIN,
                                command, command == "info" ? kCornell : "bash"});
@@ -164,7 +164,7 @@ TEST(FullDisk, OfStandardOutputIsAnError) {
 }
 
 // `render` ignores SIGPIPE, so that it writes the image although its reader has ended.
-TEST(FullDisk, IsNotAReaderThatHasEnded) {
+TEST(FullDisk, AReaderThatHasEndedIsNoError) {
   const TempDir folder;
   const Finished done =
       run({"/bin/sh", "-c", "{ \"$@\"; echo code $? >&2; } | true", "sh", BANDSAW_BIN, "render",

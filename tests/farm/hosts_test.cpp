@@ -47,7 +47,7 @@ class Cables : public testing::Test {
   std::unique_ptr<Survival> job_;
 };
 
-TEST_F(Cables, AWorkersCableIsPulledAndPutBack) {
+TEST_F(Cables, NothingIsLostIfAWorkersCableIsPulledAndPutBack) {
   Process client = job_->submit("person");
   job_->wait_until_stored("desk", 2);
   hosts_->unplug("desk");
@@ -57,11 +57,15 @@ TEST_F(Cables, AWorkersCableIsPulledAndPutBack) {
   job_->wait_until_joined("desk", 2);
 }
 
-TEST_F(Cables, PacketsFromAWorkerAreLost) { expect_nothing_lost_when_deaf("desk", "coordinator"); }
+TEST_F(Cables, NothingIsLostIfPacketsFromAWorkerAreDropped) {
+  expect_nothing_lost_when_deaf("desk", "coordinator");
+}
 
-TEST_F(Cables, PacketsToAWorkerAreLost) { expect_nothing_lost_when_deaf("coordinator", "desk"); }
+TEST_F(Cables, NothingIsLostIfPacketsToAWorkerAreDropped) {
+  expect_nothing_lost_when_deaf("coordinator", "desk");
+}
 
-TEST_F(Cables, TheCoordinatorsCableIsPulled) {
+TEST_F(Cables, NothingIsLostIfTheCoordinatorsCableIsPulled) {
   Process client = job_->submit("person");
   job_->wait_until_stored("desk", 2);
   hosts_->unplug("coordinator");
@@ -73,14 +77,14 @@ TEST_F(Cables, TheCoordinatorsCableIsPulled) {
   job_->wait_until_joined("desk", 2);
 }
 
-TEST_F(Cables, AWorkerHasASlowConnection) {
+TEST_F(Cables, NothingIsRenderedTwiceOverASlowConnection) {
   ASSERT_TRUE(hosts_->shape("desk", {"tbf", "rate", "1mbit", "burst", "32kbit", "latency", "1s"}));
   Process client = job_->submit("person");
   job_->expect_the_same_bytes(client);
   job_->expect_nothing_rendered_again();
 }
 
-TEST_F(Cables, PacketsAreDelayedAndLost) {
+TEST_F(Cables, NothingIsRenderedTwiceIfPacketsAreDelayedAndLost) {
   for (const char* host : {"desk", "person"}) {
     if (!hosts_->shape(host, {"netem", "delay", "50ms", "loss", "5%"})) {
       GTEST_SKIP() << "this kernel has no netem";

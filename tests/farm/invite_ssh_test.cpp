@@ -48,7 +48,7 @@ std::string make_account(const TempDir& folder) {
   return "PATH=" + folder / "bin" + ":/usr/bin:/bin";
 }
 
-TEST(InviteSsh, ThroughARealServer) {
+TEST(InviteSsh, InviteAndDismissWorkThroughARealServer) {
   if (access(kSshd, X_OK) != 0 || access("/usr/bin/ssh", X_OK) != 0) {
     GTEST_SKIP() << "needs the packages openssh-server and openssh-client";
   }

@@ -175,7 +175,7 @@ shape { quad { corner: [-1, -1, 0] u: [2, 0, 0] v: [0, 2, 0] } material: "lamp" 
   EXPECT_EQ(top + bottom, clipped("whole", {}));
 }
 
-TEST(ReportFile, OfASceneFileIsNotTouched) {
+TEST(ReportFile, ASceneFileIsNotReplacedByTheReport) {
   const TempDir folder;
   std::filesystem::copy(kCornell, folder / "a.textproto");
   expect_success(run({BANDSAW_BIN, "render", folder / "a.textproto", "--width", "8", "--samples",

@@ -40,7 +40,7 @@ TEST_F(StudyCommand, WritesTableFiguresAndPlot) {
   EXPECT_EQ(file_bytes(folder_ / "s.svg").rfind("<svg ", 0), 0u);
 }
 
-TEST_F(StudyCommand, EveryObjectIsForSmallScenes) {
+TEST_F(StudyCommand, EveryObjectIsRefusedForLargeScenes) {
   const Finished done =
       run(study({BANDSAW_GALLERY "/mesh.textproto", "--every-object", "--width", "12"}));
   EXPECT_EQ(done.code, 2);
@@ -58,7 +58,7 @@ TEST_F(StudyCommand, ABadSceneIsReportedBeforeAnythingIsRendered) {
   EXPECT_TRUE(nothing_written());
 }
 
-TEST_F(StudyCommand, AnInterruptEndsItAndNothingIsWritten) {
+TEST_F(StudyCommand, AnInterruptEndsTheCommandAndNothingIsWritten) {
   Process process =
       Process::start(study({kCornell, "--width", "400", "--samples", "65536", "--seeds", "1000"}));
   ASSERT_TRUE(process.wait_for("reference"));

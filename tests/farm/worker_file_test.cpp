@@ -47,7 +47,7 @@ TEST(WorkerFile, NeedsOnlyGlibc) {
 }
 
 // Programs that are linked with shared libraries show that the test above can fail.
-TEST(WorkerFile, TheCommandNeedsMore) {
+TEST(WorkerFile, TheCommandNeedsMoreThanGlibc) {
   EXPECT_TRUE(libraries_of(BANDSAW_BIN).contains("libstdc++.so.6"));
 }
 

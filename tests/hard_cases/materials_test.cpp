@@ -82,7 +82,7 @@ long double exact_fresnel(double cosine, double eta) {
   return (parallel * parallel + perpendicular * perpendicular) / 2;
 }
 
-TEST(MaterialHardCases, M7AroundTheCriticalAngleFresnelIsExact) {
+TEST(MaterialHardCases, M7FresnelIsExactAroundTheCriticalAngle) {
   test::Worst error;
   test::Worst near_error;
   for (const double eta : {1 / 1.33, 1 / 1.5, 1 / 2.4}) {

@@ -58,7 +58,7 @@ TEST(Leaks, T1T2_NoneAtCornersAndEdgesOfClosedMeshes) {
 
 // The triangle test may hit a triangle of three collinear points, because rounding makes it a
 // sliver; scenes remove triangles without area.
-TEST(Triangle, T4_WithoutAreaIsNeverHit) {
+TEST(Triangle, T4_ATriangleWithoutAreaIsNeverHit) {
   Random random(1);
   const Vec3 bad = {-1113.45459, -79.049614, -56.2431908};
   const std::vector<Triangle> degenerate = {{bad, bad, bad, {}},
@@ -110,7 +110,7 @@ double worth_of_last_bits(const Ray& ray, Triangle t) {
   return std::abs(static_cast<double>(plane_distance(ray, t) - distance));
 }
 
-TEST(Triangle, T6_AHugeOneJustBelowTheCamera) {
+TEST(Triangle, T6_AHugeTriangleJustBelowTheCameraIsHit) {
   Random random(2);
   const Transform turns[] = {{}, rotation({1, 2, 3}, 33)};
   for (const Transform& turn : turns) {
@@ -149,7 +149,7 @@ TEST(Triangle, T6_AHugeOneJustBelowTheCamera) {
   }
 }
 
-TEST(Triangle, T8_TheNearerOfTwoNearlyCoplanarIsHit) {
+TEST(Triangle, T8_TheNearerOfTwoNearlyCoplanarTrianglesIsHit) {
   Pool pool(1);
   Random random(3);
   int decided = 0;
@@ -181,7 +181,7 @@ TEST(Triangle, T8_TheNearerOfTwoNearlyCoplanarIsHit) {
   at_most("T8", "share that is wrong", static_cast<double>(wrong) / decided, 1e-5);
 }
 
-TEST(Mesh, T11_OfDenormalSizeIsTracedAsAnyOther) {
+TEST(Mesh, T11_AMeshOfDenormalSizeIsTracedLikeAnyOther) {
   Pool pool(1);
   const Mesh mesh = scaled(rough_sphere(24, 12, 1.5, 4), 1e-42);
   const Geometry geometry = scene_of(mesh);
@@ -217,7 +217,7 @@ TEST(Triangle, T14_WeightsStayInRangeAtCornersAndEdges) {
   at_most("T14", "u + v - 1, in u", above.value() / 0x1p-53, 2);
 }
 
-TEST(Tree, B7_SizesThatHalveAThousandTimes) {
+TEST(Tree, B7_SizesThatHalveAThousandTimesAreTracedCorrectly) {
   Pool pool(1);
   Geometry geometry;
   for (int i = 0; i < 1000; ++i) {

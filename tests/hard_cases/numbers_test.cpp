@@ -32,7 +32,7 @@ using test::Worst;
 
 constexpr double kUnit = 0x1p-53;
 
-TEST(Cone, L2_NarrowOnesKeepTheirDigits) {
+TEST(Cone, L2_NarrowConesKeepTheirDigits) {
   Worst error;
   for (const double sine : {0.5, 1e-2, 1e-3, 3e-4, 1e-4, 1e-7}) {
     const Wide s2 = Wide{sine} * sine;
@@ -61,7 +61,7 @@ Wide solid_angle(double h, double aside) {
   return sum * h * h;
 }
 
-TEST(SphericalRectangle, L5_SmallOnesKeepTheirSolidAngle) {
+TEST(SphericalRectangle, L5_SmallRectanglesKeepTheirSolidAngle) {
   for (const double aside : {0.0, 3.0}) {
     Worst error;
     for (const double h : {1e-2, 1e-3, 1e-4}) {
@@ -128,7 +128,7 @@ TEST(Sampler, R3_NeighboursShareNoSamples) {
   test::at_most("R3", "variance of 2 x 2 means over a quarter, off 1", std::abs(ratio - 1), 0.05);
 }
 
-TEST(Sampler, R9_FinerThanAPixelIsNoWorseThanIndependent) {
+TEST(Sampler, R9_DetailFinerThanAPixelIsNoWorseThanWithIndependentSamples) {
   Worst ratio;
   for (const int cells : {3, 7, 13, 29, 101}) {
     for (const std::uint64_t samples : {16u, 64u, 256u}) {

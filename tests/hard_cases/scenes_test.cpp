@@ -116,7 +116,7 @@ test::Moments through_water_and_glass(double overlap) {
   return test::radiance_along(*maker.build(), ray, {}, 4096);
 }
 
-TEST(NestedGlass, M9_OverlappingALittleOrMuchOrNotAtAllIsTheSame) {
+TEST(NestedGlass, M9_AnySizeOfTheOverlapGivesTheSameLight) {
   const double truth = through_water_and_glass(0.1).mean();
   EXPECT_GT(truth, 0.85);
   test::at_most("M9", "share that passes, overlap of 1e-6 against 0.1",
@@ -140,7 +140,7 @@ test::SceneMaker spheres_and_mesh(const Vec3& at) {
   return maker;
 }
 
-TEST(Camera, C1_AMillionUnitsAwayTheSamePrimitivesAreHit) {
+TEST(Camera, C1_TheSamePrimitivesAreHitAMillionUnitsAway) {
   const auto near = spheres_and_mesh({0, 0, 0}).build();
   const auto far = spheres_and_mesh({1e6, -1e6, 1e6}).build();
   constexpr std::uint32_t kSide = 500;

@@ -55,7 +55,7 @@ Truth truth(const Ray& ray, const Sphere& sphere) {
   return {offset2, (b - half_chord) / a, (b + half_chord) / a};
 }
 
-TEST(Sphere, S1_IsHitRightFromFarAway) {
+TEST(Sphere, S1_IsHitCorrectlyFromFarAway) {
   test::Random random(1);
   const int rays = tries(20'000, 1'000'000);
   for (const double distance : {150.0, 1.5e3, 1.5e4, 1.5e6}) {
@@ -86,7 +86,7 @@ TEST(Sphere, S1_IsHitRightFromFarAway) {
   }
 }
 
-TEST(Sphere, S3_TangentRaysAreDecidedRightAndNeverNan) {
+TEST(Sphere, S3_TangentRaysAreDecidedCorrectlyAndNeverNan) {
   test::Random random(2);
   for (const double distance : {2.0, 1e3}) {
     for (int k = 3; k <= 15; ++k) {
@@ -154,7 +154,7 @@ double worth_of_last_bits(const Ray& ray, const Sphere& sphere) {
   return most;
 }
 
-TEST(Sphere, S4_FromWithinTheFarSideIsHit) {
+TEST(Sphere, S4_TheFarSideIsHitFromWithin) {
   test::Random random(4);
   const Sphere sphere = {{1, 2, 3}, 2, {}};
   test::Worst error;
@@ -218,7 +218,7 @@ TEST(Sphere, S6_TheLengthOfTheDirectionDoesNotMatter) {
   test::report_hard_case("S6", "1,000 distances equal to the bit at 2^-40, 1, 2^40");
 }
 
-TEST(Sphere, S7_TinyOnesAreSolid) {
+TEST(Sphere, S7_TinySpheresAreSolid) {
   test::Random random(6);
   const int rays = tries(20'000, 1'000'000);
   for (const double radius : {1e-4, 1e-6}) {
@@ -239,7 +239,7 @@ TEST(Sphere, S7_TinyOnesAreSolid) {
   }
 }
 
-TEST(SphereUv, IsAGlobe) {
+TEST(SphereUv, HasThePolesOnTheYAxis) {
   const auto expect_uv = [](const Vec3& n, double u, double v) {
     EXPECT_NEAR(sphere_uv(n).x, u, 1e-15);
     EXPECT_NEAR(sphere_uv(n).y, v, 1e-15);

@@ -83,7 +83,7 @@ TEST(Curve, KnowsWhereItRests) {
 
 // The keys at 1 and 2 have the same value. Between them the curve is not constant, because the
 // tangent at 2 depends on the key at 3.
-TEST(Curve, ASmoothOneMovesWhereATangentDoesNotVanish) {
+TEST(Curve, ASmoothCurveMovesWhereATangentIsNotZero) {
   const Curve curve = numbers({0, 1, 2, 3, 4}, {5, 5, 5, 6, 6}, Interpolation::kSmooth);
   EXPECT_TRUE(curve.rests(-2, 0.9));
   EXPECT_THAT(curve.at(1.5), testing::Not(ElementsAre(5)));

@@ -132,7 +132,7 @@ TEST(GltfVolume, SpecularDoesNotChangeTheRefraction) {
   EXPECT_THAT(read(file, folder).info.warnings, IsEmpty());
 }
 
-TEST(GltfVolume, WithoutAThicknessItIsAThinPane) {
+TEST(GltfVolume, AMeshWithoutAThicknessIsAThinPane) {
   const TempDir folder;
   GltfWriter thin = cube();
   thin.root["materials"][0]["extensions"]["KHR_materials_volume"].erase("thicknessFactor");

@@ -67,7 +67,7 @@ TEST(ImageFormats, TgaGoesFromTheBottomRowUp) {
   EXPECT_THAT(codes(image), ElementsAre(kRed, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255));
 }
 
-TEST(ImageFormats, TgaMayBeRunsAndBeginAtTheTop) {
+TEST(ImageFormats, ATgaMayBeRunLengthEncodedAndBeginAtTheTop) {
   const ImageTexture image =
       decoded(bytes({0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 1, 0, 24, 0x20}) +
               bytes({0x81, 1, 2, 3, 0x00, 4, 5, 6}));
@@ -76,7 +76,7 @@ TEST(ImageFormats, TgaMayBeRunsAndBeginAtTheTop) {
 
 // BITMAPINFOHEADER, 24 bits. The rows go from the bottom up, and each is padded to a multiple of
 // four bytes.
-TEST(ImageFormats, BmpFillsUpItsRows) {
+TEST(ImageFormats, BmpRowsArePaddedToFourBytes) {
   const std::string header = "BM" + bytes({70, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0}) +
                              bytes({40, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 1, 0, 24, 0}) +
                              std::string(24, '\0');
@@ -86,7 +86,7 @@ TEST(ImageFormats, BmpFillsUpItsRows) {
 }
 
 // Radiance: mantissas and a common exponent, (m / 256) 2^(e - 128).
-TEST(ImageFormats, HdrIsItsMantissasTimesTheirExponent) {
+TEST(ImageFormats, AnHdrNumberIsAMantissaTimesItsExponent) {
   const ImageTexture image = decoded("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" +
                                      bytes({128, 64, 0, 131, 255, 128, 1, 120}));
   EXPECT_EQ(image.format, ImageTexture::Format::kFloat32);
@@ -202,7 +202,7 @@ TEST(ImageFormats, AnExrImageHasTheSizeOfItsDisplayWindow) {
   EXPECT_THAT(std::string(huge.status().message()), HasSubstr("is 100000 x 100000 pixels"));
 }
 
-TEST(ImageFormats, AlphaIsReadOfATga) {
+TEST(ImageFormats, AlphaOfATgaIsRead) {
   const std::string file = bytes({0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 32, 0x28}) +
                            bytes({1, 2, 3, 40, 5, 6, 7, 80});
   EXPECT_TRUE(image_has_alpha(file));
@@ -212,7 +212,7 @@ TEST(ImageFormats, AlphaIsReadOfATga) {
 
 // PNG: the chunk tRNS names the one colour whose alpha is 0. The pixels are a stored block of zlib;
 // the last four bytes of each chunk are its checksum.
-TEST(ImageFormats, AlphaOfAPngMayBeOneColour) {
+TEST(ImageFormats, APngMayNameOneTransparentColour) {
   const std::string signature = "\x89PNG\r\n\x1a\n";
   const std::string end = bytes({0, 0, 0, 0}) + "IEND" + bytes({0xae, 0x42, 0x60, 0x82});
   const std::string rgb_header = signature + bytes({0, 0, 0, 13}) + "IHDR" +

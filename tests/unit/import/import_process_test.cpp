@@ -177,7 +177,7 @@ TEST(ImportProcess, ForwardsTheImportersError) {
 }
 
 // A hostile archive may have taken control of the importer.
-TEST(ImportProcess, AListOfAnArchiveMustNotNameFilesThatTheImporterFound) {
+TEST(ImportProcess, AListOfAnArchiveThatNamesFoundFilesIsRefused) {
   const TempDir folder;
   const std::string program =
       write_text(folder, "importer.sh", "#!/bin/sh\necho 'found s.textproto' > \"$3/list\"\n");

@@ -250,7 +250,7 @@ std::string gltf_with_lights() {
 "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
 }
 
-TEST(ModelLights, OfGltfHaveItsUnitsAndStandAtTheirNodes) {
+TEST(ModelLights, GltfLightsHaveTheirUnitsAndStandAtTheirNodes) {
   const TempDir folder;
   const auto imported = import_scene(write_text(folder, "m.gltf", gltf_with_lights()));
   ASSERT_TRUE(imported.ok()) << imported.status();

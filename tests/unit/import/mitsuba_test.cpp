@@ -346,7 +346,7 @@ TEST_F(MitsubaScene, OldSpellingsAreRead) {
   EXPECT_THAT(converted->warnings, IsEmpty());
 }
 
-TEST_F(MitsubaScene, WhatHasNoCounterpartIsNamedOnce) {
+TEST_F(MitsubaScene, ElementsWithoutACounterpartAreNamedOnce) {
   EXPECT_THAT(warnings("<shape type=\"sdfgrid\"/>"),
               ElementsAre("s.xml:3: shape \"sdfgrid\" is not known; the shape is left out"));
   EXPECT_THAT(warnings("<shape type=\"sphere\"><float name=\"wobble\" value=\"1\"/></shape>"),
@@ -370,7 +370,7 @@ TEST_F(MitsubaScene, ACheckerboardBeginsAtTheTop) {
   EXPECT_NEAR(from.material(1).diffuse().texture().checker().even().color().rgb(0), 0.2, 1e-7);
 }
 
-TEST_F(MitsubaScene, ACheckerboardOfNumbersIsExchanged) {
+TEST_F(MitsubaScene, ACheckerboardOfNumbersExchangesItsTwoValues) {
   const scene::Scene from = scene(rectangle(
       "<bsdf type=\"principled\"><texture type=\"checkerboard\" name=\"metallic\">"
       "<float name=\"color0\" value=\"0.75\"/><float name=\"color1\" value=\"0.5\"/></texture>"

@@ -174,7 +174,7 @@ TEST(ColladaCameras, MayBeOrthographic) {
   EXPECT_NEAR(height("<xmag>6</xmag><ymag>3</ymag>"), 3, 1e-6);
 }
 
-TEST(ColladaCameras, WithoutAValidLensAreLeftOut) {
+TEST(ColladaCameras, CamerasWithoutAValidLensAreLeftOut) {
   for (const std::string angle : {"", "<yfov>200</yfov>"}) {
     const auto imported = import_collada("<perspective>" + angle + "</perspective>");
     ASSERT_TRUE(imported.ok()) << imported.status();

@@ -75,7 +75,7 @@ TEST_F(Obj, OpacityIsAlphaAndZeroIsTakenAsAMistake) {
                        "as a mistake"));
 }
 
-TEST_F(Obj, AnOpacityMapIsItsBrightness) {
+TEST_F(Obj, AnOpacityMapIsReadFromItsBrightness) {
   write_text(folder_, "mask.pgm", std::string("P5 2 1 255\n") + '\0' + "\xff");
   const Material m = material("Kd 1 1 1\nmap_d mask.pgm\n");
   EXPECT_EQ(m.alpha.mode, AlphaMode::kBlend);

@@ -41,7 +41,7 @@ class Gltf : public ::testing::Test {
 };
 
 // The index 1.5 has an F0 of 0.04. A quarter of that is the F0 of the index 1.1 / 0.9.
-TEST_F(Gltf, SpecularIsTheIndexOfTheSameReflection) {
+TEST_F(Gltf, SpecularBecomesTheIndexWithTheSameReflectance) {
   GltfTriangle file;
   file.more = R"("extensionsUsed": ["KHR_materials_specular"],)";
   file.materials = R"({"extensions": {"KHR_materials_specular": {"specularFactor": 0.25}}})";
@@ -183,7 +183,7 @@ TEST_F(Gltf, EachTextureHasItsOwnSetOfUvs) {
   EXPECT_EQ((base == UvSet::kFirst ? mesh.uvs2 : mesh.uvs)[1][0], 1);
 }
 
-TEST_F(Gltf, VertexColoursAreLinearAndWhiteOnesAreNone) {
+TEST_F(Gltf, VertexColoursAreLinearAndWhiteOnesAreDropped) {
   GltfTriangle file;
   file.colors = true;
   const ImportedScene imported = read(file);
@@ -307,7 +307,7 @@ TEST_F(Gltf, APrimitiveWithoutAMaterialGetsTheDefault) {
   EXPECT_EQ(std::get<MetallicRoughness>(material(1).kind).base_color.factor, (Rgb{1, 1, 1}));
 }
 
-TEST_F(Gltf, ColoursOfThreeChannelsHaveNoAlphaToLeaveOut) {
+TEST_F(Gltf, ColoursOfThreeChannelsGiveNoWarningAboutAlpha) {
   GltfTriangle file;
   file.colors = true;
   EXPECT_THAT(read(file).info.warnings, IsEmpty());

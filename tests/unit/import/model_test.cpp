@@ -108,7 +108,7 @@ TEST(Model, ReadsObjWithItsMaterialsAndTextures) {
   EXPECT_EQ(triangles(*box), 12u);
 }
 
-TEST(Model, WithInfiniteVerticesOnlyIsAnError) {
+TEST(Model, AModelWithOnlyInfiniteVerticesIsAnError) {
   NEED_TEST_MODELS();
   EXPECT_THAT(message_of(test_model("glTF2/BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb")),
               HasSubstr("12 of 12 triangles have a vertex that is not a finite number"));
@@ -126,7 +126,7 @@ TEST(Model, DropsAndCountsTrianglesWithNanVertices) {
                        "number and are left out"));
 }
 
-TEST(Model, ThatIsBrokenGivesOneError) {
+TEST(Model, ABrokenModelGivesOneError) {
   NEED_TEST_MODELS();
   for (const std::string name :
        {"glTF2/MissingBin/BoxTextured.gltf", "glTF2/wrongTypes/badArray.gltf", "invalid/empty.obj",
@@ -218,7 +218,7 @@ TEST(Model, WarnsOfAMaterialFileThatIsMissing) {
   EXPECT_THAT(imported->info.warnings, Contains("m.obj: its file \"no.mtl\" is missing"));
 }
 
-TEST(Model, WithNothingLeftIsAnErrorWithTheReason) {
+TEST(Model, AModelWithNothingLeftIsAnErrorWithTheReason) {
   const TempDir folder;
   EXPECT_EQ(message_of(write_text(folder, "m.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")),
             "m.obj: holds no triangle that can be rendered; m.obj: mesh \"defaultobject\": 1 of 1 "
@@ -227,7 +227,7 @@ TEST(Model, WithNothingLeftIsAnErrorWithTheReason) {
               HasSubstr("points and lines are left out"));
 }
 
-TEST(Model, AloneIsFramedWholeAndFillsThePicture) {
+TEST(Model, AModelAloneIsFramedWholeAndFillsThePicture) {
   const TempDir folder;
   const auto imported = import_scene(
       write_text(folder, "box.obj",

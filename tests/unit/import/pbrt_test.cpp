@@ -46,7 +46,7 @@ std::vector<std::string> warnings_of(const std::string& text) {
   return converted.ok() ? converted->warnings : std::vector<std::string>();
 }
 
-TEST(Pbrt, ACameraIsAMirroredOneOfOurs) {
+TEST(Pbrt, CamerasAreMirroredUnlessTheTransformFlipsThem) {
   const auto scene = scene_of(
       "LookAt 1 2 -5  1 2 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
       "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\n"
@@ -88,7 +88,7 @@ TEST(Pbrt, TransformsAreSavedAndRestored) {
   EXPECT_THAT(scene.shape(1).sphere().center(), ElementsAre(1, 0, 0));
 }
 
-TEST(Pbrt, AnImportedFileChangesNothingAfterIt) {
+TEST(Pbrt, AnImportedFileChangesNoTransformOrMaterialAfterIt) {
   const TempDir dir;
   write_text(dir, "part.pbrt",
              "Translate 100 0 0\nMaterial \"diffuse\" \"rgb reflectance\" [1 0 0]\n"
@@ -227,7 +227,7 @@ TEST(Pbrt, MotionBecomesKeys) {
   EXPECT_EQ(scene.camera().shutter_close(), 1);
 }
 
-TEST(Pbrt, WhatIsShearedMovesAboutItsOrigin) {
+TEST(Pbrt, AShearedShapeMovesAboutItsOrigin) {
   // A triangle with half a unit of shear at (5, 0, 0) turns by 90 degrees and moves up by 2.
   const auto scene = scene_of(
       "WorldBegin\nTranslate 5 0 0\nActiveTransform EndTime\nTranslate 0 2 0\nRotate 90 0 0 1\n"
@@ -271,7 +271,7 @@ TEST(Pbrt, ACameraMoves) {
   EXPECT_THAT(scene.track(2).key(1).value(), ElementsAre(0, 1, 0));
 }
 
-TEST(Pbrt, MicrofacetsHideEachOtherByTheirHeight) {
+TEST(Pbrt, MicrofacetsUseHeightCorrelatedMasking) {
   const auto scene = scene_of(
       "WorldBegin\nMaterial \"dielectric\" \"float uroughness\" 0.04 \"float vroughness\" 0.09\n"
       "Shape \"sphere\"");
@@ -378,7 +378,7 @@ TEST(Pbrt, ATextureThatCannotBeClampedIsScaledWithAWarning) {
   EXPECT_NEAR(scene.texture(1).product().b().color().rgb(0), 0.25, 1e-6);
 }
 
-TEST(Pbrt, ANumberOfAnImageWithAlphaIsItsAlpha) {
+TEST(Pbrt, AFloatTextureOfAnImageWithAlphaIsItsAlpha) {
   const TempDir dir;
   // A TGA of 2 x 1 texels, blue, green, red, alpha: white with alpha 0 and with alpha 128.
   const auto tga = [](const std::string& alphas) {
@@ -408,7 +408,7 @@ TEST(Pbrt, ANumberOfAnImageWithAlphaIsItsAlpha) {
   EXPECT_EQ(std::to_integer<int>(alpha->texels[3]), 128);
 }
 
-TEST(Pbrt, WhatHasNoCounterpartIsNamed) {
+TEST(Pbrt, FeaturesWithoutACounterpartAreNamed) {
   for (const char* type : {"nanovdb", "cloud", "rgbgrid"}) {
     const std::string text = "MakeNamedMedium \"m\" \"string type\" \"" + std::string(type) +
                              "\"\nWorldBegin\nMediumInterface \"m\" \"\"\n"
@@ -487,7 +487,7 @@ TEST(Pbrt, ClaimsAreCheckedBeforeMemoryIsTaken) {
       HasSubstr("s.pbrt:3: \"a.ply\": is damaged: it says that it has 900000000 of \"vertex\""));
 }
 
-TEST(Pbrt, BoundsEndHostileScenes) {
+TEST(Pbrt, HostileScenesAreStoppedByLimits) {
   std::string nested = "WorldBegin\n";
   for (int i = 0; i < 1'000'000; ++i) {
     nested += "AttributeBegin\n";

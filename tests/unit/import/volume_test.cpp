@@ -164,7 +164,7 @@ openvdb::FloatGrid::Ptr blob(const std::string& name) {
   return grid;
 }
 
-TEST(VdbFile, HasTheNumbersAndThePlaceOfTheLibrary) {
+TEST(VdbFile, IsReadWithTheValuesAndPlacementOfTheLibrary) {
   const TempDir folder;
   const auto grid = blob("density");
   const std::string path = write_vdb(folder, {grid, blob("other")});
@@ -236,7 +236,7 @@ std::string vdb_error(const openvdb::GridPtrVec& grids, const std::string& name 
   return std::string(read_volume(write_vdb(folder, grids), name, "").status().message());
 }
 
-TEST(VdbFile, WhatIsNotReadIsOneClearError) {
+TEST(VdbFile, AnUnsupportedGridIsOneClearError) {
   EXPECT_THAT(
       vdb_error({openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(4, {0, 0, 0}, 1)}, ""),
       HasSubstr("is a level set: distances to a surface. Convert it to a fog volume"));
@@ -260,7 +260,7 @@ TEST(VdbFile, WhatIsNotReadIsOneClearError) {
   EXPECT_THAT(vdb_error({flat}), HasSubstr("not affine"));
 }
 
-TEST(VdbFile, OtherFilesAreOneClearError) {
+TEST(VdbFile, AFileOfAnotherFormatIsOneClearError) {
   const TempDir folder;
   EXPECT_FALSE(read_volume(write_text(folder, "empty.vdb", ""), "", "").ok());
   EXPECT_THAT(std::string(read_volume(write_text(folder, "no.vdb", "not a vdb file at all, no"), "",

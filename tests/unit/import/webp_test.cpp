@@ -49,7 +49,7 @@ std::vector<std::uint8_t> texels(const ImageTexture& image) {
   return out;
 }
 
-TEST(Webp, LosslessImagesAreTheirTexels) {
+TEST(Webp, LosslessImagesKeepTheirTexels) {
   std::vector<std::string> warnings;
   const auto image = decode_image(lossless(codes(3), false), warnings);
   ASSERT_TRUE(image.ok()) << image.status();
@@ -105,7 +105,7 @@ TEST(Webp, LossyImagesAreNearTheirTexels) {
   }
 }
 
-TEST(Webp, DamagedAndAnimatedOnesAreErrors) {
+TEST(Webp, DamagedAndAnimatedImagesAreErrors) {
   const std::string whole = lossless(codes(3), false);
   std::vector<std::string> warnings;
   for (std::size_t size = 12; size < whole.size() - 1; ++size) {

@@ -85,7 +85,7 @@ TEST(Zip, DamageIsAnError) {
 }
 
 // The last argument is the largest size of the result.
-TEST(Inflate, DamageAndBombsEnd) {
+TEST(Inflate, DamagedDataAndBombsAreErrors) {
   EXPECT_FALSE(inflate("\x1f\x8b\x08", DeflateKind::kGzip, 100).ok());
   EXPECT_FALSE(inflate("", DeflateKind::kRaw, 100).ok());
   const std::string zeros("\x63\x60\x18\x05\xa3\x60\x28\x03\x00", 9);

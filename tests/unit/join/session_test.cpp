@@ -49,7 +49,7 @@ TEST_F(JoinSessionTest, ABrowserRendersAJob) {
   }
 }
 
-TEST_F(JoinSessionTest, TheFarmKnowsItWhileItIsThere) {
+TEST_F(JoinSessionTest, TheFarmListsABrowserWhileItIsConnected) {
   test::SocketClient socket = open();
   ASSERT_TRUE(socket.send(hello()));
   ASSERT_TRUE(socket.read()->has_welcome());
@@ -69,7 +69,7 @@ TEST_F(JoinSessionTest, ATabThatVanishesIsLost) {
 }
 
 // A frozen machine closes no connection.
-TEST_F(JoinSessionTest, ATabThatAnswersNoMoreIsLost) {
+TEST_F(JoinSessionTest, ATabThatNoLongerAnswersIsLost) {
   options_.browser_limits.idle = std::chrono::milliseconds(600);
   start_dashboard();
   test::SocketClient socket = open();
@@ -95,7 +95,7 @@ TEST_F(JoinSessionTest, ATabThatAnswersPingsStays) {
   EXPECT_EQ(socket.close_code(), 1001);
 }
 
-TEST_F(JoinSessionTest, AViolationEndsItWithTheReason) {
+TEST_F(JoinSessionTest, AViolationEndsTheSessionWithTheReason) {
   farm::FromWorker beat;
   beat.mutable_heartbeat();
   farm::FromWorker bad = hello();
@@ -139,7 +139,7 @@ TEST_F(JoinSessionTest, ABrowserOfOtherPixelsIsRefused) {
   EXPECT_EQ(socket.close_code(), 1000);
 }
 
-TEST_F(JoinSessionTest, TheSchedulerMayEndIt) {
+TEST_F(JoinSessionTest, TheSchedulerMayEndTheSession) {
   test::SocketClient first = open();
   ASSERT_TRUE(first.send(hello()));
   ASSERT_TRUE(first.read());

@@ -178,7 +178,7 @@ TEST_F(JoinTlsTest, MessagesOfOneRecordAreAllRead) {
   expect_ended();
 }
 
-TEST_F(JoinTlsTest, AMessageOverTheBoundEndsIt) {
+TEST_F(JoinTlsTest, AMessageOverTheBoundEndsTheSession) {
   auto tab = join();
   tab->send(std::string(100'000, 'x'));
   EXPECT_EQ(tab->read_to_end(), 1009);
@@ -186,7 +186,7 @@ TEST_F(JoinTlsTest, AMessageOverTheBoundEndsIt) {
   expect_ended();
 }
 
-TEST_F(JoinTlsTest, ARevokedLinkEndsIt) {
+TEST_F(JoinTlsTest, ARevokedLinkEndsTheSession) {
   auto tab = join();
   ASSERT_EQ(post("/api/link/revoke")->status, 200);
   EXPECT_EQ(tab->read_to_end(), 4401);
@@ -194,7 +194,7 @@ TEST_F(JoinTlsTest, ARevokedLinkEndsIt) {
   wait_until([&] { return workers().empty(); });
 }
 
-TEST_F(JoinTlsTest, AStallInTheMiddleOfAFrameEndsIt) {
+TEST_F(JoinTlsTest, AStallInTheMiddleOfAFrameEndsTheSession) {
   options_.browser_limits.idle = std::chrono::milliseconds(600);
   SetUp();
   const std::string half(1'000, 'x');
@@ -210,7 +210,7 @@ TEST_F(JoinTlsTest, AStallInTheMiddleOfAFrameEndsIt) {
   expect_ended();
 }
 
-TEST_F(JoinTlsTest, ACutConnectionEndsIt) {
+TEST_F(JoinTlsTest, ACutConnectionEndsTheSession) {
   {
     const auto closed = join();
     closed->tcp().close();
@@ -238,7 +238,7 @@ TEST_F(JoinTlsTest, ACutConnectionEndsIt) {
   expect_ended();
 }
 
-TEST_F(JoinTlsTest, OneThatDoesNotReadHoldsUpNobody) {
+TEST_F(JoinTlsTest, ATabThatDoesNotReadHoldsUpNobody) {
   options_.browser_limits.write = std::chrono::milliseconds(200);
   options_.browser_limits.send_buffer = 4096;
   SetUp();

@@ -107,7 +107,7 @@ TEST_F(ConnectTest, TrustsTheCertificateThatTheStringNames) {
   expect_calls_work(*connected, join);
 }
 
-TEST_F(ConnectTest, TriesNoAddressAfterItWasStopped) {
+TEST_F(ConnectTest, TriesNoAddressOnceItIsStopped) {
   const EchoServer server(tls(identity_));
   const absl::Status status =
       connect(join_to(server.port, identity_.certificate_digest), milliseconds(10'000), [] {

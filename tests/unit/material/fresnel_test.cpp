@@ -17,7 +17,7 @@ TEST(Fresnel, HasTheValuesOfTheTables) {
   EXPECT_EQ(fresnel(0, 1.5), 1);
 }
 
-TEST(Fresnel, OverTheHemisphereHasTheKnownMeansFromBothSides) {
+TEST(Fresnel, HasTheKnownMeansOverTheHemisphereFromBothSides) {
   const auto mean = [](double eta) {
     constexpr int kSteps = 400000;
     double sum = 0;
@@ -40,7 +40,7 @@ TEST(Fresnel, EqualMediaReflectNothing) {
   }
 }
 
-TEST(Fresnel, AroundTheCriticalAngleReflectionIsTotalBelowAndContinuousAbove) {
+TEST(Fresnel, ReflectionIsTotalBelowTheCriticalCosineAndContinuousAbove) {
   const double eta = 1 / 1.5;
   const double critical = std::sqrt(1 - eta * eta);
   for (int k = 3; k <= 14; ++k) {

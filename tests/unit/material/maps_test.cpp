@@ -139,7 +139,7 @@ TEST(HeightMap, GivesTheSameReliefHoweverOftenItRepeats) {
 // The size of a quad does not change the relief of a noise in space. The tolerance allows for the
 // rounding of heights to float: it is four times 2^-11 of the height, 0.02, for each of the 12
 // cells in a unit.
-TEST(HeightMap, InSpaceDoesNotDependOnTheSizeOfTheQuad) {
+TEST(HeightMap, TheReliefOfANoiseInSpaceDoesNotDependOnTheQuad) {
   const std::vector<Texture> textures{NoiseTexture{.scale = 12}};
   constexpr double kHeight = 0.02;
   for (const double x : {0.31, 0.52, 0.77}) {
@@ -235,7 +235,7 @@ TEST(Maps, TheCoatBendsWithItsOwnNormals) {
   EXPECT_NEAR(length(flat.coat_normal - Vec3{0, 0, 1}), 0, 1e-7);
 }
 
-TEST(Maps, ColoursOfVerticesTintWhatIsDiffuseMetalOrGltf) {
+TEST(Maps, VertexColoursTintDiffuseMetalAndGltfMaterials) {
   SurfacePoint tinted = point(0.5);
   tinted.color = {0.5f, 0.25f, 2};
   for (const Material& material : {Material(Diffuse{TextureId{0}}), Material(Metal{TextureId{0}}),

@@ -238,7 +238,7 @@ TEST(MetallicRoughness, ChannelsAreThoseOfGltf) {
   EXPECT_NEAR(b.surface.alpha, 0.35 * 0.35, 1e-7);
 }
 
-TEST(RoughGlass, M6OfIndexOneIsInvisible) {
+TEST(RoughGlass, M6RoughGlassOfIndexOneIsInvisible) {
   const Vec3 wo = normalize({0.3, 0.4, -0.2});
   const auto through = sample(bsdf(Dielectric{1, 0.5}, wo), 0.3, 0.2, 0.1);
   ASSERT_TRUE(through && through->delta);

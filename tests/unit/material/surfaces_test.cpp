@@ -187,7 +187,7 @@ TEST(Surfaces, ReflectNoMoreThanTheyReceive) {
   }
 }
 
-TEST(Surfaces, WhatIsLosslessReflectsAll) {
+TEST(Surfaces, LosslessSurfacesReflectAllLight) {
   const Material plastic = prepared({kWhite, 1.5});
   const Material saturated = prepared({kWhite, 2.5, {}, {1, 1, 1}, true});
   for (const double mu : {1.0, 0.5, 0.1}) {
@@ -224,7 +224,7 @@ TEST(Surfaces, AreReciprocal) {
   }
 }
 
-TEST(Surfaces, OpaqueOnesPassNoLightForAnyNormals) {
+TEST(Surfaces, OpaqueSurfacesPassNoLightForAnyNormals) {
   Random random(4);
   for (const Named& named : all_materials()) {
     for (int i = 0; i < 2000; ++i) {
@@ -267,7 +267,7 @@ TEST(Surfaces, EdgesOfTheirRangesGiveFiniteNumbers) {
   }
 }
 
-TEST(Surfaces, OneSidedOnesAreBlackFromBehind) {
+TEST(Surfaces, OneSidedSurfacesAreBlackFromBehind) {
   for (Material material : {Material(Diffuse{kWhite}), Material(Conductor{kGold, {}, kWhite})}) {
     material.one_sided = true;
     EXPECT_TRUE(std::holds_alternative<BlackBsdf>(bsdf(material, {0, 0.1, -1})));
@@ -291,7 +291,7 @@ TEST(ConductorFresnel, HasItsClosedForms) {
 
 // The probabilities of all facets that are seen from a direction sum to 1. For Beckmann they do so
 // up to the error of the rational approximation of its masking.
-TEST(Facets, VisibleOnesSumToOne) {
+TEST(Facets, VisibleFacetsSumToOne) {
   for (const Distribution distribution : {Distribution::kGgx, Distribution::kBeckmann}) {
     const Facets facets{0.3, 0.8, distribution, Masking::kSeparable};
     for (const double mu : {1.0, 0.5, 0.1}) {
@@ -408,7 +408,7 @@ TEST(PrincipledBsdf, MetalReflectsItsBaseColour) {
   EXPECT_NEAR(drawn->weight.g, 0.35, 0.01);
 }
 
-TEST(ThinDielectric, ReflectsWithTheReflectionsInside) {
+TEST(ThinDielectric, IncludesTheReflectionsInside) {
   const Bsdf b = bsdf(ThinDielectric{1.5, {1, 1, 1}, {0.5f, 1, 1}}, {0.3, 0, 1});
   const double face = fresnel(normalize(Vec3{0.3, 0, 1}).z, 1.5);
   const auto reflected = sample(b, 0, 0, 0);
@@ -422,7 +422,7 @@ TEST(ThinDielectric, ReflectsWithTheReflectionsInside) {
   EXPECT_TRUE(passed->counts);
 }
 
-TEST(ThinDielectric, AFreePassageAloneDoesNotCount) {
+TEST(ThinDielectric, AReflectionCountsAndAFreePassageDoesNot) {
   const Bsdf b = bsdf(ThinDielectric{.free_passage = true}, {0.3, 0, 1});
   EXPECT_TRUE(sample(b, 0, 0, 0)->counts) << "the reflection";
   EXPECT_FALSE(sample(b, 0, 0, 0.999)->counts);

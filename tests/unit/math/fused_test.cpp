@@ -49,7 +49,7 @@ class Numbers {
   std::mt19937_64 random_{20261125};
 };
 
-TEST(EmulatedFma, HasTheBitsForSpecialNumbers) {
+TEST(EmulatedFma, EqualsFmaForSpecialNumbers) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   constexpr double kMax = std::numeric_limits<double>::max();
   std::vector<double> numbers = {
@@ -70,7 +70,7 @@ TEST(EmulatedFma, HasTheBitsForSpecialNumbers) {
   }
 }
 
-TEST(EmulatedFma, HasTheBitsForAnyNumbers) {
+TEST(EmulatedFma, EqualsFmaForAnyNumbers) {
   Numbers numbers;
   for (int i = 0; i < 1'000'000; ++i) {
     expect_same(numbers.any(), numbers.any(), numbers.any());
@@ -78,7 +78,7 @@ TEST(EmulatedFma, HasTheBitsForAnyNumbers) {
   }
 }
 
-TEST(EmulatedFma, HasTheBitsIfNumbersHaveSimilarSizes) {
+TEST(EmulatedFma, EqualsFmaIfNumbersHaveSimilarSizes) {
   Numbers numbers;
   for (int i = 0; i < 2'000'000; ++i) {
     const double a = numbers.near_one(2);
@@ -88,7 +88,7 @@ TEST(EmulatedFma, HasTheBitsIfNumbersHaveSimilarSizes) {
   }
 }
 
-TEST(EmulatedFma, HasTheBitsIfTheProductIsCancelled) {
+TEST(EmulatedFma, EqualsFmaIfTheProductIsCancelled) {
   Numbers numbers;
   for (int i = 0; i < 1'000'000; ++i) {
     const double a = numbers.near_one(40);
@@ -104,7 +104,7 @@ TEST(EmulatedFma, HasTheBitsIfTheProductIsCancelled) {
 
 /// c + product lies in the middle between two doubles, or differs from it by much less than any
 /// double's last bit.
-TEST(EmulatedFma, HasTheBitsIfTheSumIsNearAMiddle) {
+TEST(EmulatedFma, EqualsFmaIfTheSumIsNearAMiddle) {
   Numbers numbers;
   for (int i = 0; i < 1'000'000; ++i) {
     const double c = numbers.near_one(3);
@@ -121,7 +121,7 @@ TEST(EmulatedFma, HasTheBitsIfTheSumIsNearAMiddle) {
   }
 }
 
-TEST(EmulatedFma, HasTheBitsNearOverflowAndUnderflow) {
+TEST(EmulatedFma, EqualsFmaNearOverflowAndUnderflow) {
   Numbers numbers;
   for (int i = 0; i < 300'000; ++i) {
     const double a = numbers.near_one(30);

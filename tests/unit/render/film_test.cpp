@@ -78,7 +78,7 @@ TEST(Film, A6_AnyPartitionInAnyOrderGivesTheSameBits) {
   test::report_hard_case("A6", "any partition in any order: same bits");
 }
 
-TEST(Film, GivesTheSameOnDisk) {
+TEST(Film, GivesTheSameImageOnDisk) {
   const test::TempDir folder;
   Film film = make_film(5, 4, folder.path());
   for (const Band& band : bands_of(100, {0, 4}, 5)) {

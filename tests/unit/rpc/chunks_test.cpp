@@ -210,7 +210,7 @@ TEST_F(ChunksTest, ABlobThatDiffersFromItsHeaderIsRefused) {
   EXPECT_TRUE(is_there("helloworld"));
 }
 
-TEST_F(ChunksTest, LimitsHold) {
+TEST_F(ChunksTest, SizesOverTheirLimitsAreRefused) {
   expect(put_blob({whole(pattern(wire::kChunkBytes + 1))}), StatusCode::INVALID_ARGUMENT,
          "a chunk");
   farm::BlobChunk huge = whole("x");
@@ -225,7 +225,7 @@ TEST_F(ChunksTest, LimitsHold) {
 }
 
 // The band has 144 bytes.
-TEST_F(ChunksTest, ABandTakesItsBytesOfTheMemoryForBandsWhenItsHeaderComes) {
+TEST_F(ChunksTest, ABandsMemoryIsReservedWhenItsHeaderArrives) {
   const std::int64_t all = engine_->bands().left();
   const auto wait_until_left = [&](std::int64_t bytes) {
     while (engine_->bands().left() != bytes) {

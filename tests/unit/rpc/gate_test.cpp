@@ -175,7 +175,7 @@ class GateTest : public FarmTest {
   }
 };
 
-TEST_F(GateTest, HasEachCallOfTheProtocol) {
+TEST_F(GateTest, ListsEachCallOfTheProtocol) {
   std::vector<std::string> tested;
   for (const NamedCall& named : calls()) {
     tested.push_back(named.name);

@@ -196,7 +196,7 @@ TEST_F(SecretTest, ManyWrongSecretsAreLimitedAndTheRightOneIsNot) {
 
 using WithoutRenewal = FarmTest;  // a server that was started without the option `renew`
 
-TEST_F(WithoutRenewal, ItIsRefused) {
+TEST_F(WithoutRenewal, RenewalIsRefused) {
   farm::RotateSecretRequest request;
   request.set_role(farm::SECRET_ROLE_WORKER);
   farm::RotateSecretReply reply;

@@ -97,7 +97,7 @@ TEST(SphericalRectangle, L6_CornersOfTheUnitSquareStayInside) {
   test::report_hard_case("L6", "80 corners inside the rectangle");
 }
 
-TEST(SphericalRectangle, IsAbsentForEdgeOnOrTinyOnes) {
+TEST(SphericalRectangle, IsAbsentForEdgeOnOrTinyRectangles) {
   EXPECT_FALSE(SphericalRectangle::seen_from({0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalRectangle::seen_from({0, 0, 0}, {0, 0, 1e6}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalRectangle::seen_from({0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}));

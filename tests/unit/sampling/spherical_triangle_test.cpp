@@ -79,7 +79,7 @@ TEST(SphericalTriangle, HasSolidAnglesOfClosedForms) {
   }
 }
 
-TEST(SphericalTriangle, IsAbsentForEdgeOnOrSmallOnes) {
+TEST(SphericalTriangle, IsAbsentForEdgeOnOrSmallTriangles) {
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {0, 0, 1e3}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}));

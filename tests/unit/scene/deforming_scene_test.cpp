@@ -118,7 +118,7 @@ SceneDescription frozen(SceneDescription scene, double share) {
 
 // If both ends are equal, the pixels are those of the ordinary mesh, to the bit. The same holds for
 // a shutter without duration.
-TEST(DeformingScene, WithoutChangeEqualsTheOrdinaryMesh) {
+TEST(DeformingScene, AMeshThatDoesNotChangeEqualsTheOrdinaryMesh) {
   SceneDescription scene = scene_of_all().scene;
   SceneDescription still = frozen(scene, 0.3);
   SceneDescription both = still;

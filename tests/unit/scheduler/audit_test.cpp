@@ -67,7 +67,7 @@ AuditFarm two_results(std::uint64_t lie_of_a, std::uint64_t lie_of_b, bool third
   return farm;
 }
 
-TEST(Audit, SelectsTheShareOfBandsAndTheSameInEveryEpoch) {
+TEST(Audit, SelectsTheGivenShareOfBandsIndependentlyForEachJob) {
   const JobSpec spec = test_job("a request that nobody guesses", StopAtSamples{8});
   const JobSpec other = test_job("another", StopAtSamples{8});
   int count = 0;
@@ -154,7 +154,7 @@ TEST(Audit, AWrongAuditorIsQuarantinedAndTheRowsStay) {
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
 }
 
-TEST(Audit, OfTwoMachinesTheOneThatContradictsItselfIsWrong) {
+TEST(Audit, TheMachineThatContradictsItselfIsWrong) {
   AuditFarm farm = two_results(7, 0);
   // There is no third machine: each of the two renders it again.
   farm.result(farm.lease(1, true), "a", 8);
@@ -164,7 +164,7 @@ TEST(Audit, OfTwoMachinesTheOneThatContradictsItselfIsWrong) {
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
 }
 
-TEST(Audit, TwoThatRepeatTheirResultsWaitForAThird) {
+TEST(Audit, TwoMachinesThatRepeatTheirResultsWaitForAThird) {
   AuditFarm farm = two_results(7, 0);
   farm.result(farm.lease(1, true), "a", 7);
   farm.result(farm.lease(2, true), "b", 0);

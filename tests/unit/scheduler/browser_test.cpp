@@ -89,7 +89,7 @@ JobSpec of_size(std::uint64_t package_bytes) {
   return spec;
 }
 
-TEST(Browser, IsShownAsSuch) {
+TEST(Browser, IsShownAsABrowser) {
   BrowserFarm farm;
   farm.hello(1, "a");
   farm.hello_tab(2, "b");
@@ -190,7 +190,7 @@ TEST(Browser, GetsOnlyFramesThatFit) {
   EXPECT_EQ(again.lease(1).manifest, std::string(64, 'b')) << "the sizes are journalled";
 }
 
-TEST(Browser, TheSizeOfAPackageDoesNotMakeAnotherJob) {
+TEST(Browser, TheSameRequestWithAPackageSizeIsTheSameJob) {
   BrowserFarm farm;
   const JobId job = farm.submit(of_size(0));
   const Step again = farm.send(input::Submit{of_size(5)});
@@ -274,7 +274,7 @@ BrowserFarm lie_found() {
   return farm;
 }
 
-TEST(Browser, OneThatLiesIsFoundByASingleNativeWorker) {
+TEST(Browser, ABrowserThatLiesIsFoundByASingleNativeWorker) {
   BrowserFarm farm = lie_found();
   EXPECT_EQ(farm.leases(2, true), 2u) << "the native worker repeats it, and may be wrong itself";
   const Step step = farm.result(farm.lease(2), "a");
@@ -298,7 +298,7 @@ TEST(Browser, ANativeWorkerThatContradictsItselfDoesNotAccuseABrowser) {
   EXPECT_NE(farm.worker("tab@browser").state, "quarantined");
 }
 
-TEST(Browser, AnyNumberOfThemDoNotOutvoteANativeWorker) {
+TEST(Browser, AnyNumberOfBrowsersDoNotOutvoteANativeWorker) {
   BrowserFarm farm = lie_found();
   for (int i = 0; i < 5; ++i) {
     farm.hello_tab(static_cast<SessionId>(10 + i), absl::StrCat("u", i));
@@ -311,7 +311,7 @@ TEST(Browser, AnyNumberOfThemDoNotOutvoteANativeWorker) {
   EXPECT_EQ(farm.worker("worker-a").state, "rendering");
 }
 
-TEST(Browser, ASecondOneDoesNotConfirmALie) {
+TEST(Browser, ASecondBrowserDoesNotConfirmALie) {
   BrowserFarm farm;
   farm.submit(one_row());
   farm.hello(1, "a", 1);
@@ -338,7 +338,7 @@ TEST(Browser, DoesNotHoldUpPixelsOfANativeWorkerThatHasLeft) {
   EXPECT_TRUE(farm.all_records<record::WorkerQuarantined>().empty());
 }
 
-TEST(Browser, AuditsAnotherOneOnlyIfNoNativeWorkerIsThere) {
+TEST(Browser, AuditsAnotherBrowserOnlyIfNoNativeWorkerIsThere) {
   BrowserFarm farm;
   farm.hello(1, "a", 1);
   farm.pass_time(1, {1});
@@ -354,7 +354,7 @@ TEST(Browser, AuditsAnotherOneOnlyIfNoNativeWorkerIsThere) {
   EXPECT_GT(farm.leases(2, true) + farm.leases(3, true), 0u);
 }
 
-TEST(Browser, ThoseThatDisagreeAloneAreDecidedByAThird) {
+TEST(Browser, AThirdBrowserDecidesIfTwoDisagreeWithoutANativeWorker) {
   BrowserFarm farm;
   farm.pass_time(61);  // no native worker is waited for any more
   farm.submit(one_row());
@@ -369,7 +369,7 @@ TEST(Browser, ThoseThatDisagreeAloneAreDecidedByAThird) {
   EXPECT_EQ(farm.all_records<record::WorkerQuarantined>()[0].process, worker_process_id("t"));
 }
 
-TEST(Browser, ItsBandsOnDiskAreAuditedAsSuchAfterARestart) {
+TEST(Browser, ItsBandsOnDiskAreStillAuditedAsThoseOfABrowserAfterARestart) {
   for (const bool compacted : {false, true}) {
     BrowserFarm farm;
     farm.submit(one_row());
@@ -412,7 +412,7 @@ TEST(Browser, IsForgottenWhenNoJobHasBandsOfIt) {
 
 // A tab that lies in k bands is found with probability 1 − (1 − p)^k, whatever else happens,
 // because each band is selected with probability p by an independent hash that the tab cannot know.
-TEST(Browser, OnesThatLieAreFoundWithTheExpectedProbability) {
+TEST(Browser, BrowsersThatLieAreFoundWithTheExpectedProbability) {
   constexpr double kShare = 0.1;
   constexpr int kTabs = 400;
   SchedulerOptions options = slow();
@@ -502,7 +502,7 @@ TEST(Browser, GetsNoBandsThatWouldNotBeAudited) {
 
 // ---- what a holder of the link cannot do ----
 
-TEST(Browser, FailuresOfAnyNumberDoNotFailAJob) {
+TEST(Browser, FailuresOfAnyNumberOfBrowsersDoNotFailAJob) {
   BrowserFarm farm;
   const JobId job = farm.submit(one_row());
   for (SessionId session = 1; session <= 30; ++session) {
@@ -522,7 +522,7 @@ TEST(Browser, FailuresOfAnyNumberDoNotFailAJob) {
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
 }
 
-TEST(Browser, LossesOfAnyNumberDoNotBlameABand) {
+TEST(Browser, LossesOfAnyNumberOfBrowsersDoNotBlameABand) {
   BrowserFarm farm;
   const JobId job = farm.submit(one_row());
   for (SessionId session = 1; session <= 60; ++session) {
@@ -550,7 +550,7 @@ int flood(BrowserFarm& farm, SessionId first, const std::string& prefix) {
   return 2'000;
 }
 
-TEST(Browser, ThoseThatLieDisplaceNobodyFromTheQuarantine) {
+TEST(Browser, BrowsersThatLieDisplaceNobodyFromTheQuarantine) {
   // The native worker and the tab with the lowest ids: a full list would lose these first.
   const auto lowest = [](const std::string& prefix) {
     std::string found = prefix + "0";

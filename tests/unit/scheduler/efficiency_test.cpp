@@ -59,32 +59,32 @@ BenchResult measure(const char* name, BenchFarm farm, std::size_t seeds = 20) {
   return worst;
 }
 
-TEST(Efficiency, OfSixteenEqualWorkers) {
+TEST(Efficiency, IsHighForSixteenEqualWorkers) {
   const BenchResult r = measure("equal", {.speeds = speeds(60, true), .cost_of = even});
   EXPECT_GE(r.efficiency, 0.97);
   EXPECT_LE(r.tail, 0.02);
 }
 
-TEST(Efficiency, OfAnUnevenImage) {
+TEST(Efficiency, IsHighForAnUnevenImage) {
   const BenchResult r = measure("uneven 20:1", {.speeds = speeds(60, true), .cost_of = uneven});
   EXPECT_GE(r.efficiency, 0.95);
   EXPECT_LE(r.tail, 0.02);
 }
 
-TEST(Efficiency, OfUnequalWorkers) {
+TEST(Efficiency, IsHighForUnequalWorkers) {
   const BenchResult r = measure("speeds 1:4", {.speeds = speeds(60, false), .cost_of = even});
   EXPECT_GE(r.efficiency, 0.95);
   EXPECT_LE(r.tail, 0.02);
 }
 
-TEST(Efficiency, OfUnequalWorkersOnAnUnevenImageWithNoisyTimes) {
+TEST(Efficiency, IsHighForUnequalWorkersOnAnUnevenImageWithNoisyTimes) {
   const BenchResult r = measure("20:1, speeds 1:4, noise 30 %",
                                 {.speeds = speeds(60, false), .cost_of = uneven, .noise = 0.3});
   EXPECT_GE(r.efficiency, 0.95);
   EXPECT_LE(r.tail, 0.02);
 }
 
-TEST(Efficiency, OfAudits) {
+TEST(Efficiency, IsHighWithAudits) {
   const BenchResult r =
       measure("the same with audits",
               {.speeds = speeds(60, false), .cost_of = uneven, .noise = 0.3, .audit_share = 0.01});
@@ -92,21 +92,21 @@ TEST(Efficiency, OfAudits) {
   EXPECT_LE(r.tail, 0.02);
 }
 
-TEST(Efficiency, OfAShortJob) {
+TEST(Efficiency, IsAtLeastThreeQuartersForAShortJob) {
   const BenchResult r =
       measure("20:1, speeds 1:4, short", {.speeds = speeds(10, false), .cost_of = uneven});
   EXPECT_GE(r.efficiency, 0.75);
   EXPECT_LE(r.tail, 0.05);
 }
 
-TEST(Efficiency, OfWorkersTwentyTimesSlowerThanGuessed) {
+TEST(Efficiency, IsHighForWorkersTwentyTimesSlowerThanGuessed) {
   const BenchResult r =
       measure("slow, 20:1, speeds 1:4", {.speeds = speeds(1200, false), .cost_of = uneven}, 5);
   EXPECT_GE(r.efficiency, 0.95);
   EXPECT_LE(r.tail, 0.02);
 }
 
-TEST(Efficiency, WhenAWorkerStallsNearTheEnd) {
+TEST(Efficiency, IsHighIfAWorkerStallsNearTheEnd) {
   const BenchResult r =
       measure("one stalls", {.speeds = speeds(60, true), .cost_of = even, .stalls_at = 59});
   EXPECT_GE(r.efficiency, 0.93);

@@ -92,7 +92,7 @@ TEST(ErrorCurve, ExpectsTheStepsOfWholeNetsAgain) {
   EXPECT_LT(error_at(curve, 4096), 0.9 * target);
 }
 
-TEST(ErrorCurve, BeforeTheFirstPointFallsAsRandomSamplesDo) {
+TEST(ErrorCurve, FallsBeforeTheFirstPointAsForRandomSamples) {
   EXPECT_DOUBLE_EQ(error_at({point(64, 0.1)}, 16), 0.2);
   EXPECT_DOUBLE_EQ(*samples_until({point(64, 0.1)}, 0.2), 16);
 }

@@ -30,7 +30,7 @@ TEST(FrameNumbers, AreReadAsPeopleWriteThem) {
   EXPECT_THAT(parsed("0007"), ElementsAre(7));
 }
 
-TEST(FrameNumbers, WrongOnesAreNamed) {
+TEST(FrameNumbers, WrongNumbersAreNamed) {
   const auto wrong = [](const std::string& text) {
     const auto frames = parse_frames(text);
     EXPECT_EQ(frames.status().code(), absl::StatusCode::kInvalidArgument) << text;
@@ -53,7 +53,7 @@ TEST(FrameNumbers, WrongOnesAreNamed) {
   EXPECT_THAT(wrong("-9223372036854775808:5"), HasSubstr("beyond 1000000000"));
 }
 
-TEST(FrameNumbers, RepeatedOnesAreReadUpToALimit) {
+TEST(FrameNumbers, RepeatedNumbersAreReadUpToALimit) {
   EXPECT_EQ(parsed("1-30000,1-30000,1-30000,40000").size(), 30'001U);
   // The list is refused; no number is left out.
   EXPECT_THAT(std::string(parse_frames("1-30000,1-30000,1-30000,1-30000,40000").status().message()),

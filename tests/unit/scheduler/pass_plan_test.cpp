@@ -34,9 +34,9 @@ TEST(Passes, BeginSmallAndDouble) {
   EXPECT_EQ(passes_between(0, 128), expected);
 }
 
-TEST(Passes, OfTheLargestJobAreFew) { EXPECT_LE(passes_between(0, kMaxSamples).size(), 64u); }
+TEST(Passes, TheLargestJobHasFewPasses) { EXPECT_LE(passes_between(0, kMaxSamples).size(), 64u); }
 
-TEST(Passes, OfATimedJobAreNodesOfAtMostAQuarterOfTheSamples) {
+TEST(Passes, EachPassOfATimedJobIsANodeOfAtMostAQuarterOfTheSamples) {
   std::uint64_t end = 0;
   for (int i = 0; i < 40; ++i) {
     const SampleRange pass = next_timed_pass(end, 1e12, kMaxSamples);

@@ -16,7 +16,7 @@ JobId next_leased(FarmDriver& farm) {
   return farm.all<action::Lease>().back().job;
 }
 
-TEST(Priority, HigherIsLeasedFirstAndCanChange) {
+TEST(Priority, TheHigherPriorityIsLeasedFirstAndCanChange) {
   FarmDriver farm;
   const JobId old = submit(farm, "r1", 0);
   farm.hello(1, "a", 1);
@@ -30,7 +30,7 @@ TEST(Priority, HigherIsLeasedFirstAndCanChange) {
   EXPECT_EQ(farm.job(old).priority, 10);
 }
 
-TEST(Priority, OutOfRangeOrOfAnUnknownJobIsAnError) {
+TEST(Priority, APriorityOutOfRangeOrOfAnUnknownJobIsAnError) {
   FarmDriver farm;
   const JobId job = submit(farm, "r1", 0);
   EXPECT_TRUE(absl::IsInvalidArgument(farm.send(input::SetPriority{job, 1001}).status));
@@ -87,7 +87,7 @@ TEST(Pause, LeavesTheWorkersToOtherJobs) {
   EXPECT_EQ(leases[0].job, second);
 }
 
-TEST(Pause, ByAUserIsNotEndedByTheDiskOrARestart) {
+TEST(Pause, APauseByAUserIsNotEndedByTheDiskOrARestart) {
   FarmDriver farm;
   const JobId job = submit(farm, "r1", 7);
   farm.send(input::Pause{job});
@@ -127,7 +127,7 @@ TEST(Pause, DoesNotCountAsTimeOfTheJob) {
   EXPECT_EQ(farm.job(job).remaining_s, 3);
 }
 
-TEST(Pause, TheTimeCountsAgainAfterOneThatALeaseOutlasts) {
+TEST(Pause, TheTimeOfTheJobGoesOnAfterAPauseThatALeaseOutlasts) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtTime{10, kMaxSamples}));
   farm.hello(1, "a", 1);

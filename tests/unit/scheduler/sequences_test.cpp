@@ -166,7 +166,7 @@ TEST(Sequences, TheLastFrameIsRenderedByAllWorkersInBands) {
   EXPECT_EQ(farm.sessions_of[farm.job_of(id, 7)].size(), 3u);
 }
 
-TEST(Sequences, AFrameThatFailsIsTriedAgainAndThenSaid) {
+TEST(Sequences, AFrameThatFailsOnceIsRenderedAgainByAnotherJob) {
   FrameFarm farm;
   const JobId id = farm.submit_frames(test_sequence("1-5"));
   const JobId first = farm.job_of(id, 3);
@@ -301,7 +301,7 @@ TEST(Sequences, FewOfManyFramesAreJobsAtATime) {
   EXPECT_EQ(farm.scheduler.jobs(farm.now).size(), 1u);
 }
 
-TEST(Sequences, QueuedJobsDoNotHoldThemUp) {
+TEST(Sequences, QueuedJobsDoNotHoldUpASequence) {
   FrameFarm farm;
   for (int i = 0; i < 500; ++i) {
     farm.send(input::Submit{test_job(absl::StrCat("still ", i), StopAtSamples{8}), -5});
@@ -314,7 +314,7 @@ TEST(Sequences, QueuedJobsDoNotHoldThemUp) {
   EXPECT_EQ(farm.job(farm.all<action::Lease>().front().job).spec.sequence, id);
 }
 
-TEST(Sequences, PausedOnesDoNotHoldUpOthers) {
+TEST(Sequences, PausedSequencesDoNotHoldUpOthers) {
   FrameFarm farm;
   for (SessionId session = 1; session <= 60; ++session) {
     farm.hello(session, std::to_string(session), 1);
@@ -454,7 +454,7 @@ TEST(Sequences, AreForgottenWithAllTheirFrames) {
   EXPECT_GT(farm.submit(test_job("next", StopAtSamples{1})), frame) << "ids are not used again";
 }
 
-TEST(Sequences, OlderSingleJobsAreRenderedBeforeAndNewerOnesAfterIt) {
+TEST(Sequences, OlderSingleJobsAreRenderedBeforeASequenceAndNewerOnesAfterIt) {
   FrameFarm farm;
   const JobId before = farm.submit(test_job("before", StopAtSamples{8}));
   const JobId id = farm.submit_frames(test_sequence("1-12"));
@@ -513,7 +513,7 @@ TEST(Sequences, ARestartKeepsDoneAndFailedFrames) {
   }
 }
 
-TEST(Sequences, ThatAreCancelledDoNotFail) {
+TEST(Sequences, CancelledSequencesDoNotFail) {
   FrameFarm farm;
   const JobId id = farm.submit_frames(test_sequence("1-10"));
   farm.join(1);

@@ -74,7 +74,7 @@ TEST_F(BandLogTest, ReturnsTheOffsetOfEachRecord) {
   EXPECT_EQ(offsets_, (std::vector<std::uint64_t>{0, one, 2 * one}));
 }
 
-TEST_F(BandLogTest, TruncatedAtAnyByteItKeepsCompleteRecords) {
+TEST_F(BandLogTest, KeepsCompleteRecordsIfTruncatedAtAnyByte) {
   const std::string whole = make(3);
   const std::size_t one = whole.size() / 3;
   for (std::size_t cut = 0; cut < whole.size(); ++cut) {
@@ -94,7 +94,7 @@ TEST_F(BandLogTest, TruncatedAtAnyByteItKeepsCompleteRecords) {
   }
 }
 
-TEST_F(BandLogTest, AnyChangedByteLosesItsOwnRecordAlone) {
+TEST_F(BandLogTest, AChangedByteLosesOnlyItsOwnRecord) {
   const std::string whole = make(3);
   const std::size_t one = whole.size() / 3;
   for (std::size_t i = one; i < 2 * one; ++i) {

@@ -42,7 +42,7 @@ TEST(DataFolder, IsUsedByOneAtATime) {
   EXPECT_TRUE(DataFolder::open(temp / "data").ok());
 }
 
-TEST(DataFolder, OfAnotherFormatIsRefused) {
+TEST(DataFolder, AFolderOfAnotherFormatIsRefused) {
   const test::TempDir temp;
   ASSERT_TRUE(DataFolder::open(temp / "data").ok());
   write_all(temp / "data/format", "bandsaw data 2\n");
@@ -51,7 +51,7 @@ TEST(DataFolder, OfAnotherFormatIsRefused) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("bandsaw data 2"));
 }
 
-TEST(DataFolder, WithoutItsParentIsNotFound) {
+TEST(DataFolder, AFolderWithoutItsParentIsNotFound) {
   const test::TempDir temp;
   EXPECT_EQ(DataFolder::open(temp / "no/data").status().code(), absl::StatusCode::kNotFound);
 }

@@ -30,7 +30,7 @@ TEST(ScratchFolder, IsPrivateAndIsRemovedWithItsContents) {
   EXPECT_TRUE(fs::is_empty(parent.path()));
 }
 
-TEST(ScratchFolder, NamesTheFolderInWhichNoneCanBeMade) {
+TEST(ScratchFolder, TheErrorNamesTheParentThatIsMissing) {
   const test::TempDir parent;
   const std::string missing = parent.path() + "/missing";
   const absl::Status status = ScratchFolder::make("test", missing).status();

@@ -260,7 +260,7 @@ TEST(Mix, InterpolatesBetweenTwoTextures) {
   EXPECT_EQ(mixed(3), (Rgb{3, 2, 1}));
 }
 
-TEST(Textures, OfOneColorAreThatColorToTheBit) {
+TEST(Textures, TexturesOfOneColorAreThatColorToTheBit) {
   const Rgb color{0.1f, 0.7f, 0.3f};
   Textures textures{ConstantTexture{color}};
   RampTexture ramp;

@@ -98,7 +98,7 @@ TEST(Texture, TX2TX3LookupsNeverReadOutsideTheImage) {
   test::report_hard_case("TX3", "inside up to 1e308");
 }
 
-TEST(Texture, TX1AtTheCornersAreTheCornerTexels) {
+TEST(Texture, TX1TheCornersShowTheCornerTexels) {
   const Texture texture = counted(4, 3, Wrap::kClamp, Filter::kNearest);
   EXPECT_EQ(at(texture, 0, 0), 20);
   EXPECT_EQ(at(texture, 1, 0), 23);
@@ -163,7 +163,7 @@ TEST(Texture, GreyIsTheSameInEveryChannelAtAThirdOfTheBytes) {
   EXPECT_EQ(mean(image).r, mean(image).b);
 }
 
-TEST(Texture, LooksUpWhereTheTransformOfItsUvSetPoints) {
+TEST(Texture, UsesTheTransformAndTheUvSetOfTheImage) {
   Texture texture = counted(4, 3, Wrap::kRepeat, Filter::kNearest);
   auto& image = std::get<ImageTexture>(texture);
   image.uv_set = UvSet::kSecond;
@@ -173,7 +173,7 @@ TEST(Texture, LooksUpWhereTheTransformOfItsUvSetPoints) {
   EXPECT_EQ(bandsaw::evaluate(absl::MakeConstSpan(&texture, 1), TextureId{0}, at).g, 2);
 }
 
-TEST(Texture, MayWrapInVUnlikeInU) {
+TEST(Texture, MayWrapDifferentlyInUAndV) {
   Texture texture = counted(4, 3, Wrap::kRepeat, Filter::kBilinear);
   std::get<ImageTexture>(texture).wrap_v = Wrap::kClamp;
   EXPECT_EQ(at(texture, 0.125, 1), 0);

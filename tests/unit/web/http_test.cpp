@@ -44,7 +44,7 @@ HttpReply ranged(const std::string& range, HttpReply reply = text_reply("0123456
   return with_range(request, std::move(reply));
 }
 
-TEST(HttpRange, OfOnePartIsThatPart) {
+TEST(HttpRange, ARangeOfOnePartReturnsThatPart) {
   const std::vector<std::tuple<std::string, std::string, std::string>> cases = {
       {"bytes=0-0", "0", "bytes 0-0/10"},  {"bytes=2-5", "2345", "bytes 2-5/10"},
       {"bytes=7-", "789", "bytes 7-9/10"}, {"bytes=7-99", "789", "bytes 7-9/10"},
@@ -60,7 +60,7 @@ TEST(HttpRange, OfOnePartIsThatPart) {
   }
 }
 
-TEST(HttpRange, BeyondTheEndIsRefused) {
+TEST(HttpRange, ARangeBeyondTheEndIsRefused) {
   for (const std::string range :
        {"bytes=10-", "bytes=10-12", "bytes=-0", "bytes=99999999999999-99999999999999"}) {
     const HttpReply reply = ranged(range);
@@ -74,7 +74,7 @@ TEST(HttpRange, BeyondTheEndIsRefused) {
   }
 }
 
-TEST(HttpRange, ThatIsNotSupportedReturnsEverything) {
+TEST(HttpRange, AnUnsupportedRangeReturnsEverything) {
   for (const std::string range :
        {"", "bytes", "bytes=", "bytes=-", "bytes=5-2", "bytes=a-b", "bytes=1-2,4-5", "rows=1-2",
         "bytes=1", "bytes=99999999999999999999-", "bytes=--1"}) {

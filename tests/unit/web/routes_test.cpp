@@ -71,7 +71,7 @@ TEST_F(RoutesTest, EachArchitectureHasItsProgram) {
 }
 
 // The server sends no more bytes than the file has, whatever the Range header says.
-TEST_F(RoutesTest, RangesEndWithTheBytes) {
+TEST_F(RoutesTest, ARangeReturnsNoMoreBytesThanTheFileHas) {
   const std::size_t size = 3 << 20;
   headers_ = {{"Range", "bytes=5-9"}};
   const auto part = get("/bandsaw-worker");

@@ -164,7 +164,7 @@ TEST_F(SceneFilesTest, OnlyUsersMaySendFiles) {
   }
 }
 
-TEST_F(SceneFilesTest, PicturesAreThereAsFloats) {
+TEST_F(SceneFilesTest, PicturesAreAvailableAsFloats) {
   const std::uint64_t job = submit_box();
   const std::string path = absl::StrCat("/api/jobs/", job);
   EXPECT_EQ(get(path + "/preview.pfm")->status, 404) << "no pixels yet";

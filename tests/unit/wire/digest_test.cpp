@@ -37,7 +37,7 @@ TEST(Digest, DoesNotDependOnTheDivisionIntoPieces) {
 }
 
 // In browsers, SHA-256 is computed by the class Sha256 instead of OpenSSL.
-TEST(Digest, OfWebAssemblyEqualsThatOfOpenSsl) {
+TEST(Digest, TheDigestOfWebAssemblyEqualsThatOfOpenSsl) {
   std::string text;
   for (std::size_t size = 0; size < 300; ++size) {
     Sha256 whole;
