@@ -10,18 +10,19 @@ bare_possible() {
   fi
 }
 
-# bare_make ROOT RELEASE: the minimal system of a release (bookworm is Debian 12, trixie is Debian 13) in the folder ROOT,
-# which is not changed if it contains a system already.
+# bare_make ROOT RELEASE: makes the minimal system of a release (bookworm is Debian 12, trixie is
+# Debian 13) in the folder ROOT, unless ROOT contains a system already. In both cases, gives the
+# system this machine's resolv.conf and mounts its /proc and /dev/pts.
 bare_make() {
   local root=$1 release=$2
   if [ ! -e "$root/etc/debian_version" ]; then
     mkdir -p "$root"
-    chmod 755 "$root"  # apt fetches as a user of its own
+    chmod 755 "$root"  # apt downloads as another user than root
     debootstrap --variant=minbase "$release" "$root" "${BANDSAW_MIRROR:-http://deb.debian.org/debian}"
   fi
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
-  # Terminals of its own, for tests that need one.
+  # The system gets terminals of its own, for tests that need one.
   mountpoint -q "$root/dev/pts" || mount -t devpts -o newinstance,ptmxmode=0666,mode=620 devpts "$root/dev/pts"
 }
 

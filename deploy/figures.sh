@@ -19,7 +19,7 @@ render() { # SCENE NAME [OPTION...]: renders $work/NAME.png
   bandsaw render "$1" -o "$work/$2.png" --width "$width" --report none --quiet "${@:3}" >/dev/null
 }
 
-size_of() { # PNG OFFSET: its width (16) or height (20), four bytes, big-endian.
+size_of() { # PNG OFFSET: prints the width (OFFSET 16) or the height (20): four bytes, big-endian.
   echo $((16#$(od -An -tx1 -j"$2" -N4 "$1" | tr -d ' \n')))
 }
 height_of() { size_of "$1" 20; }
@@ -43,7 +43,8 @@ SCENE
   echo "$folder/$1.png"
 }
 
-# Renders OUT, a scene that shows the pictures side by side, pixel for pixel. A PICTURE is FILE, or FILE:FROM:TO for a part of its width.
+# Renders OUT, a scene that shows the pictures side by side, pixel for pixel, GAP pixels apart. A
+# PICTURE is FILE or FILE:FROM:TO, where FROM and TO are fractions of its width.
 side_by_side() { # OUT GAP PICTURE...
   local out=$1 gap=$2 x=0 number=0 height file from to wide
   height=$(height_of "$work/${3%%:*}.png")

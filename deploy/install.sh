@@ -27,7 +27,7 @@ arm64=("${test[@]}" g++-aarch64-linux-gnu qemu-user-static)
 for package in "${test[@]}"; do
   case $package in
     libcli11-dev) ;;    # headers alone, for all architectures
-    libopenvdb-dev) ;;  # for one architecture at a time: renderlib/CMakeLists.txt
+    libopenvdb-dev) ;;  # only for one architecture at a time (renderlib/CMakeLists.txt)
     lib*-dev) arm64+=("$package:arm64") ;;
   esac
 done
@@ -46,7 +46,9 @@ case "${1:-}" in
   *) echo "usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64|wasm" >&2; exit 2 ;;
 esac
 
-# installed PACKAGE: a package may be installed for several architectures at once; without a suffix this machine's counts.
+# installed PACKAGE: succeeds if the package is installed. It may be installed for several
+# architectures at once. PACKAGE may end in :ARCHITECTURE; without it, this machine's architecture
+# counts.
 architecture=$(dpkg --print-architecture)
 installed() {
   local wanted=$architecture

@@ -35,5 +35,5 @@ join_here() {
   done
 }
 
-# work_here NAME LOG [OPTION...]: the same with the worker on PATH.
+# work_here NAME LOG [OPTION...]: starts bandsaw-worker from PATH and waits until it has joined.
 work_here() { join_here "$1" "$2" bandsaw-worker "${@:3}"; }

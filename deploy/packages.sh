@@ -62,7 +62,7 @@ if ! command -v debootstrap >/dev/null || [ "$(id -u)" -ne 0 ]; then
   exit 1
 fi
 root=$(mktemp -d)
-chmod 755 "$root"  # apt fetches as a user of its own
+chmod 755 "$root"  # apt downloads as another user than root
 stop() {
   ! mountpoint -q "$root/proc" || umount "$root/proc"
   rm -rf "$root"

@@ -122,8 +122,8 @@ class _PinnedConnection(http.client.HTTPSConnection):
 
 class Farm:
     """A farm of Bandsaw. `join`: the users' join string, or the name of a file that contains it.
-    `web`: "HOST:PORT" of the dashboard; None: as the string says. `timeout`: seconds, of one wait for the
-    coordinator. No connection is made before the first request."""
+    `web`: "HOST:PORT" of the dashboard; None: as the string says. `timeout`: the seconds after
+    which one wait for the coordinator fails. No connection is made before the first request."""
 
     def __init__(self, join, web=None, timeout=20.0):
         if not join.lstrip().startswith("bsw1-") and os.path.isfile(join):
@@ -203,7 +203,8 @@ class Farm:
             f"--web 0.0.0.0:{self._addresses[0][1]} if it is another machine?")
 
     def request_json(self, method, path, message=None):
-        """Sends `message`, a dictionary or None, as JSON; returns the answer as a dictionary. Errors as request."""
+        """Sends `message`, a dictionary or None, as JSON; returns the answer as a dictionary.
+        Raises the errors of request()."""
         body = None if message is None else json.dumps(message).encode()
         if body is None and method == "POST":
             body = b"{}"
@@ -212,7 +213,8 @@ class Farm:
     # ---- the farm ----
 
     def check(self):
-        """Returns the farm's version. Raises WrongString, NoFarm or Refused if its string or the farm is wrong."""
+        """Returns the version of the farm's coordinator. Raises WrongString if the coordinator
+        refuses the join string, NoFarm if no coordinator answers, and Refused for another error."""
         return self.request_json("GET", "/api/farm").get("version", "")
 
     def workers(self):
@@ -367,9 +369,10 @@ def _files_of(scene):
 
 
 def _below(folder, beside, found, or_last_part):
-    """Returns the name, relative to `folder`, of the file that `found` names in a file in the folder `beside`, in a list;
-    nothing if there is no such file below the folder. `or_last_part`: if there is none, a file in `beside` with the last part of that
-    name is taken too, because models name pictures by their paths on another machine."""
+    """Finds the file that the text `found` names in a file of the folder `beside`. Returns a list
+    with its name relative to `folder`; the list is empty if there is no such file below `folder`.
+    `or_last_part`: if there is none, a file in `beside` with the last part of that name is taken,
+    because models name pictures by their paths on another machine."""
     try:
         text = found.decode("utf-8")
     except UnicodeDecodeError:
@@ -523,7 +526,7 @@ class Job:
             raise
 
     def image(self):
-        """Returns the finished image, exactly: linear light, 32-bit floats."""
+        """Returns the finished Image with its exact pixels: linear light, 32-bit floats."""
         return image_from_pfm(self.farm.request("GET", self._path("/image.pfm"), timeout=120))
 
     def report(self):
@@ -605,7 +608,7 @@ class Image:
     _repr_png_ = png
 
     def pfm(self):
-        """Returns the bytes of a PFM file: exact."""
+        """Returns the bytes of a PFM file, which has the exact pixels."""
         head = f"PF\n{self.width} {self.height}\n-1.0\n".encode()
         if numpy is not None:
             return head + self.array()[::-1].astype("<f4").tobytes()
@@ -655,7 +658,7 @@ def image_from_pfm(data):
 
 def compare(a, b):
     """Returns how two images of one size differ: a dictionary of `mean_a`, `mean_b` (of all channels), `rmse`, `relative_rmse` (over the
-    mean of b), `largest` difference and `equal` (the same bits)."""
+    mean of b), `largest` difference and `equal` (True if all values are equal)."""
     if (a.width, a.height) != (b.width, b.height):
         raise BandsawError(f"the images have different sizes: {a.width} x {a.height} and {b.width} x {b.height}")
     if numpy is not None:

@@ -128,7 +128,8 @@ until_true 40 is_gone "${second}_3"
 log_holds "${second}_3" 'drain'
 echo "a cancelled worker drained"
 
-# The signal that --signal=B:TERM@120 sends before the time limit.
+# Sends the signal that Slurm sends 120 s before the time limit (--signal=B:TERM@120 in
+# worker.sbatch).
 scancel --batch --signal=TERM "${second}_4"
 until_true 40 is_gone "${second}_4"
 log_holds "${second}_4" 'drain'

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Compares the efficiency with that of Cycles in one run: both render the same scenes in turns with two seeds.
 # relMSE: half of the relative squared difference of the two images of a renderer, so no reference is needed.
-# Efficiency: 1 / (relMSE x CPU seconds / 2), the wall clock time of two threads. Without blender on PATH (Debian's package), only
-# Bandsaw is measured.
+# Efficiency: 1 / (relMSE x CPU seconds / 2). Half of the CPU seconds is the wall clock time of two
+# threads. Without blender on PATH (Debian's package), only Bandsaw is measured.
 # Usage: tests/bench/peers.sh PATH-TO-BANDSAW [SAMPLES [SCENE.textproto...]]   (default: 64 samples of Cornell and Weekend)
 # Scenes may only use the features that cycles.py supports. Takes a minute per scene on two cores.
 set -euo pipefail

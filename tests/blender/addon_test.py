@@ -78,7 +78,8 @@ class AddOn(unittest.TestCase):
         return bpy.data.images.load(image.filepath_raw)
 
     def fails_with(self, *words):
-        """A render must end with one error that has these words, and Blender must go on."""
+        """Renders. The render must end with one error that has these words, and Blender must go on.
+        Returns the error."""
         with self.assertRaises(RuntimeError) as caught:
             self.render()
         for word in words:
@@ -88,7 +89,8 @@ class AddOn(unittest.TestCase):
         return str(caught.exception)
 
     def sent(self):
-        """The scene file that was sent last, and its files."""
+        """Returns the scene file that was sent last, as a dictionary, and the files that were sent
+        with it."""
         scene = self.fake.scenes[-1]
         return json.loads(scene["files"][scene["main"]]), scene["files"]
 
@@ -100,7 +102,8 @@ class AddOn(unittest.TestCase):
         return self.sent()[0]["material"][-1]
 
     def texels(self, texture):
-        """The pixels of the image of a message Texture that was sent last, linear, rows from the bottom: (height, width, 3)."""
+        """Returns the linear pixels of the image of a message Texture that was sent last: (height,
+        width, 3), rows from the bottom."""
         name = texture["image"]["file"]
         path = os.path.join(self.folder.name, name)
         with open(path, "wb") as file:
@@ -113,7 +116,7 @@ class AddOn(unittest.TestCase):
         return pixels
 
     def told(self):
-        """What the last render has named as not shown, one a line."""
+        """Returns the warnings of the last render about what is not shown, one a line."""
         return "\n".join(sys.modules["bandsaw_blender.engine"].last_warnings)
 
     def test_a_still_has_the_farms_pixels(self):
@@ -331,7 +334,8 @@ class AddOn(unittest.TestCase):
                 tree.links.new(node.outputs[output], shader.inputs[name])
                 node.mute = True
             return nodes
-        # A muted node has an input for the colour, or none that fits: then the shader's own value counts.
+        # A muted node passes on its input for the colour. If no input fits, the shader's own value
+        # counts.
         for kind, output, name, green in (("HueSaturation", 0, "Base Color", 1), ("TexVoronoi", "Color", "Base Color", 0), ("Bump", 0, "Normal", 0),
                                           ("NormalMap", 0, "Normal", 0)):
             color = self.material_of(muted(kind, output, name), Base_Color=(1, 0, 0, 1), Roughness=1.0, Specular=0.0)["gltf"]["base_color"]["rgb"]

@@ -1,4 +1,5 @@
-"""Renders the scenes of scenes.py by Cycles or by the add-on; judge.sh compares the images. All scenes, if none is named:
+"""Renders scenes of scenes.py by Cycles or by the add-on; judge.sh compares the images. If no scene
+is named, renders all:
 
     blender -b --factory-startup --python compare.py -- ADDON.zip FOLDER cycles|bandsaw|export SCENE…
 

@@ -77,7 +77,8 @@ import numpy
 r, g, b = numpy.fromfile(sys.argv[1], "<f4", offset=len(b"PF\n96 64\n-1.0\n")).reshape(64, 96, 3)[32, 48]
 assert g > 4 * max(r, b), (r, g, b)
 END
-    # For a sequence one Blender writes all frames. Each must be as that of a Blender that writes this frame alone.
+    # For a sequence, one process of Blender writes all frames. Each frame must be the same as from
+    # a process that writes it alone.
     start_farm
     in_blender "$here/save.py" "$work/out/motion.blend" motion
     "$build/bin/bandsaw" submit "$work/out/motion.blend" --frames 1-3 --samples 4 --report none -o "$work/out/m.#.pfm"

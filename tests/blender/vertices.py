@@ -1,4 +1,5 @@
-"""Writes where Blender has the vertices of an animated glTF file at each frame; vertices_check.py compares them with ours.
+"""Writes the positions that the vertices of an animated glTF file have in Blender at each frame.
+vertices_check.py compares them with those of bandsaw-import.
 
     blender -b --factory-startup --python vertices.py -- FILE.glb OUT.npy FIRST LAST
 

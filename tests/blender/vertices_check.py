@@ -2,7 +2,8 @@
 
     vertices_check.py BANDSAW-IMPORT FILE.glb BLENDER.npy FIRST FOLDER
 
-FIRST: number of the first frame. FOLDER gets the scene package of each frame. Its file of positions is the one with their size."""
+FIRST: number of the first frame. FOLDER gets the scene package of each frame. In a package, the
+file of positions is recognised by its size."""
 
 import os
 import subprocess

@@ -16,7 +16,7 @@ RINGS, SIDES, FRAMES, FPS = 24, 12, 48, 24
 
 
 def leg():
-    """Positions, indices, and the weights of hip and knee, whose bend is at y = -1."""
+    """Returns positions, indices, and the weights of hip and knee. The leg bends at y = -1."""
     height = np.linspace(0, -2, RINGS)
     angle = np.arange(SIDES) * 2 * np.pi / SIDES
     radius = 0.3 + 0.1 * np.cos(3 * height)[:, None]

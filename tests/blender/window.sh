@@ -24,7 +24,7 @@ state() {
 }
 # Writes what is in the middle of the window, where Blender shows the picture.
 middle() { convert "$1" -crop 500x300+390+266 +repage "$2"; }
-# The picture of that coordinator is coloured; Blender's background is grey.
+# The picture of the fake farm (window_test.py) is coloured; Blender's background is grey.
 is_coloured() { awk "BEGIN { exit !($(convert "$1" -colorspace HSL -channel G -separate -format '%[fx:mean]' info:) > 0.2) }"; }
 
 state ready

@@ -175,7 +175,7 @@ class Tunnelled(unittest.TestCase):
 
 
 class Restarted(unittest.TestCase):
-    """The coordinator beyond loopback, so with TLS; it is killed while a job runs."""
+    """The coordinator listens on all addresses, so it has TLS. It is killed while a job runs."""
 
     def test_a_killed_coordinator_costs_no_job(self):
         with tempfile.TemporaryDirectory() as folder:

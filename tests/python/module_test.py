@@ -428,7 +428,7 @@ class AddOn(unittest.TestCase):
         points = np.random.default_rng(1).uniform(-100, 100, (20000, 3))
         value, colors = self.noise.texture(points, 2, 0.5, 0)
         self.assertTrue((value > 0).all() and (value < 1).all() and (colors > 0).all() and (colors < 1).all())
-        self.assertAlmostEqual(value.mean(), 0.5, delta=0.01)  # 1e-7 false alarms at this deviation of the mean
+        self.assertAlmostEqual(value.mean(), 0.5, delta=0.01)  # probability of a false alarm: 1e-7
         self.assertEqual(abs(self.noise.signed(np.array([[1.0, -2.0, 3.0]]))).max(), 0)
 
     def test_a_mesh_without_seams_keeps_its_vertices(self):
@@ -454,7 +454,8 @@ class AddOn(unittest.TestCase):
         positions = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=np.float32)
         corners = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
         up = np.tile(np.array([[0, 0, 1]], dtype=np.float32), (4, 1))
-        # One loop a corner. When the shutter closes, the third vertex has two normals, so it is split.
+        # Each corner has a loop of its own. When the shutter closes, the third vertex has two
+        # normals, so it is split.
         of_corner, loops = np.array([0, 1, 2, 0, 2, 3]), np.arange(6).reshape(2, 3)
         pose = types.SimpleNamespace(positions=positions, undeformed=None, normals=up[[0, 0, 0, 0, 0, 0]])
         bent = pose.normals.copy()

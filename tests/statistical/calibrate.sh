@@ -8,7 +8,8 @@
 #   --times    samples of a reference over those of an image of 2 %, default 16; its own noise is subtracted
 #   --seconds  CPU time that one render may take; renders that would take longer are left out and listed (default 20)
 #   --minutes  begin no render after this time, do not change the README, and print the progress (default: until all is measured)
-# Exit status 1: fewer images met their target than chance explains if 95 % of all do.
+# Exit status 1: so few images met their target that chance does not explain it, if 95 % of all
+# images meet it.
 set -euo pipefail
 bandsaw=$(realpath "${1:?usage: calibrate.sh BANDSAW FOLDER [options]}")
 folder=${2:?usage: calibrate.sh BANDSAW FOLDER [options]}

@@ -1,11 +1,12 @@
-// Shows the frames of a job: one frame large, and a strip with all frames that are done; plays
-// them.
+// Shows the frames of a job: one frame large, and a strip of all frames with their states. It can
+// play the frames that are done.
 
 import {get, post} from "./api.js";
 import {el, load, text} from "./dom.js";
 import {attempt} from "./notice.js";
 
-/// Maximum number of frames in the strip; of more, every second, third and so on is shown.
+/// Maximum number of frames in the strip. If a job has more frames, the strip has only every
+/// second, third or n-th of them.
 const most = 600;
 const stripSide = 128;   // pixels of a picture in the strip
 const stageSide = 1024;  // pixels of the large picture
@@ -35,7 +36,7 @@ function cell(frame, choose) {
 /// Returns {element, update(status), leave()} for the job `id`, which has frames.
 export function frames(id) {
   let epoch = "";        // the run of the coordinator that answered last
-  let after = "0";       // the largest `changed` of its frames, as a text because it has 64 bits
+  let after = "0";       // the largest `changed` of its frames; a text, because it has 64 bits
   let all = [];          // numbers, ascending
   const known = new Map();  // number -> frame
   const cells = new Map();
@@ -76,7 +77,8 @@ export function frames(id) {
     show(one);
   }
 
-  // A frame is shown once it is loaded, so that play waits rather than flickers.
+  // Loads the next frames in advance, and shows the next one if it is loaded. So playback waits for
+  // a frame that is not loaded yet, and does not flicker.
   function tick() {
     const numbers = done();
     const at = numbers.findIndex((one) => one > (chosen ?? -Infinity));

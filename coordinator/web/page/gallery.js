@@ -5,7 +5,8 @@ import {el, isOver, keyed, percent, stateOf, text} from "./dom.js";
 import {attempt} from "./notice.js";
 import {preview} from "./picture.js";
 
-/// Returns the image width for this screen, pixels, in steps: a phone does not load a large image.
+/// Returns the width of images for this screen in pixels. It is one of a few fixed widths: the
+/// largest one that fits, so that a phone does not load a large image.
 function screenWidth() {
   const wanted = Math.min(screen.width, window.innerWidth) * devicePixelRatio;
   return [320, 480, 640, 800, 1024, 1280, 1600, 1920].findLast((width) => width <= wanted) ?? 320;

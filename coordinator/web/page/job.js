@@ -10,7 +10,7 @@ import {plot} from "./plot.js";
 /// Returns the number of frames in all states.
 const allFrames = (of) => of.expected + of.waiting + of.rendering + of.done + of.failed;
 
-/// Returns the figures that are shown, as texts by their names; empty: not shown.
+/// Returns the figures of a job: {name: text}. A figure whose text is empty is not shown.
 function figuresOf(status) {
   const known = (value, words) => (value >= 0 ? words(value) : isOver(status) ? "not known" : "not known yet");
   const {frames: count_of} = status;

@@ -33,7 +33,8 @@ async function about() {
   return answer;
 }
 
-/// Keeps the screen awake while it is wanted; the browser ends a lock when the page is hidden.
+/// Keeps the screen awake by a wake lock. update() MUST be called with the user's wish, and again
+/// when the page is hidden or shown, because the browser ends the lock of a page that is hidden.
 class Awake {
   #wanted = false;
   #lock = null;
@@ -42,7 +43,7 @@ class Awake {
     if (now === this.#wanted) return;
     this.#wanted = now;
     if (now) this.#lock = await navigator.wakeLock.request("screen").catch(() => null);
-    if (!this.#wanted) {  // it may have changed while the lock was requested
+    if (!this.#wanted) {  // the wish may have changed while the lock was requested
       await this.#lock?.release().catch(() => {});
       this.#lock = null;
     }
@@ -132,7 +133,7 @@ async function enter() {
     return;
   }
   $("cores").max = String(allCores);
-  $("cores").value = String(Math.max(1, allCores - 1));  // one is left for the user
+  $("cores").value = String(Math.max(1, allCores - 1));  // one core is left for the user
   text($("intro-cores"), `${words(Number($("cores").value))} of ${allCores}`);
   $("awake").parentElement.hidden = !("wakeLock" in navigator);
   $("metered").hidden = !(navigator.connection?.type === "cellular" || navigator.connection?.saveData);

@@ -2,8 +2,11 @@
 
 import {Backoff, pause} from "/join_wait.js";
 
-const KEPT_BYTES = 64 * 2 ** 20;  // are kept, because several renderers load the same scene at about the same time
-const WRONG_TIMES = 3;            // after so many answers with wrong bytes the source itself is wrong
+// Blobs of so many bytes are kept, because several renderers load the same scene at about the same
+// time.
+const KEPT_BYTES = 64 * 2 ** 20;
+// After so many answers with wrong bytes, the coordinator's own blob is assumed to be wrong.
+const WRONG_TIMES = 3;
 
 /// The link has ended or was revoked.
 export class LinkEnded extends Error {}
@@ -33,8 +36,10 @@ export class Blobs {
     return {Authorization: `Bearer ${this.secret}`};
   }
 
-  /// Returns a blob. If the connection is lost, waits for the next one, as long as `wanted()` is true. `took` is called with
-  /// numbers of bytes as they arrive. Throws Final, LinkEnded, or a RangeError: there is no memory for it.
+  /// Returns a promise of a blob's bytes, an ArrayBuffer. If the connection is lost, requests the
+  /// blob again, as long as `wanted()` is true. `took` is called with the number of bytes of each
+  /// piece that arrives. Fails with Final, with LinkEnded, or with a RangeError if there is no
+  /// memory for the blob.
   get(digest, wanted, took) {
     const known = this.kept.get(digest);
     if (known) {
@@ -81,8 +86,8 @@ export class Blobs {
     }
   }
 
-  /// Makes one request. `again`: the browser's cache is not used, because it has wrong bytes. Throws Final, LinkEnded, or another
-  /// Error if the request can be repeated.
+  /// Makes one request and returns the bytes. `again`: the browser's cache is not used, because it
+  /// has wrong bytes. Throws Final, LinkEnded, or another Error if the request can be repeated.
   async once(digest, again, took) {
     const response = await fetch(`${this.base}/join/blob/${digest}`, {headers: this.headers(), cache: again ? "reload" : "default"});
     if (response.status === 401) throw new LinkEnded(sentence(await response.text()));

@@ -1,6 +1,6 @@
 // The reasons why this device pauses: the user, a hidden page, a low battery.
 
-const lowBattery = 0.2;  // of a full one
+const lowBattery = 0.2;  // as a fraction of a full battery
 
 export class Pauses {
   byUser = false;
@@ -13,7 +13,7 @@ export class Pauses {
   constructor(changed) {
     this.#changed = changed;
     document.addEventListener("visibilitychange", () => this.#update());
-    // Not in every browser, and only over HTTPS or on this machine.
+    // Some browsers do not have getBattery. The others have it only over HTTPS or on this machine.
     navigator.getBattery?.().then((battery) => {
       const check = () => {
         this.#batteryIsLow = !battery.charging && battery.level < lowBattery;

@@ -1,6 +1,6 @@
 // The picture on the page /join: the rows that this device has rendered.
 
-const maxSide = 2048;  // of the canvas; larger pictures are shown with every n-th pixel
+const maxSide = 2048;  // pixels of the canvas; of a larger picture only every n-th pixel is shown
 
 export class Picture {
   #canvas;

@@ -1,7 +1,7 @@
 // A web worker that renders rows of bands on one core, with one instance of bandsaw.wasm; join_renderer.js starts it. It
 // answers each message {id, call, …} with {id, value}, {id, error} or {id, error, fatal: true}. After `fatal` the instance
-// cannot be used any more: it had no memory left, or it has crashed. While it prepares what it needs before the first row, it
-// sends {step: true} after each step.
+// cannot be used any more: it had no memory left, or it has crashed. While the renderer prepares
+// what it needs before the first row, the web worker sends {step: true} after each step.
 
 import {Program} from "/join_wasm.js";
 

@@ -1,7 +1,7 @@
 // One core of the tab, for join_session.js: starts a web worker with join_render.js, and keeps account of the scenes that it
 // has loaded. A scene is identified by the digest of its manifest; its data come as blobs.
 
-const SCENES = 2;  // at most; in a sequence they are those of the present frame and of the next one
+const SCENES = 2;  // loaded at most: in a sequence, those of the present frame and of the next one
 const AHEAD = 4;   // number of blobs that are fetched in advance, while the worker copies earlier ones
 export const SCENE_PER_BYTE = 4;  // a scene is assumed to take so many times the bytes of its blobs (coordinator/scheduler/README.md)
 
@@ -17,7 +17,7 @@ export class RendererEnded extends Error {
 const isOutOfMemory = (error) => error instanceof RangeError || error instanceof WebAssembly.RuntimeError;
 
 export class Renderer {
-  /// `module`: the compiled bandsaw.wasm. `memoryBytes`: what its scenes may take.
+  /// `module`: the compiled bandsaw.wasm. `memoryBytes`: the memory that its scenes may take.
   constructor(module, memoryBytes) {
     this.memoryBytes = memoryBytes;
     this.scenes = new Map();  // digest of the manifest: {rowStep, size}, the most recently used last
@@ -56,7 +56,7 @@ export class Renderer {
     }
   }
 
-  /// Ends the worker; all that was asked fails.
+  /// Ends the web worker. All requests without an answer fail.
   end(why) {
     if (this.ended) return;
     this.ended = why;
@@ -84,7 +84,8 @@ export class Renderer {
     return this.scenes.has(scene);
   }
 
-  /// Returns the multiples of rows at which bands of the scene should be divided.
+  /// Returns a number of rows: bands of the scene should be divided at its multiples. The scene
+  /// MUST be loaded; from now on it is the one that was used most recently.
   rowStep(scene) {
     const known = this.scenes.get(scene);
     this.scenes.delete(scene);
@@ -116,14 +117,14 @@ export class Renderer {
     const loaded = [...this.scenes.values()].reduce((sum, one) => sum + one.size, 0);
     if (this.scenes.size > 0 && SCENE_PER_BYTE * (size + loaded) > this.memoryBytes) {
       while (this.scenes.size > 0) await this.drop();
-      blobs = await this.ask("begin", {scene, manifest});  // nothing is shared any more
+      blobs = await this.ask("begin", {scene, manifest});  // no blobs are shared any more
     }
     this.loading = size;
     const fetched = [];
     const fetchNext = () => {
       if (fetched.length >= blobs.length) return;
       const bytes = get(blobs[fetched.length].digest);
-      bytes.catch(() => {});  // it is awaited below
+      bytes.catch(() => {});  // a failure is handled where the promise is awaited, below
       fetched.push(bytes);
     };
     for (let i = 0; i < AHEAD; ++i) fetchNext();

@@ -10,11 +10,11 @@ import {Program, fromBase64} from "/join_wasm.js";
 
 const PIECE_S = 0.1;            // rendering time of the rows that a renderer is given at once
 const RATE_OVER_S = 8;          // samplesPerSecond is the mean over this time
-const STATE_EVERY_MS = 200;     // the page is told at most so often
-const OTHER_CORES_MS = 1000;    // after the last change of their number, the coordinator is told
+const STATE_EVERY_MS = 200;     // the page gets the state at most so often
+const OTHER_CORES_MS = 1000;    // wait after the last change of cores before the coordinator is told
 const SILENCE_MS = 15000;       // after this time without a message, an HTTP request asks if the coordinator is there
-const ANSWER_MS = 10000;        // in which that request is answered
-const FULL_DISK_MS = 5000;      // wait if the coordinator's disk is full
+const ANSWER_MS = 10000;        // time limit of that request
+const FULL_DISK_MS = 5000;      // wait before the next try if the coordinator's disk is full
 const NOT_ADMITTED_TIMES = 20;  // tries that may be refused: a restarted coordinator has to lease the band to this tab again
 const LOG_LINES = 50;
 
@@ -34,7 +34,7 @@ let connected = false;          // the coordinator has admitted this tab on the 
 let heardAt = 0;                // performance.now() of the last message
 let pausedWhy = null;           // a sentence; null: not paused
 let dismissed = null;           // {reason, until}: the coordinator takes the tab again after this time
-let mostSceneMemory = Infinity; // a larger scene has ended a renderer
+let mostSceneMemory = Infinity; // bytes; lowered when a larger scene has ended a renderer
 let tooLarge = null;            // what the page says of the last such scene
 let over = false;
 let renderers = [];
@@ -57,8 +57,9 @@ const state = {phase: "starting", text: "Loading the renderer …", rowsDone: 0,
 let shownAt = 0;
 let showing = null;
 
-/// Sends the state to the page: now, or when STATE_EVERY_MS have passed since the last time. Goes on while samplesPerSecond is
-/// above 0, because it falls to 0 when no more rows are rendered.
+/// Sends the state to the page: now, or when STATE_EVERY_MS have passed since the last time.
+/// Repeats this while samplesPerSecond is above 0, so that the page also gets the values that fall
+/// to 0 when no more rows are rendered.
 function show(now = false) {
   if (over) return;
   const due = shownAt + STATE_EVERY_MS - performance.now();
@@ -196,7 +197,7 @@ async function linkEnded(reached = () => {}) {
     }
     reached();
   } catch {
-    // It cannot be reached.
+    // The coordinator cannot be reached.
   }
   return false;
 }
@@ -315,8 +316,9 @@ function failed(renderer, task, error) {
   if (isTooLarge) takeOnlySmaller(task.job, error.sceneBytes);
 }
 
-/// A scene with blobs of so many bytes has ended a renderer, probably because there was too little memory. From now on, offers
-/// the coordinator memory for scenes of at most three quarters of this size.
+/// Called when a scene with `sceneBytes` bytes of blobs has ended a renderer, probably because
+/// there was too little memory. From now on, offers the coordinator memory for scenes of at most
+/// three quarters of this size.
 function takeOnlySmaller(job, sceneBytes) {
   tooLarge = `The scene of job ${job} needs more memory than this browser gives; other machines render it.`;
   mostSceneMemory = Math.min(mostSceneMemory, 0.75 * SCENE_PER_BYTE * sceneBytes);
@@ -338,7 +340,8 @@ function replace(renderer) {
 }
 
 async function loadScene(renderer, task) {
-  // Progress counts for the first band of the scene, as long as none of its rows is rendered.
+  // Progress of the loading is reported for the band that needs the scene, until a renderer gets
+  // rows of this band.
   const step = (amount) => {
     if (task.rowsGiven === task.first && tasks.has(task.id)) {
       program.bytes("session_preparing", session, task.id, task.prepared += amount);
@@ -487,7 +490,7 @@ function sent({task}, outcome) {
 /// Returns true if a pause has begun and all held bands are finished and sent.
 const isDrained = () => pausedWhy !== null && program.json("session_state", session).drained;
 
-/// After a pause has finished the held bands: closes the stream.
+/// Closes the stream if a pause has begun and all held bands are finished and sent.
 function leaveIfDrained() {
   if (!isDrained()) return;
   const old = socket;
@@ -531,7 +534,7 @@ const calls = {
     clearTimeout(offering);
     offering = setTimeout(() => connected && reconnect(), OTHER_CORES_MS);
   },
-  /// `why`: a sentence; null: goes on.
+  /// `why`: a sentence; null: rendering goes on.
   pause({why}) {
     const was = pausedWhy;
     pausedWhy = why;

@@ -4,8 +4,8 @@ import {get, post} from "./api.js";
 import {duration, el, text} from "./dom.js";
 import {attempt} from "./notice.js";
 
-/// Returns {element, refresh()}: an element with a button, which is replaced by the link when it is clicked, and a function that
-/// updates the link if it is shown.
+/// Returns {element, refresh()}. The element has a button; a click on the button replaces it by the
+/// link. refresh() updates the link if it is shown.
 export function browserLink() {
   const code = el("img.code", {alt: "QR code of the link", width: 200, height: 200});
   const address = el("input", {readonly: "", "aria-label": "Link for browsers"});

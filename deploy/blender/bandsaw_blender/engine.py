@@ -1,4 +1,5 @@
-"""The render engine "Bandsaw": renders Blender's scene on a farm, and shows the picture while it sharpens."""
+"""The render engine "Bandsaw": renders Blender's scene on a farm, and shows the picture while
+samples arrive."""
 
 import os
 import time
@@ -43,7 +44,8 @@ class Stopped(Exception):
     """The user pressed Esc."""
 
 
-# Blender calls update_render_passes() and render(). In a render, `made` is the scene.Scene that is sent.
+# Blender calls update_render_passes() and render(). In the methods that these call, `made` is the
+# scene.Scene that is sent to the farm.
 class BandsawEngine(bpy.types.RenderEngine):
     bl_idname = "BANDSAW"
     bl_label = "Bandsaw"
@@ -73,7 +75,7 @@ class BandsawEngine(bpy.types.RenderEngine):
     def fail(self, message):
         self.report({"ERROR"}, f"Bandsaw: {message}")
         if bpy.app.version < (4, 3):
-            self.error_set(f"Bandsaw: {message}")  # 4.3 would report it again
+            self.error_set(f"Bandsaw: {message}")  # Blender 4.3 would report the message again
 
     def render_on_farm(self, depsgraph):
         scene = depsgraph.scene
@@ -149,7 +151,8 @@ class BandsawEngine(bpy.types.RenderEngine):
         self.update_stats("", str(progress) + omitted)
 
     def show_preview(self, job, result, width, height):
-        """Shows the present picture; False: there is none yet."""
+        """Shows the present picture. Returns False if there is none yet, or if the farm cannot be
+        reached."""
         try:
             picture = job.preview(max(width, height) if width * height <= 4_000_000 else 1024)
         except bandsaw.NoFarm:
@@ -172,7 +175,7 @@ class BandsawEngine(bpy.types.RenderEngine):
         try:
             found.rect.foreach_set(rows)  # Blender 3.4 compares the number of pixels
         except TypeError:
-            found.rect.foreach_set(rows.reshape(-1))  # later versions the number of values
+            found.rect.foreach_set(rows.reshape(-1))  # later versions compare the number of values
 
     # Renders the passes. `camera`: the message Camera of the scene.
     def add_passes(self, depsgraph, job, result, camera):
@@ -183,7 +186,7 @@ class BandsawEngine(bpy.types.RenderEngine):
                 self.update_stats("", f"{name}: {progress}")
             if self.test_break():
                 for _, submitted in jobs:
-                    submitted.cancel()  # without effect on one that is done
+                    submitted.cancel()  # has no effect on a job that is done
                 raise Stopped()
             self.set_pixels(result, name, pass_pixels(kind, layer.image().array(), camera))
 
@@ -199,7 +202,8 @@ def pass_pixels(kind, pixels, camera):
         n = np.where(hit, 2 * pixels - 1, 0)
         return np.stack([n[:, :, 0], -n[:, :, 2], n[:, :, 1]], axis=2)  # from y up to z up
     if kind == "depth":
-        # The farm's depth is the distance along the ray, Blender's that along the camera's axis; 1e10 is its mark of a ray that hits nothing.
+        # The farm's depth is the distance along the ray. Blender's depth is the distance along the
+        # camera's axis, and 1e10 for a ray that hits nothing.
         depth = pixels[:, :, :1] if "orthographic" in camera else pixels[:, :, :1] / ray_lengths(camera["window"], *pixels.shape[:2])
         return np.where(pixels[:, :, :1] > 0, depth, 1e10)
     return pixels

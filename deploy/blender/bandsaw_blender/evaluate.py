@@ -29,7 +29,8 @@ class Points:
 
 
 def source(socket):
-    """Returns what gives an input its value, through reroutes and muted nodes: an output socket, or the input whose own value it is."""
+    """Returns the socket whose value an input has: an output that is linked to it, through reroutes
+    and muted nodes, or an input whose own value counts."""
     own = socket
     while socket.is_linked and socket.links and socket.links[0].is_valid and not socket.links[0].is_muted:
         output = socket.links[0].from_socket
@@ -71,10 +72,12 @@ def color(value):
 
 
 class Evaluator:
-    """Evaluates nodes at `points` (a Points), as rays of the camera see them; for a `light` or the world, as other rays do. `images`:
-    a function from a Blender image to its pixels (height, width, 4) as linear floats, rows from the bottom; `warn`: a function of a text, which
-    names what is not as in Blender. A node of type T is evaluated by the method node_T(node, output), which returns the value of that output.
-    `groups`: the group nodes around the node that is evaluated, the innermost last; `memory`: values that were computed before."""
+    """Evaluates nodes at `points` (a Points). `light`: False for what the camera's rays see, True
+    (for lights and the world) for what diffuse rays see. `images`: a function from a Blender image
+    to its pixels (height, width, 4) as linear floats, rows from the bottom; `warn`: a function of a
+    text, which names what is not as in Blender. A node of type T is evaluated by the method
+    node_T(node, output), which returns the value of that output. `groups`: the group nodes around
+    the node that is evaluated, the innermost last; `memory`: values that were computed before."""
 
     def __init__(self, points, images, warn, light=False):
         self.points, self.images, self.warn, self.light = points, images, warn, light
@@ -521,7 +524,8 @@ def covered(node):
             image.alpha_mode not in ("CHANNEL_PACKED", "NONE") and not node.outputs["Alpha"].is_linked)
 
 
-# Returns linear pixels (height, width, 4) whose colours are multiplied by alpha, as Cycles does: the values that sRGB encodes are.
+# Returns linear pixels (height, width, 4) whose colours are multiplied by alpha. As in Cycles,
+# alpha multiplies the sRGB-encoded values, not the linear ones.
 def multiplied(pixels):
     alpha = pixels[:, :, 3:]
     return np.concatenate([files.linear(files.srgb_codes(pixels[:, :, :3]) / 255 * alpha), alpha], axis=2)

@@ -17,16 +17,18 @@ class Vertices:
 
 
 class Triangles:
-    """The triangles of a mesh with one material slot. `positions` (v, 3), `normals` (v, 3) or None (flat everywhere), `uvs`: a list of
-    (v, 2), v = 0 at the bottom, of which at most two are written to files; `indices` (t, 3). `undeformed` (v, 3): where the vertices are
-    without modifiers and shape keys; None: at `positions`. `ends`: None, or the Vertices when the shutter opens and when it closes; all else
-    is that of the frame."""
+    """The triangles of a mesh with one material slot. `positions` (v, 3), `normals` (v, 3) or None
+    (flat everywhere), `uvs`: a list of (v, 2), v = 0 at the bottom, of which at most two are
+    written to files; `indices` (t, 3). `undeformed` (v, 3): where the vertices are without
+    modifiers and shape keys; None: at `positions`. `ends`: None, or the Vertices when the shutter
+    opens and when it closes. Everything else is as at the time of the frame."""
 
     def __init__(self, positions, normals, uvs, indices, undeformed=None, ends=None):
         self.positions, self.normals, self.uvs, self.indices, self.undeformed, self.ends = positions, normals, uvs, indices, undeformed, ends
 
     def _selected(self, which, indices):
-        """Triangles of the vertices `which`."""
+        """Returns Triangles that have only the vertices `which`. `indices`: their triangles, as
+        indices into `which`."""
         frame = Vertices(self.positions, self.normals)[which]
         ends = None if self.ends is None else tuple(end[which] for end in self.ends)
         undeformed = None if self.undeformed is None else self.undeformed[which]
@@ -37,16 +39,16 @@ class Triangles:
         return self.positions.min(axis=0), self.positions.max(axis=0)
 
     def corners(self):
-        """Returns the same with three vertices of its own for each triangle."""
+        """Returns the same triangles, each with three vertices of its own."""
         flat = self.indices.reshape(-1)
         return self._selected(flat, np.arange(len(flat)))
 
     def compact(self):
-        """Returns the same without vertices that no triangle uses."""
+        """Returns the same triangles without the vertices that none of them uses."""
         return self._selected(*np.unique(self.indices.reshape(-1), return_inverse=True))
 
     def corner_normals(self):
-        """(3 t, 3): the shading normals of the corners, in the order of `indices`."""
+        """Returns the shading normals of the corners (3 t, 3), in the order of `indices`."""
         if self.normals is not None:
             return self.normals[self.indices.reshape(-1)]
         a, b, c = (self.positions[self.indices[:, k]].astype(np.float64) for k in range(3))
@@ -63,7 +65,8 @@ def _get(collection, name, count, width, dtype):
 
 
 def _corner_normals(mesh, loops):
-    """Returns the normals of the corners (loops, 3); they hold flat and smooth faces and the user's own normals."""
+    """Returns the normals of the corners (loops, 3), also those of flat faces and those that the
+    user has set."""
     if hasattr(mesh, "corner_normals"):  # Blender 4.1
         return _get(mesh.corner_normals, "vector", loops, 3, np.float32)
     mesh.calc_normals_split()
@@ -139,8 +142,9 @@ def uv_layers(mesh, names):
 
 
 def _indexed(pose, uvs, corners, of_corner, ends):
-    """Triangles whose vertices are shared where the corners' normals and uvs are the same. Vertices are added for the other corners only,
-    so that a mesh without seams is as fast as one without uvs."""
+    """Returns Triangles whose corners share a vertex if their normals and uvs are the same.
+    Vertices are added for the other corners only, so that a mesh without seams is converted as fast
+    as one without uvs."""
     flat, vertex = corners.reshape(-1), of_corner.reshape(-1)
     poses = [pose, *(ends or ())]
     per_corner = [each.normals for each in poses if each.normals is not None] + uvs
@@ -183,8 +187,9 @@ DEFORMS = "deforms"  # the name of the animation of a mesh that deforms
 
 
 def glb(triangles):
-    """Returns the bytes of a GLB file with this one mesh. If it deforms, its vertices are those when the shutter opens, and a morph target, which the
-    animation DEFORMS shows from the time 0 to 1, has those when it closes."""
+    """Returns the bytes of a GLB file with this one mesh. If the mesh deforms, its vertices are
+    where they are when the shutter opens, and a morph target has them where they are when it
+    closes. From the time 0 to 1, the animation DEFORMS moves them from the first to the second."""
     parts, views, accessors, attributes = [], [], [], {}
 
     def add(array, kind, component, target, **more):
@@ -233,9 +238,11 @@ def glb(triangles):
 
 
 class Atlas:
-    """Each pair of triangles has a square cell of `cell` texels of an image of `side` texels. `uvs` (3 t, 2): the corners' places;
-    `triangle` and `weights` (side * side), (side * side, 3): the triangle at each texel's centre, rows from the bottom, and its barycentric
-    coordinates there, which continue beyond the triangle's edges for the texels around it; texels without a triangle have -1."""
+    """Each pair of triangles has a square cell, `cell` texels wide, of a square image, `side`
+    texels wide. `uvs` (3 t, 2): the corners' places. `triangle` (side * side): the triangle at each
+    texel's centre, rows from the bottom; -1: none. `weights` (side * side, 3): the barycentric
+    coordinates of the texel's centre in this triangle. For texels around a triangle they continue
+    beyond its edges."""
 
     def __init__(self, triangles, most_side=1024):
         pairs = (triangles + 1) // 2

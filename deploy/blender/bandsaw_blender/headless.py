@@ -58,7 +58,8 @@ def fail(folder, message):
         file.write(message.replace("\n", " ") + "\n")
 
 
-# Removes the files of the frame before; the add-on itself lies in the same folder.
+# Removes the files of the previous frame. The add-on's zip `addon`, which lies in the same folder,
+# stays.
 def remove_results(folder, addon="bandsaw_blender.zip"):
     for name in os.listdir(folder):
         if name != addon:

@@ -95,7 +95,7 @@ def add_spot(out, thing, placed, place, toward, tint):
         out.warn(f'the shadows of the spot light "{thing.name}" are hard; its radius is not shown')
     if getattr(light, "use_square", False):
         out.warn(f'the cone of the spot light "{thing.name}" is round, not square')
-    # Blender's cone is full where the cosine is at least this.
+    # In Blender, the cone has its full intensity up to this angle from the axis.
     inner = math.acos(min(math.cos(outer) + (1 - math.cos(outer)) * light.spot_blend, 1.0))
     spot = {"position": place, "direction": toward, "intensity": rgb(tint / (4 * math.pi)), "inner_angle": math.degrees(inner),
             "outer_angle": math.degrees(outer), "falloff": "FALLOFF_SMOOTH"}
@@ -113,7 +113,8 @@ def add_area(out, thing, placed, place, toward, tint):
         out.warn(f'the spread of the area light "{thing.name}" is not shown')
     radiance = tint / (area * (math.pi if bpy.app.version >= (4, 0) else 4))  # before Blender 4.0 the power was not that of a Lambertian emitter
     if not round_one:
-        # Its normal u x v looks along the light's -z, also if the light is mirrored.
+        # The order of u and v makes the quad's normal u x v point along the light's -z, also if the
+        # light is mirrored.
         u, v = (across, along) if across.cross(along).dot(Vector(toward)) > 0 else (along, across)
         corner = Vector(place) - across / 2 - along / 2
         out.lamp({"quad": {"corner": vector(corner), "u": vector(u), "v": vector(v)}}, radiance, not thing.visible_camera)

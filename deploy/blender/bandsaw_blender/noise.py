@@ -1,6 +1,6 @@
-"""Blender's procedural textures as numpy functions of points: Perlin noise and its fractal, Voronoi cells, checker, waves,
-magic. Points are arrays of shape (n, 3); results have n rows. They follow Blender's definitions, including its hash, so that the
-patterns are the same."""
+"""Blender's procedural textures as numpy functions of points: Perlin noise and its fractal, Voronoi
+cells, checker, gradients, waves. Points are arrays of shape (n, 3); results have n rows. The
+functions follow Blender's definitions, including its hash, so that the patterns are the same."""
 
 import numpy as np
 

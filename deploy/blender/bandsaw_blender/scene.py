@@ -153,7 +153,7 @@ def build(depsgraph, scene, size, region=None, camera=None, frame_set=None):
 
 class Moved:
     """Finds what moves: the placements at the times when the shutter opens and closes, and the poses of meshes that may deform. Without motion blur
-    it has none, and `times` is None."""
+    there are no placements and poses, and `times` is None."""
 
     def __init__(self, depsgraph, scene, frame_set):
         self.times, self.before, self.after = None, {}, {}
@@ -322,7 +322,8 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
 # ---- geometry ----
 
 
-# Settings of objects that Bandsaw has not: for each its name, the value that has an effect, and what is shown although it is set.
+# Settings of Blender's objects that Bandsaw does not have. For each setting: its name, the value
+# that has an effect in Blender, and the warning about an object that has this value.
 IGNORED = (("visible_camera", False, "is seen by the camera, although its setting says that it is not"),
            ("visible_diffuse", False, "is seen by diffuse rays, although its setting says that it is not"),
            ("visible_glossy", False, "is seen by glossy rays, although its setting says that it is not"),

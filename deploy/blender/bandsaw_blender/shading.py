@@ -96,8 +96,9 @@ class Piece:
         atlas = self.make_atlas()
         weights = atlas.weights
         if du or dv:
-            # A triangle's legs are atlas.cell - 4 texels long (geometry.Atlas), so a texel is that part of a barycentric coordinate. The second
-            # triangle of a pair is turned by half a turn.
+            # A triangle's legs are atlas.cell - 4 texels long (geometry.Atlas), so one texel
+            # changes a barycentric coordinate by 1 / (atlas.cell - 4). The second triangle of a
+            # pair is turned by half a turn.
             sign = np.where(atlas.triangle % 2 == 0, 1.0, -1.0) / (atlas.cell - 4.0)
             b, c = weights[:, 1] + du * sign, weights[:, 2] + dv * sign
             weights = np.stack([1 - b - c, b, c], axis=1)
@@ -168,7 +169,8 @@ class Images:
                 raise Unsupported(f'the image "{image.name}", whose file is missing ({path})')
         return self._encoded(image, self.pixels(image))
 
-    # Stores `pixels` in the way of the image.
+    # Stores `pixels`, linear, as EXR if `image` is a float image, otherwise as PNG in the image's
+    # encoding. Returns the file's name.
     def _encoded(self, image, pixels):
         pixels = pixels[::-1, :, :3]
         if image.is_float:
@@ -225,7 +227,9 @@ class Shader:
         return self.value(input_of(node, *names), True, default, unlimited)
 
     def plain(self, node, *names, default=0.0):
-        """Returns a number for a field that takes no texture. Of a texture it is the mean, and a warning says so."""
+        """Returns a number for a field that takes no texture. For a baked texture, warns and
+        returns its mean. For an image that is used as it is, warns and returns the input's own
+        value, because the mean is not known."""
         socket = input_of(node, *names)
         value = self.value(socket, True, default, unlimited=True)
         if value.constant is None:
@@ -384,12 +388,12 @@ class Shader:
             value = evaluate.number(self.evaluator(self.piece.points(du, dv)).socket(height))
             return np.broadcast_to(value, atlas.triangle.shape)
 
-        slope_u, slope_v = at(0.5, 0) - at(-0.5, 0), at(0, 0.5) - at(0, -0.5)  # a texel
+        slope_u, slope_v = at(0.5, 0) - at(-0.5, 0), at(0, 0.5) - at(0, -0.5)  # per texel
         corners = self.piece.triangles.positions.astype(np.float64)[self.piece.triangles.indices]
         linear = np.array(self.piece.world)[:3, :3]
         corners = corners @ linear.T
         sign = np.where(np.arange(len(corners)) % 2 == 0, 1.0, -1.0)[:, None] / (atlas.cell - 4.0)
-        along_u, along_v = (corners[:, 1] - corners[:, 0]) * sign, (corners[:, 2] - corners[:, 0]) * sign  # a texel
+        along_u, along_v = (corners[:, 1] - corners[:, 0]) * sign, (corners[:, 2] - corners[:, 0]) * sign  # per texel
         which = np.maximum(atlas.triangle, 0)
         pu, pv = along_u[which], along_v[which]
         n = self.piece.points().world_normal
@@ -402,7 +406,7 @@ class Shader:
         bent /= np.maximum(np.linalg.norm(bent, axis=1, keepdims=True), 1e-30)
         bent = strength * bent + (1 - strength) * n
         bent /= np.maximum(np.linalg.norm(bent, axis=1, keepdims=True), 1e-30)
-        # Into the frame of the atlas's uvs around the normal.
+        # Converts the bent normal to the tangent frame of the atlas's uvs.
         x = pu - n * (pu * n).sum(axis=1, keepdims=True)
         x /= np.maximum(np.linalg.norm(x, axis=1, keepdims=True), 1e-30)
         y = np.cross(n, x)
@@ -656,9 +660,10 @@ class Shader:
         return made
 
     def old_diffuse(self, metallic, roughness, index):
-        """Returns the factor on a base colour that makes a surface as bright as with the Principled BSDF before Blender 4. That one adds its reflection
-        to the diffuse part, which here gets only the light that is not reflected, and its diffuse part (Burley 2012) depends on the
-        roughness. Fitted to the values in deploy/blender/README.md."""
+        """Returns the factor on a base colour that makes a surface as bright as with the Principled
+        BSDF before Blender 4. That BSDF adds its reflection to the diffuse part; here, the diffuse
+        part gets only the light that is not reflected. Its diffuse part (Burley 2012) also depends
+        on the roughness. The factor is fitted to the values in deploy/blender/README.md."""
         if self.version >= (4, 0, 0) or metallic.constant is None or roughness.constant is None:
             return 1.0
         r, f0 = roughness.number, ((index - 1) / (index + 1)) ** 2
@@ -726,7 +731,7 @@ def message(surface, out):
     """Returns the Material message of a Surface, without a name. Materials that it is mixed of are added to `out`."""
     fields, emission, opacity = dict(surface.fields), surface.emission, surface.opacity
     if surface.kind == "mix":
-        for part in surface.parts:  # what belongs to the whole is the same in both parts
+        for part in surface.parts:  # both parts get the emission and the opacity of the mixture
             if emission is not None:
                 part.emission = emission if part.emission is None else added(part.emission, emission)
             part.opacity = part.opacity.times(opacity)
