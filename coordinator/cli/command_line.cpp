@@ -19,7 +19,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Each of these functions adds the options of a command, or of several that have the same ones.
+// Each of these functions adds the options of a command, or of several commands with the same
+// options.
 
 void add_list(CLI::App& app, RawOptions& raw) {
   add_farm(app, raw);
@@ -115,8 +116,9 @@ constexpr Entry kCommands[] = {
 constexpr char kExitCodes[] =
     "Exit status: 0 done, 1 failed, 2 wrong usage or input, 3 no farm reached, 130 interrupted.";
 
-/// Returns the error for a word that is none of `known`. `kind`: what the word is. The message ends
-/// with the known word that is most similar, or with `cure` if none is similar.
+/// Makes the INVALID_ARGUMENT error for `word`, which is not one of `known`. `kind`: what the word
+/// should be, such as "command". The message ends with the known word that is most similar, or with
+/// `cure` if none is similar.
 absl::Status unknown(const std::string& kind, const std::string& word,
                      const std::vector<std::string>& known, const std::string& cure) {
   const auto meant = did_you_mean(word, known);
@@ -150,7 +152,8 @@ absl::Status check_no_extras(const CLI::App& app, const std::string& command) {
   return unknown(command + " option", word, known, cure);
 }
 
-/// Runs the command `completion`: returns the script as a text to print.
+/// Returns the script of the command `completion`, as a text to print. INVALID_ARGUMENT: the shell
+/// is not bash.
 absl::StatusOr<Command> completion(const CLI::App& app, const RawOptions& raw) {
   if (raw.shell != "bash") {
     return wrong_choice("completion: the shell", "shell", raw.shell.value_or(""));
@@ -158,8 +161,8 @@ absl::StatusOr<Command> completion(const CLI::App& app, const RawOptions& raw) {
   return ShowText{bash_completion(app)};
 }
 
-/// Parses the arguments into `raw` and checks them. `commands`: the parser of each entry of
-/// kCommands, in the same order.
+/// Parses the arguments and checks them. `app`: the parser, which stores the values in `raw`.
+/// `commands`: the parser of each entry of kCommands, in the order of kCommands.
 absl::StatusOr<Command> parse_with(CLI::App& app, const std::vector<CLI::App*>& commands,
                                    const RawOptions& raw,
                                    const std::vector<std::string>& arguments) {

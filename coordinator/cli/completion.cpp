@@ -1,6 +1,6 @@
 // Generates a bash function that sets `words` to the words that fit at the cursor. It has a case
-// for each option with a value, and a case for each command; they are made from what the parser
-// (CLI11) knows.
+// for each option with a value, and a case for each command. The cases are made from the options
+// and commands of the parser (CLI11).
 
 #include "coordinator/cli/completion.h"
 
@@ -51,13 +51,15 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-/// Returns true if the value of the option is a text, a file or a folder.
+/// Returns true if file names are offered for the value of the option. Its type is then text, file
+/// or folder.
 bool takes_file(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type == "TEXT" || type == "FILE" || type == "DIR";
 }
 
-/// Maps the name of each option that has a value to the shell code that completes the value.
+/// Maps the name of each option that has a value to the shell code that completes the value. The
+/// code "return" offers no words, so bash offers file names.
 std::map<std::string, std::string> after_options(const CLI::App& app) {
   std::map<std::string, std::string> cases;
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -87,7 +89,8 @@ std::vector<std::string> arguments_of(const CLI::App& command) {
   return words;
 }
 
-/// Returns a case of the script that offers `words`. `pattern`: "number of the word:command:word".
+/// Returns a case of the script that offers `words`. `pattern` is compared with the number of the
+/// word at the cursor, the command and the beginning of that word: "1:*" or "*:submit:-*".
 std::string when(const std::string& pattern, const std::vector<std::string>& words) {
   return absl::StrCat("        ", pattern, ") words='", absl::StrJoin(words, " "), "' ;;\n");
 }

@@ -30,6 +30,8 @@ struct Child {
   int output = -1;  ///< read end of the pipe with its output; -1: there is no pipe
 };
 
+// Starts the program. Its output goes to the file descriptor in `streams`. If there is none, the
+// output goes to a pipe, whose read end is Child::output.
 absl::StatusOr<Child> start(const std::vector<std::string>& arguments,
                             const ChildStreams& streams) {
   if (streams.output >= 0) {

@@ -25,19 +25,21 @@ struct ChildOutcome {
   std::string output;
 };
 
+/// Where the standard streams of a child lead.
 struct ChildStreams {
   std::string input = "/dev/null";  ///< file from which standard input is read
   bool errors_too = false;          ///< include standard error in the output
-  /// File descriptor that the child gets as its standard output; it also gets this process's
-  /// standard error, and ChildOutcome::output stays empty. -1: the output is collected.
+  /// File descriptor that the child gets as its standard output. The child's standard error is then
+  /// that of this process, and ChildOutcome::output stays empty. -1: the output is collected.
   int output = -1;
 };
 
 /// Starts `arguments[0]` (a path, or a name on PATH) with posix_spawn, without a shell, and waits
 /// until it has ended. Kills it after `seconds`, or when another thread sets `stop`. `stop` may be
 /// nullptr; it is polled every 20 ms. The child has the default dispositions of SIGINT and SIGTERM,
-/// whatever this process does with them, so Ctrl-C in a terminal ends it. Returns the system's
-/// error if the child could not be started; a child that fails is no error, but an outcome.
+/// whatever this process does with them, so Ctrl-C in a terminal ends the child. Returns the
+/// system's error if the child could not be started. If the child itself fails, that is no error of
+/// run_child(): ChildOutcome::wait_status tells it.
 absl::StatusOr<ChildOutcome> run_child(const std::vector<std::string>& arguments, double seconds,
                                        const std::atomic<bool>* stop,
                                        const ChildStreams& streams = {});

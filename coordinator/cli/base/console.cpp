@@ -1,5 +1,5 @@
 // A Console writes to standard output and standard error. Colours are used only on a terminal, and
-// only if the environment variable NO_COLOR is not set.
+// only if the environment variable NO_COLOR is not set or is empty.
 
 #include "coordinator/cli/base/console.h"
 
@@ -50,7 +50,8 @@ Console Console::standard() {
   const auto error = std::make_shared<std::atomic<int>>(0);
   const auto out = [error, tty](absl::string_view text) {
     const int failed = write_all(STDOUT_FILENO, text);
-    // Writing to a terminal that was closed fails with EIO.
+    // Two failures are not recorded: the reader of a pipe has ended (EPIPE), and a terminal was
+    // closed (writing to it fails with EIO).
     int none = 0;
     if (failed != 0 && failed != EPIPE && !tty) {
       error->compare_exchange_strong(none, failed);

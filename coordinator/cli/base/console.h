@@ -29,11 +29,13 @@ class Console {
  public:
   using Write = std::function<void(absl::string_view)>;
 
-  /// For tests: output is passed to the functions.
+  /// Makes a console for tests: it passes the text for standard output to `out` and the text for
+  /// standard error to `err`.
   Console(Write out, Write err, bool is_terminal, bool colour);
 
-  /// Returns the process's own console. It is a terminal if standard output is one and TERM is not
-  /// "dumb". It has colour if it is a terminal and NO_COLOR is not set (no-color.org).
+  /// Returns the process's own console. It is a terminal if standard output is one and TERM is set
+  /// to a word other than "dumb". It has colour if it is a terminal and NO_COLOR is not set or is
+  /// empty (no-color.org).
   static Console standard();
 
   /// Returns the error of the first write to standard output that failed; OK if all succeeded. It

@@ -1,5 +1,5 @@
-// Finds the coordinator's data folder by the XDG Base Directory Specification, in which a relative
-// path counts as not set, and names the files in it.
+// Finds the coordinator's data folder and names the files in it. The folder follows the XDG Base
+// Directory Specification: a variable with a relative path counts as not set.
 
 #include "coordinator/cli/base/data_folder.h"
 

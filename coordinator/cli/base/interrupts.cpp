@@ -1,6 +1,6 @@
 // SIGINT, SIGTERM and SIGHUP are blocked in all threads, and one thread reads them from a signalfd.
-// The first signal calls the function of the newest Listener. Without a Listener, and at a second
-// signal, the program ends at once.
+// The first signal calls the function of the newest Listener. Without a Listener, the first signal
+// ends the program at once. A second signal does so in any case, unless it is SIGHUP.
 
 #include "coordinator/cli/base/interrupts.h"
 

@@ -80,7 +80,8 @@ absl::Status PipedChild::finish() {
 }
 
 std::string PipedChild::last_error_line() const {
-  constexpr std::size_t kMaxBytes = 4096;  // Only the end is read; a line is shorter than this.
+  // Only this many bytes at the end are read. The last line is expected to be shorter.
+  constexpr std::size_t kMaxBytes = 4096;
   const off_t size = lseek(errors_, 0, SEEK_END);
   std::string text(kMaxBytes, '\0');
   const ssize_t got =

@@ -15,7 +15,7 @@ std::string program_folder();
 /// program's bin folder, both installed and in a build folder.
 std::string gallery_folder();
 
-/// Returns the folder of the renderer that `serve` hands out to browsers (WebAssembly), which is
+/// Returns the folder of the WebAssembly renderer that `serve` hands out to browsers:
 /// share/bandsaw/browser beside the program's bin folder.
 std::string browser_folder();
 

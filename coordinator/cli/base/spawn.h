@@ -11,7 +11,8 @@
 
 namespace bandsaw::coordinator {
 
-/// The standard streams of a child. A file descriptor stays the caller's; -1: none.
+/// The standard streams of a child. spawn() does not close the caller's file descriptors. -1: there
+/// is no file descriptor.
 struct SpawnStreams {
   int input = -1;                        ///< if there is none, `input_file` is opened
   std::string input_file = "/dev/null";  ///< a path

@@ -16,7 +16,7 @@ namespace bandsaw::coordinator {
 /// 0. Any other mantissa is a whole number: "0", "950", "1.2 k", "5.2 M", "48 M".
 std::string si(double value);
 
-/// The same with a unit: "48 Msamples", "950 samples".
+/// Formats a number as si() does and adds the unit: "48 Msamples", "950 samples".
 std::string si_with(double value, absl::string_view unit);
 
 /// Formats a time as minutes and seconds, with hours if there are any: "1:05", "1:02:03". It is
@@ -32,8 +32,8 @@ std::string percent(double fraction);
 /// Describes the stop rule of a job: "64 samples", "error ≤ 1 %", "2 min".
 std::string stop_text(const StopRule& stop);
 
-/// Makes text that another program or user chose safe for a terminal: control characters become
-/// '?'; line ends and tabs become spaces.
+/// Makes text from another program or user safe for a terminal: control characters become '?'; line
+/// ends and tabs become spaces.
 std::string printable(absl::string_view text);
 
 /// Joins names, each safe for a terminal: "cornell.png, cornell.pfm".
@@ -51,7 +51,7 @@ std::string fit(absl::string_view text, std::size_t width);
 
 /// Adds spaces after the text up to `width` columns. A longer text is returned unchanged.
 std::string pad_right(absl::string_view text, std::size_t width);
-/// The same with the spaces before the text.
+/// Adds spaces before the text up to `width` columns. A longer text is returned unchanged.
 std::string pad_left(absl::string_view text, std::size_t width);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,5 @@
 // run_after() runs the command of --then by a shell, once the job is over. The job's number, state
-// and files are in the command's environment; the list of all files is a file in a temporary
-// folder.
+// and files are in the command's environment. A file in a temporary folder lists all files.
 
 #include "coordinator/cli/farm/after_job.h"
 
@@ -23,10 +22,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kNoLimit_s = 1e7;  // about 116 days
+constexpr double kNoLimit_s = 1e7;  // time limit of the command: about 116 days
 
-/// Writes these lines to a new file in the folder and returns its name; empty: there is no folder,
-/// or the file could not be written.
+/// Writes the names to a new file in the folder, one a line, and returns the path of that file.
+/// Returns "" if there is no folder, or if the file could not be written.
 std::string write_list(const absl::StatusOr<std::unique_ptr<const ScratchFolder>>& folder,
                        const std::vector<std::string>& files) {
   if (!folder.ok()) {

@@ -10,9 +10,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Starts the jobs that clean_job() will wait for, so that the farm renders them meanwhile. They
-/// have a priority one higher than the job of the image. `last` is the status of that job, which is
-/// finished. Errors: those of clean_job().
+/// Starts the jobs that clean_job() will wait for, so that the farm can render them before
+/// clean_job() is called. Their priority is one higher than that of the image's job, but at most
+/// kMaxPriority. `last` is the status of the image's job, which is finished. Errors: those of
+/// clean_job().
 absl::Status start_guides(FarmClient& client, const Progress& last);
 
 /// Renders the guides on the farm, as jobs of their own (scheduler/api/clean_jobs.h), and then

@@ -266,8 +266,8 @@ absl::StatusOr<std::string> FarmClient::rotate_secret(link::Role role) {
   farm::RotateSecretRequest request;
   request.set_role(role == link::Role::kWorker ? farm::SECRET_ROLE_WORKER : farm::SECRET_ROLE_FARM);
   farm::RotateSecretReply reply;
-  // Not retried: if the first attempt was executed, the secret that a second would use is no longer
-  // valid.
+  // There is no second attempt: it would use the old secret, which is invalid if the first attempt
+  // was executed.
   RETURN_IF_ERROR(try_once(kCallTimeout, [&](grpc::ClientContext& context) {
     return control_->RotateSecret(&context, request, &reply);
   }));

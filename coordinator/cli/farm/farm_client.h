@@ -52,8 +52,8 @@ class FarmClient {
   absl::StatusOr<std::vector<MissingBlob>> missing_blobs(const std::vector<wire::Digest>& digests);
 
   /// Uploads one blob from the byte at `there` on. After an interruption, resumes at the byte that
-  /// the farm reports. `sent` is called with the number of bytes, from the blob's first byte on,
-  /// that are sent so far.
+  /// the farm reports. `sent` is called with the number of bytes of the blob that are sent so far,
+  /// counted from its first byte.
   absl::Status put_blob(const wire::Digest& digest, absl::Span<const std::byte> bytes,
                         std::uint64_t there, const std::function<void(std::uint64_t)>& sent);
 
@@ -74,10 +74,10 @@ class FarmClient {
     std::string epoch;  ///< names the run of the coordinator, from its start to its end
     std::vector<FrameView> frames;
   };
-  /// Returns the frames that changed since a former call, which are those whose FrameView::changed
-  /// is above `after`. `after`: the largest FrameView::changed that the former call returned; 0:
-  /// all frames are returned. If the epoch differs from that of the former call, the numbers cannot
-  /// be compared, and all frames must be requested. FAILED_PRECONDITION: the job is a single image.
+  /// Returns the frames whose FrameView::changed is above `after`: they changed since a former
+  /// call. `after`: the largest FrameView::changed that the former call returned; 0: all frames are
+  /// returned. If the epoch differs from that of the former call, the numbers cannot be compared,
+  /// and all frames must be requested. FAILED_PRECONDITION: the job is a single image.
   absl::StatusOr<Frames> frames(JobId sequence, std::uint64_t after = 0);
 
   /// Calls `changed` with the job's status now and after each change. Returns OK after a final
@@ -124,16 +124,16 @@ class FarmClient {
   /// machine, that has the new join string. Not retried.
   absl::StatusOr<std::string> rotate_secret(link::Role role);
   /// Returns the link by which browsers join as workers; makes it if there is none. `seconds`: the
-  /// time after which it ends; 0: its end is not changed (8 hours for a new link). `revoke`: ends
-  /// it now, and the reply has no link; `seconds` MUST be 0.
+  /// time after which the link ends; 0: the end of the link is not changed, and a new link lasts 8
+  /// hours. `revoke`: the link ends now, and the reply has no link; then `seconds` MUST be 0.
   absl::StatusOr<farm::BrowserLinkReply> browser_link(double seconds, bool revoke);
   /// Returns the reasons why the job is not done, at least one. NOT_FOUND: no such job.
   absl::StatusOr<std::vector<std::string>> why(JobId job);
 
   const std::string& address() const { return connected_.address; }
 
-  /// Cancels the call in progress, unless it starts a job, and every later one, with CANCELLED: for
-  /// Ctrl-C. Thread-safe.
+  /// Cancels the call in progress, unless that call starts a job. The cancelled call and every
+  /// later call return CANCELLED. Commands use it for Ctrl-C. Thread-safe.
   void stop() EXCLUDES(mutex_);
   bool stopped() const EXCLUDES(mutex_);
 
@@ -147,13 +147,14 @@ class FarmClient {
   /// Starts a call whose reply is an image in chunks.
   using OpenImage =
       std::function<std::unique_ptr<grpc::ClientReader<farm::ResultChunk>>(grpc::ClientContext&)>;
-  /// Makes such a call and checks the image. DATA_LOSS: its digest or its size is wrong.
+  /// Makes the call `open` and checks the image. DATA_LOSS: its digest or its size is wrong.
   absl::StatusOr<FarmImage> receive(JobId job, const OpenImage& open);
 
   /// Calls `body` with a new context for each attempt, at most kTries times, while the farm does
   /// not answer within `deadline`.
-  /// If the call starts a job, stop() ends only the pauses between attempts; after an attempt whose
-  /// outcome is unknown, the message of CANCELLED then says where the user finds the job.
+  /// If the call starts a job, stop() does not cancel an attempt. It ends the pauses between
+  /// attempts, and no further attempt is made. If stop() is called after an attempt whose outcome is
+  /// unknown, the message of CANCELLED says where the user finds the job.
   absl::Status call(std::chrono::milliseconds deadline,
                     const std::function<grpc::Status(grpc::ClientContext&)>& body,
                     bool starts_job = false) EXCLUDES(mutex_);
@@ -182,7 +183,8 @@ class FarmClient {
   std::unique_ptr<farm::Farm::Stub> bulk_;     ///< on the connection for blobs and images
   mutable Mutex mutex_;
   CondVar changed_;
-  grpc::ClientContext* running_ GUARDED_BY(mutex_) = nullptr;  ///< of the call that stop() cancels
+  /// Context of the call that stop() cancels; nullptr: there is no such call.
+  grpc::ClientContext* running_ GUARDED_BY(mutex_) = nullptr;
   bool stopped_ GUARDED_BY(mutex_) = false;
 };
 

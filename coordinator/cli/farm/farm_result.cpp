@@ -35,6 +35,7 @@ Display display_of(const Received& received) {
   return known ? Display{received.exposure, static_cast<Tone>(received.tone), false} : Display();
 }
 
+// Converts the bytes to an image. DATA_LOSS: their number or their digest is wrong.
 absl::StatusOr<FarmImage> image_of(const Received& received) {
   const absl::Span<const std::byte> span = std::as_bytes(std::span(received.bytes));
   if (received.bytes.size() != received.size() || wire::sha256(span).raw() != received.sha256) {

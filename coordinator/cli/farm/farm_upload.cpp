@@ -10,9 +10,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Returns true if the farm has fewer bytes of the blob than this client assumed
-/// (FAILED_PRECONDITION), or has deleted damaged ones (DATA_LOSS). Then the upload starts again at
-/// the byte that the farm reports.
+/// `status` is the result of an upload. Returns true if the upload began at the wrong byte: the
+/// farm has fewer bytes of the blob than this client assumed (FAILED_PRECONDITION), or has deleted
+/// damaged bytes (DATA_LOSS). Then the upload starts again at the byte that the farm reports.
 bool other_is_there(const absl::Status& status) {
   return absl::IsFailedPrecondition(status) || absl::IsDataLoss(status);
 }

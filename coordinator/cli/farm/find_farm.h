@@ -10,10 +10,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the join string (a line with the addresses of a farm, the digest of its certificate and
-/// a secret) given by --farm, else by BANDSAW_FARM, else by the default data folder. UNAVAILABLE:
-/// none of them names a farm. INVALID_ARGUMENT: the text is no join string, or one for workers.
-/// Other errors: the file cannot be read.
+/// Returns the join string that --farm gives, else BANDSAW_FARM, else the default data folder. A
+/// join string is a line with the addresses of a farm, the digest of its certificate and a secret.
+/// UNAVAILABLE: none of the three names a farm. INVALID_ARGUMENT: the text is no join string, or
+/// one for workers. Other errors: the file cannot be read.
 absl::StatusOr<link::JoinString> find_farm(const FarmOption& option);
 
 }  // namespace bandsaw::coordinator

@@ -49,7 +49,7 @@ absl::Status FrameFetcher::update() {
 
 /// Submits the jobs of the guides (images that the denoiser needs) of all frames that are done, so
 /// that the farm renders them while this machine filters. Asks for changes first, because filtering
-/// takes long and further frames may be done since the last time.
+/// takes long and further frames may be done since the last request.
 absl::Status FrameFetcher::start_guides_of_new_frames() {
   RETURN_IF_ERROR(take_changes());
   for (const auto& [number, job] : not_fetched_) {
@@ -64,7 +64,7 @@ absl::Status FrameFetcher::start_guides_of_new_frames() {
 
 absl::Status FrameFetcher::take_changes() {
   ASSIGN_OR_RETURN(FarmClient::Frames changed, client_->frames(sequence_, after_));
-  // After a restart of the coordinator after_ is void, so all frames are requested.
+  // After a restart of the coordinator, after_ has no meaning. So all frames are requested.
   if (changed.epoch != epoch_) {
     if (after_ > 0) {
       ASSIGN_OR_RETURN(changed, client_->frames(sequence_, 0));

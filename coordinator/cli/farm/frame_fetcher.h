@@ -20,8 +20,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Makes a connection of its own to the farm of `client`. The other arguments MUST outlive the
-/// object.
+/// Uses a client of its own on the connection of `client`. The other arguments of the constructor
+/// MUST outlive the object.
 class FrameFetcher {
  public:
   /// `wanted`: the sequence, and what is made of its frames.
@@ -29,8 +29,8 @@ class FrameFetcher {
                const Console& console);
 
   /// Fetches the frames that were done since the last call, if a file is made of them, and reports
-  /// frames that failed. UNAVAILABLE: the farm cannot be reached; the next call fetches what this
-  /// one did not. Other errors: a file could not be written, or an image is lost.
+  /// frames that failed. UNAVAILABLE: the farm cannot be reached; the next call fetches what is
+  /// left. Other errors: a file could not be written, or an image could not be fetched or cleaned.
   absl::Status update();
   /// Fetches all frames that are done and not yet fetched. If the farm cannot be reached, waits for
   /// it up to a minute. CANCELLED: stop() was called. Other errors as update().
@@ -51,10 +51,12 @@ class FrameFetcher {
   void report_failure(const FrameView& frame);
   /// Submits the jobs of the guides (images that the denoiser needs) of frames that are done.
   absl::Status start_guides_of_new_frames();
-  /// `job`: here and below, the job that rendered the frame.
+  /// Fetches the image of a frame, writes its files and calls add_to_collections(). `job`: here and
+  /// below, the job that rendered the frame.
   absl::Status fetch(FrameNumber number, JobId job);
   absl::StatusOr<JobPictures> pictures_of(FrameNumber number, JobId job);
   absl::Status write(FrameNumber number, const JobPictures& pictures);
+  /// Adds the frame to the contact sheet, and to the video if it is the video's next frame.
   absl::Status add_to_collections(FrameNumber number, const JobPictures& pictures);
   absl::Status feed_video();
   /// Returns true if any file is made of the images.

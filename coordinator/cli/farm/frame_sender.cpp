@@ -1,5 +1,5 @@
 // A thread imports one frame after the other, uploads its package and adds the frame to the
-// sequence. It uses a connection of its own, so that stop() can end its calls.
+// sequence. It uses a client of its own, so that stop() can end its calls.
 
 #include "coordinator/cli/farm/frame_sender.h"
 

@@ -33,9 +33,9 @@ using ImportFrame = std::function<absl::StatusOr<ImportedPackage>(FrameNumber fr
 
 class FrameSender {
  public:
-  /// Starts at once, on a connection of its own to the farm of `client`. If a frame cannot be sent,
-  /// no further frame is sent. Then `failed` is called on the sender's thread, unless the frame was
-  /// refused because the sequence is over.
+  /// Starts at once, with a client of its own on the connection of `client`. If a frame cannot be
+  /// sent, no further frame is sent. Then `failed` is called on the sender's thread, unless the
+  /// frame was refused because the sequence is over.
   FrameSender(const FarmClient& client, const Console& console, JobId sequence,
               std::vector<FrameNumber> frames, ImportFrame import, std::function<void()> failed);
   /// Stops and waits for the thread.
@@ -43,8 +43,8 @@ class FrameSender {
   FrameSender(const FrameSender&) = delete;
   FrameSender& operator=(const FrameSender&) = delete;
 
-  /// Waits until all frames are sent, or one of them cannot be sent; returns its error. CANCELLED:
-  /// stop() was called. ABORTED: the sequence is over.
+  /// Waits until all frames are sent, or until one frame cannot be sent. Returns OK, or the error
+  /// of that frame. CANCELLED: stop() was called. ABORTED: the sequence is over.
   absl::Status wait();
   /// Ends the import or the call that is in progress. Thread-safe.
   void stop();
@@ -63,7 +63,7 @@ class FrameSender {
   ProgressDisplay display_;  ///< prints nothing
   std::atomic<bool> stop_{false};
   mutable Mutex mutex_;
-  std::size_t sent_ GUARDED_BY(mutex_) = 0;  ///< number of frames, from the first one
+  std::size_t sent_ GUARDED_BY(mutex_) = 0;  ///< number of frames that are sent
   absl::Status status_ GUARDED_BY(mutex_);   ///< error of the frame that could not be sent
   std::thread thread_;
 };

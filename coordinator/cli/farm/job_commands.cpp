@@ -1,5 +1,5 @@
 // The commands `bandsaw cancel`, `pause`, `resume`, `priority` and `why`, which control or explain
-// one job, and `bandsaw quarantine`, which excludes the machine of a worker.
+// one job, and `bandsaw quarantine`, which excludes the machine of a worker or admits it again.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"

@@ -74,6 +74,7 @@ absl::Status check_files(const SubmitOptions& options, const WatchOptions& watch
   return absl::OkStatus();
 }
 
+/// A sequence that start() has started or continued.
 struct Started {
   JobId job = 0;
   std::vector<FrameNumber> left;  ///< frames whose scenes are still to be sent
@@ -81,8 +82,8 @@ struct Started {
 };
 
 /// Starts or continues the sequence and sends its first scene. An error after the job was started
-/// is in Started::sent. On an error of the import, sets `code` to its exit code; otherwise `code`
-/// is unchanged.
+/// is in Started::sent. If the import or check_denoise() fails, sets `code` to the exit code;
+/// otherwise `code` is unchanged.
 absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options,
                               FrameImporter& importer, Process& process, ExitCode& code) {
   Started started{options.continued, options.frames, absl::OkStatus()};
@@ -125,8 +126,8 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
 
 /// Prints why the scenes of `frames` were not sent; returns the exit code. Also names the frames
 /// and the command that sends them, unless the job is over (ABORTED). `status` is an error of the
-/// import or of the farm. It is treated as an error of the farm if import_exit_code() returns
-/// kWrong, which it does for every code that it does not name.
+/// import or of the farm. The exit code is import_exit_code(status), unless that is kWrong. kWrong
+/// stands for all errors that import_exit_code() does not name, so exit_code_of(status) is used.
 ExitCode not_sent(const absl::Status& status, JobId job, const std::vector<FrameNumber>& frames,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)
@@ -163,7 +164,7 @@ ExitCode submit_frames(FarmClient& client, const SubmitOptions& options, WatchOp
     return not_sent(started->sent, started->job, started->left, console);
   }
   const auto import = [&](FrameNumber frame, const std::atomic<bool>& stop) {
-    std::vector<std::string> warnings;  // those of the first frame have been printed
+    std::vector<std::string> warnings;  // not printed; start() has printed those of the first frame
     return importer.import(frame, stop, warnings);
   };
   FrameSender sender(client, console, started->job, started->left, import, [&] {

@@ -1,5 +1,5 @@
 // The command `bandsaw watch`: follows a job that was submitted before and fetches its image, or
-// those of its frames.
+// the images of its frames.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/farm/after_job.h"

@@ -143,11 +143,12 @@ class Watch {
   ProgressDisplay& display_;
   const std::function<void(const Progress&)>& also_;
   Progress last_;
-  std::optional<double> gone_since_;  // when the farm was lost; std::nullopt: it is there
+  std::optional<double> gone_since_;  // when the farm was lost; std::nullopt: not lost
 };
 
 // Prints an error that occurred after the farm had finished the image, and returns kFailed. The
-// command in the message names no outputs of the user, because these may be what cannot be written.
+// message has the command that fetches the image again. That command does not name the user's
+// output files, because they may be the files that cannot be written.
 ExitCode not_fetched(const absl::Status& status, WatchOptions options, const Console& console) {
   options.outputs.clear();
   return console.fail(
@@ -161,9 +162,10 @@ bool is_file_name(const std::string& farm) {
   return farm != "-" && !link::parse_join_string(farm).ok() && std::filesystem::exists(farm, error);
 }
 
-/// Returns what is written for the job. The farm renders the additional layers and, with --denoise,
-/// the images that the denoiser needs. Shows the image as rendered and then the clean one in the
-/// views.
+/// Returns the images that are written for the job: `result`, the additional layers that `beside`
+/// makes and, with --denoise, the clean image. `beside` may be empty. The farm renders the layers
+/// and the images that the denoiser needs. Shows the image as rendered in the views, and then the
+/// clean image.
 absl::StatusOr<JobPictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
                                         const Wanted& wanted, ImageViews& views,
                                         ProgressDisplay& display, const BesideImage& beside) {

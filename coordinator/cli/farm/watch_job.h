@@ -52,8 +52,8 @@ ExitCode left_early(const absl::Status& status, JobId job, const std::string& ho
 absl::Status write_pictures(const JobPictures& pictures, const Wanted& wanted);
 
 /// Displays the job's progress until its state is final (done, failed or cancelled), and returns
-/// the last status. If the farm is unreachable, retries for one minute. UNAVAILABLE: it did not
-/// come back. CANCELLED: client.stop() was called. `on_status` is called with each status, also
+/// the last status. If the farm is unreachable, retries for one minute. UNAVAILABLE: the farm did
+/// not come back. CANCELLED: client.stop() was called. `on_status` is called with each status, also
 /// with the last one.
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display,
                                     const std::function<void(const Progress&)>& on_status = {});
@@ -62,10 +62,10 @@ absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDispl
 using BesideImage =
     std::function<absl::StatusOr<Layers>(std::uint64_t samples, ProgressDisplay& display)>;
 
-/// Displays the job's progress until its state is final, then fetches its image and writes the
-/// files and `reports` (names that report_files() has returned), with the layers made by `beside`,
-/// if given. After a signal it returns kInterrupted, and the job continues on the farm. If the farm
-/// is unreachable, retries for one minute.
+/// Displays the job's progress until its state is final. Then fetches its image, and writes the
+/// files and `reports` (names that report_files() has returned). If `beside` is not empty, the
+/// files get the layers that it makes. After a signal watch_job() returns kInterrupted, and the job
+/// continues on the farm. If the farm is unreachable, retries for one minute.
 ExitCode watch_job(FarmClient& client, const WatchOptions& options,
                    const std::vector<std::string>& reports, Process& process,
                    const BesideImage& beside = {});

@@ -27,8 +27,8 @@ constexpr std::array<std::uint16_t, 11> kDigits = {
     0b111'101'101'101'111, 0b010'110'010'010'111, 0b111'001'111'100'111, 0b111'001'111'001'111,
     0b101'101'111'001'001, 0b111'100'111'001'111, 0b111'100'111'101'111, 0b111'001'010'010'010,
     0b111'101'111'101'111, 0b111'101'111'001'111, 0b000'000'111'000'000};
-constexpr Rgb kPaper{0.02f, 0.02f, 0.02f};
-constexpr Rgb kInk{0.6f, 0.6f, 0.6f};       ///< of numbers, and of the cross of a missing frame
+constexpr Rgb kPaper{0.02f, 0.02f, 0.02f};  ///< background of the sheet
+constexpr Rgb kInk{0.6f, 0.6f, 0.6f};       ///< numbers, and the cross of a missing frame
 constexpr Rgb kCross{0.25f, 0.05f, 0.04f};  ///< background of that cross
 
 /// Returns at most `most` of the numbers, at equal distances, with the first and the last.
@@ -56,6 +56,7 @@ ContactSheet::ContactSheet(const std::vector<std::int64_t>& numbers, std::uint32
   const double columns = std::ceil(std::sqrt(static_cast<double>(cells_.size()) * 1.6 / aspect));
   columns_ =
       static_cast<std::uint32_t>(std::clamp(columns, 1.0, static_cast<double>(cells_.size())));
+  // A cell is at least 24 pixels wide, unless the frame itself is narrower.
   cell_width_ = std::min({width, kMaxCell, std::max(kSheetWidth / columns_, kGap + 24) - kGap});
   cell_height_ =
       std::max<std::uint32_t>(1, static_cast<std::uint32_t>(std::lround(cell_width_ / aspect)));

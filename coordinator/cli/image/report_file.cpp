@@ -36,12 +36,14 @@ bool is_report(const std::string& path) {
 /// Returns true if a report may be written there: no file exists, or it is a report.
 bool is_free(const std::string& path) { return !is_there(path) || is_report(path); }
 
+/// Makes the error for a file that exists and is no report.
 absl::Status taken(const std::string& path) {
   return absl::InvalidArgumentError(absl::StrCat(
       path, ": exists and is no report; choose another with --report FILE, or --report none"));
 }
 
-/// Returns the name of the report beside an image.
+/// Returns the name of the report beside an image: with .json if that name is free, otherwise with
+/// .report.json.
 std::string beside(const std::string& output) {
   const fs::path path(output);
   const std::string plain = fs::path(path).replace_extension(".json");

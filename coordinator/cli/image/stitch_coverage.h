@@ -13,7 +13,7 @@ namespace bandsaw::coordinator {
 
 class StitchCoverage {
  public:
-  /// `height`: of the image.
+  /// `height`: number of rows of the image.
   explicit StitchCoverage(std::uint32_t height) : rows_(height) {}
 
   /// Adds a band (a range of rows and a range of samples) of the file `part`. INVALID_ARGUMENT:

@@ -37,7 +37,7 @@ bool is_installed(const std::string& name) {
 }
 
 /// Returns the options of the encoder: VP9 for .webm, otherwise H.264. The quality (-crf) is nearly
-/// lossless, and browsers play both.
+/// lossless. Browsers play both formats.
 std::vector<std::string> encoder_for(const std::string& path) {
   return absl::EndsWithIgnoreCase(path, ".webm")
              ? std::vector<std::string>{"-c:v", "libvpx-vp9", "-crf", "20", "-b:v", "0"}
@@ -86,7 +86,7 @@ absl::Status Video::start() {
   }
   // Players need yuv420p, which stores colours for two by two pixels, so both sides must be even.
   // ffmpeg converts colours by BT.601 unless it is told to use BT.709. Tags tell the player which
-  // of the two was used; without tags, players take BT.709 for large videos and BT.601 for small
+  // of the two was used; without tags, players assume BT.709 for large videos and BT.601 for small
   // ones.
   for (const char* option :
        {"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
@@ -94,7 +94,8 @@ absl::Status Video::start() {
         "bt709", "-color_range", "tv"}) {
     arguments.emplace_back(option);
   }
-  arguments.push_back("file:" + part_);  // else ffmpeg takes "a:" for a protocol
+  // Without "file:", ffmpeg would read "a:" at the beginning of a name as a protocol.
+  arguments.push_back("file:" + part_);
   ASSIGN_OR_RETURN(PipedChild child, PipedChild::start(arguments));
   ffmpeg_.emplace(std::move(child));
   return absl::OkStatus();

@@ -24,7 +24,7 @@ std::vector<Check> all_checks(const DoctorOptions& options, const std::string& f
     of_farm = check_farm(*join);
     own = join->addresses;
   } else {
-    // Having no farm is not an error: this may be the machine that will have one.
+    // Having no farm is not an error: a coordinator may be started on this machine later.
     of_farm.checks = {
         {"farm", absl::IsNotFound(join.status()), std::string(join.status().message())}};
   }

@@ -47,8 +47,8 @@ std::string existing_part(std::string folder) {
   return folder;
 }
 
-/// Returns true if the host of `address` (HOST:PORT) is this machine: it can listen there on a free
-/// port. Returns false if `address` is empty.
+/// Returns true if the host of `address` (HOST:PORT) is this machine. This is tested by listening
+/// on any free port of that host. Returns false if `address` is empty.
 bool is_here(const std::string& address) {
   return !address.empty() && check_can_listen(address.substr(0, address.rfind(':')) + ":0").ok();
 }

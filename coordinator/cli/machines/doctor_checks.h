@@ -41,7 +41,8 @@ Check check_import_program();
 Check check_worker_programs();
 /// Checks that the port of `listen` (HOST:PORT) is free, or taken by the farm. `answered`: the
 /// address at which the farm answers; empty: at none. `own`: all addresses of its join string. The
-/// farm has the port if it answers on this machine, and listens on all addresses or on `listen`.
+/// farm has the port if it answers on this machine at the port of `listen`, and if `listen` is one
+/// of `own` or stands for all addresses of the machine (0.0.0.0 or [::]).
 Check check_port(const std::string& listen, const std::string& answered,
                  const std::vector<std::string>& own);
 

@@ -58,8 +58,8 @@ absl::StatusOr<RemoteScript> script_for(Machine machine, const std::string& join
                               absl::StrCat(join, "\n", program.bytes));
 }
 
-/// Parses the architecture from the output of machine_script. INVALID_ARGUMENT: workers are not
-/// built for it.
+/// Parses the architecture from the output of machine_script, such as "Linux x86_64".
+/// INVALID_ARGUMENT: workers are not built for this system or architecture.
 absl::StatusOr<Machine> machine_of(absl::string_view output) {
   absl::string_view name = output;
   const bool linux_system = absl::ConsumePrefix(&name, "Linux ");

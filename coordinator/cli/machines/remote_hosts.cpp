@@ -1,6 +1,6 @@
 // Runs ssh for each host. ssh's standard input is a file in memory with the script and the script's
-// own input. A shell on the host reads the script from it and evaluates it. The script is in no
-// command line, so the user's login shell on the host does not parse it.
+// own input. A shell on the host reads the script from its standard input and evaluates it. The
+// script is in no command line, so the user's login shell on the host does not parse it.
 
 #include "coordinator/cli/machines/remote_hosts.h"
 

@@ -23,7 +23,7 @@ struct RemoteOutcome {
 /// they are sent to.
 class RemoteScript {
  public:
-  /// Returns the system's error if the file with the input cannot be created.
+  /// Writes the script and its input to a file in memory. Returns the system's error if that fails.
   static absl::StatusOr<RemoteScript> create(const std::string& script,
                                              const std::string& input = "");
 

@@ -1,5 +1,6 @@
 // The scripts that install and remove a worker begin with kCommon, which defines shell functions.
-// Numbers and digests are put into the text of a script; the secret comes from standard input.
+// Numbers and digests are put into the text of a script. The join string, which has a secret, comes
+// from standard input.
 
 #include "coordinator/cli/machines/remote_scripts.h"
 
@@ -9,7 +10,9 @@ namespace bandsaw::coordinator {
 namespace {
 
 // The common part of both scripts. `result` prints the result and ends the script; its first
-// argument is ok or failed. `end_worker` ends a worker that runs.
+// argument is ok or failed. `serves` succeeds if the worker runs as a service of systemd.
+// `gone_within` waits at most $1 seconds until the process of own_pid has ended, and fails if it
+// still runs. `end_worker` ends a worker that runs.
 constexpr char kCommon[] = R"sh(
 result() { echo "bandsaw-result: $*"; exit 0; }
 [ -n "${HOME:-}" ] || result failed "HOME is not set there"
@@ -20,7 +23,7 @@ export XDG_RUNTIME_DIR
 
 here=$(uname -n)
 
-# Fails if another machine, whose home folder is the same, has a worker in it. Sets shared to the
+# Fails if another machine shares this home folder and has a worker in it. Sets shared to the
 # message.
 is_ours() {
   host=$(cat "$dir/host" 2>/dev/null)
@@ -29,8 +32,8 @@ is_ours() {
   [ "${host:-$here}" = "$here" ]
 }
 
-# Sets pid to the process of a worker that runs without systemd. Fails if there is none, or if the id was
-# reused by another program.
+# Sets pid to the process of a worker that runs without systemd. Fails if there is none, or if
+# another program has this id now.
 own_pid() {
   pid=$(cat "$dir/pid" 2>/dev/null) || return 1
   case $(readlink "/proc/$pid/exe" 2>/dev/null) in
@@ -47,10 +50,11 @@ gone_within() {
   done
   ! own_pid
 }
-# The first signal drains, the second leaves at once. $1: seconds to drain.
+# At the first signal the worker finishes its bands; at the second it ends at once. $1: seconds to
+# wait for the bands.
 end_worker() {
   if [ -f "$unit" ]; then
-    # Not by `stop`, which ends it after the unit's own time.
+    # The signal is sent by `kill`: `stop` would end the worker after the time limit of the unit.
     serves && systemctl --user kill --signal=TERM bandsaw-worker 2>/dev/null
     left=$(($1 * 5))
     while serves && [ "$left" -gt 0 ]; do
@@ -134,7 +138,7 @@ else
     >"$dir/log" 2>&1 </dev/null &
   echo $! >"$dir/pid"
   how="a process until it is restarted"
-  running() { readlink "/proc/$(cat "$dir/pid")/exe" >/dev/null; }  # not so of a dead child
+  running() { readlink "/proc/$(cat "$dir/pid")/exe" >/dev/null; }  # fails for a dead child
 fi
 
 joined="^bandsaw-worker .* joined "
