@@ -13,7 +13,7 @@ namespace {
 /// `status` is the result of an upload. Returns true if the upload began at the wrong byte: the
 /// farm has fewer bytes of the blob than this client assumed (FAILED_PRECONDITION), or has deleted
 /// damaged bytes (DATA_LOSS). Then the upload starts again at the byte that the farm reports.
-bool other_is_there(const absl::Status& status) {
+bool offset_is_wrong(const absl::Status& status) {
   return absl::IsFailedPrecondition(status) || absl::IsDataLoss(status);
 }
 
@@ -23,7 +23,7 @@ absl::Status FarmClient::put_blob(const wire::Digest& digest, absl::Span<const s
                                   std::uint64_t there,
                                   const std::function<void(std::uint64_t)>& sent) {
   absl::Status status = put_rest(digest, bytes, there, sent);
-  for (int tries = 1; tries < kTries && (outcome_unknown(status) || other_is_there(status));
+  for (int tries = 1; tries < kTries && (outcome_unknown(status) || offset_is_wrong(status));
        ++tries) {
     pause(kRetryPause);
     ASSIGN_OR_RETURN(const std::vector<MissingBlob> missing, missing_blobs({digest}));

@@ -93,9 +93,9 @@ absl::Status FrameFetcher::take_changes() {
 
 /// Reports each failure of a frame once.
 void FrameFetcher::report_failure(const FrameView& frame) {
-  const bool over = frame.state == FrameState::kFailed;
-  const std::string what = absl::StrCat(over ? " failed: " : " is tried again, because it failed: ",
-                                        printable(frame.reason));
+  const bool gave_up = frame.state == FrameState::kFailed;
+  const std::string what = absl::StrCat(
+      gave_up ? " failed: " : " is tried again, because it failed: ", printable(frame.reason));
   if (reported_.emplace(frame.number, what).second) {
     display_.note(absl::StrCat("frame ", frame.number, what));
   }

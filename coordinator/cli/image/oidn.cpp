@@ -109,11 +109,12 @@ absl::StatusOr<Oidn> Oidn::load(const std::string& file) {
 
 absl::StatusOr<Image> Oidn::filter(const Image& color, const Image& albedo,
                                    const Image& normal) const {
-  const Library& of = *library_;
-  const std::unique_ptr<OidnDevice, OfDevice> device(of.new_device(kDeviceCpu), of.release_device);
+  const Library& library = *library_;
+  const std::unique_ptr<OidnDevice, OfDevice> device(library.new_device(kDeviceCpu),
+                                                     library.release_device);
   const auto error = [&] {
     const char* message = nullptr;
-    const int code = of.get_error(device.get(), &message);
+    const int code = library.get_error(device.get(), &message);
     return code == 0 ? absl::OkStatus()
                      : absl::InternalError(absl::StrCat(
                            "OpenImageDenoise: ", message != nullptr ? message : "error ",
@@ -123,28 +124,28 @@ absl::StatusOr<Image> Oidn::filter(const Image& color, const Image& albedo,
     RETURN_IF_ERROR(error());
     return absl::InternalError("OpenImageDenoise: no device of this machine can be used");
   }
-  of.commit_device(device.get());
+  library.commit_device(device.get());
   RETURN_IF_ERROR(error());
   Image out{color.width, color.height, std::vector<Rgb>(color.pixels.size())};
-  const std::unique_ptr<OidnFilter, OfFilter> filter(of.new_filter(device.get(), "RT"),
-                                                     of.release_filter);
+  const std::unique_ptr<OidnFilter, OfFilter> filter(library.new_filter(device.get(), "RT"),
+                                                     library.release_filter);
   if (filter == nullptr) {
     RETURN_IF_ERROR(error());
     return absl::InternalError("OpenImageDenoise: it has no filter for ray tracing");
   }
   const auto set = [&](const char* name, const Image& image) {
     // The library does not write to its input.
-    of.set_image(filter.get(), name, const_cast<Rgb*>(image.pixels.data()), kFormatFloat3,
-                 image.width, image.height, 0, sizeof(Rgb), image.width * sizeof(Rgb));
+    library.set_image(filter.get(), name, const_cast<Rgb*>(image.pixels.data()), kFormatFloat3,
+                      image.width, image.height, 0, sizeof(Rgb), image.width * sizeof(Rgb));
   };
   set("color", color);
   set("albedo", albedo);
   set("normal", normal);
   set("output", out);
-  of.set_bool(filter.get(), "hdr", true);
-  of.commit_filter(filter.get());
+  library.set_bool(filter.get(), "hdr", true);
+  library.commit_filter(filter.get());
   RETURN_IF_ERROR(error());
-  of.execute_filter(filter.get());
+  library.execute_filter(filter.get());
   RETURN_IF_ERROR(error());
   return out;
 }

@@ -89,7 +89,7 @@ JsonObject health_json(const Report& report) {
                                    : out.text("first_bad_sample", progress.bad_sample_at);
 }
 
-JsonObject who_json(const Progress& progress) {
+JsonObject machines_json(const Progress& progress) {
   JsonObject out;
   const JobView& job = progress.job;
   out.known_number("mrays_per_cpu_s",
@@ -150,7 +150,7 @@ std::string report_text(const Report& report) {
   return out.objects("curve", curve_json(job.curve))
       .object("time", time_json(job))
       .object("work", work_json(job))
-      .object("machines", who_json(report.progress))
+      .object("machines", machines_json(report.progress))
       .object("health", health_json(report))
       .object("hashes", hashes_json(report))
       .object("program", program_json())

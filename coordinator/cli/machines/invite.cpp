@@ -192,14 +192,14 @@ ExitCode run(const InviteOptions& options, Process& process) {
 
 ExitCode run(const DismissOptions& options, Process& process) {
   // The connection and the shell need time in addition to the drain.
-  constexpr double kAround = 30;
+  constexpr double kExtra_s = 30;
   const auto script =
       RemoteScript::create(dismiss_script(static_cast<int>(std::ceil(options.drain_s))));
   if (!script.ok()) {
     return finished(script.status(), process.console);
   }
   const HostWork work = [&](const std::string& host, const std::atomic<bool>& stop) {
-    return script->run(host, options.drain_s + kAround, stop);
+    return script->run(host, options.drain_s + kExtra_s, stop);
   };
   return on_hosts(options.hosts, "dismissed", work, options.verbosity, process);
 }
