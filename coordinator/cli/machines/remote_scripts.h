@@ -11,10 +11,11 @@
 
 namespace bandsaw::coordinator {
 
+/// The start of the line with the result.
 inline constexpr char kRemoteResult[] = "bandsaw-result: ";
 
-/// Returns a script that prints the system and the architecture of the host as `uname` does: "Linux
-/// x86_64".
+/// Returns a script whose result has the system and the architecture of the host as its text, in
+/// the words of `uname`: "Linux x86_64".
 std::string machine_script();
 
 /// Returns a script that reads a line with the join string and then the worker's program from

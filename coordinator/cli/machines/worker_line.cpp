@@ -9,7 +9,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Returns a shell command that sets `d` to the digest of the program for the machine, or fails.
+/// Returns a shell command that sets the shell variable `d` to the digest of the program for the
+/// machine's architecture. If `programs` has none, the command prints an error and fails.
 std::string choice_of_digest(const WorkerDigests& programs) {
   std::string arms;
   std::string names;
@@ -27,9 +28,10 @@ std::string choice_of_digest(const WorkerDigests& programs) {
 
 std::string worker_line(const std::string& url, const std::optional<wire::Digest>& public_key,
                         const WorkerDigests& programs, const std::string& join) {
-  // The certificate is the farm's own and not signed by an authority, so only its key is checked.
-  // The file gets its name when it is complete, because a program of that name may be running. A
-  // proxy of the environment is not used, because the worker does not use one either.
+  // The certificate is the farm's own and not signed by an authority, so curl checks only its key.
+  // The download goes to a file with another name, which is renamed at the end, because a program
+  // of the final name may be running. curl ignores the proxy that the environment sets, because the
+  // worker ignores it as well.
   const std::string trust = public_key ? absl::StrCat(" -k --pinnedpubkey sha256//",
                                                       absl::Base64Escape(public_key->raw()))
                                        : "";

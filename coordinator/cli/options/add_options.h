@@ -10,8 +10,8 @@
 
 namespace bandsaw::coordinator {
 
-// Options that several commands have: --data; --keep-days, --keep-size and --keep-jobs; --farm;
-// --json and, if `can_be_quiet`, --quiet.
+// Options that several commands have. add_keep() adds --keep-days, --keep-size and --keep-jobs.
+// add_verbosity() adds --json and, if `can_be_quiet`, --quiet.
 void add_data(CLI::App& app, RawOptions& raw);
 void add_keep(CLI::App& app, RawOptions& raw);
 void add_farm(CLI::App& app, RawOptions& raw);

@@ -1,6 +1,6 @@
-// Checks the options of the commands that control a farm and its machines, and those of `serve`
-// that have a check of their own. Each checked_X() converts the texts that the user typed to the
-// plain values of command X, or returns INVALID_ARGUMENT.
+// Checks the options of the commands that control a farm and its machines, and those options of
+// `serve` that have a check of their own. Each checked_X() converts the texts that the user typed
+// to the plain values of command X, or returns INVALID_ARGUMENT.
 
 #include <algorithm>
 
@@ -54,7 +54,7 @@ absl::StatusOr<Browsers> checked_browsers(const RawOptions& raw) {
   if (word == words.end()) {
     return wrong_choice("--browsers", *raw.browsers);
   }
-  return static_cast<Browsers>(word - words.begin());
+  return static_cast<Browsers>(word - words.begin());  // the words are in the order of Browsers
 }
 
 absl::StatusOr<std::string> checked_web(const RawOptions& raw) {

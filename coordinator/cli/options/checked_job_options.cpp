@@ -9,7 +9,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Checks what all these commands have: the job's number, the farm and the form of the output.
+/// Checks the options that all these commands have: the job's number, the farm and the form of the
+/// output. Returns the command's `Options` with these fields set. `command`: its name, for errors.
 template <class Options>
 absl::StatusOr<Options> checked(const RawOptions& raw, const std::string& command) {
   Options options;

@@ -77,6 +77,7 @@ absl::Status read_positive(const char* name, const std::optional<std::string>& t
 }
 
 /// Reads --frame, --fps and --shutter. They determine at which time a scene that moves is rendered.
+/// Also checks --frames and --fixed-seed against --frame.
 absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
   if (raw.frame && raw.frames) {
     return wrong("--frame and --frames exclude each other");
@@ -94,6 +95,8 @@ absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
     }
     choices.frame = frame;
   }
+  // Reads a number in [low, high] into `to`, which becomes std::nullopt without `text`. The option
+  // is refused if the command line selects no frames.
   const auto read = [&](const char* name, const std::optional<std::string>& text, double low,
                         double high, std::optional<double>& to) -> absl::Status {
     double value = 0;
@@ -298,6 +301,8 @@ absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   return options;
 }
 
+/// Returns the layers of --layers; none: not given. INVALID_ARGUMENT: a name is wrong, or no output
+/// is an EXR file of a whole image.
 absl::StatusOr<std::vector<LayerKind>> checked_layers(const RawOptions& raw) {
   if (!raw.layers) {
     return std::vector<LayerKind>{};
@@ -323,7 +328,8 @@ absl::StatusOr<Denoiser> checked_denoise(const RawOptions& raw) {
 }
 
 /// Reads the options of `submit` for a sequence (a job of many frames): --frames, --continue, and
-/// those that take effect when the job is over. Checks that options for single images are absent.
+/// the options that take effect when the job is over. If --frames is given, checks that options for
+/// single images are absent and that each output has a place for the number of a frame.
 absl::Status read_sequence(const RawOptions& raw, SubmitOptions& options) {
   ASSIGN_OR_RETURN(options.frames, checked_frames(raw));
   ASSIGN_OR_RETURN(options.after, checked_after(raw));

@@ -1,7 +1,7 @@
 #pragma once
 
-// RawOptions has the options as the user typed them. The functions checked_X() check those of
-// command X and convert them to its plain values (cli/options/options.h). All errors are
+// RawOptions has the options as the user typed them. The function checked_X() checks the options of
+// command X and converts them to plain values (cli/options/options.h). All errors are
 // INVALID_ARGUMENT, with a message for the user.
 
 #include <optional>
@@ -13,8 +13,11 @@
 
 namespace bandsaw::coordinator {
 
-/// The texts of the options of all commands; a command uses some of the fields. A string that is
-/// empty, an optional without a value, an empty list or false: the option was not given.
+/// The texts of the options of all commands; a command uses some of the fields. If an option was
+/// not given, its field is an empty string, an optional without a value, an empty list or false.
+/// Most fields have the name of their option or argument. `outputs` is -o, `parameters` is -D,
+/// `continued` is --continue, `time` is --time or --for, `reference_samples` is --reference, and
+/// `compare_clean` is --denoise of `study`.
 struct RawOptions {
   std::string scene, environment, camera, animation, image, reference, data, farm, join;
   std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size,
@@ -61,7 +64,8 @@ absl::StatusOr<Command> checked_compare(const RawOptions& raw);
 // The following functions check options that several commands have.
 
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
-/// `has_images`: false if the command writes no image; then --report is an error.
+/// Returns the file of --report. `has_images`: whether the command writes an image; if it writes
+/// none, --report is an error.
 absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
 /// Returns HOST:PORT of --tev, the viewer that shows the image as it forms; empty: not given.
 absl::StatusOr<std::string> checked_tev(const RawOptions& raw);
@@ -74,8 +78,9 @@ absl::Status check_frame_places(const std::vector<std::string>& outputs);
 /// Checks that `address` is HOST:PORT. `option` and `example` are used in the error.
 absl::Status check_address(const std::string& option, const std::string& address,
                            const std::string& example);
-/// Returns the share of the bands that are rendered twice, [0, 1], from a text such as "1%";
-/// `standard` if there is no text. A band (some rows of an image) is what a worker gets at once.
+/// Parses the share of the bands that are rendered twice, such as "1%", and returns it as a number
+/// in [0, 1]. Returns `standard` if there is no text. `option` is used in the error. A band (some
+/// rows of an image) is what a worker gets at once.
 absl::StatusOr<double> checked_share(const std::string& option,
                                      const std::optional<std::string>& text, double standard);
 absl::StatusOr<Browsers> checked_browsers(const RawOptions& raw);

@@ -1,5 +1,5 @@
-// The words that an option accepts are the names that the code gives to its values (integrators,
-// tones, layers, kernels). The words of the other options are listed here.
+// Integrators, tones, layers and kernels have names in the code. The options that choose one of
+// them accept these names. The words that the other options accept are listed in choices_of().
 
 #include "coordinator/cli/options/choices.h"
 

@@ -17,9 +17,9 @@ namespace bandsaw::coordinator {
 /// any text.
 std::vector<std::string> choices_of(const std::string& name);
 
-/// Returns the kernel (the renderer's code for one instruction set) that --kernel names; nullptr if
-/// the option is not given, which stands for the fastest. INVALID_ARGUMENT: there is no kernel of
-/// that name that this machine can run.
+/// Returns the kernel (the renderer's code for one instruction set) that --kernel names. If the
+/// option is not given, returns nullptr, which stands for the fastest kernel. INVALID_ARGUMENT:
+/// there is no kernel of that name, or this machine cannot run it.
 absl::StatusOr<const Kernel*> chosen_kernel(const std::optional<std::string>& name);
 
 /// Parses the names of layers, such as "albedo,normal,depth,samples". INVALID_ARGUMENT: a name is
@@ -29,10 +29,13 @@ absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list);
 /// Joins the words to a phrase: "none or filmic".
 std::string one_of(const std::vector<std::string>& words);
 
-/// Returns INVALID_ARGUMENT for a `text` that is none of choices_of(name): "--tone: must be none or
-/// filmic, is 'flimic'; did you mean filmic?" The message begins with `called`.
+/// Makes the error for a text that an option or argument does not accept. Always returns
+/// INVALID_ARGUMENT, without checking `text`. `called`: how the message calls the option. `name`:
+/// the option or argument, as choices_of() takes it. `text`: what the user typed. The message is,
+/// for example, "--tone: must be none or filmic, is 'flimic'; did you mean filmic?"
 absl::Status wrong_choice(const std::string& called, const std::string& name,
                           const std::string& text);
+/// Makes the error for an option that the message calls by its name.
 inline absl::Status wrong_choice(const std::string& option, const std::string& text) {
   return wrong_choice(option, option, text);
 }

@@ -9,9 +9,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Returns the optimal string alignment distance by dynamic programming: the edit distance of
-// Damerau (1964), without two edits of the same place. d[i][j] is the distance between the first i
-// letters of a and the first j letters of b.
+// Returns the optimal string alignment distance, computed by dynamic programming. It is the edit
+// distance of Damerau (1964), except that no place is edited twice. d[i][j] is the distance between
+// the first i letters of a and the first j letters of b.
 std::size_t edits(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {

@@ -64,8 +64,9 @@ struct DisplayOptions {
   }
 };
 
-/// Where the report goes, as the user gave it: a file; "none": it is not written; empty: beside
-/// each image. The report is a JSON file that states an image's error, cost and settings.
+/// Where the report goes, as the user gave it: the name of a file, or "none" for no report. If the
+/// name is empty, a report is written beside each image. The report is a JSON file that states an
+/// image's error, cost and settings.
 struct ReportOption {
   std::string file;
 };
@@ -89,7 +90,8 @@ struct ServeOptions {
   std::uint64_t keep_jobs = 10'000;  ///< maximum number of jobs that are over
   /// Share of the bands of native workers that a second machine renders for comparison, [0, 1].
   double audit_share = 0.01;
-  double browser_audit_share = 0.1;  ///< the same for the bands of browsers
+  /// Share of the bands of browsers that a native worker renders again, [0, 1].
+  double browser_audit_share = 0.1;
   Browsers browsers = Browsers::kAlso;
 };
 
@@ -138,12 +140,14 @@ struct WatchOptions {
   AfterOptions after;
 };
 
+/// `bandsaw missing`: lists the frames of a job that are not done.
 struct MissingOptions {
   JobId job = 0;
   FarmOption farm;
   Verbosity verbosity;
 };
 
+/// `bandsaw retry`: renders failed frames of a job again.
 struct RetryOptions {
   JobId job = 0;
   std::vector<FrameNumber> frames;  ///< ascending; empty: all that failed
@@ -239,6 +243,7 @@ struct DismissOptions {
   Verbosity verbosity;
 };
 
+/// `bandsaw why`: explains why a job is not done.
 struct WhyOptions {
   JobId job = 0;
   FarmOption farm;

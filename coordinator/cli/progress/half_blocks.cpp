@@ -1,6 +1,6 @@
-// A character cell shows two pixels, one above the other: the upper half block in the colour of the
-// upper pixel, on a background of the lower pixel's colour. Each shown pixel is the mean of the
-// pixels of the image that it covers.
+// A character cell of the terminal shows two pixels, one above the other. Its character is the
+// upper half block in the colour of the upper pixel. Its background has the colour of the lower
+// pixel. Each shown pixel is the mean of the pixels of the image that it covers.
 
 #include "coordinator/cli/progress/half_blocks.h"
 
@@ -23,6 +23,7 @@ struct Grid {
   std::uint32_t height = 0;  ///< two pixels per line
 };
 
+/// Returns the size of the picture: that of the image, reduced if it does not fit into `available`.
 Grid grid_of(const Image& image, TerminalSize available) {
   const double scale = std::min({1.0, static_cast<double>(available.columns) / image.width,
                                  2.0 * static_cast<double>(available.rows) / image.height});

@@ -11,7 +11,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Pixels a side to which larger pictures are reduced for the terminal. Few terminals show more.
+/// A picture for the terminal is reduced to at most this many pixels a side, because few terminals
+/// show more.
 constexpr std::uint32_t kTerminalSide = 256;
 
 }  // namespace

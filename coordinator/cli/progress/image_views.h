@@ -12,9 +12,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Not thread-safe, but other threads may use the ProgressDisplay at the same time. If the viewer
-/// cannot be reached, a note says so once, and the viewer is not used any more. Rendering does not
-/// wait for it.
+/// The places where one image is shown. Not thread-safe, but other threads may use the
+/// ProgressDisplay at the same time. If the viewer cannot be reached, a note says so once, and the
+/// viewer is not used any more. The image is rendered without it.
 class ImageViews {
  public:
   /// `tev` is HOST:PORT of the viewer; empty: no viewer. `name` is the image's name in the viewer.

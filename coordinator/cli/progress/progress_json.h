@@ -11,8 +11,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns an object with the fields that all events of a render have. `event`: its kind, such as
-/// "job", "progress" or "done".
+/// Returns an object with the fields that all events of a render have. `event`: the kind of event,
+/// such as "job", "progress" or "done".
 JsonObject progress_json(const Progress& progress, const std::string& event);
 
 /// Adds the stop rule of a job as one field: stop_samples, stop_error or stop_time_s.

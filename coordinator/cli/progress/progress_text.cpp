@@ -22,7 +22,8 @@ std::string percent_done(const JobView& job) {
   return pad_left(absl::StrCat(static_cast<int>(std::floor(fraction * 100)), " %"), 5);
 }
 
-// Each column shows two steps, of which the first is "╸".
+// Returns a bar of `width` columns, which is filled up to `fraction`, [0, 1]. A column is empty,
+// half full ("╸") or full ("━").
 std::string bar(double fraction, std::size_t width) {
   const auto halves = std::lround(std::clamp(fraction, 0.0, 1.0) * 2 * static_cast<double>(width));
   std::string out;
@@ -38,7 +39,8 @@ std::string count(std::size_t n, const std::string& what) {
   return absl::StrCat(n, " ", what, n == 1 ? "" : "s");
 }
 
-// Returns the error of the image that is written: of the clean one if there is one. Empty: unknown.
+// Returns the text of the error of the clean image, or of the image as rendered if the error of a
+// clean image is unknown. Returns an empty text if both are unknown.
 std::string error_text(const Progress& progress) {
   return progress.clean_error >= 0 ? "clean error " + percent(progress.clean_error)
          : progress.job.error >= 0 ? "error " + percent(progress.job.error)

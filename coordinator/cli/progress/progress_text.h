@@ -17,10 +17,10 @@ std::string frames_done_text(const FrameCounts& frames);
 /// no job number; a sequence also has the number of its frames.
 std::string header_line(const Progress& progress);
 
-/// Returns a progress bar and figures. If the noise is removed, the error is that of the clean
-/// image as soon as it is known, here and in final_line(): "clean error 1.6 %". The bar is
-/// shortened so that the line fits `width` columns: " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48
-/// Msamples · 5.2 M/s · 0:09 left".
+/// Returns a progress bar and figures: " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2
+/// M/s · 0:09 left". The bar is shortened so that the line fits `width` columns. If the noise is
+/// removed and the error of the clean image is known, the line states that error: "clean error
+/// 1.6 %".
 std::string bar_line(const Progress& progress, std::size_t width);
 
 /// Returns the whole state in one line, for a pipe. The line has the figures of bar_line(), but no
@@ -33,7 +33,8 @@ std::string plain_line(const Progress& progress);
 std::vector<std::string> worker_lines(const Progress& progress, std::size_t most);
 
 /// Returns the result: "cornell.png · error 0.99 % · 21.4 s · 4 workers · report cornell.json".
-/// `name`: of the image file or of the job. `reports`: names of the report files; empty: none.
+/// The error is that of bar_line(). `name`: name of the image file or of the job. `reports`: names
+/// of the report files; empty: none.
 std::string final_line(const Progress& progress, const std::string& name,
                        const std::string& reports = {});
 
@@ -41,8 +42,8 @@ std::string final_line(const Progress& progress, const std::string& name,
 /// 4.0 s of CPU · 1 % after 11.6 s of CPU · half of the pixels within 1.2 %, 95 % within 5 %".
 std::string cost_line(const Progress& progress);
 
-/// Returns a warning if the error estimate may be too low, because few pixels have much of the
-/// error; empty if it can be trusted.
+/// Returns a warning if few pixels have a large share of the error, because the error estimate may
+/// then be too low. Returns an empty text if the estimate can be trusted.
 std::string doubt_line(const Progress& progress);
 
 /// Returns a warning about samples that were not finite or negative; empty if there are none.

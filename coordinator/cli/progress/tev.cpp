@@ -51,6 +51,7 @@ class Packet {
   std::string bytes_;
 };
 
+// Appends the number and the names of the channels.
 void channels(Packet& packet) {
   packet.number(static_cast<std::int32_t>(std::size(kChannels)));
   for (const char* channel : kChannels) {
@@ -58,6 +59,7 @@ void channels(Packet& packet) {
   }
 }
 
+// Returns the deadline of an operation that begins now.
 link::Deadline soon() { return {std::chrono::steady_clock::now() + kTevTimeout}; }
 
 }  // namespace

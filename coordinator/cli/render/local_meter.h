@@ -36,7 +36,7 @@ class LocalMeter {
   /// Adds the counters (rays, bad samples, …) of rows that are done.
   void add(const Counters& counters) EXCLUDES(mutex_);
 
-  /// Returns the time of the render at a time of the steady clock, in seconds.
+  /// Returns how many seconds the render has taken when the steady clock shows `steady_s`.
   double seconds(double steady_s) const { return steady_s - start_.steady_s; }
   /// Returns the state of the render, which is never done: its fraction is below 1.
   Progress progress(Clocks now) const EXCLUDES(mutex_);

@@ -1,7 +1,7 @@
 // next() plans all passes up to the next checkpoint (a number of samples per pixel) at once, and
 // checks the stop rule when they are done. An adaptive render first renders until its error has
 // fallen to a limit that is larger than its target. Then wants_tiles() is true, and plan() is
-// called once. It sets how many samples each half tile takes.
+// called once. plan() sets how many samples each half tile takes.
 
 #include "coordinator/cli/render/local_plan.h"
 
@@ -39,7 +39,7 @@ std::optional<SampleRange> LocalPlan::next(std::uint64_t samples, double error, 
   if (samples == 0) {
     return next_timed_pass(0, 0, rule.max_samples);
   }
-  // How many samples per pixel can be rendered in the rest of the time.
+  // The number of samples per pixel that can be rendered in the rest of the time.
   const double fits = (rule.seconds - seconds) * static_cast<double>(samples) / seconds;
   if (samples >= rule.max_samples || fits < static_cast<double>(kBlockSamples)) {
     return std::nullopt;

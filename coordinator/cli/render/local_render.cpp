@@ -1,5 +1,6 @@
-// Renders the bands (some rows each) of one pass after the other and adds them to a film, which has
-// the sums of all pixels. LocalPlan decides after each pass whether there is another one.
+// Renders an image in passes. Each pass is rendered in bands (some rows each), which are added to a
+// film. The film has the sums of all pixels. LocalPlan decides after each pass whether another one
+// follows.
 
 #include "coordinator/cli/render/local_render.h"
 

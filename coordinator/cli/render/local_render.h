@@ -1,7 +1,7 @@
 #pragma once
 
 // Renders an image, or some of its rows, on this machine, for `bandsaw render`. The image has the
-// same bits as on a farm. A band, as elsewhere, is a range of rows and a range of samples.
+// same bits as on a farm. A band is a range of rows and a range of samples.
 
 #include <atomic>
 #include <functional>
@@ -28,8 +28,9 @@ struct LocalJob {
   /// Called by render_whole() after each band that was added to the film (the sums of all pixels);
   /// may be nullptr.
   std::function<void(const Film&)> grown = nullptr;
-  /// Returns the relative RMSE of the image, whose pixels have `samples` samples; a job that stops
-  /// at an error compares it with its target. nullptr: the estimate of Film::error is used.
+  /// Returns the relative RMSE of the image, whose pixels have `samples` samples. A stop rule with
+  /// a target for the error compares this value with the target. nullptr: the estimate of
+  /// Film::error is used.
   std::function<absl::StatusOr<double>(const Film&, std::uint64_t samples)> error_of = nullptr;
 };
 

@@ -182,9 +182,9 @@ class LocalRun {
     return absl::OkStatus();
   }
 
-  /// Returns a function that renders the guides (images by which the denoiser finds edges). They
-  /// are kept in guides_ and used again at a later checkpoint if that needs the same number of
-  /// samples.
+  /// Returns a function that renders the guides (images by which the denoiser finds edges). The
+  /// guides are kept in guides_. They are used again at a later checkpoint if that checkpoint needs
+  /// guides with the same number of samples.
   JobRenderer guides_of(const Scene& scene) {
     return [this, render = one_by_one(layer_renderer(scene))](
                const std::vector<JobSpec>& jobs) -> absl::StatusOr<std::vector<Image>> {
@@ -215,6 +215,7 @@ class LocalRun {
     show_at_ = steady_seconds() + std::max(kInterval_s, cleaned_in / kMaxShare);
   }
 
+  /// Writes the files of the image (with --rows, those of the rows) and the reports.
   absl::Status write(const Progress& progress, const std::vector<std::string>& outputs,
                      const std::vector<std::string>& reports) const {
     Image part;  // with --rows: the picture of the rows; empty: none was written
@@ -248,14 +249,14 @@ class LocalRun {
   Layers layers_;  ///< additional layers of EXR files
   struct Clean {
     Denoised denoised;
-    std::uint64_t samples = 0;
+    std::uint64_t samples = 0;  ///< samples per pixel of the image that was cleaned
   };
-  std::optional<Clean> clean_;
+  std::optional<Clean> clean_;  ///< the image without noise; std::nullopt: not made yet
   struct Guides {
-    std::vector<JobSpec> jobs;
+    std::vector<JobSpec> jobs;  ///< the jobs that made the images
     std::vector<Image> images;
   };
-  std::optional<Guides> guides_;
+  std::optional<Guides> guides_;   ///< std::nullopt: not rendered yet
   std::vector<BandPixels> bands_;  ///< the rows of --rows
 };
 

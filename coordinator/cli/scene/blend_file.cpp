@@ -75,8 +75,9 @@ absl::StatusOr<std::unique_ptr<BlendScene>> empty_scene(const std::string& path)
 }
 
 /// Returns the command that runs the add-on on the file: without a window (-b), without the user's
-/// settings, and without the scripts in the file (-Y). `last`: the number of a frame; "-": Blender
-/// reads the numbers of frames from its standard input; empty: the frame that is saved in the file.
+/// settings, and without the scripts in the file (-Y). `last` is the last argument of the add-on,
+/// which is the number of a frame. If it is "-", Blender reads the numbers of frames from its
+/// standard input. If it is empty, the frame is the one that is saved in the file.
 std::vector<std::string> blender_command(const std::string& path, const BlendScene& to,
                                          const std::string& last) {
   std::error_code error;
@@ -126,7 +127,8 @@ absl::Status no_scene(const std::string& path, const std::string& output) {
       absl::StrCat(name_of(path), ": Blender made no scene of it: ", last_error_line(output)));
 }
 
-/// Reads what Blender has left beside the scene: an error, or warnings. `output`: what it printed.
+/// Reads the files that Blender has written beside the scene. Returns the error in them, or stores
+/// the warnings in `made`. `output`: the text that Blender has printed.
 absl::Status read_result(const std::string& path, const std::string& output, BlendScene& made) {
   for (const std::string& line : lines_of(fs::path(made.folder()) / "error")) {
     return absl::InvalidArgumentError(absl::StrCat(name_of(path), ": ", line));

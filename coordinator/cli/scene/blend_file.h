@@ -25,7 +25,7 @@ bool is_blend_file(const std::string& path);
 /// A scene that Blender has written, in a temporary folder that is removed with this object.
 class BlendScene {
  public:
-  /// `name`: that of the scene, without a suffix.
+  /// `name`: the name of the scene, without a suffix.
   BlendScene(std::unique_ptr<const ScratchFolder> folder, const std::string& name)
       : scene(folder->path() + "/" + name + ".json"), folder_(std::move(folder)) {}
 
@@ -39,16 +39,16 @@ class BlendScene {
   std::unique_ptr<const ScratchFolder> folder_;
 };
 
-/// Runs Blender on the file at `path`, at the frame `frame` or, without it, at the frame that is
-/// saved in the file. Scripts in the file are not run. Unlike the importer, Blender runs with all
-/// rights of the user. NOT_FOUND: there is no such file. INVALID_ARGUMENT: Blender cannot read or
-/// render it. FAILED_PRECONDITION: Blender is not installed. CANCELLED: `stop` was set.
-/// DEADLINE_EXCEEDED: Blender took more than ten minutes.
+/// Runs Blender on the file at `path` and returns the scene at a frame. `frame`: the number of the
+/// frame; std::nullopt: the frame that is saved in the file. Scripts in the file are not run.
+/// Unlike the importer, Blender runs with all rights of the user. NOT_FOUND: there is no such file.
+/// INVALID_ARGUMENT: Blender cannot read or render the file. FAILED_PRECONDITION: Blender is not
+/// installed. CANCELLED: `stop` was set. DEADLINE_EXCEEDED: Blender took more than ten minutes.
 absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(
     const std::string& path, const std::atomic<bool>& stop,
     std::optional<std::int64_t> frame = std::nullopt);
 
-/// One process of Blender that writes the scenes of many frames of a .blend file, which it reads
+/// One process of Blender that writes the scenes of many frames of a .blend file. It reads the file
 /// only once.
 class BlendSession {
  public:

@@ -87,7 +87,8 @@ absl::Status write_output(const Output& output, bool force) {
 }
 
 /// Converts the scene and writes all files. The scene file is written last, so that it never names
-/// a file that is missing. Returns the number of files beside it. CANCELLED: a signal came.
+/// a file that is missing. Returns the number of files beside the scene file. CANCELLED: a signal
+/// came.
 absl::StatusOr<std::size_t> import_to(const fs::path& target, const ImportOptions& options,
                                       Process& process) {
   if (!options.force && file_exists(target)) {

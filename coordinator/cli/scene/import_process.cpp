@@ -61,8 +61,8 @@ absl::Status reported(const std::string& output) {
   return absl::OkStatus();
 }
 
-// Returns the error if the importer has not ended well. `file`: what it read; `seconds`: its time
-// limit.
+// Returns the error if the importer has failed or was killed, otherwise OK. `file`: the file that
+// the importer read. `seconds`: its time limit.
 absl::Status judge(const ChildOutcome& outcome, const std::string& file, double seconds) {
   const std::string name = fs::path(file).filename().string();
   const bool signalled = WIFSIGNALED(outcome.wait_status);
@@ -93,7 +93,7 @@ absl::Status judge(const ChildOutcome& outcome, const std::string& file, double 
                                                          " while reading this file"));
 }
 
-// Returns the choices as the importer takes them (renderlib/import/main.cpp).
+// Returns the choices as arguments of the importer (renderlib/import/main.cpp).
 std::vector<std::string> arguments_of(const SceneChoices& choices) {
   std::vector<std::string> arguments;
   const auto add = [&](const char* key, const std::string& value) {
@@ -119,8 +119,8 @@ std::vector<std::string> arguments_of(const SceneChoices& choices) {
   return arguments;
 }
 
-// Returns the command that runs the importer. `what`: what it is to make ("scene", "frames",
-// "text", "image" or "unzip"); `folder`: for its output.
+// Returns the command that runs the importer. `what`: the task of the importer ("scene", "frames",
+// "text", "image" or "unzip"). `folder`: the folder for its output.
 std::vector<std::string> importer_arguments(const std::string& program, const char* what,
                                             const std::string& file, const std::string& folder,
                                             std::uint64_t cpu_seconds, const ImportLimits& limits,
@@ -133,7 +133,8 @@ std::vector<std::string> importer_arguments(const std::string& program, const ch
   return arguments;
 }
 
-// Runs the importer on `file`, with `what` as above. Returns the folder with its output.
+// Runs the importer on `file`. `what`: its task, as for importer_arguments(). Returns the folder
+// with its output.
 absl::StatusOr<std::unique_ptr<const ScratchFolder>> run_importer(
     const char* what, const std::string& file, const ImportLimits& limits,
     const SceneChoices& choices = {}) {
@@ -206,7 +207,7 @@ absl::StatusOr<ImportedPackage> package_in(std::shared_ptr<const ScratchFolder> 
 bool is_zip(const std::string& path) { return absl::EndsWithIgnoreCase(path, ".zip"); }
 
 // Returns the only scene in the archive, by the rules of import_in_process(). INVALID_ARGUMENT:
-// there are several or none; the message names two of them.
+// there is no scene, or there are several. In the second case, the message names two of them.
 absl::StatusOr<std::string> only_scene(const std::vector<ListedFile>& files) {
   const auto named = [&](std::initializer_list<const char*> suffixes) {
     std::vector<std::string> found;
@@ -237,8 +238,8 @@ absl::StatusOr<std::string> only_scene(const std::vector<ListedFile>& files) {
       "holds no scene: .textproto, .json, .pbrt, .pbrt.gz, .xml, or a model");
 }
 
-// Unpacks an archive to `to`, an empty folder. Returns the path of the scene in it: `wanted`, or
-// the only one.
+// Unpacks an archive to `to`, an empty folder. Returns the path of the unpacked scene. `wanted`:
+// the name of the scene in the archive; empty: the archive's only scene.
 absl::StatusOr<std::string> unpack_scene(const std::string& zip, const std::string& wanted,
                                          const std::string& to, const ImportLimits& limits) {
   const std::string name = fs::path(zip).filename().string();
@@ -374,6 +375,7 @@ absl::StatusOr<Image> read_image_in_process(const std::string& path, const Impor
   constexpr std::uint64_t kMaxBytes = (std::uint64_t{12} * kMaxPixels) + 8;
   ASSIGN_OR_RETURN(const std::string bytes, read_output(folder->path() + "/image", kMaxBytes));
   Image image;
+  // The file has the width and the height, in 32 bits each, and then the pixels.
   const std::size_t head = 2 * sizeof(std::uint32_t);
   if (bytes.size() >= head) {
     std::memcpy(&image.width, bytes.data(), sizeof(std::uint32_t));

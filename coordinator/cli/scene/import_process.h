@@ -77,7 +77,7 @@ struct SceneFiles {
   std::string text;                             ///< the contents of the scene file
   std::vector<std::string> warnings;            ///< sentences about what was left out
   std::vector<ListedFile> list;                 ///< the files that the scene file names
-  std::string folder_path;                      ///< temporary folder with those that were written
+  std::string folder_path;                      ///< temporary folder with the written files
   std::shared_ptr<const ScratchFolder> folder;  ///< removes that folder when it is destroyed
 };
 
@@ -88,10 +88,10 @@ struct SceneFiles {
 /// CANCELLED: limits.stop was set, or Ctrl-C ended the importer. FAILED_PRECONDITION: the program
 /// is missing.
 ///
-/// If `scene_path` is a zip file, imports the scene `choices.inside` in it. If that is empty,
-/// imports the only scene in the zip file. This scene is searched for in the first of these groups
-/// that has a file: .textproto; .pbrt and .xml; .pbrt.gz; .glb and .gltf; .json; other models. Only
-/// the files of the group that lie in the fewest folders count.
+/// If `scene_path` is a zip file, imports the scene `choices.inside` in it. If `choices.inside` is
+/// empty, imports the only scene in the zip file. This scene is searched for in the first of these
+/// groups that has a file: .textproto; .pbrt and .xml; .pbrt.gz; .glb and .gltf; .json; other
+/// models. Of this group, only the files with the fewest folders in their path count.
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});
@@ -120,7 +120,7 @@ class ImportSession {
   const std::string scene_;
   const double seconds_;
   const std::shared_ptr<const ScratchFolder> unpacked_;  ///< files of a zip file; nullptr: none
-  const std::shared_ptr<const ScratchFolder> folder_;    ///< of the package of the last frame
+  const std::shared_ptr<const ScratchFolder> folder_;    ///< has the package of the last frame
   const std::unique_ptr<Coprocess> importer_;
 };
 

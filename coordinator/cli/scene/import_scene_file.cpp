@@ -15,6 +15,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Imports a scene. `stop`: another thread sets it to end the import. `warnings` receives the
+/// warnings of Blender.
 using Import = std::function<absl::StatusOr<ImportedPackage>(const std::atomic<bool>& stop,
                                                              std::vector<std::string>& warnings)>;
 
@@ -36,7 +38,8 @@ absl::StatusOr<ImportedPackage> import_with_warnings(const Import& import, Verbo
   return package;
 }
 
-/// INVALID_ARGUMENT: --shutter is given, which cannot change what Blender writes.
+/// Returns INVALID_ARGUMENT if --shutter is given, because the option cannot change the shutter
+/// that Blender writes.
 absl::Status check_choices_for_blender(const std::string& scene, const SceneChoices& choices) {
   return choices.shutter ? absl::InvalidArgumentError(absl::StrCat(
                                scene, ": the shutter is that of the file; omit --shutter"))

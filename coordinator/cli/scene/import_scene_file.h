@@ -25,13 +25,13 @@ absl::StatusOr<ImportedPackage> import_any_scene(const std::string& scene,
                                                  const std::atomic<bool>& stop,
                                                  std::vector<std::string>& warnings);
 
-/// The same for a command: a signal ends it with CANCELLED, and all warnings are printed unless
-/// verbosity.quiet.
+/// Imports the scene for a command, as import_any_scene() does. A signal ends the import with
+/// CANCELLED. All warnings are printed unless verbosity.quiet.
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process,
                                                   const SceneChoices& choices = {});
 
-/// A scene that is imported and decoded. No temporary folder is left of it.
+/// A scene that is imported and decoded. The temporary folder of the import is already removed.
 struct DecodedScene {
   std::string manifest;
   PackageInfo info;
@@ -57,7 +57,8 @@ class FrameImporter {
   /// errors as import_any_scene. After an error import() MUST NOT be called again.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, const std::atomic<bool>& stop,
                                          std::vector<std::string>& warnings);
-  /// The same for a command: a signal ends it with CANCELLED, and all warnings are printed.
+  /// Imports a frame for a command. A signal ends the import with CANCELLED. All warnings are
+  /// printed unless verbosity.quiet.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, Verbosity verbosity, Process& process);
 
  private:

@@ -217,6 +217,7 @@ std::uint64_t bytes_in(const Geometry& geometry) {
   return sum;
 }
 
+/// Counts emissive primitives of meshes and groups once per placement.
 std::uint64_t lights_in(const SceneDescription& scene) {
   const auto emits = [&](MaterialId id) { return bandsaw::emits(scene.materials, id); };
   const Geometry& g = scene.geometry;

@@ -29,9 +29,10 @@ struct SceneSummary {
   std::uint64_t texture_bytes = 0;
   std::uint64_t lights = 0;                ///< emissive primitives, counted once for each placement
   std::vector<Count> lights_without_size;  ///< such as "point" and "directional"
-  std::string background;    ///< such as "gradient" or "equirectangular image of 128×64"
-  std::vector<Count> media;  ///< kinds of media, and as "boundary" the shapes that bound them
-  std::uint64_t geometry_bytes = 0;  ///< of shapes, vertices and placements in memory
+  std::string background;  ///< such as "gradient" or "equirectangular image of 128×64"
+  /// Kinds of media. The entry "boundary" counts the shapes that bound media.
+  std::vector<Count> media;
+  std::uint64_t geometry_bytes = 0;  ///< size of shapes, vertices and placements in memory
   /// Bounding box of all geometry in world space. It may be larger than the geometry, because the
   /// transformed boxes of meshes are used for their instances.
   Box bounds;

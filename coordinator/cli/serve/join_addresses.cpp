@@ -1,6 +1,6 @@
 // join_addresses() returns the addresses for a join string. If the coordinator listens on all
-// addresses, they are those of this machine: first of real interfaces, then of virtual ones, then
-// loopback; in each of these groups IPv4 comes before IPv6.
+// addresses, these are the addresses of this machine. Real interfaces come first, virtual ones
+// second and loopback last. In each of these groups IPv4 comes before IPv6.
 
 #include "coordinator/cli/serve/join_addresses.h"
 
@@ -79,6 +79,7 @@ absl::StatusOr<std::vector<LocalAddress>> local_addresses() {
 
 std::vector<std::string> join_addresses(const std::string& host, int port,
                                         const std::vector<LocalAddress>& local) {
+  // 0.0.0.0 stands for every IPv4 address, [::] for every address.
   const bool every = host == "[::]" || host == "::";
   if (!every && host != "0.0.0.0") {
     return {absl::StrCat(host, ":", port)};

@@ -29,11 +29,11 @@ absl::Status write_join_file(const std::string& data_folder, const link::JoinStr
 
 /// Renews the secret of a role in the farm's identity (its file with certificate and secrets), then
 /// writes the role's join string with the new secret to its file. `present`: the join string of the
-/// running coordinator, whose secret may be an old one; std::nullopt: none runs, and the string in
-/// the file is used. If this file is missing or damaged, the addresses are unknown: no string is
-/// written, RenewedSecret::join_file is empty, and the next `serve` writes the file. Errors: those
-/// of link::renew_secret. If only the join string could not be written, RenewedSecret::written has
-/// the error.
+/// running coordinator, whose secret may be an old one; std::nullopt: no coordinator runs, and the
+/// string in the file is used. If this file is missing or damaged, the addresses are unknown. Then
+/// no string is written, RenewedSecret::join_file is empty, and the next `serve` writes the file.
+/// Errors: those of link::renew_secret. If only the join string could not be written,
+/// RenewedSecret::written has the error.
 absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role,
                                             std::optional<link::JoinString> present);
 

@@ -1,5 +1,6 @@
 // The command `bandsaw secret rotate`: makes a new secret of workers or users. If a coordinator
-// runs, it is asked to do so; otherwise this program changes the files in the data folder.
+// runs, it is asked to make the secret. Otherwise this program changes the files in the data
+// folder.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -25,8 +26,8 @@ namespace {
 // The file with the farm's certificate and secrets.
 std::string identity_file(const std::string& folder) { return folder + "/identity"; }
 
-/// If this program runs as root, gives the file to the owner of the folder, such as the user of an
-/// installed service, who could not read it otherwise.
+/// If this program runs as root, makes the owner of the folder the owner of the file. Otherwise
+/// that owner, such as the user of an installed service, could not read the file.
 absl::Status give_to_owner(const std::string& folder, const std::string& file) {
   struct stat owner {};
   if (geteuid() == 0 && (stat(folder.c_str(), &owner) != 0 ||

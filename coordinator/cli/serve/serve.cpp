@@ -32,15 +32,16 @@ namespace {
 /// start() has failed.
 struct JoinStrings {
   Mutex mutex;
-  /// Their secrets are those of the start; a renewal replaces the secret only in the file.
+  /// The secrets in them are those of the start; a renewal replaces the secret only in the file.
   std::map<link::Role, link::JoinString> by_role GUARDED_BY(mutex);
 };
 
 /// All that runs, and what is printed about it.
 struct Serving {
   std::unique_ptr<Engine> engine;
-  std::unique_ptr<BrowserAccess> browsers;  // the link for browsers; destroyed after its users
-  std::unique_ptr<ServedDashboard> web;     // destroyed before the engine
+  // The link for browsers; destroyed after the dashboard and the server, which use it.
+  std::unique_ptr<BrowserAccess> browsers;
+  std::unique_ptr<ServedDashboard> web;  // destroyed before the engine
   // Destroyed after the server, which uses it.
   std::unique_ptr<JoinStrings> joins = std::make_unique<JoinStrings>();
   std::unique_ptr<Server> server;  // destroyed before `web`, which it notifies
@@ -68,8 +69,8 @@ absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::
   if (present == joins.by_role.end()) {
     return absl::UnavailableError("the coordinator could not start and is being stopped");
   }
-  // Revokes the link first: a user who has the old secret may have read the link, and a new secret
-  // of the workers must exclude every machine that does not get it.
+  // The link must be revoked too. A user who has the old secret may have read the link. And when
+  // the workers' secret is renewed, machines that do not get the new secret must be excluded.
   RETURN_IF_ERROR(browsers.revoke());
   ASSIGN_OR_RETURN(RenewedSecret renewed, rotate_secret(folder, role, present->second));
   if (web.dashboard != nullptr) {
@@ -172,6 +173,7 @@ ExitCode run(const ServeOptions& options, Process& process) {
   if (!serving.ok()) {
     return process.console.fail(ExitCode::kFailed, std::string(serving.status().message()));
   }
+  // Without a Listener, a signal would end the program at once. With it, wait() below returns.
   const Interrupts::Listener listener(process.interrupts, [] {});
   const std::string& url = serving->web->url;
   process.console.line(absl::StrCat("bandsaw ", BANDSAW_VERSION, " · coordinator on ",

@@ -1,4 +1,4 @@
-// Starts the dashboard and gives it what the folder coordinator/web cannot have itself: the
+// Starts the dashboard and gives it the parts that the folder coordinator/web does not contain: the
 // function that imports a scene into the engine's store, the function that writes reports, and the
 // programs of workers and of browsers.
 
@@ -99,7 +99,7 @@ BrowserProgram load_browsers() {
   return *std::move(program);
 }
 
-/// Starts the dashboard; nullptr: no address was given and none can be used.
+/// Starts the dashboard. Returns nullptr if the user gave no address and no port can be used.
 absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, Engine& engine,
                                                  const link::Identity& identity,
                                                  const WorkerPrograms& workers,

@@ -86,6 +86,7 @@ class Panel {
   }
 
  private:
+  // Width and height of the area between the axes.
   static constexpr double kInner = kWidth - kLeft - kRight;
   static constexpr double kTall = kHeight - kTop - kBottom;
 
@@ -133,8 +134,8 @@ class Panel {
     return out;
   }
 
-  /// Returns true if the legend goes to the top left, false if it goes to the bottom left: wherever
-  /// fewer points of the left 40 % of the diagram are.
+  /// Returns true if the legend goes to the top left, false if it goes to the bottom left. It goes
+  /// to the half in which the left 40 % of the diagram has fewer points.
   bool names_on_top() const {
     int below = 0;
     for (const PlotLine& line : panel_.lines) {

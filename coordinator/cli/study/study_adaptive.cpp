@@ -1,6 +1,7 @@
 // render_adaptively() first renders a pilot, in which every pixel gets the same number of samples.
-// From its errors it plans how many samples each half tile gets (half of the pixels of a square of
-// 16 x 16). Then it renders passes until the mean number of samples per pixel is as requested.
+// From the errors of the pilot, the function plans how many samples each half tile gets (half of
+// the pixels of a square of 16 x 16). Then it renders passes until the mean number of samples per
+// pixel is as requested.
 
 #include "coordinator/cli/study/study_adaptive.h"
 
@@ -24,7 +25,7 @@ class AdaptiveRender {
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop), film_(std::move(film)) {}
 
   /// Renders a range of samples of the whole image and adds it to the film, some rows at a time.
-  /// `tiles`: the samples of each half tile; empty: all pixels have the same.
+  /// `tiles`: the samples of each half tile; empty: all pixels take all samples of the range.
   absl::Status take(const SampleRange& pass, const TileSamples& tiles) {
     const auto most =
         static_cast<std::uint32_t>(std::max<std::uint64_t>(1, kBandPixels / settings_.width));

@@ -21,7 +21,7 @@ constexpr double kMaxRatio = 1.5;
 /// Accumulates the gains (CleanPoint::gain) of all scenes at one number of samples.
 struct Gains {
   double logarithms = 0;  ///< sum of the logarithms of the gains, for their geometric mean
-  double of_time = 0;     ///< the same for the gains in equal time
+  double of_time = 0;     ///< sum of the logarithms of the gains in equal time
   double least = 1e300;
   double least_of_time = 1e300;
   std::string worst;  ///< name of the scene with the least gain

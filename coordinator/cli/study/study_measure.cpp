@@ -53,7 +53,8 @@ double mean_of(const Image& image) {
   return sum / (3 * static_cast<double>(image.pixels.size()));
 }
 
-/// Accumulates the results of images that differ only in their seeds. `mean`: of the reference.
+/// Accumulates the results of images that differ only in their seeds. `mean`: the mean of the
+/// reference over all pixels and channels.
 class Seeds {
  public:
   Seeds(const Image& reference, double mean) : reference_(reference), mean_(mean) {}
@@ -162,7 +163,7 @@ class Study {
     return absl::OkStatus();
   }
 
-  /// Measures a method at all numbers of samples. `scene`: the scene as the method needs it built.
+  /// Measures a method at all numbers of samples. `scene`: the scene, built as the method needs it.
   absl::StatusOr<StudyLine> line(Method method, const Scene& scene) {
     StudyLine line{method, {}};
     if (method == Method::kPixelStops) {
@@ -191,7 +192,7 @@ class Study {
     JobSpec spec;
     spec.settings = settings_;
     spec.settings.seed = seed;
-    scene_.guiding().clear();  // each image pays for its own training
+    scene_.guiding().clear();  // the CPU time of each image includes its own training
     const double start = process_cpu_seconds();
     ASSIGN_OR_RETURN(const RenderedImage rendered,
                      render_image(scene_, spec.settings, samples, pool_, stop_, {}, ""));
@@ -216,6 +217,7 @@ class Study {
     ASSIGN_OR_RETURN(const Comparison of_result, compare_images(clean.image, reference_));
     point.raw_flip += mean(of_image.flip);
     point.clean_flip += mean(of_result.flip);
+    // The true mean square error, without the part that the noise of the reference causes.
     const double squares = of_result.errors.rmse * of_result.errors.rmse -
                            reference_error_.rmse * reference_error_.rmse;
     if (squares > 0) {
@@ -230,7 +232,7 @@ class Study {
     RenderSettings settings = settings_;
     settings.seed = seed;
     settings.integrator = integrator_of(method, settings.integrator);
-    scene.guiding().clear();  // each image pays for its own training
+    scene.guiding().clear();  // the CPU time of each image includes its own training
     const double start = process_cpu_seconds();
     const auto n = static_cast<double>(samples);
     if (method == Method::kIndependent) {

@@ -29,10 +29,10 @@ enum class Method {
   kAdaptive,   ///< more samples where there is more noise, with about the same total
   /// Independent random numbers instead of Owen-scrambled nets; neither guiding nor photon maps.
   kIndependent,
-  /// As kIndependent, but each pixel stops when 1.96 standard errors of its mean are at most a
-  /// given fraction of the mean; this is tested at multiples of 16 samples. Many ray tracers do so.
-  /// The result is biased, because the samples determine their own number. The method is included
-  /// to show the amount of bias.
+  /// As kIndependent, except that each pixel stops when 1.96 standard errors of its mean are at
+  /// most a given fraction of the mean. This is tested at multiples of 16 samples. Many ray tracers
+  /// stop pixels by such a rule. The result is biased, because the samples determine their own
+  /// number. The method is included to show the amount of bias.
   kPixelStops,
   /// As kFull, but without a BVH: each ray is tested against every object of the scene. The pixels
   /// have the same bits. Measured only if requested.
@@ -40,6 +40,7 @@ enum class Method {
   /// As kFull, then the noise is removed (renderlib/denoise). Biased. Measured only if requested.
   kClean,
 };
+/// The methods that are measured unless another choice is requested.
 inline constexpr Method kMethods[] = {Method::kFull,      Method::kNoGuiding, Method::kNoMis,
                                       Method::kNoLights,  Method::kAdaptive,  Method::kIndependent,
                                       Method::kPixelStops};
@@ -82,8 +83,9 @@ struct StudyPlan {
 /// Maximum number of objects for kEveryObject; with more, a study takes too long.
 inline constexpr std::uint64_t kMaxObjects = 2'000;
 
-/// Counts spheres, quads, triangles and disks once per placement, and boundaries of media: the
-/// number of intersection tests of a ray without a BVH.
+/// Returns the number of intersection tests of a ray without a BVH. It is the number of spheres,
+/// quads, triangles and disks, each counted once per placement. The boundaries of media are
+/// included.
 std::uint64_t objects_of(const SceneDescription& scene);
 
 /// Returns 1, 4, 16, …: powers of four below `most`, then `most`.
@@ -99,8 +101,8 @@ absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& s
                                          const std::atomic<bool>& stop,
                                          const std::function<void(const std::string&)>& doing);
 
-/// Fits "relative RMSE ~ samples^p" to the line's points and returns p. Returns std::nullopt if
-/// there are fewer than two points.
+/// Fits "relative RMSE ~ samples^p" to the line's points with an error above 0, and returns p.
+/// Returns std::nullopt if these points do not have two different numbers of samples.
 std::optional<double> slope_of(const StudyLine& line);
 
 /// Returns the CPU seconds until the relative RMSE is 1 %, computed as for reports (cpu_s_until in
