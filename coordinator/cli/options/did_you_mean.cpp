@@ -12,7 +12,7 @@ namespace {
 // Returns the optimal string alignment distance, computed by dynamic programming. It is the edit
 // distance of Damerau (1964), except that no place is edited twice. d[i][j] is the distance between
 // the first i letters of a and the first j letters of b.
-std::size_t edits(const std::string& a, const std::string& b) {
+std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) {
     for (std::size_t j = 0; j <= b.size(); ++j) {
@@ -34,14 +34,15 @@ std::size_t edits(const std::string& a, const std::string& b) {
 
 std::optional<std::string> did_you_mean(const std::string& word,
                                         const std::vector<std::string>& known) {
-  constexpr std::size_t kMaxWord = 64;  // longer than all known words; bounds the time of edits()
+  // Longer than all known words; bounds the time of edit_distance().
+  constexpr std::size_t kMaxWord = 64;
   if (word.size() > kMaxWord) {
     return std::nullopt;
   }
   std::optional<std::string> best;
   std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const std::string& candidate : known) {
-    if (const std::size_t distance = edits(word, candidate); distance < least) {
+    if (const std::size_t distance = edit_distance(word, candidate); distance < least) {
       least = distance;
       best = candidate;
     }

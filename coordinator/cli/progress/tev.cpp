@@ -60,7 +60,7 @@ void channels(Packet& packet) {
 }
 
 // Returns the deadline of an operation that begins now.
-link::Deadline soon() { return {std::chrono::steady_clock::now() + kTevTimeout}; }
+link::Deadline deadline_from_now() { return {std::chrono::steady_clock::now() + kTevTimeout}; }
 
 }  // namespace
 
@@ -100,20 +100,21 @@ std::string update_rows(const std::string& name, const Image& image, std::uint32
 }  // namespace tev
 
 absl::StatusOr<TevViewer> TevViewer::connect(const std::string& address, const std::string& name) {
-  ASSIGN_OR_RETURN(link::Socket socket, link::Socket::connect(address, soon()));
+  ASSIGN_OR_RETURN(link::Socket socket, link::Socket::connect(address, deadline_from_now()));
   return TevViewer(std::move(socket), name);
 }
 
 absl::Status TevViewer::show(const Image& image) {
   if (!created_) {
-    RETURN_IF_ERROR(socket_.send(tev::create_image(name_, image.width, image.height), soon()));
+    RETURN_IF_ERROR(
+        socket_.send(tev::create_image(name_, image.width, image.height), deadline_from_now()));
     created_ = true;
   }
   const auto rows =
       static_cast<std::uint32_t>(std::max<std::size_t>(1, kPacketPixels / image.width));
   for (std::uint32_t first = 0; first < image.height; first += rows) {
     const std::uint32_t last = std::min(first + rows, image.height);
-    RETURN_IF_ERROR(socket_.send(tev::update_rows(name_, image, first, last), soon()));
+    RETURN_IF_ERROR(socket_.send(tev::update_rows(name_, image, first, last), deadline_from_now()));
   }
   return absl::OkStatus();
 }

@@ -52,10 +52,10 @@ absl::StatusOr<ImportedPackage> import_from_blender(const BlendScene& blend,
                                                     const ImportLimits& limits,
                                                     std::vector<std::string>& warnings) {
   warnings = blend.warnings;
-  SceneChoices still = choices;  // Blender has set the frame
-  still.frame.reset();
-  still.fps.reset();
-  return import_in_process(blend.scene, limits, still);
+  SceneChoices remaining = choices;  // Blender has set the frame
+  remaining.frame.reset();
+  remaining.fps.reset();
+  return import_in_process(blend.scene, limits, remaining);
 }
 
 }  // namespace

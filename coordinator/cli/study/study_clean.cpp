@@ -73,10 +73,11 @@ std::string clean_table(const std::vector<CleanOfScene>& studies) {
       &out,
       "\n| samples a pixel | geometric mean of the ratios | in equal time | least ratio "
       "| in equal time |\n| --- | --- | --- | --- | --- |\n");
-  for (const auto& [samples, of] : gains) {
+  for (const auto& [samples, total] : gains) {
     absl::StrAppendFormat(&out, "| %.4g | %.2f × | %.2f × | %.2f × (%s) | %.2f × |\n", samples,
-                          std::exp(of.logarithms / of.count), std::exp(of.of_time / of.count),
-                          of.least, absl::StrReplaceAll(of.worst, {{"|", "/"}}), of.least_of_time);
+                          std::exp(total.logarithms / total.count),
+                          std::exp(total.of_time / total.count), total.least,
+                          absl::StrReplaceAll(total.worst, {{"|", "/"}}), total.least_of_time);
   }
   if (images > 0) {
     absl::StrAppendFormat(
