@@ -1,6 +1,7 @@
 // Converts the coordinator's values to messages of the protocol between farm and users, and back.
 // to_message() converts a value to a message; functions whose names end in _of convert a message to
-// a value. FrameState has the same numbers in both, so it is cast.
+// a value. The C++ enum FrameState and the enum of farm.proto have the same numbers, so a
+// FrameState is converted by a cast.
 
 #include "coordinator/convert/farm_messages.h"
 
@@ -101,6 +102,7 @@ JobWorkerView worker_of(const farm::JobWorker& worker) {
           .state = worker.state()};
 }
 
+/// Returns the 32 bytes of a digest. Returns an empty string if `hex` is no digest.
 std::string raw_digest(const DigestHex& hex) {
   const absl::StatusOr<wire::Digest> digest = wire::digest_from_hex(hex);
   return digest.ok() ? digest->raw() : std::string();

@@ -1,7 +1,7 @@
 #pragma once
 
-// Converts between the messages of farm.proto that describe jobs and workers, and the scheduler's
-// values, both ways. The server and the dashboard send these messages, the commands receive them.
+// Converts the scheduler's values of jobs, frames and workers to messages of farm.proto, and back.
+// The server and the dashboard send these messages, the commands receive them.
 
 #include <string>
 
@@ -12,8 +12,9 @@
 namespace bandsaw::coordinator {
 
 farm::StopRule to_message(const StopRule& stop);
-/// INVALID_ARGUMENT: not exactly one rule, or a value out of range; names the field, its range and
-/// the value.
+/// Returns the stop rule of a message. INVALID_ARGUMENT: the message does not have exactly one
+/// rule, has `adaptive` without `error`, or has a value out of range. The error names the field,
+/// and for a value also its range and the value.
 absl::StatusOr<StopRule> stop_rule_of(const farm::StopRule& message);
 
 farm::ErrorPoint to_message(const ErrorPoint& point);
@@ -22,8 +23,8 @@ ErrorPoint error_point_of(const farm::ErrorPoint& message);
 farm::JobStatus to_message(const JobView& job);
 /// Returns the job's entry in a list of jobs: to_message(), with the reason cut to 300 bytes.
 farm::JobStatus to_list_entry(const JobView& job);
-/// Fields that the message lacks become "unknown". The place of the first bad sample is a text in
-/// the message (bad_sample_at), so the view's counters do not have it.
+/// Fields of JobView that JobStatus does not have keep their default values. The place of the first
+/// bad sample is a text in the message (bad_sample_at), so the view's counters do not have it.
 JobView job_view_of(const farm::JobStatus& message);
 
 farm::WorkerStatus to_message(const WorkerView& worker);

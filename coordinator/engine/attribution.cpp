@@ -1,5 +1,5 @@
-// Keeps for each job which worker process rendered which rows last, as pieces that do not overlap.
-// add() cuts the pieces that the new rows overlap.
+// Keeps for each job which worker process rendered each row last. Rows are stored as pieces (ranges
+// of rows of one process) that do not overlap. add() cuts the pieces that overlap the new rows.
 
 #include "coordinator/engine/attribution.h"
 

@@ -17,10 +17,11 @@ namespace bandsaw::coordinator {
 class Attribution {
  public:
   /// Adds rows of a job. `process` identifies the worker process in all epochs (runs of the
-  /// coordinator). `name` may be empty, because a band on disk does not contain it; it becomes
-  /// known when the worker sends another band.
+  /// coordinator). `name` is the name of the worker. It may be empty, because a band on disk does
+  /// not contain it. The name becomes known when the worker sends another band.
   void add(JobId job, const RowRange& rows, std::uint64_t process, const std::string& name);
-  /// Returns the rows that are rendered, in order; adjacent rows of one worker are merged.
+  /// Returns the rendered rows with the names of their workers, from top to bottom. Adjacent rows
+  /// of one worker are one entry.
   std::vector<RowsBy> of(JobId job) const;
   void forget(JobId job) { jobs_.erase(job); }
 
@@ -30,7 +31,7 @@ class Attribution {
 
   struct Piece {
     RowRange rows;
-    std::uint64_t process = 0;
+    std::uint64_t process = 0;  ///< the worker process that rendered the rows
   };
   /// Pieces that do not overlap, keyed by first row.
   using Rows = std::map<std::uint32_t, Piece>;

@@ -6,9 +6,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Calls `begin` with a callback, waits until the callback is called, and returns its argument. The
-/// engine calls every callback exactly once (engine/answer.h). MUST be called only on threads that
-/// may wait, never on the engine's or gRPC's own threads.
+/// Waits for the result of a call that passes its result to a callback. Calls `begin` with a
+/// callback, waits until the callback is called, and returns the argument of the callback. `begin`
+/// MUST cause exactly one call of the callback, as the engine's functions do (engine/answer.h).
+/// MUST be called only on threads that may wait, never on the engine's or gRPC's own threads.
 template <class T, class Begin>
 T blocking_call(Begin begin) {
   const auto answer = std::make_shared<std::promise<T>>();

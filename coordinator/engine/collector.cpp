@@ -1,5 +1,5 @@
-// to_forget() sums the sizes of all final jobs and names those that exceed a limit, the oldest
-// first. sweep() removes the blobs that no job needs, and folders of unknown jobs.
+// to_forget() sums the sizes of all blobs and final jobs, and returns the oldest final jobs if a
+// limit is exceeded. sweep() removes the blobs that no job needs, and folders of unknown jobs.
 
 #include "coordinator/engine/collector.h"
 
@@ -59,10 +59,11 @@ std::set<wire::Digest> Collector::known_blobs_of(const KeptJob& job) {
   return blobs_of(job).value_or(std::set<wire::Digest>());
 }
 
-/// Returns when a final job ended, and the size of its files; its frames are included in both. If
-/// neither it nor its frames have a folder, as with a sequence that was cancelled before a frame
-/// was done, makes an empty folder for it: the job counts as ended at `now` (seconds since 1970),
-/// and later collections take this time from the folder.
+/// Returns the time at which a final job ended, and the size of its files. For a sequence, both
+/// include its frames. It is possible that neither the job nor its frames have a folder, for
+/// example after a sequence was cancelled before a frame was done. Such a job counts as ended at
+/// `now` (seconds since 1970), and an empty folder is made for it. Later collections take the time
+/// from this folder.
 Collector::Final Collector::final_job(const KeptJob& kept, double now) const {
   Final job{.id = kept.id};
   add_files_of(kept.id, job);
@@ -76,8 +77,9 @@ Collector::Final Collector::final_job(const KeptJob& kept, double now) const {
   return job;
 }
 
-/// Adds the sizes of a job's files. A job's bands are removed from its folder when it becomes
-/// final, so the last change of the folder tells when that was.
+/// Adds the sizes of the files of the job `id` to `job`, and sets `job.at` to the time of the last
+/// change of its folder if that is later. The bands of a job are removed from its folder when the
+/// job becomes final. So the time of this change is the time at which the job ended.
 void Collector::add_files_of(JobId id, Final& job) const {
   struct stat found {};
   if (::stat(folder_.job(id).c_str(), &found) == 0) {
@@ -163,7 +165,8 @@ void Collector::sweep(const std::vector<KeptJob>& jobs, double now) {
     remove_unneeded(needed, now);
   }
   blobs_.remove_partials(now, keep_.unused_seconds);
-  // A job that was added in the meantime has a higher id than any of these.
+  // A job that was added after `jobs` was made has a higher id than every job in `jobs`. Its folder
+  // is kept.
   std::error_code error;
   std::vector<std::filesystem::path> unknown;
   for (std::filesystem::directory_iterator entry(folder_.jobs(), error), end;

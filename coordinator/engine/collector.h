@@ -1,7 +1,7 @@
 #pragma once
 
-// Finds and removes old jobs, and blobs (the data of scenes) that no job needs. Everything that
-// belongs to a job that is not final is kept.
+// Finds old final jobs, and removes the blobs (the data of scenes) that no job needs. All data of a
+// job that is not final is kept.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,9 +23,9 @@ struct Keep {
   /// first.
   std::uint64_t bytes = 100'000'000'000;
   double min_seconds = 60.0 * 60;  ///< minimum age at which `bytes` removes a final job
-  std::size_t jobs = 10'000;       ///< number of final jobs; each takes about 4 kB of memory
-  /// Maximum age of a blob, or of a part of a blob, that no job needs; counted from the time at
-  /// which it was last sent or requested.
+  std::size_t jobs = 10'000;  ///< maximum number of final jobs; each takes about 4 kB of memory
+  /// Maximum age of a blob, or of a part of a blob, that no job needs. The age is counted from the
+  /// time at which the blob was last sent or requested.
   double unused_seconds = 24.0 * 60 * 60;
 };
 
@@ -44,7 +44,7 @@ class Collector {
  private:
   struct Final {
     JobId id = 0;
-    double at = 0;            ///< time of its end, seconds since 1970
+    double at = 0;            ///< time at which the job ended, seconds since 1970
     std::uint64_t bytes = 0;  ///< size of its files
   };
   /// The blobs of the packages of one job, each once.
@@ -61,6 +61,7 @@ class Collector {
   std::optional<std::set<wire::Digest>> blobs_of(const KeptJob& job);
   /// Returns the result of blobs_of, or an empty set if that is std::nullopt.
   std::set<wire::Digest> known_blobs_of(const KeptJob& job);
+  /// Removes the blobs that are not in `needed` and were not used for Keep::unused_seconds.
   void remove_unneeded(const std::set<wire::Digest>& needed, double now);
 
   const DataFolder& folder_;

@@ -1,6 +1,6 @@
-// Records wait here for the journal, with the effects and completions that must not happen before.
-// flush() writes all records at once. If that fails, completions are called with the error, while
-// effects and records stay.
+// Records wait here for the journal. Effects and completions that must not happen before the
+// records are on disk wait here, too. flush() writes all records at once. If that fails,
+// completions are called with the error, while effects and records stay.
 
 #include "coordinator/engine/commit_queue.h"
 

@@ -75,7 +75,7 @@ class BlobUpload : public Engine::BlobWriter {
   BlobStore::Writer writer_;
 };
 
-/// Makes an answer of a callback that takes an empty list instead of an error.
+/// Returns an Answer that calls `done` with its list, or with an empty list instead of an error.
 template <class T>
 Answer<std::vector<T>> list_answer(std::function<void(std::vector<T>)> done) {
   return Answer<std::vector<T>>([done = std::move(done)](absl::StatusOr<std::vector<T>> list) {
@@ -101,8 +101,8 @@ Engine::Engine(const EngineOptions& options, EngineDependencies dependencies, Da
                  to_store_, to_film_),
       store_(folder_, *blobs_, options.keep, *clock_, to_scheduler_),
       film_(folder_, to_scheduler_, to_store_),
-      // Without messages, settle() is called at these intervals: for the scheduler's ticks and the
-      // store's disk tests. The film needs none.
+      // If no messages arrive, settle() is called at these intervals, for the scheduler's ticks and
+      // the store's tests of the disk. The film's thread has no such work.
       scheduler_mailbox_([this] { scheduler_.settle(); }, milliseconds(100)),
       store_mailbox_([this] { store_.settle(); }, milliseconds(100)),
       film_mailbox_([] {}, milliseconds(1000)) {}

@@ -36,13 +36,15 @@ namespace bandsaw::coordinator {
 
 struct EngineOptions {
   std::string data_folder;         ///< created if missing; locked against other engines
-  double heartbeat_timeout_s = 4;  ///< a worker that is silent this long is lost
-  /// A lease whose rows do not advance this long is given to another worker.
+  double heartbeat_timeout_s = 4;  ///< a worker that is silent for this time counts as lost
+  /// A lease without progress for this time is revoked, and its rows are given to another worker.
   double progress_timeout_s = 30;
-  double reattach_grace_s = 6;  ///< after a restart: time to wait for the workers from before
+  /// After a restart, nothing is leased for this time unless all workers of the previous run have
+  /// connected again.
+  double reattach_grace_s = 6;
   /// Share of the bands of native workers that two machines render, [0, 1].
   double audit_share = 0.01;
-  double browser_audit_share = 0.1;  ///< the same of the bands of browsers
+  double browser_audit_share = 0.1;  ///< as audit_share, for bands of browsers
   Browsers browsers = Browsers::kAlso;
   /// Retention of jobs that are over; applied every ten minutes, and every 1,000 jobs.
   Keep keep = {};
@@ -56,8 +58,10 @@ struct EngineDependencies {
 };
 
 /// All calls may come from any thread. They return at once unless their comment says that they may
-/// block. Results are passed to callbacks, on one of the engine's threads: callbacks MUST be quick.
-/// Each callback is called exactly once, with UNAVAILABLE if the engine stops before.
+/// block. Results are passed to callbacks on one of the engine's threads, so callbacks MUST be
+/// quick. Each callback, except that of watch(), is called exactly once. If the engine stops before
+/// it has the result, it calls the callback with UNAVAILABLE, or with an empty list if the callback
+/// takes no status.
 class Engine {
  public:
   /// Opens the data folder, replays the journal and the band logs, and starts the threads.
@@ -77,16 +81,16 @@ class Engine {
   /// RESOURCE_EXHAUSTED: too many jobs, or the disk is full.
   void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
               std::int32_t priority = 0);
-  /// Submits a sequence; its scenes follow by add_frames. Errors as submit.
+  /// Submits a sequence. The scenes of its frames are given later, by add_frames. Errors as submit.
   void submit_sequence(SequenceSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
                        std::int32_t priority = 0);
-  /// Gives frames of a sequence their scenes; returns the sequence after that. NOT_FOUND: no such
-  /// job. INVALID_ARGUMENT: it has no such frame, or a package is broken. FAILED_PRECONDITION: a
-  /// blob is missing, or the sequence was cancelled.
+  /// Gives frames of a sequence their scenes. Returns the sequence after this change. NOT_FOUND: no
+  /// such job. INVALID_ARGUMENT: the sequence has no such frame, or a package is broken.
+  /// FAILED_PRECONDITION: a blob is missing, or the sequence was cancelled.
   void add_frames(JobId sequence, std::vector<FrameScene> scenes,
                   std::function<void(absl::StatusOr<JobView>)> done);
-  /// Renders these failed frames again; if `frames` is empty, all that failed. Returns the sequence
-  /// after that.
+  /// Renders these failed frames again; if `frames` is empty, all failed frames. Returns the
+  /// sequence after this change.
   void retry_frames(JobId sequence, std::vector<FrameNumber> frames,
                     std::function<void(absl::StatusOr<JobView>)> done);
   /// Returns the frames that changed after `after` (FrameView::changed); 0: all.
@@ -136,7 +140,7 @@ class Engine {
   /// are not yet on disk and in the film.
   MemoryBudget& bands();
 
-  // Blobs. These calls may block on the disk: not for gRPC's own threads.
+  // Blobs. These calls may block on the disk. So they MUST NOT be called on gRPC's own threads.
   class BlobWriter {
    public:
     virtual ~BlobWriter() = default;  ///< without commit, the bytes are kept for the next upload
@@ -147,7 +151,7 @@ class Engine {
   };
   /// Returns true if the whole blob is stored.
   bool has_blob(const wire::Digest& digest) const;
-  /// Returns the number of bytes that an interrupted upload has left of a blob, from its beginning.
+  /// Returns the number of bytes at the beginning of a blob that an interrupted upload has stored.
   std::uint64_t partial_blob(const wire::Digest& digest) const;
   /// Begins the upload of a blob of `size` bytes. `offset`: continues an interrupted upload after
   /// this many bytes. FAILED_PRECONDITION: fewer bytes of the blob are stored. RESOURCE_EXHAUSTED:
@@ -169,20 +173,22 @@ class Engine {
                    std::vector<std::string> log);
   /// The worker's connection has ended.
   void lost(SessionId session, std::string reason);
-  /// Adds lines to the worker's log. They MUST have been checked.
+  /// Adds lines to the worker's log. The lines MUST have been checked with log_lines()
+  /// (rpc/checked_messages.h).
   void worker_log(SessionId session, std::vector<std::string> lines);
   /// Takes a band from a worker. The answer is OK once the band's pixels are on disk and the
   /// scheduler's decision about the band is in the journal, or if the band is not wanted
   /// (BandOutcome). RESOURCE_EXHAUSTED: disk or memory is full; the worker has to keep the band and
   /// send it again. INVALID_ARGUMENT: not a band of that job. FAILED_PRECONDITION: a browser sent
-  /// it, and `instance` is not a browser that has sent Hello; so a browser cannot pass for a native
-  /// worker.
+  /// the band, and `instance` is not a browser that has sent Hello. This check keeps a browser from
+  /// sending bands in the name of a native worker.
   ///
   /// `work`: hash of the scene and settings that the band was rendered for
-  /// (renderlib/render/work_hash.h), 0 if unknown; a band of an earlier job with the same id is not
-  /// wanted. `render_s`, `cpu_s`: seconds that the worker rendered it, and CPU seconds of its
-  /// threads. `browser`: a browser sent it. `share`: the band's share of bands();
-  /// std::nullopt: put_band takes it.
+  /// (renderlib/render/work_hash.h), 0 if unknown. The hash shows whether the band was rendered for
+  /// an earlier job with the same id: such a band is not wanted. `render_s`: seconds in which the
+  /// worker rendered the band. `cpu_s`: CPU seconds of the worker's threads for the band.
+  /// `browser`: a browser sent the band. `share`: the band's share of bands(); std::nullopt:
+  /// put_band takes the share.
   void put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                 double render_s, double cpu_s,
                 std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser = false,

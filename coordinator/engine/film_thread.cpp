@@ -1,6 +1,7 @@
 // A film holds the sums of all pixels of a job's image. For each job, work() brings the film up to
 // date: it builds the film again if that is needed, adds the bands that wait, reports complete
-// passes, and sends the image if it was requested. If that fails, the rest waits for retry().
+// passes, and sends the image if it was requested. If one of these steps fails, the remaining steps
+// wait for retry().
 
 #include "coordinator/engine/film_thread.h"
 
@@ -71,7 +72,7 @@ void FilmThread::add_later(JobId id, const IncomingBand& incoming,
 void FilmThread::request_image(JobId id, std::uint64_t samples) {
   if (const auto job = jobs_.find(id); job != jobs_.end()) {
     job->second.image_of = samples;
-    work(id, job->second).IgnoreError();  // the scheduler was informed
+    work(id, job->second).IgnoreError();  // `work` informs the scheduler
   }
 }
 
@@ -79,7 +80,7 @@ void FilmThread::retry() {
   for (auto& [id, job] : jobs_) {
     make_folder(folder_.job(id)).IgnoreError();  // if the folder is missing, `work` reports it
     if (job.rebuild || !job.waiting.empty() || job.image_of) {
-      work(id, job).IgnoreError();  // the scheduler was informed
+      work(id, job).IgnoreError();  // `work` informs the scheduler
     }
   }
 }
@@ -94,7 +95,7 @@ void FilmThread::retract(JobId id, std::uint64_t process) {
   std::erase_if(job->second.added, by);
   job->second.rebuild = true;
   job->second.reported = 0;
-  work(id, job->second).IgnoreError();  // the scheduler was informed
+  work(id, job->second).IgnoreError();  // `work` informs the scheduler
 }
 
 void FilmThread::drop(JobId job) {
@@ -220,10 +221,10 @@ FilmThread::Added FilmThread::added(const IncomingBand& incoming, const RowRange
           .digest = digest_of(incoming.pixels, rows)};
 }
 
-/// Builds a film of the bands up to a sample, read from the log. No part can be removed from an
-/// existing film, because nodes of samples that were merged have become one sum. Bands that the log
-/// no longer holds are left out and reported. Fails if the film cannot be created, or the log
-/// cannot be read for a reason other than damage.
+/// Builds a film of the bands whose samples end at or before `samples`. The bands are read from the
+/// log. A band cannot be removed from an existing film, because nodes of samples that were merged
+/// have become one sum. Bands that the log no longer holds are left out and reported. Fails if the
+/// film cannot be created, or the log cannot be read for a reason other than damage.
 absl::StatusOr<Film> FilmThread::film_until(JobId id, OneJob& job, std::uint64_t samples) {
   ASSIGN_OR_RETURN(Film film, new_film(id, job));
   std::vector<std::size_t> damaged;
@@ -244,8 +245,8 @@ absl::StatusOr<Film> FilmThread::film_until(JobId id, OneJob& job, std::uint64_t
   return film;
 }
 
-/// Reads rows from the log, bit for bit as they were added. DATA_LOSS: the record at the offset is
-/// that of another band.
+/// Reads rows from the log, bit for bit as they were added. DATA_LOSS: the record at the offset
+/// belongs to another band, or its sums are different.
 absl::StatusOr<BandPixels> FilmThread::read_again(JobId id, const Added& added) const {
   ASSIGN_OR_RETURN(const BandRecord record, read_band(folder_.bands(id), added.offset));
   const Band& found = record.pixels.band;
@@ -268,7 +269,7 @@ void FilmThread::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>
     job.added.erase(one);
   }
   if (!lost.empty()) {
-    store_.reopen(id);  // before the first of them is leased again
+    store_.reopen(id);  // before the first lost band is leased again
     scheduler_.bands_damaged({.job = id, .bands = std::move(lost)});
   }
 }

@@ -1,9 +1,9 @@
 #pragma once
 
-// The film's thread. A film holds the sums of all pixels of a job's image. There is one for each
-// job that is not final: the thread adds bands (ranges of rows and samples, rendered by workers) to
-// it, reports passes as they become complete, and makes the image at the end. A pass is a range of
-// samples of the whole image.
+// The film's thread. A film holds the sums of all pixels of a job's image. Each job that is not
+// final has a film. The thread adds bands (ranges of rows and samples, rendered by workers) to the
+// film, reports passes as they become complete, and makes the image at the end. A pass is a range
+// of samples of the whole image.
 
 #include <cstdint>
 #include <deque>
@@ -39,8 +39,8 @@ class FilmThread {
   /// Adds these rows of a band. OK: they are in the film. Otherwise they wait in memory for retry,
   /// and SchedulerInbox::storage_failed is called.
   absl::Status add(JobId job, IncomingBand incoming, std::vector<RowRange> rows);
-  /// Adds these rows of a band at the next retry, when the band is read from the job's log. This
-  /// function is for bands that are in the log while the film cannot take any.
+  /// Remembers these rows of a band. The next retry reads the band from the job's log and adds the
+  /// rows. This function is for bands that are in the log while the film cannot take any band.
   void add_later(JobId job, const IncomingBand& incoming, const std::vector<RowRange>& rows);
   /// Sends the image of samples [0, samples) to the store as soon as the film has them.
   void request_image(JobId job, std::uint64_t samples);
@@ -75,7 +75,7 @@ class FilmThread {
   struct OneJob {
     RenderSettings settings;
     bool adaptive = false;
-    std::optional<Film> film;               ///< from the first band on
+    std::optional<Film> film;               ///< std::nullopt: no band yet, or `rebuild`
     std::deque<Waiting> waiting;            ///< bands that are not in the film yet
     std::vector<Added> added;               ///< all rows in the film
     std::set<std::uint64_t> pass_ends;      ///< numbers of samples at which planned passes end
@@ -83,11 +83,17 @@ class FilmThread {
     bool rebuild = false;                   ///< the film must be built again, from `added`
     std::optional<std::uint64_t> image_of;  ///< the image of this many samples is requested
   };
+  /// Returns the entry of OneJob::added for these rows of a band.
   static Added added(const IncomingBand& incoming, const RowRange& rows);
+  /// Does all that the job's film waits for (see film_thread.cpp). If a step fails, informs the
+  /// scheduler and returns the error.
   absl::Status work(JobId id, OneJob& job);
   absl::Status rebuild_film(JobId id, OneJob& job);
+  /// Adds the rows of `waiting` to the film, and removes them from `waiting`.
   absl::Status merge(JobId id, OneJob& job, Waiting& waiting);
+  /// Reports each planned pass that is complete and was not reported.
   void report_passes(JobId id, OneJob& job);
+  /// Sends the image to the store if it was requested and the film has all of its samples.
   absl::Status send_image(JobId id, OneJob& job);
   absl::StatusOr<Film> new_film(JobId id, const OneJob& job) const;
   absl::StatusOr<Film> film_until(JobId id, OneJob& job, std::uint64_t samples);

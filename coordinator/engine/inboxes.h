@@ -1,9 +1,9 @@
 #pragma once
 
 // The messages that the engine's threads send to each other. SchedulerThread, StoreThread and
-// FilmThread call the inboxes of the others. Engine implements each inbox by posting to the
-// mailbox of its thread, so a call never blocks, and messages arrive in the order in which one
-// sender sent them. Tests implement inboxes that record the calls.
+// FilmThread call the inboxes of the others. Engine implements each inbox by posting to the mailbox
+// of its thread, so a call never blocks. The messages of one sender arrive in the order in which
+// they were sent. Tests implement inboxes that record the calls.
 
 #include <cstdint>
 #include <vector>
@@ -45,10 +45,12 @@ class StoreInbox {
   virtual void add_job(JobId job, const JobSpec& spec) = 0;
   /// Writes a band to its job's log.
   virtual void append(IncomingBand incoming) = 0;
-  /// Computes the digests of a band's rows without writing it: an audit needs no more.
+  /// Computes the digests of a band's rows and sends band_stored. Does not write the band, because
+  /// all of its rows are stored already: the second result is only compared with the first.
   virtual void compare(IncomingBand incoming) = 0;
   virtual void write_result(JobId job, Finished finished) = 0;
-  /// The job's log was found damaged: later bands go behind its last sound record.
+  /// Called when the job's log was found damaged. Later bands are appended after the last sound
+  /// record of the log.
   virtual void reopen(JobId job) = 0;
   /// Removes the log of a final job.
   virtual void drop_bands(JobId job) = 0;
@@ -56,7 +58,7 @@ class StoreInbox {
   virtual void drop_job(JobId job) = 0;
   /// Removes the blobs and folders that no job needs. `jobs` are all known jobs.
   virtual void collect(std::vector<KeptJob> jobs) = 0;
-  /// A write has failed: the store sends disk_is_back once the disk takes data again.
+  /// Called after a failed write. The store sends disk_is_back once the disk takes data again.
   virtual void test_disk_until_writable() = 0;
 };
 

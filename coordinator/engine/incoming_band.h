@@ -22,7 +22,8 @@ enum class BandOutcome {
   kUnwanted    ///< the job is over, or the band is not part of it
 };
 
-/// Returns RESOURCE_EXHAUSTED, for a band that does not fit into Engine::bands().
+/// Returns the error for a band that does not fit into the budget Engine::bands():
+/// RESOURCE_EXHAUSTED.
 inline absl::Status no_memory_for_band() {
   return absl::ResourceExhaustedError(
       "the coordinator holds as many bands in memory as it may; send this one again soon");
@@ -30,7 +31,7 @@ inline absl::Status no_memory_for_band() {
 
 struct IncomingBand {
   JobId job = 0;
-  /// Hash of the scene and settings that it was rendered for, as the worker reports it
+  /// Hash of the scene and settings for which the band was rendered, as the worker reports it
   /// (renderlib/render/work_hash.h); 0: unknown.
   std::uint64_t work = 0;
   std::string instance;       ///< instance of the worker
@@ -39,12 +40,12 @@ struct IncomingBand {
   BandPixels pixels;
   std::string worker;        ///< name of the worker, from action::AddToFilm
   TileSamples tiles = {};    ///< samples of the band's half tiles, from action::AddToFilm
-  double render_s = 0;       ///< time that the worker rendered it
-  double cpu_s = 0;          ///< CPU time of its threads
+  double render_s = 0;       ///< seconds in which the worker rendered it
+  double cpu_s = 0;          ///< CPU seconds of the worker's threads
   bool written = false;      ///< it is in the job's log; false: all of its rows were stored already
   std::uint64_t offset = 0;  ///< offset of its record in the job's log, once it is written
   Answer<BandOutcome> answer;  ///< to the worker
-  MemoryBudget::Share share;   ///< of the budget for bands in memory
+  MemoryBudget::Share share;   ///< memory of the pixels, from Engine::bands()
 };
 
 }  // namespace bandsaw::coordinator

@@ -1,4 +1,5 @@
-// Each event of a job is one line of key=value pairs, which Line assembles.
+// Writes the lines of the log. Line has a function for each kind of record, which logs the record
+// as key=value pairs.
 
 #include "coordinator/engine/job_log.h"
 

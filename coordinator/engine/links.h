@@ -18,7 +18,8 @@ class Links {
   explicit Links(std::string epoch) : epoch_(std::move(epoch)) {}
 
   void add(SessionId session, std::shared_ptr<WorkerLink> link, const WorkerHello& hello);
-  /// MUST be called when the stream has ended by itself.
+  /// MUST be called when the stream of the session has ended. Does nothing if action::Close has
+  /// ended the session before.
   void lost(SessionId session, const std::string& reason);
 
   /// Returns the worker's displayed name; empty: no such session.
@@ -31,6 +32,7 @@ class Links {
   void perform(const action::Revoke& revoke);
 
  private:
+  /// The connection to one worker.
   struct One {
     std::shared_ptr<WorkerLink> link;
     std::string name;  ///< for the log

@@ -1,5 +1,5 @@
-// A thread takes all tasks that wait as one batch, runs them in order, and then calls
-// after_batch(). It does so also after each period without tasks.
+// A thread takes all waiting tasks as one batch, runs them in order, and then calls after_batch().
+// It also calls after_batch() after each period in which no task was posted.
 
 #include "coordinator/engine/mailbox.h"
 
@@ -18,8 +18,9 @@ void Mailbox::post(Task task) {
       tasks_.push_back(std::move(task));
     }
   }
-  // A task that came too late is destroyed here, without the lock: its destructor may call an
-  // Answer, whose callback may post.
+  // A task that was posted after stop() is destroyed at the end of this function, when the mutex is
+  // not locked. The destructor of the task may call an Answer, and the callback of the Answer may
+  // call post(). If the mutex were locked, this would be a deadlock.
   wake_.notify_one();
 }
 

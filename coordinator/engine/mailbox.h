@@ -1,7 +1,7 @@
 #pragma once
 
-// A thread and its queue of tasks, which are done one after the other in the order in which they
-// were posted.
+// A thread and its queue of tasks. The thread runs the tasks one after the other, in the order in
+// which they were posted.
 
 #include <chrono>
 #include <functional>
@@ -39,8 +39,8 @@ class Mailbox {
 
  private:
   void run() EXCLUDES(mutex_);
-  /// Takes all waiting tasks, or none if `period_` passes without a task. Returns false if the
-  /// mailbox was stopped.
+  /// Waits until there is a task, `period_` has passed, or the mailbox is stopped. Then moves all
+  /// waiting tasks to `batch`, which MUST be empty. Returns false if the mailbox was stopped.
   bool take(std::vector<Task>& batch) EXCLUDES(mutex_);
 
   std::function<void()> after_batch_;
@@ -56,7 +56,7 @@ class Mailbox {
 template <class T>
 class Posting {
  public:
-  /// Both MUST outlive it.
+  /// `object` and `mailbox` MUST outlive the Posting.
   Posting(T& object, Mailbox& mailbox) : object_(object), mailbox_(mailbox) {}
 
   /// Posts `task`, which is called with the object.

@@ -14,8 +14,8 @@ class MemoryBudget {
  public:
   explicit MemoryBudget(std::uint64_t bytes) : left_(static_cast<std::int64_t>(bytes)) {}
 
-  /// Returns its bytes to the budget when it is destroyed. MUST NOT outlive the budget. Used by one
-  /// thread at a time.
+  /// A part of the budget. Its destructor returns the bytes to the budget. MUST NOT outlive the
+  /// budget. Used by one thread at a time.
   class Share {
    public:
     Share() = default;
@@ -44,7 +44,7 @@ class MemoryBudget {
     std::int64_t bytes_ = 0;
   };
 
-  /// Takes a share; std::nullopt if fewer bytes are left.
+  /// Takes a share of `bytes`. std::nullopt: fewer bytes are left.
   std::optional<Share> take(std::uint64_t bytes) {
     const auto wanted = static_cast<std::int64_t>(bytes);
     if ((left_ -= wanted) < 0) {

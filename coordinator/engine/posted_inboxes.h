@@ -1,8 +1,8 @@
 #pragma once
 
 // Implements the inboxes of the engine's threads (inboxes.h). Each message is posted to the mailbox
-// of the receiving thread. That thread then calls its method of the same name; for pass_merged() it
-// is observe().
+// of the receiving thread. That thread then calls the method with the same name of SchedulerThread,
+// StoreThread or FilmThread. The message pass_merged() calls the method observe().
 
 #include <utility>
 #include <vector>

@@ -1,6 +1,6 @@
-// Each input makes one step of the scheduler. absorb() puts the step's records into the commit
-// queue, and its actions behind them, as effects. perform() carries an action out, once the records
-// before it are on disk.
+// Each input makes one step of the scheduler. absorb() puts the records of the step into the commit
+// queue, then the actions of the step, as effects. perform() carries out an action once the records
+// before the action are on disk.
 
 #include "coordinator/engine/scheduler_thread.h"
 
@@ -16,9 +16,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Interval of the scheduler's Tick, by which it measures timeouts of seconds.
+/// Interval between two Tick inputs of the scheduler, in seconds. With each Tick the scheduler
+/// checks its timeouts.
 constexpr double kTick_s = 0.1;
-/// Old jobs and blobs are looked for after this time, or after this many new jobs.
+/// The store looks for old jobs and blobs after this time, or after this many new jobs.
 constexpr double kCollectEvery_s = 600;
 constexpr std::size_t kCollectEveryJobs = 1'000;
 
@@ -156,8 +157,9 @@ void SchedulerThread::collect() {
   store_.collect(scheduler_.kept());
 }
 
-/// Rewrites the journal as the smallest list of records if it has become long. Does so only while
-/// nothing waits for the journal, because then the scheduler's state equals the journal's.
+/// Rewrites the journal as the smallest list of records if it has become long. Does nothing while
+/// records or effects wait in the commit queue, because then the state of the scheduler is newer
+/// than the state in the journal.
 void SchedulerThread::compact() {
   if (!commit_queue_.empty() || journal_.size() <= compact_above_) {
     return;
@@ -175,6 +177,8 @@ void SchedulerThread::compact() {
 }
 
 bool SchedulerThread::flush() {
+  // If the disk is full, the reserve is removed, and commit_queue_.flush() below writes the records
+  // again in the space that the reserve has freed.
   if (const absl::Status written = commit_queue_.write();
       absl::IsResourceExhausted(written) && reserve_.release()) {
     disk_is_full(written);
@@ -188,7 +192,8 @@ bool SchedulerThread::flush() {
   return false;
 }
 
-/// The journal cannot be written, for any reason: pauses all jobs until the disk takes data again.
+/// Called when the journal cannot be written, for any reason. Pauses all jobs until the disk takes
+/// data again.
 void SchedulerThread::journal_failed(const absl::Status& status) {
   store_.test_disk_until_writable();
   if (!journal_status_.ok()) {
@@ -242,8 +247,9 @@ void SchedulerThread::disk_is_back() {
 }
 
 void SchedulerThread::bands_damaged(input::BandsDamaged damaged) {
-  results_on_the_way_.erase(
-      damaged.job);  // the film waits for the bands; the scheduler requests it again
+  // The film waits until the bands are rendered again. Then the scheduler requests the result
+  // again.
+  results_on_the_way_.erase(damaged.job);
   run(damaged);
 }
 

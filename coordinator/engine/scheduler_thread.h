@@ -1,8 +1,8 @@
 #pragma once
 
-// The scheduler's thread: it owns the scheduler and the journal (the log of decisions on disk),
-// writes the records of each step, and then turns the step's actions into messages to the other
-// threads and to workers.
+// The scheduler's thread: it owns the scheduler and the journal (the log of decisions on disk). It
+// writes the records of each step of the scheduler. Then it turns the actions of the step into
+// messages to the other threads and to workers.
 
 #include <atomic>
 #include <cstdint>
@@ -100,6 +100,7 @@ class SchedulerThread {
   Step run(const Input& input, IncomingBand* incoming = nullptr);
   /// Puts the records of a step and its actions, as effects, into the commit queue.
   void absorb(const Step& step, IncomingBand* incoming);
+  /// Carries out one action: sends it to the store, the film, a worker, or the log.
   void perform(const Action& action);
   /// Updates known_.
   void note(const Record& record);
@@ -108,7 +109,8 @@ class SchedulerThread {
   /// Writes the journal and runs the effects that waited for it. Returns false if the journal
   /// cannot be written.
   bool flush();
-  /// The disk is full: pauses all jobs and refuses submits and bands until disk_is_back.
+  /// Called when the disk is full. Pauses all jobs, and refuses submits and bands until
+  /// disk_is_back.
   void disk_is_full(const absl::Status& status);
   void pause_all(const absl::Status& status);
   void journal_failed(const absl::Status& status);

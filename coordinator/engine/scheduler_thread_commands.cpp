@@ -26,8 +26,9 @@ void SchedulerThread::submit(const Input& input, Answer<JobId> answer) {
     if (!decided.ok()) {
       answer(decided);
     } else if (!journalled.ok()) {
-      // Its submitter receives an error, so the job must not start when the disk is back, and a
-      // second submit with the same request id must not return it. A job that existed before stays.
+      // The submitter receives an error. So the job must not start when the disk is back, and a
+      // second submit with the same request id must not return this job. A job that existed before
+      // this submit is kept.
       if (added) {
         run(input::Cancel{.job = job});
         forget({job});

@@ -51,7 +51,7 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
   for (const std::uint64_t samples : known.pass_ends) {
     film.plan(id, samples);
   }
-  absl::Status filmed;
+  absl::Status filmed;  // the first error of the film
   const auto take = [&](BandRecord record, std::uint64_t offset) {
     BandPixels& pixels = record.pixels;
     std::optional<std::vector<RowRange>> rows = scheduler_.wanted(id, pixels.band);

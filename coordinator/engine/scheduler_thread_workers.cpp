@@ -1,5 +1,5 @@
-// The messages of workers to the scheduler's thread, and the store's answers about their bands (the
-// pixels of some rows and samples).
+// Handles the messages of workers to the scheduler's thread, and the store's answers about the
+// bands (the pixels of some rows and samples) of the workers.
 
 #include <spdlog/spdlog.h>
 
@@ -13,8 +13,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// Checks a band that a worker sent. INVALID_ARGUMENT: it is not a band of an image with these
-/// settings, some of its pixels are missing, or its pixels or counters contradict the samples that
-/// it takes (`tiles`).
+/// settings, some of its pixels are missing, or its pixels or counters contradict `tiles`, the
+/// samples of the half tiles of the band.
 absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings,
                         const TileSamples& tiles) {
   if (absl::Status valid = validate(pixels.band, settings); !valid.ok()) {

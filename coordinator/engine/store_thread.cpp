@@ -23,8 +23,8 @@ double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Returns true if the record is of a job with this scene and these settings: ids of jobs are used
-/// again after a reset of the journal.
+/// Returns true if the record belongs to a job with this scene and these settings. A log may hold
+/// bands of another job with the same id, because ids are used again after a reset of the journal.
 bool belongs(const BandRecord& record, const JobSpec& spec) {
   return record.package_digest == spec.manifest && record.settings == spec.settings;
 }
@@ -128,7 +128,7 @@ void StoreThread::settle(OpenJob& job) {
 }
 
 void StoreThread::write_result(JobId id, const Finished& finished) {
-  // The image is valid without the attribution.
+  // An error here is only logged, because the image is valid without the attribution.
   if (const absl::Status status = write_attribution(finished.attribution, folder_.attribution(id));
       !status.ok()) {
     spdlog::warn("job={} the names of those who rendered its rows could not be stored: {}", id,
@@ -194,8 +194,8 @@ void StoreThread::drop_job(JobId id) {
 
 void StoreThread::collect(const std::vector<KeptJob>& jobs) {
   const double now = unix_seconds();
-  // The files of a forgotten job are removed after the journal has the record (action::DropJob),
-  // its blobs at the next sweep.
+  // The files of a forgotten job are removed once the journal has the record that the job is
+  // forgotten (action::DropJob). The blobs of this job are removed by the next sweep.
   collector_.sweep(jobs, now);
   if (std::vector<JobId> old = collector_.to_forget(jobs, now); !old.empty()) {
     scheduler_.forget(std::move(old));

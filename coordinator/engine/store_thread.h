@@ -1,8 +1,8 @@
 #pragma once
 
-// The store's thread: it writes the logs of bands (one sync to disk for all that have arrived:
-// group commit) and the results, removes old jobs, and tests a disk that has failed until it takes
-// data again.
+// The store's thread: it writes the logs of bands and the results, removes old jobs, and tests a
+// disk that has failed until the disk takes data again. All bands that have arrived for one log are
+// synced to disk at once (group commit).
 
 #include <map>
 #include <string>
@@ -36,9 +36,10 @@ class StoreThread {
   /// Creates the folder of a new job. If this fails, it is tried again at the job's first band.
   absl::Status add_job(JobId job, const JobSpec& spec);
 
-  /// Writes a band; it is answered at settle, after the log is synced.
+  /// Writes a band to the log of its job. settle() answers the band, after the log is synced.
   void append(IncomingBand incoming);
-  /// Computes the row digests of a band that is stored already. Does not write it.
+  /// Computes the row digests of a band and sends the scheduler band_stored. Does not write the
+  /// band, because its rows are stored already.
   void compare(IncomingBand incoming);
   /// MUST be called after each batch. Syncs each log that was written (one fdatasync per log), then
   /// answers its bands. Every two seconds, tests a disk that has failed.
@@ -50,8 +51,8 @@ class StoreThread {
   /// Reads a part of a result (store/finished.h). DATA_LOSS: missing or damaged. NOT_FOUND: the
   /// result has no such part.
   absl::StatusOr<StoredResult> read_result(JobId job, FinishedPart part) const;
-  /// The log was found damaged: later bands are appended after its last sound record, or to a new
-  /// log if it is missing.
+  /// Called when the log was found damaged. Later bands are appended after the last sound record of
+  /// the log, or to a new log if the log is missing.
   void reopen(JobId job);
   /// Removes the log of a final job.
   void drop_bands(JobId job);
@@ -78,7 +79,7 @@ class StoreThread {
   SchedulerInbox& scheduler_;
   Collector collector_;
   std::map<JobId, OpenJob> jobs_;
-  bool trouble_ = false;  ///< a write has failed, and the disk was not found writable since
+  bool trouble_ = false;  ///< true from a failed write until a test finds the disk writable
   Time tested_at_ = 0;    ///< when the disk was last tested
 };
 

@@ -1,5 +1,5 @@
-// Checks the fields of a job, then reads its manifest and checks that every blob that it names is
-// stored.
+// Checks the fields of a job. Then reads the manifest of its package, and checks that every blob
+// that the manifest lists is stored.
 
 #include "coordinator/engine/submit_check.h"
 
@@ -49,6 +49,7 @@ absl::Status check_stop(const StopRule& stop) {
   return check_samples("max_samples", time.max_samples);
 }
 
+/// Checks the length of the request id, and that the name is short and clean text.
 absl::Status check_words(const std::string& request_id, const std::string& name) {
   if (request_id.size() < kMinRequestId || request_id.size() > kMaxRequestId) {
     return absl::InvalidArgumentError(absl::StrCat("request_id must have ", kMinRequestId, " to ",
@@ -69,6 +70,8 @@ absl::Status check_words(const std::string& request_id, const std::string& name)
   return absl::OkStatus();
 }
 
+/// Returns the manifest with this digest. FAILED_PRECONDITION: it is not stored. INVALID_ARGUMENT:
+/// it is too long. Further errors: those of BlobSource::get.
 absl::StatusOr<std::string> read_manifest(const DigestHex& hex, BlobSource& blobs) {
   ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_hex(hex));
   const absl::StatusOr<std::unique_ptr<BlobBytes>> blob = blobs.get(digest);

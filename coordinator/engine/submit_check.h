@@ -20,15 +20,16 @@ namespace bandsaw::coordinator {
 /// package's blobs as used.
 absl::Status check_submit(JobSpec& spec, BlobStore& blobs);
 
-/// Checks the fields of a sequence. INVALID_ARGUMENT: one is out of range, or the name is
-/// not clean text.
+/// Checks the fields of a sequence. INVALID_ARGUMENT: a field is out of range, or the name is not
+/// clean text.
 absl::Status check_sequence(const SequenceSpec& spec);
 
-/// Checks a scene package as check_submit does. Returns its size in bytes, the manifest included.
+/// Checks a scene package as check_submit does. Returns the size of its manifest and all of its
+/// blobs, in bytes.
 absl::StatusOr<std::uint64_t> check_package(const DigestHex& manifest, BlobStore& blobs);
 
-/// Returns the exposure and tone with which the scene wants its image displayed; the default if its
-/// manifest cannot be read.
+/// Returns the exposure and tone that the scene sets for the display of its image. Returns the
+/// default if the manifest cannot be read.
 Display display_of(const DigestHex& manifest, BlobSource& blobs);
 
 }  // namespace bandsaw::coordinator

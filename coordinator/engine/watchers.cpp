@@ -15,7 +15,7 @@ constexpr double kMinInterval_s = 0.1;
 /// A little less than a second, because the interval is checked every tenth of a second.
 constexpr double kMaxInterval_s = 0.9;
 
-/// Returns true if something changed that does not change with time alone.
+/// Returns true if the views differ in a field that does not change with time alone.
 bool changed(const JobView& a, const JobView& b) {
   return a.state != b.state || a.reason != b.reason || a.samples_done != b.samples_done ||
          a.samples_per_pixel != b.samples_per_pixel || a.error != b.error ||

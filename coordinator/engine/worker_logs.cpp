@@ -12,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kNamesInError = 20;
+constexpr std::size_t kNamesInError = 20;  // maximum number of workers in an error message
 
 /// Memory of a line besides its text.
 constexpr std::size_t kLineOverhead = sizeof(std::string);

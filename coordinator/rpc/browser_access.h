@@ -47,20 +47,22 @@ class BrowserAccess {
   /// dashboard. Other errors: the file cannot be written; the present link is unchanged. Waits for
   /// the disk.
   absl::StatusOr<Link> make(double seconds) EXCLUDES(mutex_);
-  /// Ends the present link, if there is one: it is refused from the moment this returns. Waits for
-  /// the disk.
+  /// Ends the present link, if there is one. The link is refused from the moment at which this
+  /// function returns. Waits for the disk.
   absl::Status revoke() EXCLUDES(mutex_);
 
   /// Checks the secret of a request from this address. UNAUTHENTICATED: it is not the secret of the
-  /// present link. RESOURCE_EXHAUSTED: it is wrong, and this address has sent too many wrong
-  /// secrets.
+  /// present link. RESOURCE_EXHAUSTED: the secret is wrong, and this address has sent too many
+  /// wrong secrets.
   absl::Status check(const std::string& secret, const std::string& address) EXCLUDES(mutex_);
   /// Returns true if check() would succeed. A wrong secret is not counted.
   bool holds(const std::string& secret) EXCLUDES(mutex_);
 
  private:
   BrowserAccess(std::string folder, UnixSeconds now, std::optional<link::BrowserLink> link);
+  /// Returns the link as users see it. `link_` MUST have a value.
   Link shown() REQUIRES(mutex_);
+  /// Returns true if there is no link, or its time is over.
   bool has_ended() REQUIRES(mutex_);
 
   const std::string folder_;

@@ -11,13 +11,16 @@
 
 namespace bandsaw::coordinator {
 
-/// `field` is the field's name in errors; `raw` are the 32 bytes of a digest.
+/// Returns the digest with the bytes `raw`. INVALID_ARGUMENT: `raw` is not 32 bytes long. `field`:
+/// the name of the field in errors.
 absl::StatusOr<wire::Digest> digest_field(const char* field, const std::string& raw);
 absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request);
 absl::StatusOr<SequenceSpec> sequence_spec(const farm::SubmitSequenceRequest& request);
 absl::StatusOr<std::vector<FrameScene>> frame_scenes(const farm::AddFramesRequest& request);
+/// Returns the frames in ascending order, each once.
 absl::StatusOr<std::vector<FrameNumber>> frame_numbers(const farm::RetryFramesRequest& request);
-/// Checks the form of a band only; the engine decides if it is a band of its job.
+/// Checks only that the ranges of the band are valid. The engine decides whether the band belongs
+/// to its job.
 absl::StatusOr<Band> band(const char* field, const farm::Band& message);
 /// `address`: the peer's address, for display.
 absl::StatusOr<WorkerHello> worker_hello(const farm::Hello& message, std::string address);

@@ -1,5 +1,5 @@
-// Both calls work in steps: a task makes the next chunk on an executor, gRPC writes it, and
-// OnWriteDone() starts the next step.
+// GetBlobCall and ImageCall work in steps. A task on an executor makes the image, or copies a chunk
+// of the blob. gRPC writes a chunk, and OnWriteDone() starts the next step.
 
 #include "coordinator/rpc/downloads.h"
 

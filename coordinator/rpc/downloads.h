@@ -26,7 +26,10 @@ class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobCh
   link::Role role() const override { return link::Role::kWorker; }
 
  private:
+  /// Opens the blob, and prepares the first chunk.
   absl::Status open();
+  /// Writes the next chunk, or ends the call. `first`: this is the first chunk, which is written
+  /// even if it has no bytes.
   void write_next(bool first);
   /// Returns the status that stop() was called with; OK if it was not called.
   absl::Status stopped() EXCLUDES(mutex_);

@@ -40,7 +40,9 @@ void FileExecutor::run() {
     tasks_.pop_front();
     mutex_.unlock();
     task();
-    task = nullptr;  // its captures may take the queue's lock in their destructors
+    // The captures of the task are destroyed while the mutex is not locked, because one of their
+    // destructors may call post(), which locks the mutex.
+    task = nullptr;
     mutex_.lock();
   }
 }

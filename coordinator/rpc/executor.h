@@ -21,8 +21,9 @@ class FileExecutor {
   FileExecutor(const FileExecutor&) = delete;
   FileExecutor& operator=(const FileExecutor&) = delete;
 
-  /// Tasks start in the order in which they were posted. Tasks of one stream never overlap, because
-  /// each task posts the next one of its stream itself.
+  /// Adds a task. Tasks start in the order in which they were posted, and several tasks run at the
+  /// same time. Tasks of one stream never overlap, because the next task is posted only when the
+  /// read or write that the previous task started has ended.
   void post(std::function<void()> task) EXCLUDES(mutex_);
 
  private:

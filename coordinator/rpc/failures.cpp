@@ -25,8 +25,8 @@ Failures::Verdict Failures::add(const std::string& address, double now) {
                                   : Verdict::kMore;
 }
 
-/// Removes addresses whose minute is over. If that frees nothing, the many addresses are assumed to
-/// be one attacker, and all counts are cleared.
+/// Removes addresses whose minute is over. If all addresses are still within their minute, they are
+/// assumed to belong to one attacker, and all counts are cleared.
 void Failures::forget_old(double now) {
   std::erase_if(counts_, [&](const auto& one) { return now - one.second.since >= kMinute_s; });
   if (counts_.size() >= kMaxAddresses) {

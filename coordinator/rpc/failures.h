@@ -22,8 +22,8 @@ class Failures {
 
  private:
   struct Count {
-    double since = 0;
-    std::size_t failures = 0;
+    double since = 0;          ///< time of the first failure
+    std::size_t failures = 0;  ///< within a minute from `since`
   };
   void forget_old(double now);
 

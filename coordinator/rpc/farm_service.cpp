@@ -34,10 +34,10 @@ absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsReques
   return digests;
 }
 
-/// Fills a reply with the first of `jobs`, the jobs that the request selects. If the request limits
-/// their number, the reply also ends when half of a message is full. The other half is for the last
-/// job of the reply, which may have thousands of workers. RESOURCE_EXHAUSTED: the request is for
-/// all jobs, and they do not fit into a message.
+/// Adds the jobs that the request selects (`jobs`) to the reply. If the request limits the number
+/// of jobs, no further job is added once half of the maximum size of a message is full. The other
+/// half is for the last job of the reply, which may have thousands of workers. RESOURCE_EXHAUSTED:
+/// the request is for all jobs, and they do not fit into a message.
 absl::Status fill(const std::vector<JobView>& jobs, const farm::ListJobsRequest& request,
                   farm::ListJobsReply& reply) {
   constexpr std::size_t kEntryHead = 8;  // at least the bytes of an entry's tag and length

@@ -32,8 +32,9 @@ class Gate {
   Gate(link::Identity identity, RenewSecret renew);
 
   /// Checks that the call carries the secret of role `needed`. UNAUTHENTICATED: the call has no
-  /// secret, or a wrong one. RESOURCE_EXHAUSTED: this is so too often for calls from one address.
-  /// PERMISSION_DENIED: the secret is that of the other role.
+  /// secret, or a wrong one. RESOURCE_EXHAUSTED: the call has no secret or a wrong one, and there
+  /// were too many such calls from its address. PERMISSION_DENIED: the secret is that of the other
+  /// role.
   absl::Status check(const grpc::CallbackServerContext& context, link::Role needed)
       EXCLUDES(mutex_);
   /// Returns true if check() would admit the call now. A wrong secret is not counted.
@@ -48,11 +49,14 @@ class Gate {
   absl::StatusOr<RenewedSecret> rotate(link::Role role) EXCLUDES(rotating_);
 
  private:
+  /// Returns the role of the call's secret. Errors as check(), except PERMISSION_DENIED.
   absl::StatusOr<link::Role> role_of(const grpc::CallbackServerContext& context) EXCLUDES(mutex_);
+  /// Counts a call without a valid secret. Returns `why`, or RESOURCE_EXHAUSTED if the address has
+  /// made too many such calls.
   absl::Status refused(const std::string& address, const absl::Status& why) REQUIRES(mutex_);
 
   const RenewSecret renew_;
-  Mutex rotating_;
+  Mutex rotating_;  ///< locked during rotate(), so that only one secret is renewed at a time
   Mutex mutex_;
   link::Identity identity_ GUARDED_BY(mutex_);
   Failures failures_ GUARDED_BY(mutex_);

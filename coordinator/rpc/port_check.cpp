@@ -16,6 +16,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Listens on this address for a moment. Returns 0, or the errno of the error.
 int try_bind(const addrinfo& info) {
   const int fd = socket(info.ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (fd < 0) {

@@ -6,9 +6,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Checks if HOST:PORT can be listened on, because gRPC does not report why it cannot listen.
-/// FAILED_PRECONDITION: the port is taken, is not an address of this machine, or is not allowed.
-/// INVALID_ARGUMENT: not HOST:PORT.
+/// Checks that the coordinator can listen on `listen`, which has the form HOST:PORT. gRPC itself
+/// does not report why it cannot listen. FAILED_PRECONDITION: the port is taken, is not an address
+/// of this machine, or is not allowed. INVALID_ARGUMENT: not HOST:PORT.
 absl::Status check_can_listen(const std::string& listen);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 // A worker's bands (the pixels of some rows and samples) arrive one after the other, each in
-// chunks. A complete band is handed over to the engine; while it is there, nothing is read, and the
-// call cannot end. The next band is read when the answer has been written.
+// chunks. A complete band is handed over to the engine. Until the answer of the engine has been
+// written to the worker, nothing is read, and the call cannot end. Then the next band is read.
 
 #include "coordinator/rpc/put_bands_call.h"
 

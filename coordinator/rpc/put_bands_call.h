@@ -8,10 +8,10 @@
 namespace bandsaw::coordinator {
 
 /// Serves Work.PutBands, the stream on which a worker sends its finished bands. Flow control: the
-/// next band is read only after the previous one is answered, so a worker's stream needs the memory
-/// of one band, which the BandIntake takes from Engine::bands(). Chunks are copied and hashed on
-/// gRPC's thread, which for small bands costs less than handing them to another thread; the engine
-/// writes them to disk.
+/// next band is read only after the previous one is answered. So a worker's stream needs the memory
+/// of one band. BandIntake takes this memory from Engine::bands(). Chunks are copied and hashed on
+/// gRPC's thread, because this costs less for small bands than handing the chunks to another
+/// thread. The engine writes the bands to disk.
 class PutBandsCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>, PutBandsCall>,
       public LongStream {
@@ -44,6 +44,7 @@ class PutBandsCall final
   /// True while a band is with the engine or its answer is being written.
   bool handed_over_ GUARDED_BY(mutex_) = false;
   bool finished_ GUARDED_BY(mutex_) = false;
+  /// The status with which the call is to end; std::nullopt: the call continues.
   std::optional<absl::Status> end_ GUARDED_BY(mutex_);
 };
 

@@ -42,8 +42,8 @@ class ReflectionOption final : public grpc::ServerBuilderOption {
 };
 
 /// Enables or disables gRPC server reflection, which lists services, calls and messages to any
-/// client. The library libgrpc++_reflection enables it by being linked, so its plugin is removed
-/// unless it is wanted.
+/// client. A program that is linked with libgrpc++_reflection has reflection enabled. So the plugin
+/// of this library is removed unless reflection is wanted.
 void set_reflection(grpc::ServerBuilder& builder, bool wanted) {
   builder.SetOption(std::make_unique<ReflectionOption>(wanted));
 }
@@ -135,9 +135,10 @@ class Server::Impl {
   int port() const { return port_; }
 
  private:
-  const link::Identity identity_;  ///< as at the start; the certificate does not change
+  const link::Identity identity_;  ///< at the start; later only the secrets change
   Gate gate_;
-  FileExecutor files_;  // files_ and images_ outlive the server: ending calls post tasks to them
+  // files_ and images_ are destroyed after server_, because calls that end post tasks to them.
+  FileExecutor files_;
   FileExecutor images_;
   LongStreams streams_;
   FarmService farm_;

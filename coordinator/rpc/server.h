@@ -17,13 +17,14 @@ struct ServerOptions {
   std::string listen = "0.0.0.0:7878";  ///< port 0: any free port
   bool insecure = false;                ///< plaintext instead of TLS
   bool reflection = false;              ///< lists the services and calls to any client
-  RenewSecret renew = nullptr;          ///< implements RotateSecret; nullptr: it is refused
+  RenewSecret renew = nullptr;          ///< implements RotateSecret; nullptr: the call is refused
   BrowserAccess* browsers = nullptr;    ///< implements BrowserLink; outlives the server
 };
 
 class Server {
  public:
-  /// FAILED_PRECONDITION: the port is taken (the message says how to find the process).
+  /// Starts the server. FAILED_PRECONDITION: the server cannot listen. If the port is taken, the
+  /// message says how to find the process. INVALID_ARGUMENT: `options.listen` is not HOST:PORT.
   static absl::StatusOr<std::unique_ptr<Server>> start(Engine& engine,
                                                        const link::Identity& identity,
                                                        const ServerOptions& options);

@@ -73,6 +73,7 @@ class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
  public:
   using Reactor = Base;
 
+  /// Creates the reactor from `args` and calls its begin().
   template <class... Args>
   static Derived* make(Args&&... args) {
     auto made = std::make_shared<Derived>(std::forward<Args>(args)...);
@@ -86,6 +87,7 @@ class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
   }
 
  protected:
+  /// Called by OnDone(). A derived class may define a done() of its own.
   void done() {}
 
  private:
@@ -110,9 +112,10 @@ Base* if_admitted(const ServiceDependencies& deps, const grpc::CallbackServerCon
   return status.ok() ? make() : new RefusedCall<Base>(status);
 }
 
-/// Returns the reactor of a stream, made of `deps` and `args`, if the caller has this role's
-/// secret. The secret is checked again once the stream is in the register, because a renewal of the
-/// secret ends only the streams that are registered at that moment.
+/// Creates the call of a stream from `deps` and `args`, if the caller has the secret of `role`, and
+/// returns it. Otherwise returns a reactor that refuses the call. The secret is checked again once
+/// the stream is in the register, because a renewal of the secret ends only the streams that are
+/// registered at that moment.
 template <class Call, class... Args>
 auto* admitted(const ServiceDependencies& deps, const grpc::CallbackServerContext& context,
                link::Role role, Args&&... args) {

@@ -1,5 +1,6 @@
-// Each chunk of a blob is checked and written by a thread of the executor, never by gRPC's; the
-// next chunk is read when that is done. While a chunk is processed, the call cannot end.
+// Each chunk of a blob is checked and written by a thread of the executor, never by a thread of
+// gRPC. The next chunk is read when the previous chunk is written. While a chunk is processed, the
+// call cannot end.
 
 #include "coordinator/rpc/uploads.h"
 

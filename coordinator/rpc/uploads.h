@@ -18,7 +18,7 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
       : deps_(deps), context_(context) {}
   void begin();
   void OnReadDone(bool ok) override;
-  /// Keeps the bytes that have arrived for the next attempt.
+  /// Ends the call. The bytes that have arrived are kept for the next attempt.
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
   link::Role role() const override { return link::Role::kFarm; }
 
@@ -26,6 +26,7 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
   /// Processes a chunk, or the end of the stream if `ok` is false. Returns the status with which
   /// the call ends; std::nullopt: the next chunk is to be read.
   std::optional<absl::Status> take(bool ok);
+  /// Called when take() has returned `ended`. Reads the next chunk, or ends the call.
   void after_task(std::optional<absl::Status> ended) EXCLUDES(mutex_);
   absl::Status add(const farm::BlobChunk& chunk);
   absl::Status end();
@@ -41,6 +42,7 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
   Mutex mutex_;
   bool working_ GUARDED_BY(mutex_) = false;  ///< a task is on the file executor
   bool finished_ GUARDED_BY(mutex_) = false;
+  /// The status with which the call is to end; std::nullopt: the call continues.
   std::optional<absl::Status> end_ GUARDED_BY(mutex_);
 };
 

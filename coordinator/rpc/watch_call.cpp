@@ -1,5 +1,5 @@
-// At most one state of the job waits to be sent: a newer one replaces it while an older one is
-// being sent.
+// At most one state of the job waits to be sent. While a state is being sent, each new state
+// replaces the state that waits.
 
 #include "coordinator/rpc/watch_call.h"
 

@@ -22,6 +22,8 @@ class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatu
  private:
   /// Returns false if no more statuses are wanted.
   bool changed(const absl::StatusOr<JobView>& job) EXCLUDES(mutex_);
+  /// Unless a write is in progress, sends the state that waits, or finishes the call if it is to
+  /// end.
   void advance() REQUIRES(mutex_);
 
   const ServiceDependencies deps_;
@@ -30,7 +32,7 @@ class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatu
   bool writing_ GUARDED_BY(mutex_) = false;
   bool finished_ GUARDED_BY(mutex_) = false;
   std::optional<farm::JobStatus> next_ GUARDED_BY(mutex_);
-  std::optional<absl::Status> end_ GUARDED_BY(mutex_);  ///< sent after `next_`
+  std::optional<absl::Status> end_ GUARDED_BY(mutex_);  ///< the call ends with it after `next_`
   farm::JobStatus sending_;                             ///< not modified while writing_
 };
 

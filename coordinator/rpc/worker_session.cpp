@@ -158,7 +158,7 @@ void WorkerSession::send(farm::ToWorker message) {
   if (outgoing_.size() < kMaxQueued) {
     outgoing_.push_back(std::move(message));
   } else {
-    outgoing_.resize(1);
+    outgoing_.resize(1);  // the message that is being written
     end_ = absl::ResourceExhaustedError(
         absl::StrCat("it does not read its messages: ", kMaxQueued, " wait"));
   }

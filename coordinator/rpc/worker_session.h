@@ -1,8 +1,8 @@
 #pragma once
 
 // The part of a worker's session that does not depend on its transport (Work.Session by gRPC, or a
-// browser's WebSocket): checks each message and forwards it to the engine, converts the engine's
-// actions to messages, and queues them while the transport sends an earlier message.
+// browser's WebSocket). It checks each message and forwards it to the engine. It converts the
+// engine's actions to messages, and queues these messages while the transport sends an earlier one.
 
 #include <deque>
 #include <memory>
@@ -23,7 +23,7 @@ class WorkerSession : public WorkerLink {
   static constexpr std::size_t kMaxQueued = 1024;
 
   /// `peer`: the worker's address, for display. `browser`: the worker renders in a browser.
-  /// `engine` outlives the session.
+  /// `engine` MUST outlive the session.
   WorkerSession(Engine& engine, std::string peer, bool browser)
       : engine_(engine), peer_(std::move(peer)), browser_(browser) {}
 
@@ -44,14 +44,15 @@ class WorkerSession : public WorkerLink {
   /// Ends the session after all messages that wait. If the session is ended more than once, the
   /// first status counts.
   void end_after_queue(const absl::Status& status) EXCLUDES(mutex_);
-  /// Ends the session after the message in progress; the others are dropped.
+  /// Ends the session after the message that is being sent. All other messages are dropped.
   void end_now(const absl::Status& status) EXCLUDES(mutex_);
   /// Called by the transport exactly once, when no message can arrive any more. The engine frees
   /// the worker's leases.
   void over() EXCLUDES(mutex_);
 
  private:
-  // Implemented by the transport. None of them may call a function above before it returns.
+  // Implemented by the transport. These functions may be called while `mutex_` is locked. So they
+  // MUST NOT call a function above, because that function would lock the mutex again: a deadlock.
   /// Waits for the next message.
   virtual void read_next() = 0;
   /// Sends a message, which exists until sent() is called.
@@ -62,6 +63,8 @@ class WorkerSession : public WorkerLink {
 
   absl::Status forward(const farm::FromWorker& message, const std::shared_ptr<WorkerLink>& self);
   void send(farm::ToWorker message) EXCLUDES(mutex_);
+  /// Unless a write is in progress, writes the next message of the queue, or finishes the session
+  /// if it is to end and the queue is empty.
   void advance() REQUIRES(mutex_);
 
   Engine& engine_;

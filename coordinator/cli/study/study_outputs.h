@@ -16,7 +16,8 @@ absl::Status check_study_outputs(const std::vector<std::string>& outputs);
 /// Checks that each file can be written, before any work is done.
 absl::Status check_study_writable(const std::vector<std::string>& outputs);
 
-/// Writes each file atomically; stops at the first error.
+/// Writes `csv` to each file whose name ends in .csv, and `plot` to each file whose name ends in
+/// .svg. Each file is written atomically. Stops at the first error.
 absl::Status write_study(const std::vector<std::string>& outputs, const std::string& csv,
                          const Plot& plot);
 

@@ -26,9 +26,10 @@ struct Pixel {
 /// Sums over the samples of a pixel. A sample counts as the mean of its three channels.
 struct Moments {
   double sum = 0;
-  double squares = 0;
+  double squares = 0;  ///< sum of the squares
 
-  /// Returns true if the error of the mean of the `n` samples is within the tolerance.
+  /// Returns true if half of the 95 % confidence interval of the mean of the `n` samples is at most
+  /// `tolerance` times the mean.
   bool within(double tolerance, double n) const {
     const double mean = sum / n;
     const double variance = std::max(0.0, (squares - n * mean * mean) / (n - 1));

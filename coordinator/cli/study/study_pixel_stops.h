@@ -16,11 +16,12 @@
 
 namespace bandsaw::coordinator {
 
-/// Renders samples whose random numbers are independent: the i-th sample of a pixel is the first
-/// sample of the i-th seed of a series, so each sample has an Owen scramble of its own.
+/// Renders samples whose random numbers are independent. The i-th sample of a pixel is rendered as
+/// the first sample of an image with the i-th seed of a series. So each sample has an Owen scramble
+/// of its own.
 class IndependentSamples {
  public:
-  /// All arguments MUST outlive the object.
+  /// `scene`, `pool` and `stop` MUST outlive the object.
   IndependentSamples(const Scene& scene, const RenderSettings& settings, Pool& pool,
                      const std::atomic<bool>& stop)
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop) {}
@@ -30,6 +31,7 @@ class IndependentSamples {
   absl::StatusOr<std::vector<double>> next();
   /// Returns the mean of all samples rendered so far.
   Image mean() const;
+  /// Returns the number of rays of all samples rendered so far.
   double rays() const { return rays_; }
 
  private:
@@ -49,15 +51,15 @@ inline constexpr std::array<double, 4> kTolerances = {0.4, 0.2, 0.1, 0.05};
 /// The images of all tolerances, made of the same samples.
 struct StoppedImages {
   std::array<Image, kTolerances.size()> images;
-  std::array<double, kTolerances.size()> samples = {};  ///< per pixel, on average
-  /// Number of rays of all samples. Every pixel is rendered with `most` samples, also after it has
-  /// stopped.
+  std::array<double, kTolerances.size()> samples = {};  ///< mean number of samples per pixel
+  /// Number of rays of all samples. A pixel that has stopped is still rendered until it has the
+  /// `most` samples of stop_by_pixels(), and these rays are counted as well.
   double rays = 0;
 };
 
 /// Stops each pixel at the first multiple of 16 samples that satisfies the tolerance, or at `most`
-/// samples. The error is that of the mean of the three channels. This is the rule of Berkeley's
-/// course CS184 and of many ray tracers that follow it. CANCELLED: `stop` was set.
+/// samples. The error is estimated for the mean of the three channels. This is the rule of
+/// Berkeley's course CS184 and of many ray tracers that follow it. CANCELLED: `stop` was set.
 absl::StatusOr<StoppedImages> stop_by_pixels(const Scene& scene, const RenderSettings& settings,
                                              std::uint64_t most, Pool& pool,
                                              const std::atomic<bool>& stop);

@@ -22,11 +22,12 @@ std::string bias_text(const StudyPoint& point) {
 
 std::string percent_text(double fraction) { return absl::StrFormat("%.3g %%", 100 * fraction); }
 
-/// Replaces bars, which would end a table's cell.
+/// Replaces each '|' by '/', because a '|' would end the cell of the table.
 std::string cell(const std::string& name) { return absl::StrReplaceAll(name, {{"|", "/"}}); }
 
-/// Returns the row of the first table for one method: its results at the largest number of samples,
-/// and its CPU time to 1 % error, also relative to that of the first method.
+/// Returns the row of the first table for one method. The row has the results of the method at its
+/// largest number of samples, and its CPU time to 1 % error. In brackets it has this time divided
+/// by that of the first method.
 std::string worth_row(const StudyOfScene& study, const StudyLine& line) {
   const StudyPoint& last = line.points.back();
   const auto needed = cpu_s_to_1_percent(line);
@@ -41,6 +42,7 @@ std::string worth_row(const StudyOfScene& study, const StudyLine& line) {
                          last.cpu_s, last.cpu_s > 0 ? last.rays / last.cpu_s / 1e6 : 0, to_target);
 }
 
+/// Returns the text as a field of CSV in quotes.
 std::string quoted(const std::string& text) {
   return absl::StrCat("\"", absl::StrReplaceAll(text, {{"\"", "\"\""}}), "\"");
 }

@@ -1,8 +1,9 @@
 #pragma once
 
-// The jobs that the denoiser of a job's image needs (renderlib/denoise): two guides, which are
-// images of the albedo and of the normals and distances of the surfaces, and for an image of few
-// samples one half of its samples. Used by `--denoise` of the commands and by the dashboard.
+// The jobs that the denoiser (renderlib/denoise) needs in addition to the job of the image. Two of
+// them render the guides: an image of the albedo, and an image of the normals and distances of the
+// surfaces. For an image of few samples, a third job renders half of its samples. Used by
+// `--denoise` of the commands and by the dashboard.
 
 #include <cstdint>
 #include <optional>
@@ -13,9 +14,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the name of a job that is made beside another job: `name`, which is that of the other
-/// job, then `suffix`, which has at most a few words. If both together would be longer than the
-/// name of a job may be, `name` is cut between characters.
+/// Returns the name of a job that is made in addition to another job: `name`, the name of the other
+/// job, then `suffix`, a few words. If both together are longer than the name of a job may be,
+/// `name` is cut between two characters.
 std::string with_suffix(const std::string& name, const std::string& suffix);
 
 /// Bounds of the number of samples of the guides.
@@ -26,14 +27,15 @@ inline constexpr std::uint64_t kMaxGuideSamples = 32;
 /// least 1: about a quarter as many, within the bounds, and not more than the image has. More
 /// samples would improve the clean image too little for the time that they cost
 /// (renderlib/denoise/NOTES.md). The number is a power of two unless the image has fewer than 8
-/// samples, so an image that is rendered further rarely needs new guides.
+/// samples. So the number rarely changes when an image is rendered further, and new guides are
+/// rarely needed.
 std::uint64_t guide_samples(std::uint64_t samples);
 
 /// Checks if an image with this many samples per pixel can be denoised. FAILED_PRECONDITION: the
 /// integrator computes no radiance, or the pixels have a single sample.
 absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t samples);
 
-/// The specifications of these jobs.
+/// The specifications of the jobs that the denoiser needs.
 struct CleanJobs {
   JobSpec albedo;
   JobSpec shape;  ///< normals and distances
@@ -44,8 +46,8 @@ struct CleanJobs {
 };
 
 /// Returns the jobs for the image of a job that has `samples` samples per pixel, at least 2. Their
-/// request ids depend on what they render only, so that one image of guides serves all users and
-/// all images of the same scene, size and seed.
+/// request ids depend only on what they render. So all users and all images of the same scene, size
+/// and seed share one job for each guide.
 CleanJobs clean_jobs(const JobSpec& of, std::uint64_t samples);
 
 }  // namespace bandsaw::coordinator

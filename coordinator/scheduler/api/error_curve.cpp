@@ -13,9 +13,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Bounds of the exponent. The lower one is that of random samples. The upper one is the steepest
-/// that is extrapolated: an octave in which the error falls faster is not followed by another such
-/// octave (NOTES.md).
+/// Bounds of the exponent. The lower bound is the exponent of random samples. The upper bound is
+/// the largest exponent that is used to extrapolate: after an octave in which the error falls
+/// faster, it does not fall as fast in the next octave (NOTES.md).
 constexpr double kMinFall = 0.5;
 constexpr double kMaxFall = 0.75;
 
@@ -25,7 +25,8 @@ ErrorCurve::const_iterator begin_of(const ErrorCurve& curve) {
                       [](const ErrorPoint& point) { return point.estimate.at_most() > 0; });
 }
 
-/// Interpolates linearly between the logarithms of both points.
+/// Returns the error at `samples`, which lies between the points `a` and `b`. The logarithm of the
+/// error is interpolated linearly in the logarithm of the samples.
 double between(const ErrorPoint& a, const ErrorPoint& b, double samples) {
   const auto from = static_cast<double>(a.samples);
   const double all = std::log(static_cast<double>(b.samples) / from);
@@ -43,7 +44,8 @@ double measured_at(const ErrorCurve& curve, double samples) {
                                                        : between(*std::prev(next), *next, samples);
 }
 
-/// Returns the error at any number of samples: interpolated, or extrapolated with this exponent.
+/// Returns the error at any number of samples. Between the points the error is interpolated. Before
+/// the first and beyond the last point it is extrapolated with the exponent `fall`.
 double expected_at(const ErrorCurve& curve, double samples, double fall) {
   const auto last = static_cast<double>(curve.back().samples);
   if (samples > last) {

@@ -24,16 +24,17 @@ struct ErrorPoint {
 /// Ordered by rising samples.
 using ErrorCurve = std::vector<ErrorPoint>;
 
-/// Adds a point with at least as many samples as the last one. A point with as many replaces the
-/// last one's estimate and keeps its times, because it is a second measurement of the same image.
-/// The new point also replaces the last point if the last point has less than 1/8 more samples than
-/// the point before it. So a curve has at most about 160 points.
+/// Adds a point with at least as many samples as the last one. If it has as many samples as the
+/// last one, the last point gets the new estimate and keeps its times, because the new point is a
+/// second measurement of the same image. A point with more samples replaces the last point if the
+/// last point has less than 1/8 more samples than the point before it. So a curve has at most about
+/// 160 points.
 void add_point(ErrorCurve& curve, const ErrorPoint& point);
 
 /// Returns the exponent p of "error falls as samples^-p" over the last octave (the last doubling of
-/// the samples). It is the mean over the points of this octave, each compared with half its
-/// samples, clamped to [0.5, 0.75]. If the curve does not span an octave, it is 0.5, the exponent
-/// of random samples.
+/// the samples). For each point of this octave, the error is compared with the error at half of its
+/// samples. The result is the mean of these exponents, clamped to [0.5, 0.75]. If the curve does
+/// not span an octave, it is 0.5, the exponent of random samples.
 double fall_of(const ErrorCurve& curve);
 
 /// Returns the relative RMSE plus its margin (ErrorEstimate::at_most) at this many samples per
@@ -47,8 +48,8 @@ double error_at(const ErrorCurve& curve, double samples);
 /// curve has no point or is of a black image, or more than kMaxSamples would be needed.
 std::optional<double> samples_until(const ErrorCurve& curve, double target);
 
-/// Returns the CPU seconds until error_at is at most `target`; they are proportional to the
-/// samples. std::nullopt: samples_until returns it, or the CPU time is unknown.
+/// Returns the CPU seconds until error_at is at most `target`. CPU seconds are taken as
+/// proportional to the samples. std::nullopt: samples_until returns it, or the CPU time is unknown.
 std::optional<double> cpu_s_until(const ErrorCurve& curve, double target);
 
 }  // namespace bandsaw::coordinator

@@ -58,7 +58,8 @@ absl::Status add_item(absl::string_view item, std::vector<FrameNumber>& out) {
   if (!first || !last || !step || !rest.empty()) {
     return wrong("is neither a frame nor a range, as in 47, 1-30 or 1:240:2");
   }
-  // Compares with both bounds, because the least number has no absolute value.
+  // Compares with both bounds, because the absolute value of the least FrameNumber does not fit
+  // into a FrameNumber.
   const auto is_beyond = [](FrameNumber number) {
     return number > kMaxFrameNumber || number < -kMaxFrameNumber;
   };

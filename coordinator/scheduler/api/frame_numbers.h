@@ -26,7 +26,8 @@ inline constexpr FrameNumber kMaxFrameNumber = 1'000'000'000;
 /// long.
 absl::StatusOr<std::vector<FrameNumber>> parse_frames(absl::string_view text);
 
-/// Returns the shortest list of ranges, as parse_frames reads them. `numbers` MUST be ascending.
+/// Returns a short list of numbers and ranges in the form that parse_frames reads. `numbers` MUST
+/// be ascending.
 std::string frames_text(const std::vector<FrameNumber>& numbers);
 
 }  // namespace bandsaw::coordinator

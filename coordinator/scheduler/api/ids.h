@@ -7,7 +7,7 @@
 
 namespace bandsaw::coordinator {
 
-using JobId = std::uint64_t;      ///< counts from 1; never reused
+using JobId = std::uint64_t;      ///< counts from 1; reused only after a reset of the data folder
 using LeaseId = std::uint64_t;    ///< unique within one epoch (one run of the coordinator)
 using SessionId = std::uint64_t;  ///< one stream of one worker; unique within one epoch
 

@@ -22,7 +22,8 @@ struct StopAtSamples {
 struct StopAtError {
   double relative_rmse = 0;  ///< > 0; 0.01 is 1 %
   std::uint64_t max_samples = kMaxSamples;
-  /// More samples where there is more noise (renderlib/render/adaptive_plan.h).
+  /// If true, parts of the image with more noise get more samples
+  /// (renderlib/render/adaptive_plan.h).
   bool adaptive = false;
   friend bool operator==(const StopAtError&, const StopAtError&) = default;
 };
@@ -50,13 +51,13 @@ struct JobSpec {
   StopRule stop;
   JobId sequence = 0;     ///< the sequence of a frame job (sequence_spec.h); 0: none
   FrameNumber frame = 0;  ///< its number in the sequence
-  /// Bytes of the package, the manifest included; it follows from the manifest, so it is not
-  /// compared. 0: unknown, because an earlier version journalled the job.
+  /// Bytes of the package, the manifest included. This number follows from the manifest, so
+  /// operator== does not compare it. 0: unknown, because an earlier version journalled the job.
   std::uint64_t package_bytes = 0;
   /// Returns true if a band (rows and samples that a worker rendered) which is labelled with the
   /// hash `work` can belong to this job (renderlib/render/work_hash.h). The job id alone is not
-  /// enough, because ids are reused after a reset of the data folder. 0: the band is not labelled,
-  /// and is accepted.
+  /// enough, because ids are reused after a reset of the data folder. `work` is 0 if the band is
+  /// not labelled; such a band is accepted.
   bool may_be(std::uint64_t work) const {
     return work == 0 || work == work_hash(manifest, settings);
   }
