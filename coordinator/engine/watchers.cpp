@@ -16,7 +16,7 @@ constexpr double kMinInterval_s = 0.1;
 constexpr double kMaxInterval_s = 0.9;
 
 /// Returns true if the views differ in a field that does not change with time alone.
-bool changed(const JobView& a, const JobView& b) {
+bool differ(const JobView& a, const JobView& b) {
   return a.state != b.state || a.reason != b.reason || a.samples_done != b.samples_done ||
          a.samples_per_pixel != b.samples_per_pixel || a.error != b.error ||
          a.counters != b.counters || a.frames != b.frames || a.workers_used != b.workers_used ||
@@ -66,7 +66,7 @@ void Watchers::update(ViewOf view_of, bool hold_final, Time now) {
       continue;
     }
     const bool final = is_final(view->state);
-    const bool due = changed(*view, watched.sent) || now - watched.sent_at >= kMaxInterval_s;
+    const bool due = differ(*view, watched.sent) || now - watched.sent_at >= kMaxInterval_s;
     if (!due || (final && hold_final)) {
       ++it;
       continue;

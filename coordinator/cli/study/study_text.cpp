@@ -28,13 +28,13 @@ std::string cell(const std::string& name) { return absl::StrReplaceAll(name, {{"
 /// Returns the row of the first table for one method. The row has the results of the method at its
 /// largest number of samples, and its CPU time to 1 % error. In brackets it has this time divided
 /// by that of the first method.
-std::string worth_row(const StudyOfScene& study, const StudyLine& line) {
+std::string method_row(const StudyOfScene& study, const StudyLine& line) {
   const StudyPoint& last = line.points.back();
   const auto needed = cpu_s_to_1_percent(line);
-  const auto full = cpu_s_to_1_percent(study.lines.front());
+  const auto needed_by_first = cpu_s_to_1_percent(study.lines.front());
   std::string to_target = needed ? duration(*needed) : "–";
-  if (needed && full && *full > 0) {
-    absl::StrAppendFormat(&to_target, " (%.2g ×)", *needed / *full);
+  if (needed && needed_by_first && *needed_by_first > 0) {
+    absl::StrAppendFormat(&to_target, " (%.2g ×)", *needed / *needed_by_first);
   }
   return absl::StrFormat("| %s | %s | %.4g | %s | %s | %s | %.2f | %.1f | %s |\n",
                          cell(study.scene), method_name(line.method), last.samples,
@@ -57,7 +57,7 @@ std::string study_table(const std::vector<StudyOfScene>& studies) {
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
   for (const StudyOfScene& study : studies) {
     for (const StudyLine& line : study.lines) {
-      absl::StrAppend(&out, worth_row(study, line));
+      absl::StrAppend(&out, method_row(study, line));
     }
   }
   absl::StrAppend(
