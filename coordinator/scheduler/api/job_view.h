@@ -47,8 +47,9 @@ struct JobView {
   JobState state = JobState::kRunning;
   std::string reason;
   double fraction = 0;  ///< part of the work that is done, [0, 1]
-  /// Seconds since its first lease. The times between runs of the coordinator do not count, nor do
-  /// those in which it was paused (for a sequence: by a user).
+  /// Seconds since its first lease. The times between runs of the coordinator do not count. The
+  /// times in which the job was paused do not count either; for a sequence, only pauses by a user
+  /// are such times.
   double elapsed_s = 0;
   double remaining_s = -1;              ///< negative: unknown
   double samples_per_s = 0;             ///< pixel samples, recently; 0 for a final job
@@ -79,7 +80,7 @@ struct KeptJob {
   JobId id = 0;
   bool final = false;
   std::vector<DigestHex> manifests;  ///< manifests of its packages
-  std::vector<JobId> frame_jobs;     ///< for a sequence; their files belong to it
+  std::vector<JobId> frame_jobs;     ///< for a sequence: its frame jobs, whose files it owns
 };
 
 /// A worker that is connected, has left, was refused, or is under quarantine.

@@ -50,7 +50,8 @@ struct WorkerHello {
   };
   std::vector<Held> held;
 
-  /// Returns the name under which the farm knows it: its own, with a suffix if it is a browser.
+  /// Returns the name under which the farm knows the worker: `name`, and for a browser also
+  /// kBrowserSuffix.
   std::string reported_name() const { return browser ? name + kBrowserSuffix : name; }
 };
 
@@ -79,7 +80,7 @@ struct AddFrames {
   JobId job = 0;
   std::vector<FrameScene> scenes;
 };
-/// Renders failed frames again, whatever the state of the sequence, unless it was cancelled.
+/// Renders failed frames again. The sequence may be in any state except cancelled.
 struct RetryFrames {
   JobId job = 0;
   std::vector<FrameNumber> frames;  ///< empty: all that failed
@@ -139,9 +140,9 @@ struct BandStored {
   double cpu_s = 0;     ///< CPU time of its threads
   bool written = true;  ///< false: all rows were stored already and it was only compared
 };
-/// The film has all rows of the samples [0, samples), and their error is estimated. The film may
-/// have some rows of later samples too, which the estimate then includes. So this message is sent
-/// again just before the finished image is written, with the error of exactly the image's samples.
+/// The film has all rows of the samples [0, samples), and their error is estimated. If the film
+/// also has some rows of later samples, the estimate includes them. So PassMerged is sent again
+/// just before the finished image is written, with the error of exactly the image's samples.
 struct PassMerged {
   JobId job = 0;
   std::uint64_t samples = 0;
@@ -285,8 +286,9 @@ using Action =
 struct Step {
   std::vector<Record> records;
   std::vector<Action> actions;
-  absl::Status status;  ///< answer to a user's request; for other inputs INTERNAL: a bug
-  JobId job = 0;        ///< the job of Submit
+  /// Answer to a user's request. After any other input, INTERNAL says that the scheduler has a bug.
+  absl::Status status;
+  JobId job = 0;  ///< the job of Submit
 };
 
 }  // namespace bandsaw::coordinator

@@ -68,7 +68,8 @@ struct TimeSpent {
   JobId job = 0;
   double elapsed_s = 0;
 };
-/// Totals of a job that is about to become final. Its bands are dropped then.
+/// Totals of a job that is about to become final. They are kept because the job's bands are dropped
+/// when it becomes final.
 struct JobSummary {
   JobId job = 0;
   double elapsed_s = 0;
@@ -99,8 +100,8 @@ struct FailureLog {
 struct JobForgotten {
   JobId job = 0;
 };
-/// A worker process connected. After a restart the scheduler waits for those that were connected,
-/// because they may hold finished bands.
+/// A worker process connected. After a restart the scheduler waits for the processes that were
+/// connected, because they may hold finished bands.
 struct WorkerJoined {
   std::string instance;
   /// It renders in a browser; its bands are audited at the rate of browsers.
@@ -110,22 +111,22 @@ struct WorkerJoined {
 struct WorkerLeft {
   std::string instance;
 };
-/// A second machine returned the same digests for rows that `process` had stored, so they are taken
-/// to be right.
+/// A second machine returned the same digests for rows that `process` had stored. So these rows are
+/// assumed to be right.
 struct BandAudited {
   JobId job = 0;
   Band band;
   WorkerProcessId process = 0;
 };
-/// The pixels of the band that `process` had stored are damaged on disk. They are rendered again,
-/// and an earlier BandAudited of them does not hold for the new ones.
+/// The pixels of the band that `process` had stored are damaged on disk. The band is rendered
+/// again. An earlier BandAudited of the band does not hold for its new pixels.
 struct BandLost {
   JobId job = 0;
   Band band;
   WorkerProcessId process = 0;
 };
-/// Another machine returned another digest for a row than the stored one. The job must not end
-/// before it is known which of them is right.
+/// A second machine returned a digest for a row that differs from the stored digest. The job must
+/// not end before it is known which digest is right.
 struct RowDisputed {
   /// The result of one machine for the row.
   struct Claim {
@@ -140,7 +141,8 @@ struct RowDisputed {
   Claim other;
   friend bool operator==(const RowDisputed&, const RowDisputed&) = default;
 };
-/// The error measured so far is void, because some of its pixels have been retracted.
+/// The error measured so far is void, because some pixels from which it was measured have been
+/// retracted.
 struct ErrorForgotten {
   JobId job = 0;
 };

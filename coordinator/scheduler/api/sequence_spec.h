@@ -62,9 +62,11 @@ struct FrameScene {
 struct FrameView {
   FrameNumber number = 0;
   FrameState state = FrameState::kExpected;
-  JobId job = 0;              ///< its frame job; 0: none
-  std::string reason;         ///< why it failed last, also if it is tried again
-  std::uint64_t changed = 0;  ///< grows with each change of a frame of the sequence, in one epoch
+  JobId job = 0;       ///< its frame job; 0: none
+  std::string reason;  ///< why it failed last, also if it is tried again
+  /// Number of the frame's last change. In each epoch, all changes of all frames of the sequence
+  /// are numbered together, from 1 on; 0: the frame has not changed.
+  std::uint64_t changed = 0;
 };
 
 /// Number of frames in each state.

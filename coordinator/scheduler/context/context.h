@@ -43,7 +43,7 @@ class Context {
   }
   /// Sets the answer to the request of this step.
   void answer(absl::Status status) { step_.status = std::move(status); }
-  /// Sets the job that the request of this step is answered with.
+  /// Sets the job id that the answer to the request of this step contains.
   void answer_job(JobId id) { step_.job = id; }
   /// Collects a lease that this step revokes.
   void revoke(SessionId session, LeaseId lease) { revoked_[session].push_back(lease); }
@@ -63,11 +63,11 @@ class Context {
   Reporter reporter_of(WorkerProcessId process) const;
   /// Returns true if this worker process joined as a browser, in any epoch.
   bool is_browser(const std::string& instance) const;
-  /// Notes the time if a native worker (one that is no browser) is connected. MUST be called at
-  /// least once per heartbeat interval.
+  /// Notes the time if a native worker (one that is no browser) is connected and may get leases
+  /// (Worker::eligible). MUST be called at least once per heartbeat interval.
   void note_natives();
-  /// Returns true if no native worker has been connected for kNativesAway_s: then, and only then,
-  /// browsers compare each other's pixels.
+  /// Returns true if no native worker that may get leases has been connected for kNativesAway_s.
+  /// Only then do browsers compare each other's pixels.
   bool only_browsers() const;
   /// Returns the displayed name of the machine that returned a result.
   std::string name_of(const Reporter& reporter) const;
@@ -83,8 +83,8 @@ class Context {
   /// Journalled: worker processes (instances) that joined and have not left.
   std::set<std::string> joined;
   /// Journalled: the browsers, connected or not, that may have rendered bands of active jobs. If
-  /// there are more than kMaxBrowsers, some are forgotten. If their bands are read back from disk,
-  /// these are audited like bands of native workers.
+  /// there are more than kMaxBrowsers, some are forgotten. Bands of forgotten browsers that are
+  /// read back from disk are audited like bands of native workers.
   std::map<WorkerProcessId, std::string> browsers;
 
  private:
@@ -119,7 +119,7 @@ class Context {
   void apply(const record::SequenceAdded& r);
   void apply(const record::FrameWaits& r);
 
-  Time native_seen_at_ = 0;  ///< timeout clock: when a native worker was last connected
+  Time native_seen_at_ = 0;  ///< timeout clock: time that note_natives() noted last
   Step step_;
   /// Leases to revoke, by session of their worker.
   std::map<SessionId, std::vector<LeaseId>> revoked_;

@@ -16,8 +16,9 @@ namespace bandsaw::coordinator {
 
 class JobTable {
  public:
-  /// Order in which jobs are leased: the highest priority, then the lowest id. Frame jobs have the
-  /// place of their sequence, in the order of their ids.
+  /// Order in which jobs are leased: the highest priority first, and at equal priority the lowest
+  /// id first. All frame jobs of a sequence stand where the id of the sequence puts them. Among
+  /// themselves they are in the order of their own ids.
   struct Rank {
     std::int32_t descending_priority = 0;
     JobId place = 0;  ///< id of the job, or of its sequence
@@ -34,7 +35,7 @@ class JobTable {
   const Job& at(JobId id) const { return all_.at(id); }
   std::map<JobId, Job>& all() { return all_; }
   const std::map<JobId, Job>& all() const { return all_; }
-  /// Returns the job that was submitted with this request id.
+  /// Returns the job that was submitted with this request id; std::nullopt: there is none.
   std::optional<JobId> by_request(const std::string& request_id) const;
   /// Returns the id of the next job that is added.
   JobId next_id() const { return next_id_; }

@@ -20,8 +20,9 @@ struct Lease {
   JobId job = 0;
   WorkerId worker = 0;
   Band band;
-  /// Not 0: this is a backup task for a part of that lease's band. The original keeps its lease and
-  /// owns the rows in the coverage.
+  /// For a backup task: id of the original lease. The backup task renders a part of the original
+  /// lease's band as well. The original lease goes on and owns the rows in the coverage. 0: this is
+  /// no backup task.
   LeaseId backup_of = 0;
   /// A second rendering of stored rows, to compare (model/audit.h); it owns no rows.
   bool audit = false;

@@ -74,9 +74,10 @@ std::optional<record::WorkerQuarantined> QuarantineList::missing_name(
 }
 
 std::string QuarantineList::describe(const Entry& entry) {
-  return absl::StrCat("quarantined: it ", entry.reason,
-                      "; check the machine's memory and cooling, then: bandsaw quarantine --lift ",
-                      entry.name);
+  return absl::StrCat(
+      "quarantined: it ", entry.reason,
+      "; check the machine's memory and cooling, then run `bandsaw quarantine --lift ", entry.name,
+      "`");
 }
 
 // The lifted entries come first: a QuarantineLifted record lifts all earlier entries with its name,

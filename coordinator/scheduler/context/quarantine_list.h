@@ -32,17 +32,17 @@ class QuarantineList {
   static constexpr std::size_t kMaxBrowsers = 256;
 
   /// Adds an entry, or replaces the entry of the same process, lifted or not. If the list has
-  /// kMaxNatives native workers already, one of them is forgotten before another is added: one
-  /// whose entry is lifted, if there is one.
+  /// kMaxNatives native workers already, the entry of one of them is forgotten before another
+  /// native worker is added. A lifted entry is chosen for this, if there is one.
   void add(const record::WorkerQuarantined& r);
   /// Lifts the quarantine of all processes with this name.
   void lift(const std::string& name);
 
   /// Forgets the lifted entries of browsers. If too_many_browsers(), forgets all entries of
   /// browsers, so that browsers are admitted again. MUST be called only while no active job has
-  /// bands that browsers rendered: entries are needed as long as results of their processes may
-  /// have to be discarded. They are not needed to keep a browser out, because the page loaded again
-  /// is a new process without an entry.
+  /// bands that browsers rendered: an entry is needed as long as results of its process may have to
+  /// be discarded. An entry cannot keep a browser out, because a page that is loaded again is a new
+  /// process without an entry.
   void forget_browsers();
 
   /// Returns true if the process has an entry, lifted or not.
@@ -55,8 +55,9 @@ class QuarantineList {
                                             const std::string& reported_name) const;
   /// Returns true if kMaxBrowsers browsers are under quarantine.
   bool too_many_browsers() const;
-  /// Returns the record that adds the name of a process that was quarantined before it connected,
-  /// as happens after a restart; std::nullopt: nothing is missing.
+  /// A process can be quarantined before it has connected since the coordinator started. Then its
+  /// entry has no name. Returns the record that adds the name which `worker` reports to the entry
+  /// of its process. Returns std::nullopt if the process has no entry or the entry has a name.
   std::optional<record::WorkerQuarantined> missing_name(const WorkerHello& worker) const;
   /// Returns the sentence that is shown for an entry.
   static std::string describe(const Entry& entry);

@@ -26,8 +26,8 @@ struct Worker {
   std::string instance;         ///< id that the process chose for itself when it started
   WorkerProcessId process = 0;  ///< hash of the instance
   std::string name;             ///< displayed; unique among the known workers
-  /// The name that it reports: that of its machine. A browser's is chosen freely, and ends with
-  /// kBrowserSuffix (api/messages.h).
+  /// The name that it reports. A native worker reports the name of its machine. The name of a
+  /// browser is chosen freely, and ends with kBrowserSuffix (api/messages.h).
   std::string reported_name;
   std::string address;
   std::string build;
@@ -95,7 +95,8 @@ class Workers {
   std::size_t connected() const { return by_session_.size(); }
 
  private:
-  /// Bounds the memory. The latest ones are kept, since they may come back or be shown.
+  /// Maximum number of workers that are kept after they have left. It bounds the memory. The latest
+  /// ones are kept, since they may come back or be shown.
   static constexpr std::size_t kMaxGone = 512;
   void forget_gone();
 
@@ -139,9 +140,9 @@ class AvailableWorkers {
 
   bool contains(const Place& place) const { return places_.contains(place); }
   std::size_t size() const { return places_.size(); }
-  /// eligible() and threads() return the number of eligible workers, with or without spare credits,
-  /// and the number of their threads.
+  /// Returns the number of eligible workers, with or without spare credits.
   std::size_t eligible() const { return known_.size(); }
+  /// Returns the number of threads of all eligible workers.
   std::uint64_t threads() const { return threads_; }
   /// Returns the number of eligible workers that are not browsers.
   std::size_t natives() const { return natives_; }

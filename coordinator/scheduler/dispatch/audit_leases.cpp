@@ -1,6 +1,6 @@
 // Chooses an open audit (the second rendering of a stored band, to compare) for a worker and leases
-// it. A worker whose result is one of those that are compared renders the band again only if the
-// results differ and no other worker can decide which one is right.
+// it. A machine that has already returned a result for the band renders it again only if the
+// results differ and no other machine can decide which one is right.
 
 #include "coordinator/scheduler/dispatch/audit_leases.h"
 

@@ -20,10 +20,10 @@ class AuditLeases {
               const ReconnectBarrier& barrier)
       : context_(context), ledger_(ledger), eligibility_(eligibility), barrier_(barrier) {}
 
-  /// Returns true if the worker may render the audit's band: usually, if its machine has returned
-  /// no result yet. Native workers audit all bands; browsers audit those of other browsers, and
-  /// only if no native worker is there. A machine that has returned a result may render the band
-  /// once more if the audit is disputed and no other machine is left.
+  /// Returns true if the worker may render the audit's band. Its machine must not have returned a
+  /// result for the band, except if the audit is disputed and no other machine is left: then it may
+  /// render the band once more. Native workers audit all bands. Browsers audit only bands of other
+  /// browsers, and only if no native worker is there (Context::only_browsers).
   bool may_render(const Worker& worker, const Job& job, const Audit& audit) const;
   /// Returns the first waiting audit that the worker may render; nullptr: none.
   Audit* next_for(const Worker& worker, Job& job) const;

@@ -1,7 +1,7 @@
 // A backup task is a second lease of the rows of a late lease. share() goes through the leases of
-// running jobs, the one that is expected to end last first. If a lease is for an audit, share()
-// tries to move it; if its worker has not begun it, to steal it; otherwise, to grant backup tasks
-// for its rows to idle workers.
+// running jobs, and begins with the one that is expected to end last. It tries to move a lease that
+// is for an audit. It tries to steal a lease that its worker has not begun. For any other lease it
+// tries to grant backup tasks for its rows to idle workers.
 
 #include "coordinator/scheduler/dispatch/backup_tasks.h"
 
@@ -14,9 +14,9 @@ namespace {
 
 /// Time that it takes to hand work over, in addition to rendering it.
 constexpr double kTransfer_s = 0.03;
-/// Backup tasks are granted only if they are expected to take less than kMaxBackupTime of the time
-/// that the original still needs. Idle workers are added until the backup tasks need at most
-/// kTargetBackupTime of it.
+/// Fractions of the time that the original lease still needs. Backup tasks are granted only if they
+/// are expected to take less than the fraction kMaxBackupTime. Idle workers are added until the
+/// backup tasks need at most the fraction kTargetBackupTime.
 constexpr double kMaxBackupTime = 0.75;
 constexpr double kTargetBackupTime = 0.5;
 /// After a scan that found nothing, the next one waits this long per active lease. This bounds the
@@ -74,7 +74,7 @@ std::vector<Worker*> BackupTasks::idle_workers() {
   return idle;
 }
 
-/// Returns all leases of running jobs, the latest first.
+/// Returns all leases of running jobs. The lease that is expected to end last comes first.
 std::vector<BackupTasks::Straggler> BackupTasks::stragglers() const {
   std::vector<Straggler> late;
   for (const auto& [id, lease] : context_.leases.all()) {
@@ -103,9 +103,9 @@ std::vector<BackupTasks::Straggler> BackupTasks::stragglers() const {
   return late;
 }
 
-/// Returns the remaining render time of a lease in seconds: extrapolated from the rows that are
-/// reported done, otherwise from the cost map. An overdue lease is assumed to need as long again as
-/// it is overdue.
+/// Returns the remaining render time of a lease in seconds. The whole render time is extrapolated
+/// from the rows that are reported done, or else predicted from the cost map. A lease that is
+/// overdue by t seconds is assumed to need another t seconds.
 double BackupTasks::remaining(const Lease& lease) const {
   const Job& job = context_.jobs.at(lease.job);
   const Worker& worker = *context_.workers.by_id(lease.worker);
@@ -172,9 +172,9 @@ bool BackupTasks::steal(const Straggler& late, std::vector<Worker*>& idle) {
   return true;
 }
 
-/// Moves an audit, begun or not, if the idle workers together would finish it much sooner: the
-/// fastest one takes a part, and the rest waits for the others. Each machine gets an audit at most
-/// once, so that it is not moved indefinitely.
+/// Moves an audit, begun or not, if the idle workers together would finish it much sooner. The
+/// fastest of them gets a part of the audit, and the rest of the audit waits for the others. Each
+/// machine gets an audit at most once, so that the audit is not moved indefinitely.
 bool BackupTasks::move_audit(const Straggler& late, std::vector<Worker*>& idle) {
   const Lease lease = *context_.leases.find(late.lease);
   Job& job = context_.jobs.at(lease.job);
@@ -200,7 +200,8 @@ bool BackupTasks::move_audit(const Straggler& late, std::vector<Worker*>& idle) 
 }
 
 /// Gives rows that are being rendered to the fastest helpers as well, in proportion to their work
-/// rates.
+/// rates. Returns false if no rows or no helpers are left, if the backup tasks would take too long
+/// (kMaxBackupTime), or if the band may crash workers.
 bool BackupTasks::back_up(const Straggler& late, std::vector<Worker*>& idle) {
   const Lease lease = *context_.leases.find(late.lease);
   Job& job = context_.jobs.at(lease.job);
@@ -221,6 +222,7 @@ bool BackupTasks::back_up(const Straggler& late, std::vector<Worker*>& idle) {
     return false;
   }
   Pass& pass = *job.pass_of(lease.band);
+  // Number of pixel samples in one row of the band: Job::cost_of is CostMap::of times this number.
   const double column = static_cast<double>(lease.band.samples.samples()) * job.spec.settings.width;
   const LeaseId original = lease.backup_of == 0 ? lease.id : lease.backup_of;
   for (std::size_t i = 0; i < count && rows.count() > 0; ++i) {

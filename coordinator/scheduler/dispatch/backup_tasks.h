@@ -27,8 +27,8 @@ class BackupTasks {
         audits_(audits) {}
 
   /// Gives work of late workers to idle ones. Returns true if some idle worker got work. The number
-  /// of idle workers falls with each success, so it can be called until it returns false. Returns
-  /// early once a job has free rows again.
+  /// of idle workers falls with each success, so share() can be called until it returns false. It
+  /// returns early once a job has free rows again.
   bool share();
 
  private:

@@ -19,8 +19,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Fractions of the target time: of the first band of a worker, whose rate is not known yet, and of
-/// the shortest band near the end of a job.
+/// Render times of bands as fractions of the target time. kFirst: the first band of a worker, whose
+/// rate is not known yet. kMin: the shortest band near the end of a job.
 constexpr double kFirst = 0.2;
 constexpr double kMin = 0.125;
 
@@ -31,8 +31,8 @@ constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(double);
 std::uint32_t end_of_tile_row(std::uint32_t row) { return (row / kTileSide + 1) * kTileSide; }
 
 /// Returns the end of a band of about these rows, at most `last`. A band that crosses a border
-/// between two rows of tiles ends at the last border that it crosses. Otherwise it ends at the next
-/// border if it becomes at most a quarter longer by that, or else where it would end anyway.
+/// between two rows of tiles ends at the last border that it crosses. Any other band is extended to
+/// the next border if this makes it at most a quarter longer, and is not changed otherwise.
 std::uint32_t at_edge_of_tiles(const RowRange& rows, std::uint32_t last) {
   if (rows.last == last) {
     return last;

@@ -25,8 +25,9 @@ struct Sizing {
   absl::Span<const float> tile_row_shares = {};  ///< as in CostMap::of
   double work_rate = 0;                          ///< work per second of the worker on this job, > 0
   bool measured = false;  ///< false: the rate is a guess; the band is small, to measure it
-  /// The worker's share of the farm's work rate, (0, 1]. A band gets at most half of this share of
-  /// the work that is left. 2: the worker is the only one on the job, so a band may get all of it.
+  /// The worker's share of the farm's work rate, (0, 1]. Near the end of a job, a band gets half of
+  /// this share of the work that is left, but not less than a minimum that depends on target_s. The
+  /// value 2 means that the worker is the only one on the job, so a band may get all of the work.
   double farm_share = 1;
   double work_left = 0;  ///< work of the job that is neither leased nor stored
   double target_s = 1;   ///< render time of a band, > 0
@@ -36,8 +37,8 @@ struct Sizing {
 /// (render/tile_samples.h) between two bands: if the pixels of a tile share paths
 /// (render/pixel_groups.h), both bands would have to trace the whole tile. So a band ends at the
 /// end of a row of tiles if it is long enough. If the first row of tiles alone takes more than two
-/// target times, the band gets all rows of it with fewer samples. Only if even a single block of 8
-/// samples of them is too much work, the band gets fewer rows.
+/// target times, the band gets the whole row of tiles with fewer samples. Only if a single block of
+/// 8 samples of this row of tiles still takes more than two target times, the band gets fewer rows.
 Band size_band(const Sizing& sizing);
 
 /// Returns the maximum number of rows of a band that fit into a message.
@@ -53,8 +54,8 @@ class BandChooser {
   std::optional<Band> choose(Job& job, const Worker& worker) const;
   /// Returns the same as choose(), but never a probe.
   std::optional<Band> choose_free(const Job& job, const Worker& worker) const;
-  /// Returns the part of a free piece that is a band for this worker now, beginning at its first
-  /// row.
+  /// Returns the band that the worker should get from `free`, a free piece of the job. The band
+  /// begins at the first row of `free`.
   Band sized(const Job& job, const Worker& worker, const Band& free) const;
 
  private:

@@ -2,8 +2,8 @@
 
 // Gives work to the workers. The worker that holds the fewest leases is served first. It gets a
 // band (a range of rows and samples) of the first job that has one for it. Jobs of higher priority
-// come first, and of equal priority the older ones. When nothing is free, workers get backup tasks
-// (backup_tasks.h).
+// come first, and among jobs of equal priority the older ones. When nothing is free, workers get
+// backup tasks (backup_tasks.h).
 
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/dispatch/audit_leases.h"

@@ -38,7 +38,7 @@ class Eligibility {
   static bool fits(const Worker& worker, const Job& job);
   /// Returns true if the worker failed kMaxFailuresPerWorker bands of the job in a row.
   static bool failed_too_often(const Worker& worker, const Job& job);
-  /// Returns true if failed_too_often() is true for a connected native worker (one that is no
+  /// Returns true if failed_too_often() is true for an eligible native worker (one that is no
   /// browser).
   bool native_gave_up(const Job& job) const;
   /// Returns true if some eligible worker may render the job.

@@ -35,7 +35,7 @@ std::vector<Job*> FrameChooser::order_for(const Worker& worker, const Sequence& 
   }
   const auto free = static_cast<std::size_t>(
       std::count_if(fresh.begin(), fresh.end(), [](const Job* job) { return job->any_free(); }));
-  // There is a frame for each worker.
+  // At least one frame for each worker is left that no worker renders yet.
   const bool many =
       free + sequence.counts().of(FrameState::kWaiting) >= context_.available.eligible();
   for (std::vector<Job*>* jobs : {&fresh, &others}) {
@@ -63,8 +63,9 @@ void FrameChooser::joined(const Worker& worker, const Job& job) {
   forget_final();
 }
 
-/// Forgets workers that have left and frame jobs that are over. Does so only when the maps have
-/// become about twice as large as needed, which keeps the average cost low.
+/// Removes the entries of workers that are not known any more and of frame jobs that are over. A
+/// map is searched only when it has become about twice as large as needed, which keeps the average
+/// cost low.
 void FrameChooser::forget_final() {
   if (frame_of_.size() > 2 * context_.workers.all().size() + 16) {
     std::erase_if(frame_of_,

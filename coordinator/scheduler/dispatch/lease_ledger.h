@@ -15,14 +15,15 @@ class LeaseLedger {
  public:
   explicit LeaseLedger(Context& context) : context_(context) {}
 
-  /// Whether the worker is told that a lease has ended (Action Revoke).
+  /// Says whether the worker is told that a lease has ended (action::Revoke).
   enum class Revoke { kNo, kYes };
 
   /// Makes the lease `id` of this band for the worker, which then owns these rows. Other leases
   /// that thereby lose all of their rows end.
   void grant(Worker& worker, Job& job, Pass& pass, const Band& band, LeaseId id);
-  /// Adds a lease that owns no rows: one of a backup task (a second lease of a late band) or of an
-  /// audit.
+  /// Adds a lease to the job and to the worker, but not to the coverage of the pass. Other classes
+  /// call it only for leases that own no rows: backup tasks (second leases of late bands) and
+  /// audits.
   void add(Worker& worker, Job& job, const Pass& pass, Lease lease);
   /// Starts the clocks that count the elapsed times of the job and of its sequence. REQUIRES: the
   /// job has a lease. Does nothing if the job is paused. A clock that runs already is unchanged,
@@ -44,8 +45,8 @@ class LeaseLedger {
   /// Revokes backup tasks whose rows are all stored.
   void end_useless_backups(Job& job);
   /// Notes that the lease at index `from` of the worker made progress, which extends its timeout. A
-  /// worker renders its leases in order. So the later leases, which wait for this one, are extended
-  /// as well, and the earlier ones are not.
+  /// worker renders its leases in order. So the timeouts of the later leases, which wait for the
+  /// lease at `from`, are extended as well. The timeouts of the earlier leases are not.
   void note_progress(const Worker& worker, std::size_t from);
 
  private:

@@ -13,9 +13,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Maximum number of incomplete passes of a job with a time limit. Only complete passes are in its
-/// image, so few may be begun. More than one may be, so that no worker waits for the last bands of
-/// a pass.
+/// Maximum number of incomplete passes of a job with a time limit. The limit is low, because only
+/// complete passes are in the job's image. It is above 1, so that no worker waits for the last
+/// bands of a pass.
 constexpr std::ptrdiff_t kMaxIncompletePasses = 3;
 
 }  // namespace

@@ -19,8 +19,9 @@ class PassPlanner {
   void plan_first(Job& job);
   /// Plans passes up to this number of samples per pixel.
   void plan_until(Job& job, std::uint64_t samples);
-  /// Plans the next pass of a job with a time limit. Returns false if it is no such job, its time
-  /// is up, or enough passes are in progress.
+  /// Plans the next pass of a job with a time limit and returns true. Returns false and plans
+  /// nothing if the job has no time limit, if its time is up, if all its passes are planned, or if
+  /// enough passes are in progress.
   bool plan_timed(Job& job);
   /// Makes the job end after this many samples per pixel: revokes the leases of later samples.
   void fix_samples(Job& job, std::uint64_t samples);

@@ -1,8 +1,8 @@
 #pragma once
 
-// Probes: bands of a few rows, spread over the image, that are rendered before the rest, which is
-// rendered from the top. Their render times predict the remaining time of the job. They do not
-// change the cost map, which is learnt from the bands that are rendered in sequence.
+// Probes: bands of a few rows, spread over the image, that are rendered first. The other rows are
+// rendered after them, from the top. The render times of the probes predict the remaining time of
+// the job. Probes do not change the cost map, which is learnt from the other bands.
 
 #include <cstdint>
 
@@ -17,8 +17,9 @@ inline std::uint32_t probes_of(std::uint32_t height) {
   return height >= kProbes * kProbes ? kProbes : 0;
 }
 
-/// Returns the rows of a probe: one, and one more for each 512 rows of the image. These are so few
-/// that the size need not depend on the worker's rate. number < probes_of(height).
+/// Returns the rows of a probe. `number`: index of the probe, < probes_of(height). A probe has one
+/// row, and one more for each 512 rows of the image. It is so small that its size need not depend
+/// on the worker's rate.
 inline RowRange probe(std::uint32_t height, std::uint32_t number) {
   const std::uint32_t first = height * (2 * number + 1) / (2 * kProbes);
   return {first, first + 1 + height / 512};

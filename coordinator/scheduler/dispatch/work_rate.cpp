@@ -14,16 +14,17 @@ namespace {
 /// Work rate per thread before anything is measured. It is rather too low than too high, because a
 /// first band that is too small costs little, and one that is too large delays the first rows.
 constexpr double kGuessedRate = 100'000;
-/// Minimum weight of a new measurement in the mean of a worker's rate. Low, because the rate
+/// Minimum weight of a new measurement in the mean of a worker's rate. It is low, because the rate
 /// changes less from band to band than the cost of the rows.
 constexpr double kMinWeight = 0.15;
 
-/// Corrects the costs of the band's rows and the rates of the worker and of the job by the time
+/// Corrects the costs of the band's rows and the rates of the worker and of the job, with the time
 /// that the band took.
 void measure_work_rate(Worker& worker, Job& job, const input::BandStored& in) {
   Worker::OnJob& on_job = worker.on_job[job.id];
   const double work = job.cost_of(in.band);  // as predicted
-  // For a worker that is new to the job, the rate of others with as many threads is used.
+  // For a worker without a measured rate, work_rate() multiplies the job's mean rate per thread by
+  // the worker's number of threads.
   if (job.work_rate.measured()) {
     const double expected = work_rate(worker, job);
     job.cost.learn(in.band.rows, in.render_s * expected / work);
@@ -79,7 +80,8 @@ void measure(Worker& worker, Job& job, const input::BandStored& in) {
   if (!is_probe(job.spec.settings.height, in.band)) {
     measure_work_rate(worker, job, in);
   }
-  // Number of samples per row: the band's samples as columns that span all of its rows.
+  // Mean number of pixel samples in a row. RowTimes takes the time of one pixel sample in each row
+  // of the band.
   const double columns = static_cast<double>(samples) / in.band.rows.count();
   job.row_times.measure(in.band.rows, in.render_s * worker.threads / columns);
 }

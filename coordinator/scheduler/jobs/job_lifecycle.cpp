@@ -66,8 +66,8 @@ void JobLifecycle::pass_merged(const input::PassMerged& in) {
   }
 }
 
-/// Journals the error, unless it is a repeated measurement after a restart that is journalled
-/// already.
+/// Journals the error, unless the journal has it already: after a restart, errors are measured
+/// again.
 void JobLifecycle::note_error(const Job& job, std::uint64_t samples, const ErrorEstimate& error) {
   const ErrorPoint point{samples, job.elapsed(context_.clock.wall()), job.totals().cpu_s, error};
   const bool known = !job.curve.empty() &&
@@ -80,7 +80,7 @@ void JobLifecycle::note_error(const Job& job, std::uint64_t samples, const Error
 
 /// At a checkpoint, decides whether the job ends here, plans its tiles if it is time, and plans the
 /// passes up to the next checkpoint. The error after a pass that is no checkpoint is ignored,
-/// because which passes are measured depends on the workers' speed.
+/// because it depends on the workers' speed whether the error after such a pass is measured.
 void JobLifecycle::evaluate_checkpoint(Job& job, const input::PassMerged& merged) {
   const auto* rule = std::get_if<StopAtError>(&job.spec.stop);
   const std::uint64_t samples = merged.samples;

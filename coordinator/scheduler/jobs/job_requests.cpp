@@ -67,9 +67,9 @@ absl::Status JobRequests::refusal(const StopRule& stop, const RenderSettings& se
     return status;
   }
   if (!in_range(stop) || settings.width == 0 || settings.height == 0) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("the stop rule or the image size is out of range: samples are [1, ",
-                     kMaxSamples, "], error and time are above 0, width and height at least 1"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "the stop rule or the image size is out of range: samples must be in [1, ", kMaxSamples,
+        "], error and time must be above 0, width and height must be at least 1"));
   }
   // Frame jobs do not count as active: their number is limited in Sequences::advance.
   std::size_t active = context_.jobs.active().size() + context_.sequences.active().size();
@@ -83,15 +83,15 @@ absl::Status JobRequests::refusal(const StopRule& stop, const RenderSettings& se
     return absl::ResourceExhaustedError(
         absl::StrCat(active, " jobs are not done yet (at most ", wire::kActiveJobs, "), ", known,
                      " are known (at most ", kMaxJobs,
-                     "); wait for a job, cancel one, or keep old ones for a shorter time (bandsaw "
-                     "serve --keep-days)"));
+                     "); wait for a job, cancel one, or keep old ones for a shorter time (`bandsaw "
+                     "serve --keep-days`)"));
   }
   return absl::OkStatus();
 }
 
 absl::Status JobRequests::check_priority(std::int32_t priority) {
   if (priority < -kMaxPriority || priority > kMaxPriority) {
-    return absl::InvalidArgumentError(absl::StrCat("a priority lies in [", -kMaxPriority, ", ",
+    return absl::InvalidArgumentError(absl::StrCat("a priority must be in [", -kMaxPriority, ", ",
                                                    kMaxPriority, "], is ", priority));
   }
   return absl::OkStatus();
@@ -106,7 +106,8 @@ void JobRequests::cancel(const input::Cancel& in) {
   }
 }
 
-/// Returns nullptr and sets the status if there is no such job or it is final.
+/// Returns the job with this id. If there is none or it is final, returns nullptr and sets the
+/// status of the step to an error.
 Job* JobRequests::find_active(JobId id) {
   Job* job = context_.jobs.find(id);
   if (job == nullptr) {

@@ -15,26 +15,30 @@ class JobRequests {
   JobRequests(Context& context, LeaseLedger& ledger, PassPlanner& planner, JobLifecycle& lifecycle)
       : context_(context), ledger_(ledger), planner_(planner), lifecycle_(lifecycle) {}
 
-  /// Adds a job, or answers with the job that has this request id and the same spec.
-  /// ALREADY_EXISTS: the request id is of a job with another spec. INVALID_ARGUMENT: the stop rule,
-  /// image size or priority is out of range. RESOURCE_EXHAUSTED: too many jobs.
+  /// Adds a job, or answers with the job that has this request id and the same spec. Fails with
+  /// ALREADY_EXISTS if the request id is that of a job with another spec, with INVALID_ARGUMENT if
+  /// the stop rule, image size or priority is out of range, and with RESOURCE_EXHAUSTED if there
+  /// are too many jobs.
   void submit(const input::Submit& in);
-  /// Errors of cancel, pause, resume and set_priority: NOT_FOUND: no such job. FAILED_PRECONDITION
-  /// (not of cancel()): the job is final. Cancelling a final job has no effect.
+  /// cancel(), pause(), resume() and set_priority() fail with NOT_FOUND if there is no such job.
+  /// All of them except cancel() fail with FAILED_PRECONDITION if the job is final. Cancelling a
+  /// final job has no effect.
   void cancel(const input::Cancel& in);
-  /// Further error: FAILED_PRECONDITION if the job is finishing.
+  /// Also fails with FAILED_PRECONDITION if the job is finishing.
   void pause(const input::Pause& in);
   void resume(const input::Resume& in);
-  /// Further error: INVALID_ARGUMENT if the priority is out of range.
+  /// Also fails with INVALID_ARGUMENT if the priority is out of range.
   void set_priority(const input::SetPriority& in);
   /// Removes final jobs. Skips the frame jobs of a sequence that is known: they are removed
   /// together with the sequence.
   void forget(const input::Forget& in);
 
   // sequences.h uses the following functions for sequences as well.
+  /// Returns INVALID_ARGUMENT if the priority is not in [-kMaxPriority, kMaxPriority], else OK.
   static absl::Status check_priority(std::int32_t priority);
-  /// Returns OK if `more` further jobs with this stop rule, image size and priority can be taken,
-  /// otherwise the reason. RESOURCE_EXHAUSTED: too many jobs. INVALID_ARGUMENT: out of range.
+  /// Returns OK if `more` further jobs with this stop rule, image size and priority can be added.
+  /// Otherwise returns the reason: RESOURCE_EXHAUSTED if there would be too many jobs,
+  /// INVALID_ARGUMENT if a value is out of range.
   absl::Status refusal(const StopRule& stop, const RenderSettings& settings, std::int32_t priority,
                        std::size_t more) const;
   /// Adds a job and plans its first passes. REQUIRES: refusal() has returned OK for it.

@@ -17,15 +17,16 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Number of frame jobs that are made ahead of need: kAheadInAll and kAheadPerWorker for each
-/// worker. That is enough for two bands for each worker, each of another frame, while the images of
-/// other frames are being written.
+/// Number of frame jobs of a sequence that are made ahead of need: kAheadInAll, and kAheadPerWorker
+/// more for each worker. So each worker can have bands of two frames while the images of other
+/// frames are being written.
 constexpr std::size_t kAheadPerWorker = 2;
 constexpr std::size_t kAheadInAll = 4;
-/// Maximum number of frame jobs that are not final, of all sequences that are not paused. Only the
-/// first kAheadInAll of each sequence are made beyond it, so that no sequence waits for others.
+/// Maximum number of frame jobs that are not final, counted over all sequences that are not paused.
+/// The first kAheadInAll frame jobs of each sequence are made even beyond this limit, so that no
+/// sequence waits for others.
 constexpr std::size_t kMaxOpenFrames = wire::kActiveJobs / 2;
-/// Maximum bytes of the numbers of failed frames in a reason.
+/// Maximum number of bytes of a list of frame numbers in a message.
 constexpr std::size_t kMaxNumbers = 200;
 
 /// Returns the reason of a sequence with failed frames.
@@ -60,7 +61,7 @@ void Sequences::submit(const input::SubmitSequence& in) {
   }
   absl::Status status =
       in.spec.frames.empty() || in.spec.frames.size() > kMaxFrames
-          ? absl::InvalidArgumentError(absl::StrCat("a sequence has 1 to ", kMaxFrames,
+          ? absl::InvalidArgumentError(absl::StrCat("a sequence must have 1 to ", kMaxFrames,
                                                     " frames, has ", in.spec.frames.size()))
           : requests_.refusal(in.spec.stop, in.spec.settings, in.priority, in.spec.frames.size());
   if (!status.ok()) {
@@ -75,7 +76,8 @@ void Sequences::submit(const input::SubmitSequence& in) {
   }
 }
 
-/// Returns nullptr and sets the status if there is no such sequence or it was cancelled.
+/// Returns the sequence with this id. If there is none or it was cancelled, returns nullptr and
+/// sets the status of the step to an error.
 Sequence* Sequences::find_active(JobId id) {
   Sequence* sequence = context_.sequences.find(id);
   if (sequence == nullptr) {

@@ -22,13 +22,15 @@ class Sequences {
   /// Returns true if the id is that of a sequence.
   bool owns(JobId id) const { return context_.sequences.find(id) != nullptr; }
 
-  /// Adds a sequence. Errors as of JobRequests::submit.
+  /// Adds a sequence. Fails as JobRequests::submit does, and with INVALID_ARGUMENT if the sequence
+  /// has no frames or too many.
   void submit(const input::SubmitSequence& in);
-  /// Notes the scenes of frames. Errors of this and the next request: NOT_FOUND: no such sequence.
-  /// INVALID_ARGUMENT: it has no such frame. FAILED_PRECONDITION: it was cancelled.
+  /// Notes the scenes of frames. add_frames() and retry() fail with NOT_FOUND if there is no such
+  /// job, with INVALID_ARGUMENT if the sequence has no such frame, and with FAILED_PRECONDITION if
+  /// the job is a single image or the sequence was cancelled.
   void add_frames(const input::AddFrames& in);
-  /// Renders failed frames again. Further error: FAILED_PRECONDITION if a frame has not failed, or
-  /// the sequence was begun with another pixel version.
+  /// Renders failed frames again. Also fails with FAILED_PRECONDITION if one of the frames has not
+  /// failed, if no frame has failed, or if the sequence was begun with another pixel version.
   void retry(const input::RetryFrames& in);
 
   // The following requests are as those in JobRequests, for a sequence. REQUIRE owns(in.job).
@@ -61,9 +63,10 @@ class Sequences {
   JobLifecycle& lifecycle_;
 };
 
-/// Returns the reason with which a job or sequence fails because it was begun with another pixel
-/// version than `here`. A pixel version is a number that changes whenever rendered pixels change.
-/// `begun_with`: the version with which it was begun; 0: the journal does not say which.
+/// Returns the reason of a job or sequence that fails because it was begun with another pixel
+/// version. A pixel version is a number that changes whenever rendered pixels change. `begun_with`:
+/// the version with which the job was begun; 0: the journal does not say which. `here`: the version
+/// of this coordinator.
 std::string other_pixel_version(std::uint32_t begun_with, std::uint32_t here);
 
 }  // namespace bandsaw::coordinator

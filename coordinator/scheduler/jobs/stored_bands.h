@@ -15,7 +15,7 @@ class StoredBands {
   StoredBands(Context& context, LeaseLedger& ledger) : context_(context), ledger_(ledger) {}
 
   /// Counts the rows of the band that were not stored yet. Returns these rows, and the leases that
-  /// lost rows by it. REQUIRES one digest per row.
+  /// lost rows to this result. REQUIRES one digest per row.
   Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in,
                          const Reporter& reporter);
   /// Frees the damaged bands that are still counted as stored. A job that is finishing runs again,

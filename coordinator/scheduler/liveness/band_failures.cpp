@@ -17,8 +17,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A job fails when one of its bands failed this often, on as many different workers or with no
-/// other worker left.
+/// A job fails when one of its bands failed on this many different workers. It also fails when one
+/// of its bands failed this many times and no other worker is left to render the band.
 constexpr std::size_t kMaxFailuresPerBand = 3;
 /// Factor on the progress timeout while a finished band is being uploaded, possibly over a slow
 /// line.
@@ -121,7 +121,7 @@ void BandFailures::check_renderable(Job& job) {
     lifecycle_.end(
         job, JobState::kFailed,
         absl::StrCat("each worker that is connected failed ", Eligibility::kMaxFailuresPerWorker,
-                     " of its bands, with none rendered between; the last: ", job.notice));
+                     " of its bands in a row; the last failure: ", job.notice));
   }
 }
 

@@ -28,7 +28,9 @@ class BandFailures {
 
   /// A worker reports that it could not render a band.
   void band_failed(const input::BandFailed& in);
-  /// Ends leases without progress for the progress timeout, as failures of their worker.
+  /// Ends each lease that made no progress for the progress timeout. The timeout is longer while a
+  /// finished band is being uploaded. The end counts as a failure of the worker, except for the
+  /// lease of an audit, which another machine gets instead.
   void check_progress();
   /// Fails a job that no connected worker may render any more, once workers have had time to
   /// reconnect.

@@ -127,9 +127,9 @@ void CrashAttribution::fail_if_blamed(Job& job, const Worker& worker, const Band
         job, JobState::kFailed,
         absl::StrCat(
             reason,
-            "; it seems to end every worker that renders it: by the memory that "
-            "it needs, or by a fault of the renderer; the log of the last one: bandsaw logs ",
-            worker.name));
+            "; it seems to end every worker that renders it, because it needs too much memory or "
+            "because the renderer has a fault; the last worker's log is shown by `bandsaw logs ",
+            worker.name, "`"));
   }
 }
 

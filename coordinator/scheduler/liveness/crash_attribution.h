@@ -30,10 +30,11 @@ class CrashRate {
   void add_band() { add(bands_); }
   void add_crash() { add(crashes_); }
 
-  /// Returns how many workers must be lost at one band, each while it held nothing else, until the
-  /// probability that all were lost for other reasons is at most kMistake; at least `min_crashes`
-  /// and at most kMaxRequired. `own`: number of counted crashes at this very band, which are left
-  /// out of the rate.
+  /// Returns how many workers must be lost at one band before the band is blamed. Each of them must
+  /// have held nothing else. The number is the smallest with which the probability that all were
+  /// lost for other reasons is at most kMistake. It is at least `min_crashes`, and at most
+  /// kMaxRequired unless `min_crashes` is larger. `own`: number of counted crashes at this very
+  /// band, which are left out of the rate.
   std::size_t required(std::size_t min_crashes, std::size_t own) const;
 
  private:
@@ -46,6 +47,7 @@ class CrashRate {
   /// Both counts are halved when their sum exceeds this, so that old events lose weight.
   static constexpr double kMaxCount = 2'000;
 
+  /// Adds 1 to `count`, which is bands_ or crashes_.
   void add(double& count);
 
   double bands_ = 0;    ///< number of bands that were stored

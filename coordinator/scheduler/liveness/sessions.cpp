@@ -59,7 +59,7 @@ void Sessions::hello(const input::Hello& in) {
   if (in.worker.browser && context_.quarantine.too_many_browsers()) {
     refuse(in,
            absl::StrCat("too many browsers returned wrong pixels, ", QuarantineList::kMaxBrowsers,
-                        ": take the link back with bandsaw link --revoke; browsers are admitted "
+                        ": take the link back with `bandsaw link --revoke`; browsers are admitted "
                         "again when no job is active"));
     return;
   }
@@ -173,8 +173,9 @@ void Sessions::reconcile_leases(Worker& worker, const std::vector<WorkerHello::H
 }
 
 /// Confirms a lease of this epoch (run of the coordinator). Adopts a lease of an earlier epoch,
-/// with its id, if its rows are wanted: a finished band even if another worker has begun it, an
-/// unfinished one only if nobody has. Returns false if the worker must drop it.
+/// with its id, if rows of its band are wanted. A finished band is adopted even if another worker
+/// holds a lease of the same rows. An unfinished band is adopted only if no worker does. Returns
+/// false if the worker must drop the lease.
 bool Sessions::keep_lease(Worker& worker, const WorkerHello::Held& held) {
   Job* job = context_.jobs.find(held.job);
   Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(held.band);

@@ -4,13 +4,13 @@
 // digests are compared.
 //
 // Rendering is a pure function, so results that differ prove that a machine is wrong. Two machines
-// that agree are taken to be right, because two wrong results would differ from each other. A
+// that agree are assumed to be right, because two wrong results would differ from each other. A
 // machine that renders the band again and contradicts its own first result is wrong for certain.
 //
-// That holds for native workers, which belong to the farm and are wrong by accident only. Anyone
-// who has the link for browsers can open several browsers that return the same wrong pixels. So a
-// result on which only browsers agree is taken to be right only while no native worker is
-// connected; and a native worker that repeats its result wins against any number of browsers.
+// These rules hold for native workers, which belong to the farm and are wrong by accident only.
+// Anyone who has the link for browsers can open several browsers that return the same wrong pixels.
+// So a result on which only browsers agree is assumed to be right only while no native worker is
+// connected. A native worker that repeats its result wins against any number of browsers.
 
 #include <cstddef>
 #include <cstdint>
@@ -52,7 +52,8 @@ class Audit {
     Reporter reporter;
     std::vector<std::uint64_t> digests;  ///< one per row
     bool repeated = false;               ///< the machine rendered it again with the same digests
-    /// It is of an earlier epoch, and the machine, though known, has not connected in this one.
+    /// The result is of an earlier epoch, and its machine has not connected in this epoch, although
+    /// the journal names the machine.
     bool away = false;
   };
   struct Verdict {
@@ -66,11 +67,11 @@ class Audit {
   /// Adds a result. `requested`: it was rendered for this audit. If the machine contradicts its own
   /// earlier result, returns that earlier result, and nothing is added.
   std::optional<Result> add(Result result, bool requested);
-  /// Returns the verdict once two machines agree, else std::nullopt. Two browsers count only if
-  /// `only_browsers` (Context::only_browsers) and no native worker returned a result. Exception: a
-  /// machine that rendered the band again with the same result wins against machines that have not
-  /// connected in this epoch, which cannot render it again. If it is a native worker, it also wins
-  /// against browsers.
+  /// Returns the verdict once two machines agree, else std::nullopt. Two browsers that agree count
+  /// only if `only_browsers` (Context::only_browsers) and no native worker returned a result.
+  /// Exception: a machine that rendered the band again with the same result wins against machines
+  /// that have not connected in this epoch, because these cannot render the band again. If the
+  /// machine is a native worker, it also wins against browsers.
   std::optional<Verdict> verdict(bool only_browsers) const;
   /// Notes that a machine has connected. Fills in the machine of results of which only the process
   /// was known.

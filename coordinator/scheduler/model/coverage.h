@@ -7,8 +7,8 @@
 // owner, and is a node of the summation tree (renderlib/render/band.h): an aligned power-of-two
 // number of blocks of 8 samples, whose sum is added to the film (the sums of all pixels) as a
 // whole. Strips and cells partition the pass at all times, so no sample can be forgotten and none
-// can have two owners. Most strips have one cell; a row that is more work than a band should be has
-// several.
+// can have two owners. Most strips have one cell. A strip has several cells if one of its rows is
+// more work than a band should be.
 
 #include <cstdint>
 #include <map>
@@ -52,8 +52,8 @@ class Coverage {
 
   /// Returns the rows of the band in which none of its samples is stored, ascending.
   std::vector<RowRange> wanted(const Band& band) const;
-  /// Returns true if some row is wanted, and no other lease owns these samples of a wanted row:
-  /// then a lease of the band can own all rows that are wanted.
+  /// Returns true if a new lease of the band can own all of its wanted rows: some row of the band
+  /// is wanted, and no lease owns any of the band's samples in a wanted row.
   bool adoptable(const Band& band) const;
   /// Returns true if the lease still owns a part of the band.
   bool holds(const Band& band, LeaseId lease) const;

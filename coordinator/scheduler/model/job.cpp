@@ -11,8 +11,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Minimum of Pass::tile_row_shares, which predict the work of a band: rows in which no samples are
-/// taken still have to be sent and stored.
+/// Minimum of Pass::tile_row_shares, which predict the work of a band. It is above 0, because rows
+/// in which no samples are taken still have to be sent and stored.
 constexpr float kMinShare = 0.01f;
 
 }  // namespace

@@ -79,7 +79,7 @@ class Job {
   void drop_details();
 
   std::uint64_t planned_samples() const;   ///< samples per pixel of all passes
-  std::uint64_t complete_samples() const;  ///< the same of the complete passes
+  std::uint64_t complete_samples() const;  ///< samples per pixel of the complete passes
   bool complete() const { return fixed_samples && complete_samples() >= *fixed_samples; }
   bool any_free() const;
   /// Returns true if an audited band waits for a machine.
@@ -110,8 +110,9 @@ class Job {
   bool is_suspect(const Band& band) const;
   /// Returns true if a part of the band has a conclusive crash (Suspicion).
   bool has_conclusive_crash(const Band& band) const;
-  /// Ends the suspicion of rows that are now stored, since they did not crash their worker. Rows
-  /// stored at an end of a suspect range shrink it; rows in the middle leave it as it is.
+  /// Ends the suspicion of rows that are now stored, since they did not crash their worker. If the
+  /// stored rows lie at an end of a suspect range, the range becomes shorter. If they lie in its
+  /// middle, the range is not changed.
   void clear_suspicion(const Band& stored);
 
   JobId id = 0;
@@ -120,7 +121,7 @@ class Job {
   JobState state = JobState::kRunning;
   std::int32_t priority = 0;
   bool held = false;   ///< paused by a user
-  Time held_at = 0;    ///< time of the timeout clock
+  Time held_at = 0;    ///< timeout clock: when `held` changed last
   std::string reason;  ///< why the job is in its state
   std::string notice;  ///< the last event that users should know of, shown while the job runs
   std::string damage;  ///< damage of its bands on disk, in this epoch
@@ -144,15 +145,16 @@ class Job {
   std::uint64_t backups_granted = 0;   ///< in this epoch
   std::deque<FailedAttempt> failures;  ///< the newest kMaxFailures
   std::deque<Suspicion> suspicions;    ///< the newest kMaxFailures
-  std::optional<Time> unable_since;    ///< timeout clock: no connected worker may render it
-  std::string log_of;                  ///< the worker that failed a band last
-  std::vector<std::string> log;        ///< the last lines of its log
-  std::vector<Audit> audits;           ///< open, at most kMaxAudits
+  /// Timeout clock: time since which no connected worker may render the job.
+  std::optional<Time> unable_since;
+  std::string log_of;            ///< the worker that failed a band last
+  std::vector<std::string> log;  ///< the last lines of its log
+  std::vector<Audit> audits;     ///< open, at most kMaxAudits
   /// Bands confirmed by a second machine, keyed with the process whose result is stored, because
   /// the stored result can be replaced by that of another process.
   std::set<std::pair<Band, WorkerProcessId>> audited;
-  /// Journalled: results that contradict stored rows and are not decided, at most kMaxAudits. After
-  /// a restart, audits are made of them.
+  /// Journalled: disputes between a stored row and another result that are not decided, at most
+  /// kMaxAudits. After a restart, an audit is opened for each of them.
   std::vector<record::RowDisputed> disputes;
 
   std::map<WorkerProcessId, WorkerShare> shares;  ///< at most kMaxShares

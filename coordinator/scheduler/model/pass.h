@@ -38,8 +38,8 @@ class RowDigests {
   void keep(const Band& band, const std::vector<RowRange>& rows,
             const std::vector<std::uint64_t>& digests);
 
-  /// Returns the first row of the band whose known digest, of exactly these samples, differs from
-  /// that in `digests` (one per row); std::nullopt: there is none.
+  /// Compares `digests` (one for each row of the band) with the known digests of exactly the band's
+  /// samples. Returns the first row whose two digests differ; std::nullopt: there is none.
   std::optional<std::uint32_t> first_difference(const Band& band,
                                                 const std::vector<std::uint64_t>& digests) const;
 
@@ -64,7 +64,9 @@ struct Pass {
   /// Consecutive rows that were stored with one result.
   struct StoredBand {
     Band band;
-    Totals totals;  ///< of the whole result, in the first of its StoredBands; 0 in the others
+    /// If a result has several StoredBands, the first has the totals of the whole result, and the
+    /// others have 0.
+    Totals totals;
   };
   /// All bands of the pass that one worker process stored.
   struct Part {
@@ -87,7 +89,8 @@ struct Pass {
   bool retract(WorkerProcessId process);
   /// Returns true if the process stored exactly this band and it was not freed since.
   bool has_stored(const Band& band, WorkerProcessId process) const;
-  /// Frees such a band and returns its totals; std::nullopt: the process has stored no such band.
+  /// Frees a band for which has_stored() is true and returns its totals. Otherwise does nothing and
+  /// returns std::nullopt.
   std::optional<Totals> remove_stored(const Band& band, WorkerProcessId process);
   /// Returns the process that stored a row with exactly these samples; 0: unknown.
   WorkerProcessId process_of_row(const SampleRange& samples, std::uint32_t row) const;

@@ -1,8 +1,9 @@
 // Passes are aligned ranges of blocks whose lengths are powers of two, so that they are nodes of
 // the summation tree. A checkpoint is a number of samples at which the error is compared with the
-// target. It has a quarter more samples than the last one, or less, down to an eighth more, if the
-// target is expected earlier (error ~ samples^-1/2). It has more than that if the target cannot be
-// reached before, even if the error falls as 1 / samples.
+// target. It is where the target is expected to be reached (error ~ samples^-1/2), but limited to
+// an eighth to a quarter more samples than the last checkpoint. It is later if the target cannot be
+// reached in this range even if the error falls as 1 / samples. If the error is unknown, the next
+// checkpoint has twice the samples of the last one.
 
 #include "coordinator/scheduler/model/pass_plan.h"
 
@@ -91,7 +92,8 @@ bool time_to_plan_tiles(double error, double target) {
 }
 
 double next_target(double target, bool tiles_to_plan) {
-  // The ratio of the error to the target; its square is a ratio of numbers of samples.
+  // Ratio of the error at which tiles are planned to the target. Its square, 16, is a ratio of
+  // numbers of samples.
   constexpr double kPilotErrorRatio = 4;
   return tiles_to_plan ? kPilotErrorRatio * target : target;
 }

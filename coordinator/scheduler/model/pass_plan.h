@@ -31,9 +31,10 @@ inline constexpr std::uint64_t kMinCheckpoint = 32;
 ///
 /// The error of an image falls between n^-1/2 (random samples) and n^-1 (well stratified samples).
 /// The checkpoint is the number of samples at which an error that falls as n^-1/2 reaches the
-/// target, limited to the range from 9/8 to 5/4 of `samples`. It is later if an error that falls as
-/// n^-1 reaches the target only later, because the target cannot be met before. So a job renders at
-/// most about a quarter too much; the mean over the scenes of the gallery is 7 %.
+/// target, limited to the range from 9/8 to 5/4 of `samples`. If an error that falls as n^-1
+/// reaches the target only after this range, the checkpoint is where that error reaches it, because
+/// the target cannot be met before. So a job renders at most about a quarter too much; the mean
+/// over the scenes of the gallery is 7 %.
 std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target,
                               std::uint64_t max_samples);
 
@@ -43,10 +44,10 @@ std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target
 std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
                                           std::uint64_t planned, std::uint64_t max_samples);
 
-/// Returns true if the samples of each half tile of an adaptive job are to be planned at a
-/// checkpoint with this error, because it is at most four times the target. The samples until then
-/// are the pilot, from which they are planned: at least about a sixteenth of the samples that
-/// random sampling would need to reach the target.
+/// Returns true if the error at a checkpoint of an adaptive job is at most four times the target.
+/// Then the number of samples of each half tile is to be planned at this checkpoint. It is planned
+/// from the samples rendered until then, the pilot. These are at least about a sixteenth of the
+/// samples that random sampling would need to reach the target.
 bool time_to_plan_tiles(double error, double target);
 
 /// Returns the error that the next checkpoint waits for: the target, or the error at which tiles

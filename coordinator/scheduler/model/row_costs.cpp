@@ -86,8 +86,8 @@ void RowTimes::measure(const RowRange& rows, double seconds) {
   measured_ = true;
 }
 
-// At the upper or lower edge of the image only one side of the gap is measured; its time stands for
-// both.
+// At the upper or lower edge of the image only one side of the gap is measured. Its time is used
+// for both sides.
 RowTimes::Gap RowTimes::gap_at(std::uint32_t row) const {
   Gap gap{{row, row + 1}};
   while (gap.rows.first > 0 && rows_[gap.rows.first - 1] == kUnknown) {

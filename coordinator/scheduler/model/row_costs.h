@@ -1,7 +1,8 @@
 #pragma once
 
-// Render costs of the rows of one image: relative costs, by which bands (the parts of an image that
-// workers render) are sized, and times, by which the end of the job is predicted.
+// Render costs of the rows of one image. CostMap has relative costs, which determine the sizes of
+// bands (the parts of an image that workers render). RowTimes has times, from which the end of the
+// job is predicted.
 
 #include <cstdint>
 #include <vector>
@@ -11,9 +12,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Relative cost of each row, learnt from the bands that were rendered: a band's time is the cost
-/// of its rows over its worker's work rate. Only ratios of costs have a meaning; every row costs 1
-/// until something is measured.
+/// Relative cost of each row, learnt from the bands that were rendered. The render time of a band
+/// is predicted as the cost of its rows, divided by its worker's work rate. Only ratios of costs
+/// have a meaning. Every row costs 1 until something is measured.
 class CostMap {
  public:
   CostMap() = default;
@@ -22,7 +23,8 @@ class CostMap {
 
   /// Returns the cost of one sample of one pixel column, summed over the rows. `tile_row_shares`,
   /// for adaptive jobs: for each row of tiles (16 rows of pixels), the number of samples that its
-  /// pixels take, divided by the number of uniform sampling; empty: 1 for each.
+  /// pixels take, divided by the number that they would take with uniform sampling; empty: 1 for
+  /// each.
   double of(const RowRange& rows, absl::Span<const float> tile_row_shares = {}) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
   /// Returns how many of the rows, from the first on, cost at most `max_cost` together (in units of
@@ -70,6 +72,7 @@ class RowTimes {
     RowRange rows;
     double before = 0;
     double after = 0;
+    /// Returns the time of a row of the gap, interpolated linearly.
     double of(std::uint32_t row) const {
       return before + (after - before) * (row - rows.first + 1) / (rows.count() + 1);
     }

@@ -60,11 +60,11 @@ class Sequence {
   /// failed frames of a final sequence are rendered again. Stops the clock at the journalled time.
   void restart_clock();
 
-  // Only Context::apply calls these three. They do nothing if there is no such frame.
-  /// The scene of the frame is known, or the frame is tried again: it waits to be rendered.
-  /// `failures`: number of its jobs that failed; `reason`: of the last failure.
+  // Only Context::apply calls wait(), start() and end(). They do nothing if there is no such frame.
+  /// Makes the frame wait to be rendered, because its scene is known now or because it is tried
+  /// again. `failures`: number of its jobs that failed. `reason`: reason of the last failure.
   void wait(const FrameScene& scene, std::uint32_t failures, const std::string& reason);
-  /// The frame job of the frame was made.
+  /// Notes that `job`, the frame job of the frame, was made.
   void start(FrameNumber number, JobId job);
   /// Ends the frame whose job this is. REQUIRES: is_final(job.state).
   void end(const Job& job);

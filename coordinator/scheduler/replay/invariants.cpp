@@ -77,7 +77,8 @@ std::optional<std::string> broken_workers(const Context& context) {
   return std::nullopt;
 }
 
-/// Strips and cells are the parts of a coverage (model/coverage.h); each cell has one owner.
+/// Checks that each lease that owns a cell of the pass's coverage is one of this job and contains
+/// the cell, and that strips and cells partition the pass (model/coverage.h).
 std::optional<std::string> broken_pass(const Context& context, const Job& job, const Pass& pass) {
   std::optional<std::string> broken;
   auto partition = pass.coverage.check([&](LeaseId id, const Band& cell) {

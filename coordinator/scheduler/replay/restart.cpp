@@ -61,6 +61,8 @@ void Restart::finish() {
   }
 }
 
+/// Continues a job after the restart, unless a user paused it. Fails a job that was begun with
+/// another pixel version. Drops the bands of a final job.
 void Restart::resume(Job& job) {
   if (is_final(job.state)) {
     if (job.bands_on_disk) {

@@ -50,9 +50,9 @@ class Restart {
   StoredBands& bands_;
   ResultComparison& comparison_;
   Sequences& sequences_;
-  /// Bands with rows that an earlier band of the replay stored already. They are compared once all
-  /// bands are replayed, because a comparison can retract rows, and by then the film (the sums of
-  /// all stored bands) must be complete.
+  /// Bands with rows that an earlier band of the replay stored already. A comparison can retract
+  /// rows, and the film (the sums of all stored bands) must be complete before rows are retracted.
+  /// So these bands are compared once all bands are replayed.
   std::vector<input::BandStored> duplicates_;
 };
 

@@ -23,6 +23,8 @@ void add_passes(const Job& job, std::vector<Record>& out) {
   }
 }
 
+/// Appends the records of a job. The record of its state is the last, because many of the other
+/// records have no effect on a final job.
 void add_job(const Job& job, std::vector<Record>& out) {
   out.push_back(record::JobAdded{job.id, job.spec, job.pixel_version});
   if (job.priority != 0) {
