@@ -223,14 +223,16 @@ bool BackupTasks::back_up(const Straggler& late, std::vector<Worker*>& idle) {
   }
   Pass& pass = *job.pass_of(lease.band);
   // Number of pixel samples in one row of the band: Job::cost_of is CostMap::of times this number.
-  const double column = static_cast<double>(lease.band.samples.samples()) * job.spec.settings.width;
+  const double row_samples =
+      static_cast<double>(lease.band.samples.samples()) * job.spec.settings.width;
   const LeaseId original = lease.backup_of == 0 ? lease.id : lease.backup_of;
   for (std::size_t i = 0; i < count && rows.count() > 0; ++i) {
     Worker& helper = *able[i];
     const double part = all * work_rate(helper, job) / together;
     Band band{lease.band.samples, rows};
     if (i + 1 < count) {
-      band.rows.last = rows.first + job.cost.fitting(rows, part / column, pass.tile_row_shares);
+      band.rows.last =
+          rows.first + job.cost.fitting(rows, part / row_samples, pass.tile_row_shares);
     }
     rows.first = band.rows.last;
     const std::string& from = context_.workers.by_id(lease.worker)->name;

@@ -24,17 +24,17 @@ constexpr std::uint32_t kRetryFullMs = 10'000;
 /// Returns the reason why a worker cannot serve on this farm, for the worker's log. The reason says
 /// what differs and what a person has to do. std::nullopt: the worker can serve.
 std::optional<std::string> incompatibility(const Compatibility& farm, const WorkerHello& worker) {
-  const char* const which =
+  const char* const advice =
       worker.protocol < farm.protocol || worker.pixel_version < farm.pixel_version
           ? "update the worker"
           : "update the coordinator";
   if (worker.protocol != farm.protocol) {
     return absl::StrCat("protocol ", worker.protocol, ", the coordinator's is ", farm.protocol,
-                        ": build ", worker.build, "; ", which);
+                        ": build ", worker.build, "; ", advice);
   }
   if (worker.pixel_version != farm.pixel_version) {
     return absl::StrCat("pixel version ", worker.pixel_version, ", the coordinator's is ",
-                        farm.pixel_version, ": build ", worker.build, "; ", which);
+                        farm.pixel_version, ": build ", worker.build, "; ", advice);
   }
   if (worker.canary != farm.canary) {
     return absl::StrFormat(

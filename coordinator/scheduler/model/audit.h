@@ -68,11 +68,11 @@ class Audit {
   /// earlier result, returns that earlier result, and nothing is added.
   std::optional<Result> add(Result result, bool requested);
   /// Returns the verdict once two machines agree, else std::nullopt. Two browsers that agree count
-  /// only if `only_browsers` (Context::only_browsers) and no native worker returned a result.
+  /// only if `only_browsers_left` (Context::only_browsers) and no native worker returned a result.
   /// Exception: a machine that rendered the band again with the same result wins against machines
   /// that have not connected in this epoch, because these cannot render the band again. If the
   /// machine is a native worker, it also wins against browsers.
-  std::optional<Verdict> verdict(bool only_browsers) const;
+  std::optional<Verdict> verdict(bool only_browsers_left) const;
   /// Notes that a machine has connected. Fills in the machine of results of which only the process
   /// was known.
   void identify(const Reporter& reporter);
