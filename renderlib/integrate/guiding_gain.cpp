@@ -47,11 +47,20 @@ constexpr double kMomentOfLamp = 2;
 struct PixelStatistics {
   double sum = 0;         ///< of the luminances
   double squares = 0;     ///< of the squared luminances
+  double direct_sum = 0;  ///< of the luminances of direct light
+  double direct_squares = 0;
   double by_paths = 0;    ///< of the variances that the cells of paths would remove
   double by_photons = 0;  ///< of the variances that photons would remove
   double expected = 0;    ///< of the luminances that the cells predict
   std::uint64_t rays = 0;
+  std::uint64_t direct_rays = 0;
 };
+
+/// Returns the variance of one sample, from the sum and the sum of squares of kSamples values.
+double variance_of(double sum, double squares) {
+  constexpr double kCount = kSamples;
+  return std::max(0.0, (squares - sum * sum / kCount) / (kCount - 1));
+}
 
 /// Adds what the cells at a surface predict. `reflected`: the path's luminance for an irradiance of
 /// 1 there. Moments are in units of the squared mean, so radiance^2 (moment - guided moment) is the
@@ -104,21 +113,29 @@ PixelStatistics statistics_of(const Scene& scene, const RayGenerator& camera, co
   const double x = std::floor(place[0] * key.width);
   const double y = std::floor(place[1] * key.height);
   const PixelSampler sampler(kSeed, pixel, 1);
+  PathOptions direct = options;
+  direct.max_depth = std::min(options.max_depth, 1u);
   PixelStatistics of;
   PathCounts counts;
+  PathCounts direct_counts;
   std::uint64_t rays_to_cells = 0;
   for (std::uint64_t sample = 0; sample < kSamples; ++sample) {
     const Sample4 at = sampler.group(sample, kGroupCamera);
     const double when = scene.features().motion ? sampler.group(sample, kGroupTime)[0] : 0;
     const Ray ray = camera.ray(x + at[0], y + at[1], at[2], at[3], when);
     const double value = luminance(path_radiance(scene, ray, sampler, sample, options, counts));
-    if (std::isfinite(value)) {
+    const double direct_value =
+        luminance(path_radiance(scene, ray, sampler, sample, direct, direct_counts));
+    if (std::isfinite(value) && std::isfinite(direct_value)) {
       of.sum += value;
       of.squares += value * value;
+      of.direct_sum += direct_value;
+      of.direct_squares += direct_value * direct_value;
     }
     follow({scene, sampler, sample, options, rays_to_cells}, field, ray, of);
   }
   of.rays = counts.rays;
+  of.direct_rays = direct_counts.rays;
   return of;
 }
 
@@ -134,7 +151,9 @@ bool GuidingGain::maps_pay() const { return share_of(by_photons) > kMinShareOfMa
 
 bool GuidingGain::photons_pay() const { return share_of(by_photons) > kMinShareOfPhotons; }
 
-bool GuidingGain::is_hard() const { return variance > kHard; }
+bool GuidingGain::gathering_may_pay() const {
+  return variance > kHard && variance * rays > kMinGainOfGathering * direct_variance * direct_rays;
+}
 
 bool gathering_pays(const GuidingGain& before, const GuidingGain& with) {
   return before.variance * before.rays > kMinGainOfGathering * with.variance * with.rays;
@@ -159,13 +178,14 @@ std::optional<GuidingGain> expected_gain(const Scene& scene, const GuidingKey& k
   GuidingGain gain;
   for (const PixelStatistics& pixel : pixels) {
     gain.rays += static_cast<double>(pixel.rays) / kAll / kPixels;
+    gain.direct_rays += static_cast<double>(pixel.direct_rays) / kAll / kPixels;
     const double of_pixel = pixel.sum / kAll;
     // The brightness to which the pixel's errors are relative.
     const double unit = std::max({of_pixel, pixel.expected / kAll, kDarkest * mean});
     if (unit > 0) {
-      const double variance = (pixel.squares - kAll * of_pixel * of_pixel) / (kAll - 1);
       const double part = 1 / (unit * unit * kPixels);
-      gain.variance += std::max(0.0, variance) * part;
+      gain.variance += variance_of(pixel.sum, pixel.squares) * part;
+      gain.direct_variance += variance_of(pixel.direct_sum, pixel.direct_squares) * part;
       gain.by_paths += pixel.by_paths / kAll * part;
       gain.by_photons += pixel.by_photons / kAll * part;
     }

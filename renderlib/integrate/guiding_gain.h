@@ -23,6 +23,9 @@ struct GuidingGain {
   /// Measured without guiding. It is too low where light is so rare that the few samples miss it.
   double variance = 0;
   double rays = 0;  ///< mean number of rays of a sample
+  /// The same of paths that end after their first scattering, so that they find direct light only.
+  double direct_variance = 0;
+  double direct_rays = 0;
   /// The next two are predicted by the field, so that rare light counts as well. Each may exceed
   /// `variance`.
   double by_paths = 0;    ///< part that the cells of paths would remove
@@ -34,15 +37,16 @@ struct GuidingGain {
   bool paths_pay() const;    ///< guiding by the cells of paths
   bool maps_pay() const;     ///< photon maps
   bool photons_pay() const;  ///< guiding by the cells of photons
-  /// Returns true if there is so much noise that photon maps of indirect light are worth a trial.
-  bool is_hard() const;
+  /// Returns true if photon maps of indirect light are worth a trial: there is much noise, and
+  /// gathering_pays() could hold if the maps removed all noise and all rays of indirect light.
+  bool gathering_may_pay() const;
 };
 
 /// Returns true if photon maps of indirect light pay, because they make the product of variance and
 /// rays much smaller. `before` was measured without these maps, and `with` was measured with them.
 bool gathering_pays(const GuidingGain& before, const GuidingGain& with);
 
-/// Measures the variance with 8 samples in each of 512 pixels. Follows each sample to its first
+/// Measures the variances with 8 samples in each of 512 pixels. Follows each sample to its first
 /// surface that can be guided, and estimates the parts from the cells of `field` there. A cell
 /// holds the irradiance, and the second moment of a sampled direction's contribution (GuidingCell).
 /// `options.guiding` MUST be null. The result is a pure function of all arguments except

@@ -163,7 +163,7 @@ class Decisions {
 
   /// Decides whether indirect light comes from maps, with the caustics as decided before.
   bool decide_on_indirect_light() {
-    if (gain_ && !gain_->is_hard()) {
+    if (gain_ && !gain_->gathering_may_pay()) {
       return true;
     }
     const Casters casters = mapping_.sources != nullptr ? casters_ : Casters::none(scene_);

@@ -80,6 +80,60 @@ TEST(GuidingGain, IsZeroWhereNothingIsNoisy) {
   EXPECT_EQ(gain.share_of(1), 1);
 }
 
+/// Bars of lamps before a wall that they light. A bar covers a fifth of each pixel's width, so the
+/// noise is that of the emission which the camera sees. No light is scattered twice.
+std::shared_ptr<const Scene> wall_behind_bars() {
+  test::SceneMaker maker;
+  maker.quad({-5, -5, -3}, {10, 0, 0}, {0, 10, 0}, maker.diffuse(0.5f));
+  const MaterialId lamp = maker.lamp(20);
+  for (int i = -20; i < 20; ++i) {
+    maker.quad({0.1 * i, -3, -2}, {0.02, 0, 0}, {0, 6, 0}, lamp);
+  }
+  maker.camera({0, 0, 0}, {0, 0, -2}, 40);
+  return maker.build();
+}
+
+/// A closed room that a lamp under its ceiling lights by way of the ceiling. The camera sees the
+/// floor, which no direct light reaches.
+std::shared_ptr<const Scene> room_lit_by_its_ceiling() {
+  test::SceneMaker maker;
+  const MaterialId wall = maker.diffuse(0.7f);
+  maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 0, 4}, wall);
+  maker.quad({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, wall);
+  maker.quad({-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, wall);
+  maker.quad({-2, -2, 2}, {4, 0, 0}, {0, 4, 0}, wall);
+  maker.quad({-2, -2, -2}, {0, 4, 0}, {0, 0, 4}, wall);
+  maker.quad({2, -2, -2}, {0, 4, 0}, {0, 0, 4}, wall);
+  maker.quad({-0.1, 1.8, -0.1}, {0, 0, 0.2}, {0.2, 0, 0}, maker.lamp(50, true));
+  maker.camera({0, 0, 0}, {0, -2, -0.1}, 40);
+  return maker.build();
+}
+
+TEST(GuidingGain, DirectLightHasAllNoiseWhereNoLightIsScatteredTwice) {
+  const GuidingGain gain = gain_of(*wall_behind_bars());
+  EXPECT_GT(gain.variance, 1);
+  EXPECT_EQ(gain.direct_variance, gain.variance);
+  EXPECT_EQ(gain.direct_rays, gain.rays);
+  EXPECT_FALSE(gain.gathering_may_pay());
+}
+
+TEST(GuidingGain, DirectLightHasNoNoiseWhereItDoesNotArrive) {
+  const GuidingGain gain = gain_of(*room_lit_by_its_ceiling());
+  EXPECT_GT(gain.variance, 0.3);
+  EXPECT_EQ(gain.direct_variance, 0);
+  EXPECT_TRUE(gain.gathering_may_pay());
+}
+
+// Photons of indirect light start at no fewer than 2^17 points, each of which takes a ray at least.
+TEST(GuidingGain, NoIndirectPhotonsAreTracedWhereDirectLightHasTheNoise) {
+  Pool pool(2);
+  const auto rays_of = [&](const Scene& scene) {
+    return train_guiding(scene, {kWidth, kHeight, kDepth, true}, {pool, kGoOn}, true)->rays;
+  };
+  EXPECT_LT(rays_of(*wall_behind_bars()), 1u << 17);
+  EXPECT_GT(rays_of(*room_lit_by_its_ceiling()), 1u << 17);
+}
+
 // Light sampling finds the light of a lamp under the ceiling, but not the light of a lamp in glass.
 TEST(GuidingGain, DecidesWhatTheIntegratorPathDoes) {
   const auto easy = test::cornell_box().build();
