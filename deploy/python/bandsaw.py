@@ -257,8 +257,9 @@ class Farm:
                 time.sleep(0.5)
         raise AssertionError
 
-    def render(self, scene, on_progress=None, **wanted):
-        """Renders a scene and returns its Image. Arguments as those of submit; `on_progress`: a function of Progress."""
+    def render(self, scene, on_progress=None, denoise=False, **wanted):
+        """Renders a scene and returns its Image, without its noise if `denoise` is True (Job.clean). Arguments as those of submit;
+        `on_progress`: a function of Progress."""
         job = self.submit(scene, **wanted)
         try:
             for progress in job.progress():
@@ -267,7 +268,7 @@ class Farm:
         except KeyboardInterrupt:
             job.cancel()
             raise
-        return job.image()
+        return job.clean() if denoise else job.image()
 
     def _send_missing(self, files, digests, on_progress):
         by_digest = {digest: files[file] for file, digest in digests.items()}
@@ -491,14 +492,13 @@ class Job:
         reached, it yields Progress with state "lost" and tries again for `patience` seconds, then raises NoFarm. Raises
         BandsawError if the job failed or was cancelled. `stop`: a function that is called often; the iteration ends when
         it returns True."""
-        lost_since, last = None, None
+        loss, last = _Loss(patience), None
         while stop is None or not stop():
             try:
-                last, lost_since = self.status(), None
+                last = self.status()
+                loss.over()
             except NoFarm as error:
-                now = time.monotonic()
-                lost_since = lost_since or now
-                if last is None or now - lost_since > patience:
+                if last is None or loss.is_too_long():
                     raise
                 last.state, last.reason = "lost", str(error)
             yield last
@@ -529,6 +529,41 @@ class Job:
         """Returns the finished Image with its exact pixels: linear light, 32-bit floats."""
         return image_from_pfm(self.farm.request("GET", self._path("/image.pfm"), timeout=120))
 
+    def clean(self, on_state=None, interval=0.3, patience=60.0, stop=None):
+        """Returns the finished image without its noise (denoised), an Image. The farm renders the guides that the denoiser needs (images of the
+        albedo and the shape of the surfaces), then the coordinator filters; image() still returns the image as rendered. `on_state`: a function
+        of the state of clean_state(), called about every `interval` seconds. `stop`: a function that is called often; None is returned
+        soon after it returns True. While the coordinator cannot be reached, this tries again for `patience` seconds, then raises NoFarm. Raises
+        Refused if the job is not done, or if its image cannot be cleaned or is too large; BandsawError if the cleaning fails."""
+        loss = _Loss(patience)
+        while stop is None or not stop():
+            try:
+                state = self.clean_state()
+                if state["state"] == "none":  # not requested, or the coordinator does not keep it any more
+                    self.farm.request_json("POST", self._path("/clean"))
+                loss.over()
+                if state["state"] == "ready":
+                    return image_from_pfm(self.farm.request("GET", self._path("/clean.pfm"), timeout=120))
+                if state["state"] == "failed":
+                    raise BandsawError(f"the image of job {self.number} was not denoised: {state['reason']}")
+                if on_state is not None:
+                    on_state(state)
+            except NoFarm:
+                if loss.is_too_long():
+                    raise
+            _wait(interval, stop)
+        return None
+
+    def clean_state(self):
+        """Returns the state of the clean image, a dictionary: `state` ("none": it was not requested, "guides", "filtering", "ready", "failed"),
+        `fraction` of the guides that is rendered (0 to 1), `reason` of a failure; when it is ready, the estimated errors as fractions
+        (0.02: two percent), `error_raw` of the image as rendered and `error_clean`, and `bias_share`, the part of the squared
+        `error_clean` that is bias."""
+        message = self.farm.request_json("GET", self._path("/clean"))
+        return {"state": message.get("state", "none"), "fraction": float(message.get("fraction", 0)), "reason": message.get("reason", ""),
+                "error_raw": float(message.get("relative_rmse_raw", 0)), "error_clean": float(message.get("relative_rmse_clean", 0)),
+                "bias_share": float(message.get("bias_share", 0))}
+
     def report(self):
         """Returns the report that `bandsaw submit` writes, as a dictionary."""
         return json.loads(self.farm.request("GET", self._path("/report.json")))
@@ -554,6 +589,22 @@ class Job:
         picture = self.image()
         place.update(picture)
         return picture
+
+
+class _Loss:
+    """Measures for how long the coordinator cannot be reached. `patience`: the longest time in seconds."""
+
+    def __init__(self, patience):
+        self._patience, self._since = patience, None
+
+    def over(self):
+        self._since = None
+
+    def is_too_long(self):
+        """To be called after each request that was not answered."""
+        now = time.monotonic()
+        self._since = self._since or now
+        return now - self._since > self._patience
 
 
 def _wait(seconds, stop):

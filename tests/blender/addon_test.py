@@ -41,6 +41,7 @@ class AddOn(unittest.TestCase):
         self.scene = bpy.context.scene
         self.scene.render.engine = "BANDSAW"
         self.scene.bandsaw.samples = 7
+        self.scene.bandsaw.denoise = False
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
         self.scene.render.image_settings.file_format = "OPEN_EXR"
@@ -198,6 +199,30 @@ class AddOn(unittest.TestCase):
         for camera, depths in ((eye, np.full((2, 2), 3)), ({**eye, "orthographic": {}}, 3 * rays)):
             found = engine.pass_pixels("depth", np.repeat(3 * rays[:, :, None], 3, axis=2), camera)[:, :, 0]
             self.assertLess(abs(found - depths).max(), 1e-6)
+
+    def test_a_denoised_picture_has_the_noisy_one_as_a_pass(self):
+        self.scene.property_unset("bandsaw")  # Denoise is on by default
+        shown = {}
+        engine = sys.modules["bandsaw_blender.engine"].BandsawEngine
+        given = engine.set_pixels
+
+        def noting(this, result, name, pixels):
+            shown[name] = pixels, result.layers[0].passes.get(name) is not None
+            given(this, result, name, pixels)
+
+        with mock.patch.object(engine, "set_pixels", noting):
+            self.render()
+        self.assertEqual(self.pixels()[5, 7].tolist(), [0.75, 0.5, 0.25, 1])
+        noisy, has_pass = shown["Noisy Image"]
+        self.assertTrue(has_pass)
+        self.assertLess(abs(noisy[::-1, :, 0] - np.arange(96) / 96).max(), 1e-6)
+
+    def test_a_picture_that_cannot_be_denoised_stays_as_it_was_rendered(self):
+        self.scene.bandsaw.denoise = True
+        self.fake.clean_failure = "a guide has failed"
+        self.render()
+        self.assertLess(abs(self.pixels()[:, :, 0] - np.arange(96) / 96).max(), 1e-6)
+        self.assertIn("the image is not denoised: the image of job 1 was not denoised: a guide has failed", self.told())
 
     def test_esc_during_the_passes_cancels_all_of_them(self):
         layer = bpy.context.view_layer

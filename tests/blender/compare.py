@@ -52,6 +52,7 @@ def main():
                 bandsaw_blender.register()
             made.render.engine = "BANDSAW"
             made.bandsaw.samples = BANDSAW_SAMPLES
+            made.bandsaw.denoise = False
         bpy.ops.render.render(write_still=True)
         made.render.image_settings.file_format = "PNG"
         made.render.image_settings.color_depth = "8"

@@ -17,12 +17,13 @@ SECRET = "abcdefghijklmnopqrst-_"
 
 
 class FakeFarm:
-    """`seconds`: the time that a job takes; 0: each request for its state completes a quarter of it. Tests may set three variables. `refusals`: the
+    """`seconds`: the time that a job takes; 0: each request for its state completes a quarter of it. Tests may set four variables. `refusals`: the
     HTTP statuses with which the next scenes are refused. `full`: True if its disk is full, so that files are refused. `warnings`: those of every
-    accepted scene. `scenes`, `jobs` and `requests` hold all that it has received."""
+    accepted scene. `clean_failure`: the reason why pictures are not denoised, or empty. `scenes`, `jobs` and `requests` hold all that it has
+    received."""
 
     def __init__(self, seconds=0.0):
-        self.seconds, self.refusals, self.warnings, self.full = seconds, [], [], False
+        self.seconds, self.refusals, self.warnings, self.full, self.clean_failure = seconds, [], [], False, ""
         self.files, self.scenes, self.jobs, self.requests = {}, [], {}, []
         self.lock = threading.Lock()
         farm = self
@@ -150,17 +151,38 @@ class FakeFarm:
             return self.reply({"status": {}})
         if what == "layer":
             return self.reply({"job": str(self.add(job["width"], job["height"], parameters["kind"]))})
+        if what == "clean":
+            return self.clean(job, method)
         share = self.fraction(job)
+        if what == "clean.pfm" and job.get("clean", 0) > 2:
+            return 200, "image/x-portable-floatmap", self.picture({**job, "kind": "clean"}, 1)
         if what == "preview.pfm" and share > 0:
             return 200, "image/x-portable-floatmap", self.picture(job, share)
         if what == "image.pfm" and job["state"] == "done":
             return 200, "image/x-portable-floatmap", self.picture(job, 1)
         return self.problem(404 if what == "preview.pfm" else 409, "it is not there yet")
 
+    def clean(self, job, method):
+        """Answers a request about the denoised picture of a job. Each request for its state brings it to the next one."""
+        if job["state"] != "done":
+            return self.problem(409, "the job is not done")
+        if method == "POST":
+            job["clean"] = job.get("clean", 0)
+        elif "clean" in job:
+            job["clean"] += 1
+        if self.clean_failure and job.get("clean", 0) > 1:
+            return self.reply({"state": "failed", "reason": self.clean_failure})
+        if "clean" not in job:
+            return self.reply({"state": "none"})
+        states = ({"state": "guides"}, {"state": "guides", "fraction": 0.5}, {"state": "filtering", "fraction": 1.0},
+                  {"state": "ready", "fraction": 1.0, "relative_rmse_raw": 0.05, "relative_rmse_clean": 0.02, "bias_share": 0.25})
+        return self.reply(states[min(job["clean"], 3)])
+
     def picture(self, job, share):
-        """Returns a PFM file. Red grows to the right and green upwards; the rows that are not rendered, the lower ones, are black. Layers are constant."""
+        """Returns a PFM file. Red grows to the right and green upwards; the rows that are not rendered, the lower ones, are black. Layers and
+        denoised pictures are constant."""
         width, height = job["width"], job["height"]
-        constants = {"albedo": (0.5, 0.25, 0.125), "normals": (0.5, 1.0, 0.5), "depth": (7.0, 7.0, 7.0)}
+        constants = {"albedo": (0.5, 0.25, 0.125), "normals": (0.5, 1.0, 0.5), "depth": (7.0, 7.0, 7.0), "clean": (0.75, 0.5, 0.25)}
         rows = bytearray()
         for y in range(height):  # from the bottom
             if job["kind"] in constants:

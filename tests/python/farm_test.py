@@ -96,6 +96,21 @@ class OnAFarm(unittest.TestCase):
         self.assertEqual((seen[-1].fraction, seen[-1].samples), (1, 16))
         self.assertTrue(image.png().startswith(b"\x89PNG"))
 
+    def test_a_clean_image_has_the_bytes_of_bandsaw_render(self):
+        image = self.farm.render(CORNELL, samples=16, width=48, denoise=True)
+        whole = os.path.join(self.folder.name, "clean.pfm")
+        subprocess.run([os.path.join(BIN, "bandsaw"), "render", CORNELL, "--samples", "16", "--width", "48", "--denoise", "--report", "none", "--quiet",
+                        "-o", whole], check=True, stdout=subprocess.DEVNULL)
+        with open(whole, "rb") as file:
+            self.assertTrue(bandsaw.compare(image, bandsaw.image_from_pfm(file.read()))["equal"])
+
+    def test_an_image_of_one_sample_cannot_be_denoised(self):
+        job = self.farm.submit(CORNELL, samples=1, width=8)
+        list(job.progress(0.05))
+        with self.assertRaises(bandsaw.Refused) as caught:
+            job.clean()
+        self.assertIn("samples", str(caught.exception))
+
     def test_a_model_is_sent_with_its_files_once(self):
         pergola = os.path.join(SOURCE, "renderlib", "gallery", "pergola.gltf")
         sent = []

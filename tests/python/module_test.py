@@ -301,6 +301,51 @@ class Jobs(unittest.TestCase):
         list(layer.progress(0))
         self.assertEqual(layer.image().mean(), (7, 7, 7))
 
+    def test_a_clean_image_is_requested_once_and_followed_until_it_is_ready(self):
+        job = self.farm.submit("one", files={})
+        list(job.progress(0))
+        seen = []
+        image = job.clean(seen.append, interval=0)
+        self.assertEqual([(state["state"], state["fraction"]) for state in seen], [("none", 0), ("guides", 0.5), ("filtering", 1)])
+        self.assertEqual(image.mean(), (0.75, 0.5, 0.25))
+        self.assertEqual(self.fake.requests.count(("POST", "/api/jobs/1/clean")), 1)
+        self.assertEqual(job.clean_state(), {"state": "ready", "fraction": 1, "reason": "", "error_raw": 0.05, "error_clean": 0.02, "bias_share": 0.25})
+        self.assertNotEqual(job.image().mean(), image.mean())
+
+    def test_a_render_may_be_denoised(self):
+        self.assertEqual(self.farm.render("one", files={}, denoise=True).mean(), (0.75, 0.5, 0.25))
+
+    def test_the_reason_why_an_image_is_not_denoised_is_told(self):
+        job = self.farm.submit("one", files={})
+        with self.assertRaises(bandsaw.Refused) as caught:
+            self.clean_after_progress(job, 0)
+        self.assertEqual(str(caught.exception), "the job is not done")
+        self.fake.clean_failure = "a guide has failed"
+        with self.assertRaises(bandsaw.BandsawError) as caught:
+            self.clean_after_progress(job, 4)
+        self.assertEqual(str(caught.exception), "the image of job 1 was not denoised: a guide has failed")
+
+    def clean_after_progress(self, job, states):
+        """Requests `states` states of the job, then its clean image."""
+        for _ in range(states):
+            job.status()
+        return job.clean(interval=0)
+
+    def test_stop_ends_the_denoising(self):
+        job = self.farm.submit("one", files={})
+        self.assertIsNone(job.clean(stop=lambda: True))
+
+    def test_a_coordinator_that_is_lost_during_the_denoising_is_an_error(self):
+        job = self.farm.submit("one", files={})
+        list(job.progress(0))
+
+        def stop_the_farm(state):
+            self.fake.server.server_close()
+            self.fake.server.shutdown()
+
+        with self.assertRaises(bandsaw.NoFarm):
+            job.clean(stop_the_farm, interval=0, patience=0.3)
+
     def test_an_interrupted_render_cancels_its_job(self):
         def stop(progress):
             raise KeyboardInterrupt

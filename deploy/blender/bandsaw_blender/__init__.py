@@ -48,7 +48,10 @@ class BandsawSettings(bpy.types.PropertyGroup):
     stop: bpy.props.EnumProperty(
         name="Until", items=(("SAMPLES", "Samples", "A number of samples for each pixel"), ("ERROR", "Error", "The image has at most this error")))
     samples: bpy.props.IntProperty(name="Samples", default=64, min=1, max=1 << 30, description="Samples for each pixel")
-    error: bpy.props.FloatProperty(name="Error", default=2.0, min=0.01, max=100.0, subtype="PERCENTAGE", description="Error of the image in percent")
+    error: bpy.props.FloatProperty(name="Error", default=2.0, min=0.01, max=100.0, subtype="PERCENTAGE", description="Error of the image in percent, before it is denoised")
+    denoise: bpy.props.BoolProperty(
+        name="Denoise", default=True,
+        description="Remove the noise of the finished image. The image as rendered is kept in the pass Noisy Image, and the estimated error of both is told")
 
 
 class BANDSAW_PT_sampling(bpy.types.Panel):
@@ -67,6 +70,7 @@ class BANDSAW_PT_sampling(bpy.types.Panel):
         layout.use_property_split = True
         layout.prop(settings, "stop")
         layout.prop(settings, "samples" if settings.stop == "SAMPLES" else "error")
+        layout.prop(settings, "denoise")
         layout.prop(context.scene.render, "film_transparent")
         layout.prop(context.scene.render, "use_motion_blur")
         layout.prop(context.scene.render, "motion_blur_shutter")

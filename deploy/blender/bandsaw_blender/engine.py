@@ -12,6 +12,7 @@ from . import bandsaw, scene as scenes
 # For each pass: Blender's setting, its name, its channels and their letters, its type, and the farm's kind of layer (bandsaw.Job.layer).
 PASSES = (("use_pass_z", "Depth", 1, "Z", "VALUE", "depth"), ("use_pass_normal", "Normal", 3, "XYZ", "VECTOR", "normals"),
           ("use_pass_diffuse_color", "DiffCol", 3, "RGB", "COLOR", "albedo"))
+NOISY = "Noisy Image"  # the pass with the image as rendered, if it is denoised; named as that of Cycles
 PATIENCE = 60.0  # seconds for which the engine tries to reach a lost coordinator
 
 last_warnings = []  # of the last render, for the panel
@@ -56,6 +57,8 @@ class BandsawEngine(bpy.types.RenderEngine):
 
     def update_render_passes(self, scene=None, renderlayer=None):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
+        if scene.bandsaw.denoise:
+            self.register_pass(scene, renderlayer, NOISY, 4, "RGBA", "COLOR")
         for setting, name, channels, letters, kind, _ in PASSES:
             if getattr(renderlayer, setting, False):
                 self.register_pass(scene, renderlayer, name, channels, letters, kind)
@@ -138,12 +141,34 @@ class BandsawEngine(bpy.types.RenderEngine):
                         shown = progress.samples_done
                     wait = time.monotonic() + max(0.4, 4 * (time.monotonic() - began))
             self.stop_if_asked()
-            self.set_pixels(result, "Combined", with_alpha(job.image().array()))
+            image = with_alpha(job.image().array())
+            self.set_pixels(result, "Combined", image)
+            if depsgraph.scene.bandsaw.denoise:
+                self.denoise(job, result, image)
             self.add_passes(depsgraph, job, result, made.scene["camera"])
             self.update_result(result)
             done = True
         finally:
             self.end_result(result, cancel=not done and self.test_break(), do_merge_results=done)
+
+    def denoise(self, job, result, image):
+        """Shows the image of a finished job without its noise. `image` (height, width, 4) is the one as rendered, which the pass NOISY keeps. If it
+        cannot be denoised, a warning tells why, and the image as rendered stays."""
+        self.set_pixels(result, NOISY, image)
+        self.update_result(result)
+
+        def on_state(state):
+            self.update_stats("", f"Denoising: {100 * state['fraction']:.0f} % of the guides" if state["state"] == "guides" else "Denoising")
+
+        try:
+            clean = job.clean(on_state, patience=PATIENCE, stop=self.test_break)
+            self.stop_if_asked()
+            errors = job.clean_state()
+        except bandsaw.BandsawError as error:
+            self.tell_warnings([f"the image is not denoised: {error}"])
+            return
+        self.set_pixels(result, "Combined", with_alpha(clean.array()))
+        self.report({"INFO"}, f"Bandsaw: the estimated error is {100 * errors['error_raw']:.2g} % as rendered, {100 * errors['error_clean']:.2g} % denoised")
 
     def show_progress(self, progress):
         self.update_progress(progress.fraction)
