@@ -41,7 +41,7 @@ Step Scheduler::step(const Input& input, Time now) {
 }
 
 /// Continues the sequences, revokes the leases that the input has ended, grants leases to the
-/// workers, and revokes the leases that this has ended.
+/// workers, and revokes the leases that ended while leases were granted.
 Step Scheduler::finish_step() {
   sequences_.advance();
   context_.flush_revocations();
@@ -53,7 +53,7 @@ Step Scheduler::finish_step() {
 }
 
 void Scheduler::on(const input::Tick&) {
-  context_.note_natives();  // the time at which a native worker, not a browser, was last connected
+  context_.note_natives();  // notes when a native worker (not a browser) was last connected
   barrier_.expire();
   lifecycle_.revoke_from_held_jobs();
   sessions_.forget_refusals();

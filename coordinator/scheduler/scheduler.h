@@ -72,13 +72,13 @@ class Scheduler {
   /// Returns the jobs and sequences that `page` selects, ascending by id, without the jobs of
   /// frames.
   std::vector<JobView> jobs(Time now, const JobPage& page = {}) const;
-  /// Returns the frames of a sequence that changed after `after` (FrameView::changed), ascending.
-  /// std::nullopt: there is no such sequence.
+  /// Returns the frames of a sequence whose FrameView::changed is greater than `after`, or all
+  /// frames if `after` is 0. They ascend by number. std::nullopt: there is no such sequence.
   std::optional<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
   /// Returns all jobs and sequences with the packages and files that must be kept for them; frame
   /// jobs of a known sequence belong to it.
   std::vector<KeptJob> kept() const { return views_.kept(); }
-  std::vector<WorkerView> workers(Time now) const;  ///< by name
+  std::vector<WorkerView> workers(Time now) const;  ///< sorted by name
   /// Returns true if the worker process with this instance id joined as a browser. Browsers that
   /// have left are forgotten when the last active job ends, not at a restart of the coordinator.
   bool is_browser(const std::string& instance) const;

@@ -1,5 +1,5 @@
-// Writes and reads which worker rendered which rows, as text fields: the number of pieces, then
-// first row, last row and worker of each.
+// Writes and reads which worker rendered which rows, as text fields. The first field is the number
+// of pieces. Then each piece has its first row, the row after its last row, and its worker.
 
 #include "coordinator/store/attribution_file.h"
 
@@ -15,7 +15,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// More than the tallest image needs, with all rows by different workers of the longest names.
+/// Limit of a file's size. It is more than the tallest image needs if each of its rows is by a
+/// different worker with a name of the maximum length.
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 26;
 
 }  // namespace

@@ -193,7 +193,8 @@ absl::Status BandLog::take_back(std::uint64_t size) {
 
 absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offset) {
   ASSIGN_OR_RETURN(const File file, File::open(path, O_RDONLY));
-  // The file is not mapped, as in LogBytes, so that an unreadable sector is an error of one band.
+  // As for LogBytes, the file is read, not mapped. So an unreadable sector is an error of one band,
+  // and does not end the process.
   std::array<std::byte, kSizeEnd> head{};
   RETURN_IF_ERROR(file.read(offset, absl::MakeSpan(head)));
   std::uint64_t size = 0;

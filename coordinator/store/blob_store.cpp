@@ -125,7 +125,8 @@ BlobStore::Writer::~Writer() {
   }
 }
 
-/// Hashes the earlier bytes. commit() compares the complete digest.
+/// Hashes the first `bytes` bytes of the file, which are of an earlier upload. commit() compares
+/// the digest of the complete blob.
 absl::Status BlobStore::Writer::take_earlier(std::uint64_t bytes) {
   std::vector<std::byte> buffer(std::min<std::uint64_t>(bytes, 1 << 20));
   while (written_ < bytes) {

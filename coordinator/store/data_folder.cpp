@@ -35,6 +35,8 @@ absl::StatusOr<std::string> read_text(const File& file, std::uint64_t limit) {
   return text;
 }
 
+/// Locks the folder's lock file, and writes the process id into it. FAILED_PRECONDITION: another
+/// coordinator holds the lock.
 absl::StatusOr<File> take_lock(const std::string& path) {
   ASSIGN_OR_RETURN(File lock, File::open(path + "/lock", O_RDWR | O_CREAT));
   if (::flock(lock.fd(), LOCK_EX | LOCK_NB) != 0) {
@@ -44,9 +46,10 @@ absl::StatusOr<File> take_lock(const std::string& path) {
     const absl::StatusOr<std::string> holder = read_text(lock, 32);
     return absl::FailedPreconditionError(absl::StrCat(
         "another coordinator (process ", holder.ok() ? absl::StripAsciiWhitespace(*holder) : "?",
-        ") uses the data folder ", path, "; stop it, or give this one its own with --data"));
+        ") uses the data folder ", path, "; stop it, or choose another folder with --data"));
   }
-  // It has the same length as the previous text, because overwriting needs no space on a full disk.
+  // All texts have the same length, so the text of an earlier process is overwritten. This needs no
+  // space on a full disk.
   const std::string holder = absl::StrFormat("%-20d\n", ::getpid());
   const absl::Status written = lock.write(std::as_bytes(std::span(holder)));
   // The text is for users; the lock works without it.

@@ -28,7 +28,9 @@ class DataFolder {
   std::string job(JobId id) const;
   std::string bands(JobId id) const { return job(id) + "/bands"; }
   std::string result(JobId id) const { return job(id) + "/result"; }
+  /// The mean of the first part of each pixel's samples (Finished::first).
   std::string first(JobId id) const { return job(id) + "/first"; }
+  /// The number of samples of each pixel of an adaptive job (Finished::samples).
   std::string samples(JobId id) const { return job(id) + "/samples"; }
   std::string attribution(JobId id) const { return job(id) + "/attribution"; }
   /// The name that older versions gave to the attribution.

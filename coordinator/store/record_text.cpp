@@ -1,5 +1,6 @@
-// to_text() writes the fields of each kind of record, and from_text() reads them in the same order,
-// which is the format. Longer groups of fields are in the files of record_text_parts.h.
+// to_text() writes the fields of each kind of record, and from_text() reads them in the same order.
+// This order is a part of the format. The functions for long groups of fields are declared in
+// record_text_parts.h.
 
 #include "coordinator/store/record_text.h"
 

@@ -18,7 +18,7 @@ void write_job(FieldWriter& out, const record::JobAdded& added);
 record::JobAdded read_job(FieldReader& in);
 
 void write_tiles(FieldWriter& out, const record::TilesPlanned& r);
-/// Reports an error in `in` if a level is not a digit.
+/// Reports an error in `in` if a level is not a hexadecimal digit in lower case.
 record::TilesPlanned read_tiles(FieldReader& in);
 
 void write_sequence(FieldWriter& out, const record::SequenceAdded& added);
@@ -29,7 +29,7 @@ void write_frame(FieldWriter& out, const record::FrameWaits& r);
 record::FrameWaits read_frame(FieldReader& in);
 
 // Records from which a job's report is made (record_text_report.cpp).
-/// The id of a worker process. Schema versions below 8 call the field "renderer".
+/// Writes the id of a worker process. Schema versions below 8 call the field "renderer".
 void write_process(FieldWriter& out, WorkerProcessId process);
 WorkerProcessId read_process(FieldReader& in);
 
@@ -46,7 +46,7 @@ const char* write_audit(FieldWriter& out, const record::RowDisputed& r);
 const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r);
 const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r);
 const char* write_audit(FieldWriter& out, const record::QuarantineLifted& r);
-/// Returns std::nullopt if the kind is none of these.
+/// Returns the record of this kind; std::nullopt if the kind is none of those above.
 std::optional<Record> read_audit(absl::string_view kind, FieldReader& in);
 
 }  // namespace bandsaw::coordinator

@@ -1,3 +1,5 @@
+// Makes a temporary folder with mkdtemp(), and removes it with its contents.
+
 #include "coordinator/store/scratch_folder.h"
 
 #include <cerrno>

@@ -19,6 +19,7 @@ constexpr char kTables[] =
     "CREATE TABLE IF NOT EXISTS record (sequence INTEGER PRIMARY KEY, kind TEXT NOT NULL,"
     " fields TEXT NOT NULL, seal TEXT NOT NULL) STRICT;";
 
+/// Returns the SQL statement that sets the file's schema version to kSchema.
 std::string raise_version() { return absl::StrCat("PRAGMA user_version = ", kSchema, ";"); }
 
 /// Returns a checksum of a record. It detects a changed byte in a value, which SQLite itself does
@@ -36,6 +37,7 @@ std::string column(sqlite3_stmt* row, int index) {
              : std::string(text, static_cast<std::size_t>(sqlite3_column_bytes(row, index)));
 }
 
+/// Returns the status code for a result code of SQLite.
 absl::StatusCode code_of(int result) {
   switch (result) {
     case SQLITE_FULL:
@@ -112,6 +114,8 @@ absl::Status SqliteJournal::prepare_file() {
   return absl::OkStatus();
 }
 
+/// Makes the table in a new file. If the schema version is earlier than kSchema, notes that it must
+/// be raised; if it is later, returns an error.
 absl::Status SqliteJournal::check_version() {
   ASSIGN_OR_RETURN(const std::string version, query("PRAGMA user_version;"));
   int found = 0;
@@ -192,9 +196,9 @@ absl::Status SqliteJournal::replay(absl::FunctionRef<void(const Record&)> each) 
     const RecordText text{.kind = column(rows.get(), 1), .fields = column(rows.get(), 2)};
     const std::string where = absl::StrCat("record ", expected, " of the journal ", path_);
     if (sequence != expected || column(rows.get(), 3) != seal(sequence, text)) {
-      return absl::DataLossError(
-          absl::StrCat(where, sequence != expected ? " is missing" : " is damaged",
-                       "; restore the data folder from a backup, or start with another"));
+      return absl::DataLossError(absl::StrCat(
+          where, sequence != expected ? " is missing" : " is damaged",
+          "; restore the data folder from a backup, or choose another folder with --data"));
     }
     const absl::StatusOr<Record> record = from_text(text);
     if (!record.ok()) {

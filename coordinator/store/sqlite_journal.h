@@ -54,8 +54,8 @@ class SqliteJournal : public Journal {
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::string path_;
   std::uint64_t last_ = 0;  ///< the highest sequence number in the file
-  /// The file still has an earlier schema version, which the first transaction raises. It is not
-  /// raised when the file is opened, so that a journal can be read on a full disk.
+  /// The file still has an earlier schema version, which the first transaction raises. open() does
+  /// not raise the version, so that a journal can be read on a full disk.
   bool raise_version_ = false;
   Statement insert_;
 };

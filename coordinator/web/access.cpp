@@ -34,8 +34,9 @@ std::string machine_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// The name contains the port, because cookies do not distinguish ports and several coordinators on
-/// a machine would overwrite each other's.
+/// Returns the name of the dashboard's cookie. It contains the port, because cookies do not
+/// distinguish ports. Otherwise several coordinators on a machine would overwrite each other's
+/// cookies.
 std::string cookie_name(const HttpRequest& request) {
   return absl::StrCat("bandsaw-", request.local_port);
 }
@@ -52,8 +53,8 @@ std::string cookie_of(const HttpRequest& request) {
   return "";
 }
 
-/// Returns the cookie's value, derived from the users' secret: it becomes invalid with the secret,
-/// and is of no use for gRPC.
+/// Returns the cookie's value, which is derived from the users' secret. The value becomes invalid
+/// when the secret changes, and cannot be used for gRPC.
 std::string pass_of(const std::string& secret) {
   constexpr char kPurpose[] = "bandsaw dashboard 1";
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};

@@ -21,8 +21,8 @@ inline constexpr char kOurHeader[] = "X-Bandsaw";
 class Access {
  public:
   /// `secure`: browsers send the cookie over TLS only. `host`: the address or name on which the
-  /// dashboard listens. If it is a name, requests may use it, as they may use this machine's own
-  /// name.
+  /// dashboard listens. If `host` is a name, requests may use this name as well as this machine's
+  /// own name.
   Access(link::Identity identity, bool secure, std::string host);
 
   /// Invalidates logins with earlier secrets. Returns true if the users' secret has changed.
@@ -59,17 +59,17 @@ class Access {
   Failures failures_ GUARDED_BY(mutex_);
 };
 
-/// Returns true if the header Origin of a request names the site that it is sent to. Browsers set
-/// it, pages cannot.
+/// Returns true if the header Origin of a request names the site to which the request is sent.
+/// Browsers set this header; pages cannot set it.
 bool is_of_this_site(const HttpRequest& request);
 
 /// Returns the secret of the header "Authorization: Bearer SECRET"; empty: there is none.
 std::string bearer_secret(const HttpRequest& request);
 
-/// Returns true if `host`, the header Host of a request, has an IP address, localhost, this
-/// machine's own name `machine`, also with ".local" after it, or the name `named` that the user has
-/// given to the dashboard. Requests of a foreign page whose name resolves to this machine (DNS
-/// rebinding) have that foreign name.
+/// Returns true if `host`, the header Host of a request, may name this dashboard. It may be an IP
+/// address, localhost, `machine` (this machine's own name, also with ".local" after it) or `named`
+/// (the name that the user has given to the dashboard), each with or without a port. A request of a
+/// foreign page whose name resolves to this machine (DNS rebinding) has that foreign name.
 bool is_own_host(const std::string& host, const std::string& machine, const std::string& named);
 
 }  // namespace bandsaw::coordinator

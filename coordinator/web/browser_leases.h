@@ -61,7 +61,8 @@ class BrowserLeases {
   std::vector<Lease> newest() EXCLUDES(mutex_);
   /// Returns true if the job exists and is not over. Waits for the engine.
   bool runs(JobId job);
-  /// Returns the blobs of a manifest and the manifest itself; nullptr: it is not there.
+  /// Returns the digests of the blobs that a manifest names, and of the manifest itself; nullptr:
+  /// the manifest is not stored or cannot be read.
   std::shared_ptr<const Blobs> blobs_of(const std::string& manifest) EXCLUDES(mutex_);
 
   Engine& engine_;

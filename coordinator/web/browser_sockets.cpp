@@ -69,7 +69,8 @@ std::string shortened(absl::string_view text) {
   return std::string(text.substr(0, size));
 }
 
-/// Returns the secret in the protocols that the browser offers; empty: there is none.
+/// Returns the secret in the protocols that the browser offers; empty: there is none, or
+/// kJoinProtocol is not offered.
 std::string offered_secret(const HttpRequest& request) {
   bool knows_protocol = false;
   std::string secret;
@@ -215,11 +216,11 @@ class BrowserSocket final : public WorkerSession,
     stream_.async_close(reason, [self = shared_from_this()](ErrorCode) { self->end(); });
   }
 
-  /// Cuts the connection after this time, unless timer_ is set anew before.
+  /// Cuts the connection after this time, unless timer_ is set again before.
   void cut_after(std::chrono::milliseconds time) {
     timer_.expires_after(time);
     timer_.async_wait([self = shared_from_this()](ErrorCode) {
-      if (self->timer_.expiry() <= Clock::now()) {  // it may have been set anew meanwhile
+      if (self->timer_.expiry() <= Clock::now()) {  // it may have been set again meanwhile
         self->cut();
       }
     });
@@ -233,7 +234,8 @@ class BrowserSocket final : public WorkerSession,
     gone_(shared_from_this());
   }
 
-  const std::shared_ptr<IoContext> io_;  // first: the others use it until they are destroyed
+  // Declared first, so that it is destroyed after the members that use it.
+  const std::shared_ptr<IoContext> io_;
   BrowserLeases& leases_;
   const BrowserSocketLimits limits_;
   const std::string secret_;
@@ -270,6 +272,7 @@ class BrowserSockets::Impl {
     });
   }
 
+  /// Ends all sessions, cuts those that are not closed after limits_.stop, and joins the thread.
   void stop() {
     boost::asio::post(*io_, [this] {
       is_stopping_ = true;
@@ -334,7 +337,7 @@ class BrowserSockets::Impl {
     socket->begin(request);
   }
 
-  /// Ends the sessions whose link is no longer valid, and does so again after a while.
+  /// Ends the sessions whose link is no longer valid. Calls itself again after limits_.link_check.
   void check_links() {
     const auto sockets = sockets_;
     for (const auto& socket : sockets) {
@@ -350,7 +353,8 @@ class BrowserSockets::Impl {
     });
   }
 
-  /// Cancels the last timer when the server stops and no session is left: then the thread ends.
+  /// If the server is being stopped and no session is left, cancels the last timer. Then the thread
+  /// ends.
   void end_if_empty() {
     if (is_stopping_ && sockets_.empty()) {
       timer_.cancel();

@@ -18,7 +18,8 @@ struct BrowserSocketLimits {
   std::size_t sockets = 256;  ///< more are refused
   /// Maximum time for the handshake, and for closing.
   std::chrono::milliseconds handshake{10'000};
-  /// A browser that sends nothing for this long has vanished. After half of it the server pings.
+  /// A browser that sends nothing for this long has vanished. The server pings after half of this
+  /// time.
   std::chrono::milliseconds idle{12'000};
   /// Maximum time for sending one message to a browser that does not read.
   std::chrono::milliseconds write{10'000};
@@ -31,14 +32,15 @@ struct BrowserSocketLimits {
 };
 
 /// Name of the protocol in the header Sec-WebSocket-Protocol. A second word of this header begins
-/// with kJoinSecretPrefix and has the link's secret, because pages cannot set other headers here.
+/// with kJoinSecretPrefix and has the link's secret, because a page can set no other header of a
+/// WebSocket handshake.
 inline constexpr char kJoinProtocol[] = "bandsaw.1";
 inline constexpr char kJoinSecretPrefix[] = "bandsaw.secret.";
 
 /// Thread-safe. Each message is one serialised farm.FromWorker or farm.ToWorker, with the rules of
 /// Work.Session. A session is closed with the code 1008 for a violation, 1001 when the coordinator
-/// stops, 4401 when the link has ended or was revoked, 4409 when the scheduler ended it (the
-/// browser may join again), 1013 for a browser that does not read.
+/// stops, 4401 when the link has ended or was revoked, 4409 when the scheduler ended the session
+/// (the browser may join again), 1013 for a browser that does not read.
 class BrowserSockets {
  public:
   /// The arguments outlive the object.

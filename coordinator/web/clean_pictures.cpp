@@ -36,9 +36,9 @@ absl::Status check(const JobView& job) {
   return pixels <= CleanPictures::kMaxPixels
              ? absl::OkStatus()
              : absl::FailedPreconditionError(absl::StrCat(
-                   "the image is too large to be cleaned here; on a machine of your own: bandsaw "
-                   "watch ",
-                   job.id, " --denoise -o FILE"));
+                   "the image is too large to be cleaned here; clean it on your own machine with "
+                   "`bandsaw watch ",
+                   job.id, " --denoise -o FILE`"));
 }
 
 /// Returns for each pixel the share of its samples that is in the first part, with which the
@@ -173,6 +173,7 @@ absl::StatusOr<CleanPictures::Kept> CleanPictures::filtered(const JobView& job,
   ASSIGN_OR_RETURN(HeldImage image, result_of(engine_, job.id));
   ASSIGN_OR_RETURN(HeldImage albedo, result_of(engine_, jobs[0]));
   ASSIGN_OR_RETURN(HeldImage shape, result_of(engine_, jobs[1]));
+  // For a picture without a first part, a third job has rendered half of the samples.
   const bool again = jobs.size() > 2;
   ASSIGN_OR_RETURN(HeldImage first, again ? result_of(engine_, jobs[2])
                                           : result_of(engine_, job.id, FinishedPart::kFirst));

@@ -1,8 +1,8 @@
 #pragma once
 
 // Clean, that is denoised, pictures of finished jobs (renderlib/denoise). The denoiser needs
-// guides, images of the albedo and the shape of the surfaces: the farm renders them as jobs of
-// their own. The filter runs here.
+// guides, which are images of the albedo and the shape of the surfaces. The farm renders the guides
+// as jobs of their own. The filter runs on the coordinator.
 
 #include <cstdint>
 #include <functional>
@@ -79,6 +79,7 @@ class CleanPictures {
   absl::StatusOr<JobId> submit_job(JobSpec spec, std::int32_t priority);
   /// Makes the picture and stores it in its entry. Runs on the executor. `jobs`: as in Entry.
   void filter(const JobView& job, const std::vector<JobId>& jobs) EXCLUDES(mutex_);
+  /// Makes the picture from the images of the jobs. RESOURCE_EXHAUSTED: too little memory is left.
   absl::StatusOr<Kept> filtered(const JobView& job, const std::vector<JobId>& jobs);
   /// Drops the pictures that were used least recently until few enough are kept.
   void forget_oldest() REQUIRES(mutex_);
@@ -88,7 +89,7 @@ class CleanPictures {
   std::map<JobId, Entry> entries_ GUARDED_BY(mutex_);
   std::uint64_t calls_ GUARDED_BY(mutex_) = 0;
   Mutex encoding_;            ///< held while a file is made
-  FileExecutor executor_{1};  // last: its thread uses the others
+  FileExecutor executor_{1};  // last, because its thread uses the other members
 };
 
 }  // namespace bandsaw::coordinator

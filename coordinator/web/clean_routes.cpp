@@ -41,6 +41,8 @@ HttpReply answer_with(const absl::StatusOr<CleanPictures::State>& state) {
   return reply(message);
 }
 
+/// Answers a request for a file of a clean picture. The request's parameter `side` limits the
+/// number of pixels per side; without this parameter the picture is not reduced.
 HttpReply file(CleanPictures& pictures, const HttpRequest& request, ImageFormat format,
                const char* suffix, const char* type) {
   const auto job = job_of(request);

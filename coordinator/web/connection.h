@@ -15,7 +15,7 @@ namespace bandsaw::coordinator {
 
 /// Used by one thread, in this order: shake_hands, reads of the head, begin_body, reads of the
 /// body, begin_answer, writes, finish. The caller keeps the ownership of the socket. With TLS a
-/// write may raise SIGPIPE: the thread MUST block it.
+/// write may raise SIGPIPE, so the thread MUST block this signal.
 class Connection {
  public:
   /// The request's head, with the TLS handshake, must come within this time.
@@ -78,7 +78,7 @@ class Connection {
   /// Waits until the socket is ready for `events` of poll; false: the deadline passed.
   bool wait(short events) const;
   /// Returns the events after which an unfinished operation with this result can continue; 0: it
-  /// has failed.
+  /// has failed. `plain_events` are the events of an operation without TLS.
   short events_after(int tls_result, short plain_events) const;
   /// Moves the deadline by the time that this many transferred bytes of a body allow.
   void extend(std::size_t bytes);
@@ -87,7 +87,7 @@ class Connection {
   const bool encrypted_;
   const std::unique_ptr<SSL, FreeSsl> ssl_;
   const std::chrono::milliseconds timeout_;
-  bool in_head_ = true;
+  bool in_head_ = true;  ///< until begin_body(); the deadline of the head is not extended
   Clock::time_point deadline_;
   std::string remote_;
   int local_port_ = 0;

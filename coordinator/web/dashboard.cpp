@@ -99,7 +99,7 @@ class Dashboard::Impl {
   std::optional<BrowserSockets> browser_sockets_;
   Router router_;
   int port_ = 0;
-  HttpServer server_;  // last: its threads use the others
+  HttpServer server_;  // last, because its threads use the other members
 };
 
 Dashboard::Dashboard(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

@@ -202,8 +202,9 @@ class Exchange {
   const std::vector<HttpField>& headers_;
   http::request_parser<http::buffer_body> parser_;
   beast::flat_static_buffer<kBufferBytes> buffer_;
-  // The bytes of the body that were read last. It is larger than the parser's buffer, so that it is
-  // never full: otherwise Beast would report need_buffer before the end of the body.
+  // The bytes of the body that were read last. The array is larger than the parser's buffer, so
+  // that the array is never full. Otherwise Beast would report need_buffer before the end of the
+  // body.
   std::array<char, kBufferBytes + 1> body_;
   bool awaits_continue_ = false;  ///< the client sends the body only after "100 Continue"
 };

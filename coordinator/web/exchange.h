@@ -13,8 +13,8 @@ namespace bandsaw::coordinator {
 inline constexpr std::uint32_t kMaxHeadBytes = 32 << 10;
 
 /// Reads one request, calls `handler`, and writes its response with `headers` added. Malformed HTTP
-/// gets an error response. A connection that ends, or whose deadline passes, gets none. Returns the
-/// response's `take_over`, which the caller calls if it is set.
+/// gets an error response. A connection that ends, or whose deadline passes, gets no response.
+/// Returns the response's `take_over`, which the caller calls if it is set.
 TakeOver exchange(Connection& connection, const HttpHandler& handler,
                   const std::vector<HttpField>& headers);
 

@@ -32,8 +32,8 @@ class Gallery {
   std::vector<GalleryScene> scenes_;
 };
 
-/// Returns the beginning of the request ids of a scene's jobs, 24 characters. By it the scene's
-/// jobs are found again, also after a restart of the coordinator.
+/// Returns the beginning of the request ids of a scene's jobs, 24 characters. The scene's jobs
+/// are found by this prefix, also after a restart of the coordinator.
 std::string request_prefix(const GalleryScene& scene);
 
 /// Returns the newest job that rendered the scene from the gallery; nullptr: none.

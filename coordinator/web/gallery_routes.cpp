@@ -1,4 +1,5 @@
-// The gallery: its scenes, their newest jobs on this farm, and a request to render one.
+// The handlers of the gallery: its scenes with their newest jobs on this farm, and the request to
+// render a scene.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/convert/farm_messages.h"

@@ -24,6 +24,8 @@ int hex_digit(char c) {
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
+/// Replaces each percent escape, such as "%20", by its byte; with `plus_is_space` also each '+' by
+/// a space.
 std::string decoded(absl::string_view text, bool plus_is_space) {
   std::string out;
   for (std::size_t at = 0; at < text.size(); ++at) {

@@ -1,4 +1,5 @@
-// A fixed number of threads: each accepts a connection, serves it, and accepts the next one.
+// The server has a fixed number of threads. Each accepts a connection, serves it, and accepts the
+// next one.
 
 #include "coordinator/web/http_server.h"
 
@@ -39,7 +40,7 @@ int listen_at(const addrinfo& address) {
   if (one < 0) {
     return -1;
   }
-  // Not SO_REUSEPORT: two coordinators would share the port without an error.
+  // SO_REUSEPORT is not set, because two coordinators would then share the port without an error.
   switch_on(one, SOL_SOCKET, SO_REUSEADDR);
   if (address.ai_family == AF_INET6) {
     const int off = 0;  // "::" also accepts IPv4

@@ -39,10 +39,11 @@ class HttpServer {
  private:
   /// Runs on each thread: accepts a connection, serves it, closes it.
   void run() EXCLUDES(mutex_);
-  /// Returns false if the connection was taken over, and so is not to be closed.
+  /// Serves one connection. Returns true if the caller must close the socket, false if the
+  /// connection was taken over.
   bool serve(int socket) EXCLUDES(mutex_);
   /// Notes an open connection. Returns false if the server is being stopped, or the address has too
-  /// many connections; then it is to be closed.
+  /// many connections; then the caller must close the connection.
   bool enter(int socket, const std::string& address) EXCLUDES(mutex_);
   void leave(int socket) EXCLUDES(mutex_);
   /// Waits after a failed accept; `error`: its errno. Returns false if the server is being stopped.

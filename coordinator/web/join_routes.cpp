@@ -20,8 +20,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Number of blobs and bands in transfer at a time: some of the HTTP server's threads remain for
-/// the dashboard, however slow the browsers are.
+/// Maximum number of blobs and bands in transfer at a time. The HTTP server has more threads, so
+/// some of them remain for the dashboard even if the browsers are slow.
 constexpr int kMaxTransfers = 20;
 /// The body of a band begins with the length of its BandHeader: a little-endian number of
 /// kLengthBytes bytes, at most kMaxHeaderBytes.

@@ -43,6 +43,8 @@ class Text {
   std::string text_;
 };
 
+/// Writes the number of jobs in each state, and the number of workers of each state and kind. Also
+/// writes the counts that are 0.
 void add_counts(Text& out, const std::vector<JobView>& jobs,
                 const std::vector<WorkerView>& workers) {
   std::map<std::string, int> jobs_by_state;
@@ -93,7 +95,7 @@ std::string metrics(const std::vector<JobView>& jobs, const std::vector<WorkerVi
   Text out;
   out.gauge("bandsaw_build_info", "The coordinator's version.");
   out.line(label("version", version), 1);
-  out.gauge("bandsaw_free_bytes", "Free on the disk of the coordinator's data folder.");
+  out.gauge("bandsaw_free_bytes", "Free bytes on the disk of the coordinator's data folder.");
   out.line("", static_cast<double>(free_bytes));
   add_counts(out, jobs, workers);
   out.gauge("bandsaw_worker_samples_per_second", "A worker's pace, as last measured.");

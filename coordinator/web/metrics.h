@@ -10,8 +10,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Formats the metrics. Each job that is not over has a line of its own. `free_bytes`: free space
-/// of the coordinator's disk.
+/// Formats the metrics. A metric of jobs has one line for each job that is not over and whose value
+/// is known. `free_bytes`: free space of the coordinator's disk.
 std::string metrics(const std::vector<JobView>& jobs, const std::vector<WorkerView>& workers,
                     std::uint64_t free_bytes, const std::string& version);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Shortens the journal. It grows with each decision, so the engine replaces a long journal by this
-// list of records (engine/scheduler_thread.cpp).
+// Shortens the journal, which grows with each decision. When it is long, the engine replaces it by
+// the records that snapshot() returns (engine/scheduler_thread.cpp).
 
 #include <vector>
 

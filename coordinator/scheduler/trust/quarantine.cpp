@@ -48,7 +48,8 @@ void Quarantine::impose(const Reporter& reporter, const std::string& cause) {
   }
 }
 
-/// Adds the processes of the machine that returned results of open audits, also in earlier epochs.
+/// Adds those processes of the reporter's machine that returned a result of an open audit, also in
+/// an earlier epoch.
 void Quarantine::add_earlier_processes(const Reporter& reporter,
                                        std::set<WorkerProcessId>& processes) const {
   for (const JobId id : context_.jobs.active()) {
@@ -74,7 +75,7 @@ void Quarantine::expel(Worker& worker) {
   }
 }
 
-/// Frees the rows that the process stored in the job. `why`: for the notice that users see.
+/// Frees the rows that the process stored in the job. `why` begins the notice that users see.
 void Quarantine::retract(Job& job, WorkerProcessId process, const std::string& why) {
   if (job.image_requested) {
     return;
@@ -103,8 +104,9 @@ void Quarantine::request(const input::Quarantine& in) {
     }
   }
   if (meant.empty()) {
-    context_.answer(absl::NotFoundError(absl::StrCat(
-        "no worker of this name was connected: ", in.worker, "; see: bandsaw workers")));
+    context_.answer(
+        absl::NotFoundError(absl::StrCat("no worker of this name was connected: ", in.worker,
+                                         "; `bandsaw workers` lists all workers")));
   }
   for (const Reporter& reporter : meant) {
     impose(reporter, "was excluded by a user");
@@ -122,7 +124,7 @@ void Quarantine::lift(const input::LiftQuarantine& in) {
   }
   if (names.empty()) {
     context_.answer(absl::NotFoundError(
-        absl::StrCat(in.worker, " is not under quarantine; see: bandsaw workers")));
+        absl::StrCat(in.worker, " is not under quarantine; `bandsaw workers` lists all workers")));
   }
   for (const std::string& name : names) {
     context_.emit(record::QuarantineLifted{name});

@@ -64,8 +64,9 @@ void ResultComparison::open_audits(Job& job, const input::BandStored& in, const 
   }
 }
 
-/// Opens an audit of the first row that differs from the stored one, unless one is open. This is
-/// needed for results that were not requested by an audit, such as those of backup tasks.
+/// Opens an audit of the first row that differs from the stored row, unless an audit of that row is
+/// open. This is needed for results that were not requested by an audit, such as those of backup
+/// tasks.
 void ResultComparison::open_dispute(Job& job, const Pass& pass, const input::BandStored& in) {
   const auto row = pass.digests.first_difference(in.band, in.row_digests);
   if (!row) {
@@ -83,8 +84,8 @@ void ResultComparison::open_dispute(Job& job, const Pass& pass, const input::Ban
   }
 }
 
-/// Journals the first row of the audit for which the other result differs from the stored one; none
-/// if they are equal.
+/// Journals the first row of the audit for which the other result differs from the stored result.
+/// Journals nothing if the two results are equal.
 void ResultComparison::note_dispute(const Job& job, const Audit& audit,
                                     const Audit::Result& other) {
   const Audit::Result& stored = audit.stored();
@@ -105,6 +106,8 @@ void ResultComparison::note_dispute(const Job& job, const Audit& audit,
 }
 
 void ResultComparison::reopen_disputes(Job& job) {
+  // Makes the result that a claim describes. If the process has not connected in this epoch, the
+  // claim names its machine.
   const auto result = [this](const record::RowDisputed::Claim& claim) {
     Reporter reporter = context_.reporter_of(claim.process);
     const bool away = reporter.machine.empty();
@@ -119,7 +122,8 @@ void ResultComparison::reopen_disputes(Job& job) {
         pass->process_of_row(one.band.samples, one.band.rows.first) != one.stored.process) {
       continue;
     }
-    // If the same row was selected for an audit, that audit does not know the machine.
+    // An audit may already be open because the row was selected for audits. Its result may lack the
+    // machine, which the claim names. So the audit is replaced.
     std::erase_if(job.audits,
                   [&](const Audit& a) { return a.band() == one.band && !a.disputed(); });
     auto audit = std::find_if(job.audits.begin(), job.audits.end(),
@@ -169,8 +173,8 @@ void ResultComparison::compare(Job& job, const Pass& pass, const input::BandStor
   }
 }
 
-/// Closes an audit that has a verdict, and quarantines the machines that are wrong. Returns false
-/// if there is none.
+/// Closes the first audit that has a verdict, and quarantines the machines that are wrong. Returns
+/// false if no audit has a verdict.
 bool ResultComparison::decide_one(Job& job) {
   for (auto audit = job.audits.begin(); audit != job.audits.end(); ++audit) {
     const auto verdict = audit->verdict(context_.only_browsers());

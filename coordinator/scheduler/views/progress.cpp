@@ -12,8 +12,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Returns the samples per pixel after which the job is expected to end; its maximum if nothing is
-/// known.
+/// Returns the samples per pixel after which the job is expected to end. If no end can be
+/// predicted, this is the job's maximum.
 double expected_samples(const Job& job) {
   if (job.fixed_samples) {
     return static_cast<double>(*job.fixed_samples);
@@ -27,8 +27,8 @@ double expected_samples(const Job& job) {
 }
 
 /// Returns the pixel samples of the whole job, done and to come. In an adaptive job a pass takes a
-/// share of the samples of uniform sampling; passes that are not planned yet are taken to have the
-/// share of the last one.
+/// share of the samples of uniform sampling. A pass that is not planned yet is assumed to have the
+/// share of the last planned pass.
 double expected_work(const Job& job) {
   const double beyond = expected_samples(job) - static_cast<double>(job.planned_samples());
   double columns = beyond * (job.passes.empty() ? 1 : job.passes.back().mean_share());
@@ -45,8 +45,8 @@ double time_of_free(const Job& job) {
   const double share = job.passes.empty() ? 1 : job.passes.back().mean_share();
   double columns = std::max(0.0, beyond) * share * job.row_times.of_all();
   for (const Pass& pass : job.passes) {
-    // Rows are leased from the top: the free samples are taken to be spread evenly over the rows
-    // below the first free one.
+    // Rows are leased from the top. So the free samples are assumed to be spread evenly over the
+    // rows from the first free row to the bottom.
     if (const auto free = pass.coverage.free_from(0)) {
       const RowRange below{free->rows.first, height};
       columns += static_cast<double>(pass.coverage.free_samples()) *
@@ -56,7 +56,8 @@ double time_of_free(const Job& job) {
   return columns * job.spec.settings.width;
 }
 
-/// Returns the remaining thread time, in seconds, of the leases that own rows.
+/// Returns the remaining thread time, in seconds, of the leases that own rows: those that are
+/// neither backup tasks nor audits.
 double time_of_leased(const Context& context, const Job& job, Time now) {
   double sum = 0;
   for (const LeaseId id : job.leases) {
@@ -68,14 +69,15 @@ double time_of_leased(const Context& context, const Job& job, Time now) {
     const double takes =
         static_cast<double>(lease.band.samples.samples()) * job.spec.settings.width *
         job.row_times.of(lease.band.rows, job.pass_of(lease.band)->tile_row_shares);
+    // A worker renders its first lease; the others have not begun.
     const double passed = worker.leases.front() == id ? (now - lease.begun_at) * worker.threads : 0;
     sum += std::clamp(takes - passed, 0.0, takes);
   }
   return sum;
 }
 
-/// Returns the threads that work on the job. Those of a worker that has leases of several jobs are
-/// divided by its leases.
+/// Returns the threads that work on the job. A worker's threads are divided evenly among its
+/// leases, which may be of several jobs.
 double threads_on(const Context& context, const Job& job) {
   double sum = 0;
   for (const LeaseId id : job.leases) {

@@ -12,8 +12,10 @@ namespace bandsaw::coordinator {
 /// part of its time that has passed.
 double fraction_done(const Job& job, Time now);
 
-/// Returns the remaining time in seconds; negative: unknown. It is computed from render times, not
-/// from costs: the thread time of all samples to come, over the threads that work on the job.
+/// Returns the remaining time in seconds; negative: unknown. For a job with a time limit, it is the
+/// rest of that time. For other jobs, it is the thread time of all samples to come, divided by the
+/// number of threads that work on the job. The thread time comes from measured render times, not
+/// from costs.
 double remaining_s(const Context& context, const Job& job, Time now);
 
 /// Returns the workers that have leases of the job, sorted by name.

@@ -44,8 +44,9 @@ double remaining_of(const Sequence& sequence, double parts, Time now) {
   return finished > 0.5 && passed > 0 ? left * passed / finished : -1;
 }
 
-/// Returns the first of the open frame jobs if all of them are paused, for example because the disk
-/// is full, but the sequence is not. nullptr otherwise, and if there is none.
+/// Returns the first open frame job if all open frame jobs are paused, for example because the disk
+/// is full, although no user has paused the sequence. Otherwise, and if no frame job is open,
+/// returns nullptr.
 const Job* first_of_paused(const Context& context, const Sequence& sequence) {
   const Job* first = nullptr;
   for (const JobId id : sequence.open_jobs()) {
@@ -58,6 +59,8 @@ const Job* first_of_paused(const Context& context, const Sequence& sequence) {
   return first;
 }
 
+/// Adds to the view each worker that renders a frame, once, with the first of its frames in its
+/// state. Adds the workers' speeds to the view's speed. Sorts the workers by name.
 void add_workers(const Context& context, const Sequence& sequence, JobView& view) {
   std::set<std::string> named;
   for (const JobId id : sequence.open_jobs()) {

@@ -19,7 +19,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Maximum number of lines of one kind.
+/// Maximum number of lines in each list of sentences about workers. One more line counts the rest.
 constexpr std::size_t kMaxLines = 10;
 
 std::string priority_text(std::int32_t priority) {
@@ -293,7 +293,8 @@ std::string Views::audit_reason(const Job& job) const {
                           " returned different pixels for ", name_of(audit.band()),
                           "; another machine must decide: start a ",
                           audit.only_browsers() ? "" : "native ",
-                          "worker on one, or say which is wrong with: bandsaw quarantine NAME");
+                          "worker on such a machine, or exclude the wrong machine with `bandsaw "
+                          "quarantine NAME`");
     }
   }
   return absl::StrCat(job.audits.size(), job.audits.size() == 1 ? " band is" : " bands are",

@@ -24,14 +24,16 @@ class Views {
         barrier_(barrier),
         sessions_(sessions) {}
 
+  /// Returns how a job or sequence is shown to users; std::nullopt: there is none.
   std::optional<JobView> job(JobId id, Time now) const;
   /// Returns the jobs and sequences of the page, sorted by id; frames of sequences are left out.
   std::vector<JobView> jobs(Time now, const JobPage& page = {}) const;
-  /// Returns the frames of a sequence that changed after `after`; std::nullopt: no such sequence.
+  /// Returns the frames of a sequence whose FrameView::changed is greater than `after`, or all
+  /// frames if `after` is 0; std::nullopt: no such sequence.
   std::optional<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
   /// Returns all jobs and sequences with the packages and files that must be kept for them.
   std::vector<KeptJob> kept() const;
-  std::vector<WorkerView> workers(Time now) const;  ///< by name
+  std::vector<WorkerView> workers(Time now) const;  ///< sorted by name
   /// Returns why a job is not done yet, in sentences, the most important first; empty: there is no
   /// such job.
   std::vector<std::string> why(JobId id, Time now) const;
@@ -51,9 +53,9 @@ class Views {
   std::vector<std::string> why_of_state(const Job& job, Time now) const;
   std::string audit_reason(const Job& job) const;
   std::string busy_with_others(const Job& job) const;
-  /// Returns a sentence for each worker that renders the job; not_working_on(): for each that does
-  /// not.
+  /// Returns a sentence for each worker that renders the job.
   std::vector<std::string> working_on(const Job& job) const;
+  /// Returns a sentence for each worker that does not render the job, if a reason is known.
   std::vector<std::string> not_working_on(const Job& job) const;
 
   const Context& context_;

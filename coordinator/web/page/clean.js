@@ -35,7 +35,7 @@ export function cleaning(raw) {
   const frame = el("div.picture", {hidden: true}, el("p.waiting", {}, "The clean picture is being made …"), img);
   const note = el("span.soft.small", {role: "status"});
   const png = el("a.button", {hidden: true}, "Clean PNG");
-  const exr = el("a.button", {hidden: true, title: "The clean image, with the one as rendered and the map of the error as layers"}, "Clean EXR");
+  const exr = el("a.button", {hidden: true, title: "The clean image; its layers are the image as rendered and the map of the error"}, "Clean EXR");
   const buttons = Object.entries(modes).map(([name, title]) =>
     el("button", {"data-mode": name, "aria-pressed": String(name === mode), onclick: () => choose(name)}, title));
   const element = el("div.row", {hidden: true, role: "group", "aria-label": "Picture as rendered or clean"}, ...buttons, png, exr, note);

@@ -52,7 +52,7 @@ const digits = (value, n) => value.toLocaleString("en", {maximumSignificantDigit
 
 export const percent = (fraction) => `${digits(100 * fraction, 2)} %`;
 
-/// Returns a number with a prefix of its unit, which the caller appends: "1.23 M".
+/// Returns a number and the prefix of a unit: "1.23 M". The caller appends the unit.
 export function count(value) {
   const units = [[1e12, " T"], [1e9, " G"], [1e6, " M"], [1e3, " k"]];
   const [by, unit] = units.find(([least]) => value >= least) ?? [1, " "];

@@ -5,8 +5,8 @@ import {get, post} from "./api.js";
 import {el, load, text} from "./dom.js";
 import {attempt} from "./notice.js";
 
-/// Maximum number of frames in the strip. If a job has more frames, the strip has only every
-/// second, third or n-th of them.
+/// Maximum number of frames in the strip. If there are more, the strip has only every second, every
+/// third and so on.
 const most = 600;
 const stripSide = 128;   // pixels of a picture in the strip
 const stageSide = 1024;  // pixels of the large picture
@@ -39,7 +39,7 @@ export function frames(id) {
   let after = "0";       // the largest `changed` of its frames; a text, because it has 64 bits
   let all = [];          // numbers, ascending
   const known = new Map();  // number -> frame
-  const cells = new Map();
+  const cells = new Map();  // number -> part of the strip
   const loaded = new Map();  // number -> image, for play
   let chosen = null;
   let timer = 0;
@@ -54,9 +54,11 @@ export function frames(id) {
   const retry = el("button", {hidden: true, onclick: () => attempt(() => post(`/api/jobs/${id}/retry`))}, "Retry what failed");
   const open = el("a.button", {hidden: true}, "This frame");
 
+  // The numbers of the frames in the strip, and of those among them that are done.
   const shown = () => all.filter((one, i) => i % Math.ceil(all.length / most) === 0);
   const done = () => shown().filter((one) => stateOf(known.get(one)) === "done");
 
+  /// Shows the frame with the number `one` large, if it is done.
   function show(one) {
     const frame = known.get(one);
     if (!frame || stateOf(frame) !== "done") return;
@@ -77,8 +79,9 @@ export function frames(id) {
     show(one);
   }
 
-  // Loads the next frames in advance, and shows the next one if it is loaded. So playback waits for
-  // a frame that is not loaded yet, and does not flicker.
+  /// Plays: shows the next frame that is done, and calls itself again after the time of a frame. If
+  /// the image of the next frame is not loaded yet, the present frame stays, so that nothing
+  /// flickers. The images of 12 frames are loaded ahead, and at most 300 are kept.
   function tick() {
     const numbers = done();
     const at = numbers.findIndex((one) => one > (chosen ?? -Infinity));

@@ -5,8 +5,8 @@ import {el, isOver, keyed, percent, stateOf, text} from "./dom.js";
 import {attempt} from "./notice.js";
 import {preview} from "./picture.js";
 
-/// Returns the width of images for this screen in pixels. It is one of a few fixed widths: the
-/// largest one that fits, so that a phone does not load a large image.
+/// Returns the image width, in pixels, for this screen: the largest step that is not wider than the
+/// screen, at least 320. So a phone does not load a large image.
 function screenWidth() {
   const wanted = Math.min(screen.width, window.innerWidth) * devicePixelRatio;
   return [320, 480, 640, 800, 1024, 1280, 1600, 1920].findLast((width) => width <= wanted) ?? 320;
@@ -14,6 +14,7 @@ function screenWidth() {
 
 let width = screenWidth();
 let samples = "16";
+// The titles of the gallery's subfolders; "": scenes in no subfolder.
 const groups = {"": "Scenes", books: "The books", hard_light: "Hard light", study: "The phone study"};
 const groupOf = (name) => (name.includes("/") ? name.split("/")[0] : "");
 
@@ -71,6 +72,7 @@ function sceneCard(first) {
   };
 }
 
+/// Returns an element in which the user chooses the width and the samples of the next render.
 function controls() {
   const size = el("select", {"aria-label": "Size"},
     el("option", {value: String(screenWidth())}, `This screen: ${screenWidth()} wide`),

@@ -29,6 +29,7 @@ function figuresOf(status) {
   };
 }
 
+/// Returns {element, update(status)}, the buttons and the priority by which users command job `id`.
 function actions(id) {
   const command = (order) => () => attempt(() => post(`/api/jobs/${id}/${order}`));
   const pause = el("button", {onclick: command("pause")}, "Pause");
