@@ -20,7 +20,7 @@ constexpr char kTables[] =
     " fields TEXT NOT NULL, seal TEXT NOT NULL) STRICT;";
 
 /// Returns the SQL statement that sets the file's schema version to kSchema.
-std::string raise_version() { return absl::StrCat("PRAGMA user_version = ", kSchema, ";"); }
+std::string version_statement() { return absl::StrCat("PRAGMA user_version = ", kSchema, ";"); }
 
 /// Returns a checksum of a record. It detects a changed byte in a value, which SQLite itself does
 /// not.
@@ -125,7 +125,7 @@ absl::Status SqliteJournal::check_version() {
   }
   if (version == "0") {
     RETURN_IF_ERROR(execute(kTables));
-    return execute(raise_version().c_str());
+    return execute(version_statement().c_str());
   }
   if (version != absl::StrCat(kSchema)) {
     return absl::FailedPreconditionError(absl::StrCat("the journal ", path_, " has schema ",
@@ -153,7 +153,7 @@ absl::Status SqliteJournal::transact(const char* first, absl::Span<const Record>
   std::uint64_t sequence = after;
   absl::Status status = execute(first);
   if (status.ok() && raise_version_) {
-    status = execute(raise_version().c_str());
+    status = execute(version_statement().c_str());
   }
   for (std::size_t i = 0; i < records.size() && status.ok(); ++i) {
     status = insert(records[i], ++sequence);

@@ -36,21 +36,22 @@ void switch_on(int socket, int level, int option) {
 
 /// Returns a socket that listens at this address, or -1 with errno.
 int listen_at(const addrinfo& address) {
-  const int one = socket(address.ai_family, address.ai_socktype | SOCK_CLOEXEC, 0);
-  if (one < 0) {
+  const int listener = socket(address.ai_family, address.ai_socktype | SOCK_CLOEXEC, 0);
+  if (listener < 0) {
     return -1;
   }
   // SO_REUSEPORT is not set, because two coordinators would then share the port without an error.
-  switch_on(one, SOL_SOCKET, SO_REUSEADDR);
+  switch_on(listener, SOL_SOCKET, SO_REUSEADDR);
   if (address.ai_family == AF_INET6) {
     const int off = 0;  // "::" also accepts IPv4
-    setsockopt(one, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof(off));
+    setsockopt(listener, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof(off));
   }
-  if (bind(one, address.ai_addr, address.ai_addrlen) == 0 && listen(one, SOMAXCONN) == 0) {
-    return one;
+  if (bind(listener, address.ai_addr, address.ai_addrlen) == 0 &&
+      listen(listener, SOMAXCONN) == 0) {
+    return listener;
   }
   const int error = errno;
-  close(one);
+  close(listener);
   errno = error;
   return -1;
 }

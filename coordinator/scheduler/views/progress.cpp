@@ -31,11 +31,11 @@ double expected_samples(const Job& job) {
 /// share of the last planned pass.
 double expected_work(const Job& job) {
   const double beyond = expected_samples(job) - static_cast<double>(job.planned_samples());
-  double columns = beyond * (job.passes.empty() ? 1 : job.passes.back().mean_share());
+  double per_pixel = beyond * (job.passes.empty() ? 1 : job.passes.back().mean_share());
   for (const Pass& pass : job.passes) {
-    columns += static_cast<double>(pass.samples.samples()) * pass.mean_share();
+    per_pixel += static_cast<double>(pass.samples.samples()) * pass.mean_share();
   }
-  return columns * static_cast<double>(job.pixels());
+  return per_pixel * static_cast<double>(job.pixels());
 }
 
 /// Returns the thread time, in seconds, of the samples that are not leased yet.
@@ -43,17 +43,17 @@ double time_of_free(const Job& job) {
   const std::uint32_t height = job.spec.settings.height;
   const double beyond = expected_samples(job) - static_cast<double>(job.planned_samples());
   const double share = job.passes.empty() ? 1 : job.passes.back().mean_share();
-  double columns = std::max(0.0, beyond) * share * job.row_times.of_all();
+  double column_s = std::max(0.0, beyond) * share * job.row_times.of_all();
   for (const Pass& pass : job.passes) {
     // Rows are leased from the top. So the free samples are assumed to be spread evenly over the
     // rows from the first free row to the bottom.
     if (const auto free = pass.coverage.free_from(0)) {
       const RowRange below{free->rows.first, height};
-      columns += static_cast<double>(pass.coverage.free_samples()) *
-                 job.row_times.of(below, pass.tile_row_shares) / below.count();
+      column_s += static_cast<double>(pass.coverage.free_samples()) *
+                  job.row_times.of(below, pass.tile_row_shares) / below.count();
     }
   }
-  return columns * job.spec.settings.width;
+  return column_s * job.spec.settings.width;
 }
 
 /// Returns the remaining thread time, in seconds, of the leases that own rows: those that are
