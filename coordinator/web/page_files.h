@@ -1,7 +1,7 @@
 #pragma once
 
-// The files of the dashboard's page, which the build embeds into the program (embed.cmake): those
-// of coordinator/web/page, and those that the build makes.
+// The files of the dashboard's page, which the build embeds into the program (embed.cmake). These
+// are the files of coordinator/web/page and files that the build makes.
 
 #include "absl/strings/string_view.h"
 #include "absl/types/span.h"

@@ -1,5 +1,5 @@
-// Makes pictures one at a time, and keeps the last ones for requests that come within a second,
-// within a limit of bytes.
+// Makes pictures one at a time. The last pictures are kept, within a limit of bytes, for requests
+// that come within a second.
 
 #include "coordinator/web/pictures.h"
 
@@ -44,7 +44,7 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
   MutexLock lock(making_);
   const Key key{id, most_side, format};
   const auto found = made_.find(key);
-  const bool done = job.state == JobState::kDone;  // then an earlier picture does not suffice
+  const bool done = job.state == JobState::kDone;  // true: only the finished image is returned
   if (found != made_.end()) {
     Made& old = found->second;
     old.used = ++calls_;
@@ -57,7 +57,8 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
   const absl::StatusOr<Bytes> file =
       picture.ok() ? encoded(*std::move(picture), format) : picture.status();
   if (!file.ok()) {
-    // Between the last band and the result on disk there is no newer image than the last one.
+    // After the last band has arrived, no picture can be made until the result is on disk. The
+    // last picture is returned then.
     return found != made_.end() && !done ? absl::StatusOr<Bytes>(found->second.file) : file;
   }
   keep(key, {.file = *file,

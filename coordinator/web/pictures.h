@@ -29,8 +29,8 @@ class Pictures {
 
   /// Returns a file of the job's present image, which is at most a second old. If the job is done,
   /// it is the finished image. The image has at most about `most_side` pixels per side. NOT_FOUND:
-  /// no such job, or none of its bands is there. Here and below, RESOURCE_EXHAUSTED as picture_of
-  /// (coordinator/rpc/picture.h).
+  /// there is no such job, or none of its bands is there. All three functions return
+  /// RESOURCE_EXHAUSTED in the cases of picture_of (coordinator/rpc/picture.h).
   absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side, ImageFormat format)
       EXCLUDES(making_);
   /// Returns the finished image. Errors as Engine::result.

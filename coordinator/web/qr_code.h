@@ -1,7 +1,7 @@
 #pragma once
 
-// QR codes (ISO/IEC 18004), made by libqrencode: `bandsaw link` and the dashboard show the link for
-// browsers as one.
+// QR codes (ISO/IEC 18004), made by libqrencode. `bandsaw link` and the dashboard show the link for
+// browsers as a QR code.
 
 #include <string>
 #include <vector>

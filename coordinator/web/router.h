@@ -13,10 +13,11 @@ namespace bandsaw::coordinator {
 /// One thread adds all routes first. After that, answer() is thread-safe.
 class Router {
  public:
-  /// Adds a route for GET and HEAD of paths equal to `pattern`. It may have one "*", which matches
-  /// one or more characters other than "/"; they become `HttpRequest::captured`.
+  /// Adds a route for GET and HEAD of paths equal to `pattern`. The pattern may have one "*", which
+  /// matches one or more characters other than "/". The handler finds the matched characters in
+  /// `HttpRequest::captured`.
   void get(std::string pattern, std::function<HttpReply(const HttpRequest&)> answer);
-  /// Adds a handler of POST requests, which may read the body.
+  /// Adds a route for POST, with a pattern as for get(). The handler may read the body.
   void post(std::string pattern, HttpHandler answer);
 
   /// Returns the response of the first matching route, or a 404.
@@ -31,6 +32,7 @@ class Router {
     HttpHandler answer;
   };
   void add(bool post, const std::string& pattern, HttpHandler answer);
+  /// Returns true if the route matches the method and the path. May change `request.captured`.
   static bool fits(const Route& route, HttpRequest& request);
 
   std::vector<Route> routes_;

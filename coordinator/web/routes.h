@@ -1,7 +1,7 @@
 #pragma once
 
 // Each function adds the handlers of one part of the dashboard to the router; Dashboard calls all
-// of them. Access is checked before a handler runs. The messages of each path: proto/web.proto.
+// of them. Access is checked before a handler runs. proto/web.proto has the messages of each path.
 
 #include "coordinator/engine/engine.h"
 #include "coordinator/rpc/browser_access.h"
@@ -39,7 +39,7 @@ void add_join(Router& router, Engine& engine, BrowserAccess& access, BrowserLeas
               BrowserSockets& sockets, const BrowserProgram& program);
 void add_gallery(Router& router, Engine& engine, Scenes& scenes, const Gallery& gallery);
 
-/// Returns the job id at the place of "*" in the path. NOT_FOUND: not a job id.
+/// Returns the job id at the place of "*" in the path. NOT_FOUND: the text there is not a job id.
 absl::StatusOr<JobId> job_of(const HttpRequest& request);
 
 }  // namespace bandsaw::coordinator

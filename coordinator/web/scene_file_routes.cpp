@@ -32,12 +32,14 @@ constexpr int kMaxFiles = 100'000;
 constexpr std::uint64_t kMaxFileBytes = 2ull << 30;
 constexpr std::uint64_t kMaxSceneBytes = 4ull << 30;  // all files together
 
-/// INVALID_ARGUMENT: `what` has more than `most` bytes.
+/// Returns an INVALID_ARGUMENT error that says that `what` may have at most `most` bytes, a whole
+/// number of MiB.
 absl::Status too_large(const std::string& what, std::uint64_t most) {
   return absl::InvalidArgumentError(absl::StrCat(what, " has at most ", most >> 20,
-                                                 " MiB here; bandsaw submit takes larger scenes"));
+                                                 " MiB here; `bandsaw submit` takes larger ones"));
 }
 
+/// Returns those of the digests in the body for which the store has no blob.
 absl::StatusOr<web::FileDigests> missing_files(Engine& engine, const HttpBody& body) {
   web::FileDigests list;
   RETURN_IF_ERROR(read_json(body, list, kMaxListBytes));
@@ -59,8 +61,8 @@ class BodyReader {
  public:
   explicit BodyReader(const HttpBody& body) : body_(body) {}
 
-  /// Returns the line up to the next newline, without it; empty at the end of the body.
-  /// INVALID_ARGUMENT: longer than `most` bytes.
+  /// Returns the bytes up to the next newline, without the newline; empty at the end of the body.
+  /// INVALID_ARGUMENT: the line is longer than `most` bytes.
   absl::StatusOr<std::string> line(std::size_t most) {
     std::string text;
     while (true) {
@@ -91,6 +93,7 @@ class BodyReader {
   }
 
  private:
+  /// Gets the next piece of the body if `rest_` is empty.
   absl::Status fill() {
     if (rest_.empty() && !ended_) {
       ASSIGN_OR_RETURN(rest_, body_());
@@ -104,8 +107,8 @@ class BodyReader {
   bool ended_ = false;
 };
 
-/// Stores one file of the body. `head`: its line "SHA256 SIZE". The bytes of a file that is there
-/// already are read and dropped.
+/// Stores one file of the body. `head`: the line "SHA256 SIZE" before the file's bytes. The bytes
+/// of a file that is in the store already are read and dropped.
 absl::Status take_file(Engine& engine, const std::string& head, BodyReader& reader) {
   const std::vector<std::string> words = absl::StrSplit(head, ' ');
   std::uint64_t size = 0;
@@ -116,7 +119,7 @@ absl::Status take_file(Engine& engine, const std::string& head, BodyReader& read
   if (size > kMaxFileBytes) {
     return too_large("a file of a scene", kMaxFileBytes);
   }
-  std::unique_ptr<Engine::BlobWriter> writer;  // nullptr: the file is there already
+  std::unique_ptr<Engine::BlobWriter> writer;  // nullptr: the file is in the store already
   if (!engine.has_blob(digest)) {
     ASSIGN_OR_RETURN(writer, engine.write_blob(digest, size));
   }
@@ -131,6 +134,8 @@ absl::Status take_file(Engine& engine, const std::string& head, BodyReader& read
   return writer != nullptr ? writer->commit() : absl::OkStatus();
 }
 
+/// Stores the files of a body. Each file is a line "SHA256 SIZE", followed by SIZE bytes. Returns
+/// the digests of the files.
 absl::StatusOr<web::FileDigests> take_files(Engine& engine, const HttpBody& body) {
   constexpr std::size_t kMaxHead = 64 + 1 + 20;  // a digest, a space, a number of 64 bits
   web::FileDigests taken;
@@ -204,6 +209,8 @@ absl::Status lay_out(Engine& engine, const web::SceneFiles& files, const fs::pat
   return absl::OkStatus();
 }
 
+/// Submits the scene that the body, a web::SceneFiles in JSON, describes. All its files must be in
+/// the store.
 absl::StatusOr<web::Submitted> submit_files(Engine& engine, Scenes& scenes,
                                             const HttpRequest& request, const HttpBody& body) {
   ASSIGN_OR_RETURN(const SceneRequest wanted, scene_request(request));

@@ -8,10 +8,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Reads `width` (pixels), `title` (the job's name, cleaned and cut as by clean_text), `scene` (the
-/// scene file in a zip), and one of `samples` (a pixel), `error` (0.02: two percent), `time`
-/// (seconds); none of these: 64 samples.
-/// INVALID_ARGUMENT: a parameter is out of range; the message names it.
+/// Reads `width` (pixels), `title` (the job's name, cleaned and cut by clean_text), and `scene`
+/// (the name of the scene file in a zip). Reads one of `error` (0.02: two percent), `time`
+/// (seconds) and `samples` (a pixel), which ends the job; without any of them, the job has 64
+/// samples. INVALID_ARGUMENT: a parameter is out of range; the message names it.
 absl::StatusOr<SceneRequest> scene_request(const HttpRequest& request);
 
 }  // namespace bandsaw::coordinator

@@ -60,7 +60,7 @@ class Upload {
       if (bytes.size() > left) {
         return absl::InvalidArgumentError(
             absl::StrCat("a scene has at most ", kMaxPackageBytes >> 20,
-                         " MiB here; bandsaw submit takes larger ones"));
+                         " MiB here; `bandsaw submit` takes larger scenes"));
       }
       left -= bytes.size();
       if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) {
@@ -91,7 +91,7 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
   }
   return absl::InvalidArgumentError(
       "a .zip of a scene with its files can be dropped here, or a .glb, .textproto, .pbrt or .xml "
-      "that needs no other file; for all else there is: bandsaw submit");
+      "that needs no other file; `bandsaw submit` takes all other scenes");
 }
 
 absl::StatusOr<web::Submitted> take_scene(Scenes& scenes, const HttpRequest& request,

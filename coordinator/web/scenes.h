@@ -1,6 +1,6 @@
 #pragma once
 
-// Makes a job of a scene file that the dashboard has received, or of one of the gallery. A confined
+// Makes a job of a scene file that the dashboard has received or the gallery has. A confined
 // process, the importer, reads the file. The function that runs it is passed in (ImportScene),
 // because only the command `serve` knows where the importer is.
 
@@ -32,7 +32,7 @@ using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(
 /// Parameters of a job that renders a scene.
 struct SceneRequest {
   std::string request_id;   ///< as in farm.SubmitRequest; empty: a random one
-  std::string title = {};   ///< the job's name; empty: the scene's
+  std::string title = {};   ///< the job's name; empty: the scene's name
   std::uint32_t width = 0;  ///< pixels; 0: the scene's own; the height keeps the aspect ratio
   StopRule stop = StopAtSamples{64};
   std::string inside = {};  ///< name of the scene in a zip file; empty: the only one
@@ -47,8 +47,9 @@ class Scenes {
   Scenes(Engine& engine, ImportScene import_scene)
       : engine_(engine), import_scene_(std::move(import_scene)) {}
 
-  /// Imports the scene and submits its job; returns the job and the importer's warnings. Errors of
-  /// ImportScene and Engine::submit; UNAVAILABLE: kAtOnce other scenes are being imported.
+  /// Imports the scene and submits its job. Returns the job and the importer's warnings. Returns
+  /// the errors of ImportScene and Engine::submit. UNAVAILABLE: kAtOnce other scenes are being
+  /// imported.
   absl::StatusOr<web::Submitted> submit(const std::string& path, const SceneRequest& wanted);
   /// Stops current imports and refuses later ones.
   void stop() { stop_ = true; }

@@ -1,8 +1,8 @@
 #pragma once
 
-// A connection as a stream for Boost.Asio and Boost.Beast: their operations wait for the socket on
-// an io_context instead of a thread. Included by browser_sockets.cpp only, because the headers
-// compile slowly.
+// A connection as a stream for Boost.Asio and Boost.Beast. Their operations wait for the socket on
+// an io_context and do not block a thread. Only browser_sockets.cpp includes this file, because the
+// headers of Boost compile slowly.
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -116,7 +116,8 @@ class SocketStream {
   auto start(Buffer buffer, Token& token, Try attempt) {
     return boost::asio::async_compose<Token, void(ErrorCode, std::size_t)>(
         [this, buffer, attempt, begun = false](auto& self, ErrorCode error = {}) mutable {
-          if (!std::exchange(begun, true)) {  // an operation must not complete where it begins
+          if (!std::exchange(begun, true)) {
+            // An operation must not complete within the call that begins it.
             boost::asio::post(get_executor(),
                               boost::beast::bind_front_handler(std::move(self), ErrorCode()));
             return;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The worker's program that machines download from the coordinator: one file per architecture.
+// The worker's program, which machines download from the coordinator: one file per architecture.
 
 #include <array>
 #include <optional>
@@ -49,7 +49,7 @@ constexpr std::optional<Machine> machine_named(absl::string_view name) {
 /// the file changes. It contains no secret.
 struct WorkerProgram {
   Machine machine = kThisMachine;
-  std::string version;  ///< from the mark in its file
+  std::string version;  ///< version in the mark that the program's file contains
   std::string bytes;
   wire::Digest digest;  ///< digest of `bytes`
 };

@@ -11,6 +11,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns a NOT_FOUND error that names the architectures of `programs`.
 absl::Status no_program(const WorkerPrograms& programs) {
   const std::string there = absl::StrJoin(programs, ", ", [](std::string* out, const auto& one) {
     absl::StrAppend(out, machine_name(one.machine));
@@ -18,8 +19,8 @@ absl::Status no_program(const WorkerPrograms& programs) {
   return absl::NotFoundError(
       absl::StrCat("the coordinator has no bandsaw-worker for this architecture; it has: ",
                    there.empty() ? "none" : there,
-                   ". Install the program of the other one at the coordinator, as deploy/README.md "
-                   "says, and start the coordinator again"));
+                   ". Install the program for this architecture at the coordinator, as "
+                   "deploy/README.md says, and start the coordinator again"));
 }
 
 /// Returns the program for `machine` (std::nullopt: unknown architecture), or a 404.

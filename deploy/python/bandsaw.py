@@ -39,7 +39,7 @@ except ImportError:
 __all__ = ["BandsawError", "Farm", "Image", "Job", "NoFarm", "Progress", "WrongString", "compare", "image_from_pfm"]
 
 DEFAULT_WEB_PORT = 8787  # of the coordinator's dashboard, as in `bandsaw serve`
-OVER = ("done", "failed", "cancelled")
+OVER = ("done", "failed", "cancelled")  # the final states of a job
 
 
 class BandsawError(Exception):
@@ -103,7 +103,8 @@ def _is_loopback(host):
 
 
 class _PinnedConnection(http.client.HTTPSConnection):
-    """HTTPS to the holder of one certificate: its digest is compared before anything is sent."""
+    """HTTPS to the holder of one certificate. The certificate's SHA-256 is compared with `digest`
+    before anything is sent."""
 
     def __init__(self, host, port, timeout, digest):
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
@@ -146,10 +147,12 @@ class Farm:
     # ---- requests ----
 
     def _connect(self, address, timeout):
-        """Returns an open connection, over which nothing was sent. `timeout`: seconds. The connection is plain HTTP if the farm has no
-        certificate, or if `address` is on loopback and is the dashboard's address in the string. Any other loopback address may be the
-        end of a tunnel to a dashboard with or without TLS: there TLS is tried first, then plain HTTP. All others use TLS. Raises OSError
-        if the connection fails, NoFarm if the certificate is that of another farm."""
+        """Returns an open connection, over which nothing was sent. `timeout`: seconds. The
+        connection is plain HTTP if the farm has no certificate, or if `address` is on loopback and
+        is the dashboard's address in the string. Any other loopback address may be the end of a
+        tunnel to a dashboard with or without TLS. For it, TLS is tried first, then plain HTTP. For
+        an address that is not on loopback, TLS is used. Raises OSError if the connection fails,
+        NoFarm if the certificate is that of another farm."""
         host, port = address
         loopback = _is_loopback(host)
         if self._join.certificate is not None and not (loopback and address == self._join.web):
@@ -164,6 +167,8 @@ class Farm:
         plain.connect()
         return plain
 
+    # Sends one request to one address. Returns the HTTP status and the body of the answer.
+    # Parameters as request().
     def _send(self, address, method, path, body, headers, timeout):
         connection = self._connect(address, self._timeout if timeout is None else timeout)
         try:
@@ -194,7 +199,7 @@ class Farm:
                 troubles.append(f"{address[0]}:{address[1]}: {_reason(error)}")
                 continue
             self._addresses.remove(address)
-            self._addresses.insert(0, address)  # the next request is sent first to the one that answered
+            self._addresses.insert(0, address)  # the next request goes first to this address
             if refusal is not None:
                 raise refusal
             return answer
@@ -213,8 +218,8 @@ class Farm:
     # ---- the farm ----
 
     def check(self):
-        """Returns the version of the farm's coordinator. Raises WrongString if the coordinator
-        refuses the join string, NoFarm if no coordinator answers, and Refused for another error."""
+        """Returns the farm's version, if the farm answers and accepts its string. Raises
+        WrongString, NoFarm or Refused."""
         return self.request_json("GET", "/api/farm").get("version", "")
 
     def workers(self):
@@ -329,18 +334,20 @@ def _refusal(status, answer):
 # ---- files of a scene ----
 
 _REFERENCES = {
-    # Patterns of texts that may name a file, by the suffix of the file that contains them.
+    # The key is the suffix of a file. The pattern finds the texts in that file that may name
+    # another file.
     ".obj": rb"^\s*mtllib\s+(.+?)\s*$",
     ".mtl": rb"^\s*(?:map_\w+|bump|norm|disp|refl|decal)\s+(.+?)\s*$",  # options, then the name
     ".dae": rb"<init_from>\s*([^<]+?)\s*</init_from>",
     ".textproto": rb'"([^"\n]+)"', ".json": rb'"([^"\n]+)"', ".gltf": rb'"uri"\s*:\s*"([^"\n]+)"',
     ".pbrt": rb'"([^"\n]+)"', ".xml": rb'"([^"\n]+)"',
 }
-# In these files, text or binary, a picture's name begins after a control character or a quote. The pattern begins only there, because
-# otherwise the search would begin again at every byte.
+# In these files, text or binary, a picture's name begins after a control character or a quote. The
+# pattern begins only there, because a pattern that may begin at every byte would make the search
+# slow.
 _REFERENCES[".fbx"] = _REFERENCES[".3ds"] = (
     rb'(?i)(?<![^\x00-\x1f"])([^\x00-\x1f"]+?\.(?:png|jpe?g|tga|bmp|tiff?|exr|hdr|webp|dds|gif))')
-_ALSO_QUOTED = {".textproto": rb"'([^'\n]+)'"}  # a second pattern
+_ALSO_QUOTED = {".textproto": rb"'([^'\n]+)'"}  # a second pattern, for names in single quotes
 _SCENES = (".textproto", ".json", ".pbrt", ".xml")  # scene files; files with other suffixes belong to models
 _NAMES_FROM_THE_TOP = (".pbrt", ".xml")  # an included file names files relative to the folder of the scene; its own folder is tried too
 
@@ -370,10 +377,11 @@ def _files_of(scene):
 
 
 def _below(folder, beside, found, or_last_part):
-    """Finds the file that the text `found` names in a file of the folder `beside`. Returns a list
-    with its name relative to `folder`; the list is empty if there is no such file below `folder`.
-    `or_last_part`: if there is none, a file in `beside` with the last part of that name is taken,
-    because models name pictures by their paths on another machine."""
+    """Returns a list with the name, relative to `folder`, of the file that the bytes `found` name;
+    an empty list if there is no such file below `folder`. `beside`: the folder of the file that
+    contains `found`, relative to `folder`. `or_last_part`: if there is no file of that name, a file
+    in `beside` with the last part of the name is taken, because models may name pictures by their
+    paths on another machine."""
     try:
         text = found.decode("utf-8")
     except UnicodeDecodeError:
@@ -416,9 +424,11 @@ def _digest(content):
 
 
 class Progress:
-    """The state of a job: `state` ("running", "paused", "finishing", "done", "failed", "cancelled"), `reason`,
-    `fraction` (0 to 1), `elapsed`, `remaining` (seconds; None: not known), `samples` (a pixel), `error` (a
-    fraction; None: not known), `workers` (names), `width`, `height`, `warnings` of the import."""
+    """The state of a job: `state` ("running", "paused", "finishing", "done", "failed",
+    "cancelled"), `reason`, `fraction` (0 to 1), `elapsed`, `remaining` (seconds; None: not known),
+    `samples` (a pixel), `samples_done` (of all pixels together), `error` (a fraction; None: not
+    known), `workers` (names), `width`, `height`, `warnings` of the import. Job.progress() also uses
+    the state "lost"."""
 
     def __init__(self, status, warnings):
         self.state = status.get("state", "").replace("JOB_STATE_", "").lower()
@@ -452,7 +462,8 @@ class Progress:
         return " · ".join(parts) + (f" ({self.reason})" if self.reason else "")
 
 
-# None stands for the coordinator's "unknown", a negative number.
+# Returns a number of the coordinator. The coordinator's negative numbers mean "unknown" and become
+# None.
 def _known(number):
     number = float(number)
     return None if number < 0 or not math.isfinite(number) else number
@@ -468,7 +479,8 @@ def _duration(seconds):
 
 
 class Job:
-    """A job of a farm. `number`: its number there; `warnings`: what the import left out."""
+    """A job of a farm. `number`: its number there; `warnings`: sentences that name the things that
+    the import left out."""
 
     def __init__(self, farm, number, warnings=()):
         self.farm, self.number, self.warnings = farm, number, list(warnings)
@@ -526,7 +538,7 @@ class Job:
             raise
 
     def image(self):
-        """Returns the finished Image with its exact pixels: linear light, 32-bit floats."""
+        """Returns the finished image with its exact values: linear light, 32-bit floats."""
         return image_from_pfm(self.farm.request("GET", self._path("/image.pfm"), timeout=120))
 
     def clean(self, on_state=None, interval=0.3, patience=60.0, stop=None):
@@ -659,7 +671,7 @@ class Image:
     _repr_png_ = png
 
     def pfm(self):
-        """Returns the bytes of a PFM file, which has the exact pixels."""
+        """Returns the bytes of a PFM file, which has the exact values."""
         head = f"PF\n{self.width} {self.height}\n-1.0\n".encode()
         if numpy is not None:
             return head + self.array()[::-1].astype("<f4").tobytes()
@@ -708,8 +720,9 @@ def image_from_pfm(data):
 
 
 def compare(a, b):
-    """Returns how two images of one size differ: a dictionary of `mean_a`, `mean_b` (of all channels), `rmse`, `relative_rmse` (over the
-    mean of b), `largest` difference and `equal` (True if all values are equal)."""
+    """Returns how two images of the same size differ, as a dictionary: `mean_a` and `mean_b` (means
+    over all channels), `rmse`, `relative_rmse` (the rmse divided by `mean_b`), `largest` (the
+    largest difference of two values) and `equal` (all values are equal)."""
     if (a.width, a.height) != (b.width, b.height):
         raise BandsawError(f"the images have different sizes: {a.width} x {a.height} and {b.width} x {b.height}")
     if numpy is not None:

@@ -39,8 +39,8 @@ absl::StatusOr<std::optional<BrowserLink>> load_browser_link(const std::string& 
       words[2] != "secret" || words[3].size() != kSecretLength || words[4] != "ends" ||
       !absl::SimpleAtod(words[5], &link.ends_unix_s)) {
     return absl::DataLossError(absl::StrCat(file_of(folder),
-                                            ": the link for browsers is damaged: remove the file, "
-                                            "and make a new link with: bandsaw link"));
+                                            ": the link for browsers is damaged; remove the file, "
+                                            "and make a new link with `bandsaw link`"));
   }
   link.secret = words[3];
   return link;

@@ -1,8 +1,8 @@
 #pragma once
 
 // The secret of the link by which browsers join a farm as workers (role `browser`), and the time
-// when it ends. It is in a file of its own in the coordinator's data folder (mode 0600), because it
-// is made and revoked while the farm's identity (identity.h) stays.
+// when the link ends. Both are in a file of their own in the coordinator's data folder (mode 0600),
+// because the link is made and revoked while the farm's identity (identity.h) stays.
 
 #include <optional>
 #include <string>

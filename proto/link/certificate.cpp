@@ -47,8 +47,8 @@ Certificate parse_certificate(const std::string& pem) {
 
 absl::Status unreadable() { return absl::InvalidArgumentError("the certificate cannot be read"); }
 
-/// Hashes a DER buffer written by OpenSSL and frees it. INTERNAL if size <= 0, which means that
-/// OpenSSL failed.
+/// Returns the SHA-256 of a DER buffer that OpenSSL has written, and frees the buffer. INTERNAL:
+/// `size` <= 0, which means that OpenSSL has failed.
 absl::StatusOr<wire::Digest> digest_of_der(unsigned char* der, int size) {
   if (size <= 0) {
     return failed("write a certificate as DER");
@@ -88,6 +88,8 @@ bool set_serial(X509* certificate) {
   return ASN1_INTEGER_set_uint64(X509_get_serialNumber(certificate), serial) == 1;
 }
 
+/// Makes `certificate` a self-signed certificate of `name`. It is valid from one day ago until
+/// twenty years from now. Returns false if OpenSSL fails.
 bool fill_and_sign(X509* certificate, EVP_PKEY* key, const std::string& name) {
   X509_NAME* subject = X509_get_subject_name(certificate);
   const auto* text = reinterpret_cast<const unsigned char*>(name.c_str());

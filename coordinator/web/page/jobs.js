@@ -4,6 +4,7 @@ import {chooser} from "./drop.js";
 import {preview} from "./picture.js";
 import {count, duration, el, goal, isOver, keyed, percent, rate, stateOf, text} from "./dom.js";
 
+/// Returns the line of text that describes a job in the list, from a JobStatus of proto/farm.proto.
 function summary(status) {
   const words = [`${status.settings.width} × ${status.settings.height}`];
   const {frames} = status;
@@ -24,6 +25,7 @@ function summary(status) {
   return words.join(" · ");
 }
 
+/// Returns the list's row of a job, {element, update(job)}. `first`: the job when the row is made.
 function jobRow(first) {
   const id = first.status.job;
   const img = el("img.thumb", {alt: "", loading: "lazy"});
@@ -59,7 +61,8 @@ export function jobsView() {
     update(overview) {
       keyed(list, parts, overview.job, (job) => job.status.job, jobRow);
       empty.hidden = overview.job.length > 0;
-      text(more, overview.jobs_left_out > 0 ? `${count(overview.jobs_left_out)}older jobs: bandsaw jobs lists them` : "");
+      text(more, overview.jobs_left_out > 0
+        ? `${count(overview.jobs_left_out)}older jobs are not shown; \`bandsaw jobs\` lists them` : "");
     },
   };
 }

@@ -6,7 +6,8 @@ import {Pauses} from "./join_pauses.js";
 
 const $ = (id) => document.getElementById(id);
 const allCores = Math.max(1, navigator.hardwareConcurrency || 1);
-// The secret follows the #, which browsers do not send. It stays in the address, so that a reload works.
+// The secret follows the # in the address. Browsers do not send this part of an address to a
+// server. The secret stays in the address, so that a reload works.
 const secret = location.hash.slice(1);
 const words = (n) => n === 1 ? "1 core" : `${n} cores`;
 
@@ -14,6 +15,7 @@ function show(section) {
   for (const id of ["problem", "intro", "work"]) $(id).hidden = id !== section;
 }
 
+/// Shows a problem in place of the page. The sentence gets a capital letter and a full stop.
 function problem(heading, sentence) {
   text($("problem").querySelector("h1"), heading);
   text($("problem").querySelector("p"), sentence.replace(/^./, (first) => first.toUpperCase()).replace(/\.?$/, "."));
@@ -26,15 +28,16 @@ async function about() {
   try {
     response = await fetch("/join/about", {headers: {Authorization: `Bearer ${secret}`}, cache: "no-store"});
   } catch {
-    throw new Error("The coordinator cannot be reached: is this device in its network, and is it running?");
+    throw new Error("The coordinator cannot be reached. " +
+      "Is the coordinator running, and is this device in its network?");
   }
   const answer = await response.json().catch(() => ({}));
   if (!response.ok) throw new Error(answer.error || `The coordinator answered ${response.status}.`);
   return answer;
 }
 
-/// Keeps the screen awake by a wake lock. update() MUST be called with the user's wish, and again
-/// when the page is hidden or shown, because the browser ends the lock of a page that is hidden.
+/// Keeps the screen awake from update(true) to update(false). The browser ends its wake lock when
+/// the page is hidden, so update() is called again whenever the page is hidden or shown.
 class Awake {
   #wanted = false;
   #lock = null;
@@ -43,7 +46,7 @@ class Awake {
     if (now === this.#wanted) return;
     this.#wanted = now;
     if (now) this.#lock = await navigator.wakeLock.request("screen").catch(() => null);
-    if (!this.#wanted) {  // the wish may have changed while the lock was requested
+    if (!this.#wanted) {  // #wanted may have changed while the lock was requested
       await this.#lock?.release().catch(() => {});
       this.#lock = null;
     }
@@ -119,7 +122,8 @@ async function enter() {
     return;
   }
   if (typeof WebAssembly === "undefined" || typeof WebSocket === "undefined") {
-    problem("This browser cannot render", "It has no WebAssembly or no WebSocket: use a newer one.");
+    problem("This browser cannot render",
+      "This browser has no WebAssembly or no WebSocket. Use a newer browser.");
     return;
   }
   try {

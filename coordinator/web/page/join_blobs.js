@@ -2,10 +2,11 @@
 
 import {Backoff, pause} from "/join_wait.js";
 
-// Blobs of so many bytes are kept, because several renderers load the same scene at about the same
-// time.
+// At most so many bytes of blobs are kept, because several renderers load the same scene at about
+// the same time.
 const KEPT_BYTES = 64 * 2 ** 20;
-// After so many answers with wrong bytes, the coordinator's own blob is assumed to be wrong.
+// After so many answers with wrong bytes, fetching the blob fails: the coordinator's copy must be
+// wrong.
 const WRONG_TIMES = 3;
 
 /// The link has ended or was revoked.
@@ -15,7 +16,8 @@ export class Final extends Error {}
 
 const hex = (bytes) => Array.from(bytes, (one) => one.toString(16).padStart(2, "0")).join("");
 
-/// Returns the error of an answer's body, which is {"error": sentence} or another text.
+/// Returns the error in the body of an HTTP answer. If the body is not {"error": sentence} in JSON,
+/// the whole body is the error.
 export function sentence(text) {
   try {
     return JSON.parse(text).error;
@@ -36,10 +38,9 @@ export class Blobs {
     return {Authorization: `Bearer ${this.secret}`};
   }
 
-  /// Returns a promise of a blob's bytes, an ArrayBuffer. If the connection is lost, requests the
-  /// blob again, as long as `wanted()` is true. `took` is called with the number of bytes of each
-  /// piece that arrives. Fails with Final, with LinkEnded, or with a RangeError if there is no
-  /// memory for the blob.
+  /// Returns a promise of a blob's bytes. A failed request is repeated, as long as `wanted()` is
+  /// true. `took`: called with the number of bytes of each piece that arrives. The promise fails
+  /// with Final, with LinkEnded, or with a RangeError if there is no memory for the blob.
   get(digest, wanted, took) {
     const known = this.kept.get(digest);
     if (known) {
@@ -63,12 +64,14 @@ export class Blobs {
   makeRoom() {
     for (const [digest, {size}] of this.kept) {
       if (this.bytes <= KEPT_BYTES) return;
-      if (size === 0) continue;  // not there yet
+      if (size === 0) continue;  // still being fetched
       this.bytes -= size;
       this.kept.delete(digest);
     }
   }
 
+  /// Makes requests until the blob has arrived with the right digest. Parameters and errors as
+  /// get().
   async fetch(digest, wanted, took) {
     const backoff = new Backoff();
     for (let wrong = 0;;) {

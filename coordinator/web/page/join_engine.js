@@ -1,9 +1,12 @@
 // Renders for a farm in this tab: the functions that the page /join calls. The work is done by the web worker join_session.js.
 
 const GIGABYTE = 2 ** 30;
-const MOST_OF_AN_INSTANCE = 3.5 * GIGABYTE;  // a 32-bit program has at most 4
+// Limit of the memory that scenes may take in one instance of bandsaw.wasm. It is below the limit
+// of a 32-bit WebAssembly instance, which has at most 4 GB of memory for everything.
+const MOST_OF_AN_INSTANCE = 3.5 * GIGABYTE;
 
-/// Returns the bytes that all scenes may take: half of the device's memory. If the browser does not tell it, 4 GB are assumed.
+/// Returns the number of bytes that the scenes of all cores together may take: half of the device's
+/// memory. If the browser does not report the device's memory, 4 GB are assumed.
 const memory = () => (navigator.deviceMemory ?? 4) * GIGABYTE / 2;
 
 /// Returns a few words on the browser, as in "Firefox 140 on Linux".
@@ -18,9 +21,11 @@ export function describe(agent = navigator.userAgent) {
   return on ? `${browser} on ${on}` : browser;
 }
 
-/// Starts to render. `secret`: of the link. `base`: the coordinator's address, as in "https://desk:8787". `cores`: number of
-/// cores to render with. `name`: shown to the farm's users. `onState`: called with changes of the state; the fields are those
-/// of `state` in join_session.js, and `rows` {first, last, rgb} when rows of the image are rendered.
+/// Starts to render. `secret`: the secret in the link by which this browser joins. `base`: the
+/// coordinator's address, as in "https://desk:8787". `cores`: number of cores to render with.
+/// `name`: shown to the farm's users; empty: describe(). `onState`: called with each change of the
+/// state. The state has the fields of `state` in join_session.js. When rows of the image are
+/// rendered, it also has `rows` {first, last, rgb}.
 export function startEngine({secret, base = location.origin, cores = 1, name = "", onState}) {
   const worker = new Worker("/join_session.js", {type: "module"});
   let over = false;

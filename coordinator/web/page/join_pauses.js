@@ -1,6 +1,6 @@
 // The reasons why this device pauses: the user, a hidden page, a low battery.
 
-const lowBattery = 0.2;  // as a fraction of a full battery
+const lowBattery = 0.2;  // share of a full battery
 
 export class Pauses {
   byUser = false;
@@ -9,11 +9,12 @@ export class Pauses {
   #changed;
   #was = "";
 
-  /// `changed`: called with the reason whenever it changes after the constructor; empty: rendering may go on.
+  /// `changed`: called with the new reason whenever the reason changes after the constructor. An
+  /// empty reason means that rendering may go on.
   constructor(changed) {
     this.#changed = changed;
     document.addEventListener("visibilitychange", () => this.#update());
-    // Some browsers do not have getBattery. The others have it only over HTTPS or on this machine.
+    // Not every browser has getBattery(), and a page has it only over HTTPS or on this machine.
     navigator.getBattery?.().then((battery) => {
       const check = () => {
         this.#batteryIsLow = !battery.charging && battery.level < lowBattery;
@@ -29,13 +30,13 @@ export class Pauses {
     this.byUser = paused;
     this.#update();
   }
-  /// `may`: rendering goes on while the page is hidden.
+  /// `may`: whether rendering goes on while the page is hidden.
   setMayHide(may) {
     this.#mayHide = may;
     this.#update();
   }
 
-  /// Returns a sentence; empty: rendering may go on.
+  /// Returns the reason of the pause, a sentence, or "" if rendering may go on.
   reason() {
     if (this.byUser) return "Paused";
     if (this.#batteryIsLow) return "Paused: the battery is below 20 % and not charging";

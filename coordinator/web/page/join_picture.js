@@ -1,15 +1,15 @@
 // The picture on the page /join: the rows that this device has rendered.
 
-const maxSide = 2048;  // pixels of the canvas; of a larger picture only every n-th pixel is shown
+const maxSide = 2048;  // of the canvas; of a larger picture only every n-th pixel is shown
 
 export class Picture {
   #canvas;
   #context;
   #note;
   #of = "";  // job and size of the picture that is shown
-  #step = 1;
+  #step = 1;  // every #step-th pixel is shown, in both directions
 
-  /// `note`: hidden when the first rows are drawn.
+  /// `note`: an element that is hidden when the first rows are drawn.
   constructor(canvas, note) {
     this.#canvas = canvas;
     this.#context = canvas.getContext("2d");

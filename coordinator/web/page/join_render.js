@@ -1,7 +1,8 @@
-// A web worker that renders rows of bands on one core, with one instance of bandsaw.wasm; join_renderer.js starts it. It
-// answers each message {id, call, …} with {id, value}, {id, error} or {id, error, fatal: true}. After `fatal` the instance
-// cannot be used any more: it had no memory left, or it has crashed. While the renderer prepares
-// what it needs before the first row, the web worker sends {step: true} after each step.
+// A web worker that renders rows of bands on one core, with one instance of bandsaw.wasm;
+// join_renderer.js starts it. It answers each message {id, call, …} with {id, value}, {id, error}
+// or {id, error, fatal: true}. After `fatal` the instance cannot be used any more: it had no memory
+// left, or it has crashed. Before the first row of a scene, the renderer prepares data. After each
+// step of this preparation the web worker sends {step: true}.
 
 import {Program} from "/join_wasm.js";
 
@@ -25,7 +26,9 @@ const calls = {
   drop({scene}) {
     program.bytes("renderer_drop_scene", renderer, scene);
   },
-  /// Renders the rows [first, last) of a lease.
+  /// Renders the rows [first, last) of a lease. Returns the sums of their samples, the counters,
+  /// the rendering time, and the rows as RGBA bytes for the page if `picture` is true (otherwise
+  /// null).
   render({lease, first, last, picture}) {
     const began = performance.now();
     const sums = program.bytes("renderer_render", renderer, lease, first, last).buffer;
@@ -42,7 +45,8 @@ const moved = (value) => [value?.sums, value?.rgb?.buffer].filter((one) => one);
 function problem(error) {
   if (!(error instanceof WebAssembly.RuntimeError) && !(error instanceof RangeError)) return {error: error.message};
   const used = program ? Math.round(program.memory.buffer.byteLength / 1e6) : 0;
-  return {fatal: true, error: `the renderer ended with ${used} MB in use, perhaps all that the browser gives: ${error.message}`};
+  return {fatal: true, error: `the renderer ended with ${used} MB in use, ` +
+    `perhaps all the memory that the browser gives: ${error.message}`};
 }
 
 // The messages are processed one at a time, in their order.

@@ -1,12 +1,18 @@
-// One core of the tab, for join_session.js: starts a web worker with join_render.js, and keeps account of the scenes that it
-// has loaded. A scene is identified by the digest of its manifest; its data come as blobs.
+// One core of the tab, for join_session.js: starts a web worker with join_render.js, and keeps a
+// list of the scenes that this web worker has loaded. A scene is identified by the digest of its
+// manifest; its data come as blobs.
 
-const SCENES = 2;  // loaded at most: in a sequence, those of the present frame and of the next one
-const AHEAD = 4;   // number of blobs that are fetched in advance, while the worker copies earlier ones
-export const SCENE_PER_BYTE = 4;  // a scene is assumed to take so many times the bytes of its blobs (coordinator/scheduler/README.md)
+// Maximum number of loaded scenes. In a sequence they are those of the present frame and of the
+// next one.
+const SCENES = 2;
+// Number of blobs that are fetched in advance, while the web worker copies earlier ones.
+const AHEAD = 4;
+// A scene is assumed to take so many bytes of memory for each byte of its blobs
+// (coordinator/scheduler/README.md).
+export const SCENE_PER_BYTE = 4;
 
-/// The renderer has ended; another one can be started in its place. `sceneBytes`: the bytes of the blobs of the only scene that
-/// it had or was loading; 0: it had no scene, or several.
+/// The renderer has ended; another one can be started in its place. `sceneBytes`: if the renderer
+/// had or was loading exactly one scene, the number of bytes of that scene's blobs; otherwise 0.
 export class RendererEnded extends Error {
   constructor(why, sceneBytes) {
     super(why);
@@ -17,11 +23,12 @@ export class RendererEnded extends Error {
 const isOutOfMemory = (error) => error instanceof RangeError || error instanceof WebAssembly.RuntimeError;
 
 export class Renderer {
-  /// `module`: the compiled bandsaw.wasm. `memoryBytes`: the memory that its scenes may take.
+  /// `module`: the compiled bandsaw.wasm. `memoryBytes`: the memory that the renderer's scenes may
+  /// take.
   constructor(module, memoryBytes) {
     this.memoryBytes = memoryBytes;
     this.scenes = new Map();  // digest of the manifest: {rowStep, size}, the most recently used last
-    this.loading = 0;         // bytes of the blobs of a scene that is being loaded, as far as they are known
+    this.loading = 0;         // known bytes of the blobs of the scene that is being loaded
     this.asked = new Map();   // requests without an answer, id: {done, failed}
     this.lastId = 0;
     this.busy = false;        // set by join_session.js: true while this renderer has work
@@ -38,6 +45,8 @@ export class Renderer {
     this.ready.catch((error) => this.end(error.message));
   }
 
+  /// Handles a message of the web worker: the end of a step, a fatal error, or the answer to a
+  /// request.
   answer({id, value, error, fatal, step}) {
     if (step) {
       this.step();
@@ -71,7 +80,9 @@ export class Renderer {
     return new RendererEnded(this.ended, sizes.length === 1 ? sizes[0] : 0);
   }
 
-  /// Calls a function of join_render.js. Returns a promise of its value; it fails with RendererEnded, or the call's error.
+  /// Calls a function of join_render.js. Returns a promise of the function's value. The promise
+  /// fails with RendererEnded, or with the error of the function. `moved`: buffers of `values` that
+  /// move to the web worker instead of being copied.
   ask(call, values = {}, moved = []) {
     if (this.ended) return Promise.reject(this.error());
     const id = ++this.lastId;
@@ -84,8 +95,8 @@ export class Renderer {
     return this.scenes.has(scene);
   }
 
-  /// Returns a number of rows: bands of the scene should be divided at its multiples. The scene
-  /// MUST be loaded; from now on it is the one that was used most recently.
+  /// Returns the number of rows at whose multiples bands of the scene should be divided, and marks
+  /// the scene as the one that was used last. The scene must be loaded.
   rowStep(scene) {
     const known = this.scenes.get(scene);
     this.scenes.delete(scene);
@@ -108,6 +119,8 @@ export class Renderer {
     }
   }
 
+  /// Loads a scene, as load(). First drops other scenes, until there is a place and memory for this
+  /// one.
   async loadBlobs(scene, get, step) {
     while (this.scenes.size >= SCENES) await this.drop();
     const manifest = await get(scene);
@@ -117,14 +130,15 @@ export class Renderer {
     const loaded = [...this.scenes.values()].reduce((sum, one) => sum + one.size, 0);
     if (this.scenes.size > 0 && SCENE_PER_BYTE * (size + loaded) > this.memoryBytes) {
       while (this.scenes.size > 0) await this.drop();
-      blobs = await this.ask("begin", {scene, manifest});  // no blobs are shared any more
+      // Now `blobs` also has the blobs that this scene shared with a dropped scene.
+      blobs = await this.ask("begin", {scene, manifest});
     }
     this.loading = size;
     const fetched = [];
     const fetchNext = () => {
       if (fetched.length >= blobs.length) return;
       const bytes = get(blobs[fetched.length].digest);
-      bytes.catch(() => {});  // a failure is handled where the promise is awaited, below
+      bytes.catch(() => {});  // the loop below awaits the promise and handles its error
       fetched.push(bytes);
     };
     for (let i = 0; i < AHEAD; ++i) fetchNext();

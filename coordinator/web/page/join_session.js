@@ -10,15 +10,17 @@ import {Program, fromBase64} from "/join_wasm.js";
 
 const PIECE_S = 0.1;            // rendering time of the rows that a renderer is given at once
 const RATE_OVER_S = 8;          // samplesPerSecond is the mean over this time
-const STATE_EVERY_MS = 200;     // the page gets the state at most so often
-const OTHER_CORES_MS = 1000;    // wait after the last change of cores before the coordinator is told
-const SILENCE_MS = 15000;       // after this time without a message, an HTTP request asks if the coordinator is there
-const ANSWER_MS = 10000;        // time limit of that request
-const FULL_DISK_MS = 5000;      // wait before the next try if the coordinator's disk is full
-const NOT_ADMITTED_TIMES = 20;  // tries that may be refused: a restarted coordinator has to lease the band to this tab again
+const STATE_EVERY_MS = 200;     // the page gets the state at most this often
+const OTHER_CORES_MS = 1000;    // time from a change of the cores to the report
+const SILENCE_MS = 15000;       // after this silence, tests if the coordinator answers HTTP
+const ANSWER_MS = 10000;        // time limit for the answer to that request
+const FULL_DISK_MS = 5000;      // wait if the coordinator's disk is full
+// A finished band may be refused so many times with the status 403 or 409. A restarted coordinator
+// refuses it until it has leased the band to this tab again.
+const NOT_ADMITTED_TIMES = 20;
 const LOG_LINES = 50;
 
-const alarm = new Alarm();      // rings when the connection is there
+const alarm = new Alarm();      // rings when the coordinator has admitted this tab
 const connectBackoff = new Backoff();
 const sendBackoff = new Backoff();
 
@@ -33,9 +35,9 @@ let beating = null;             // timer
 let connected = false;          // the coordinator has admitted this tab on the present stream
 let heardAt = 0;                // performance.now() of the last message
 let pausedWhy = null;           // a sentence; null: not paused
-let dismissed = null;           // {reason, until}: the coordinator takes the tab again after this time
-let mostSceneMemory = Infinity; // bytes; lowered when a larger scene has ended a renderer
-let tooLarge = null;            // what the page says of the last such scene
+let dismissed = null;           // {reason, until}; until (ms): time when the tab may join again
+let mostSceneMemory = Infinity; // limit of memoryBytes, after a scene was too large for a renderer
+let tooLarge = null;            // the sentence that the page shows about the last such scene
 let over = false;
 let renderers = [];
 const tasks = new Map();        // the bands that are held, in the order of their leases
@@ -43,7 +45,7 @@ const secondsPerRow = new Map();  // by job
 let outgoing = [];              // finished bands
 let sending = false;
 let lastEnd = 0;                // seconds, when the last band was finished
-const pieces = [];              // {began, at, samples} of the rows rendered in the last seconds; at: when they were finished
+const pieces = [];              // {began, at, samples} of the last rendered rows; at: their end
 const newLines = [];            // of the log, to be sent after the next heartbeat
 const lastLines = [];           // of the log, to be sent with a failed band
 
@@ -57,9 +59,9 @@ const state = {phase: "starting", text: "Loading the renderer …", rowsDone: 0,
 let shownAt = 0;
 let showing = null;
 
-/// Sends the state to the page: now, or when STATE_EVERY_MS have passed since the last time.
-/// Repeats this while samplesPerSecond is above 0, so that the page also gets the values that fall
-/// to 0 when no more rows are rendered.
+/// Sends the state to the page: at once if `now` is true, otherwise when STATE_EVERY_MS have passed
+/// since the last time. Repeats this while samplesPerSecond is above 0, because the page must see
+/// the rate fall to 0 when no more rows are rendered.
 function show(now = false) {
   if (over) return;
   const due = shownAt + STATE_EVERY_MS - performance.now();
@@ -84,7 +86,7 @@ function setPhase(phase, text) {
   show(true);
 }
 
-/// Sets the phase by what the session does.
+/// Sets the phase of the state from what the session does now.
 function look() {
   if (over) return;
   const held = tasks.size;
@@ -128,6 +130,8 @@ const send = (bytes) => {
   if (bytes.length > 0 && socket?.readyState === WebSocket.OPEN) socket.send(bytes);
 };
 
+/// Opens the stream to the coordinator, a WebSocket. Does nothing if there is a stream, or if a
+/// pause has begun and all held bands are finished and sent.
 function connect() {
   clearTimeout(reconnecting);
   reconnecting = null;
@@ -158,7 +162,7 @@ function reconnect() {
   connect();
 }
 
-/// Notes that the stream has ended; bands are kept.
+/// Updates the session after the stream has ended. Its bands are kept.
 function lost() {
   connected = false;
   clearInterval(beating);
@@ -166,6 +170,9 @@ function lost() {
   look();
 }
 
+/// Handles the end of the stream: ends the engine if the link has ended, otherwise connects again
+/// later. `code`, `reason`: those of the WebSocket's end; 4401 means that the link has ended.
+/// `opened`: whether the stream was open before.
 async function disconnected(code, reason, opened) {
   socket = null;
   lost();
@@ -202,6 +209,7 @@ async function linkEnded(reached = () => {}) {
   return false;
 }
 
+/// Handles a message of the coordinator, and does what the session orders in return.
 function receive(message) {
   heardAt = performance.now();
   let orders;
@@ -220,6 +228,7 @@ function receive(message) {
   look();
 }
 
+/// Begins heartbeats and wakes sendBands() if the coordinator has admitted this tab.
 function welcomed() {
   const now = program.json("session_state", session);
   if (!now.connected) return;
@@ -244,6 +253,9 @@ function dismiss({reason, wait_ms: wait, for_ever: forEver}) {
   socket?.close(1000);
 }
 
+/// Sends a heartbeat and the new lines of the log. If nothing was heard for SILENCE_MS, asks by
+/// HTTP if the coordinator can be reached. Without an answer the stream is dead, and another one is
+/// opened.
 function beat() {
   if (!connected) return;
   send(program.bytes("session_heartbeat", session));
@@ -316,9 +328,9 @@ function failed(renderer, task, error) {
   if (isTooLarge) takeOnlySmaller(task.job, error.sceneBytes);
 }
 
-/// Called when a scene with `sceneBytes` bytes of blobs has ended a renderer, probably because
-/// there was too little memory. From now on, offers the coordinator memory for scenes of at most
-/// three quarters of this size.
+/// Must be called when a scene whose blobs have `sceneBytes` bytes has ended a renderer, probably
+/// because there was too little memory. From now on, offers the coordinator memory for scenes of at
+/// most three quarters of this size.
 function takeOnlySmaller(job, sceneBytes) {
   tooLarge = `The scene of job ${job} needs more memory than this browser gives; other machines render it.`;
   mostSceneMemory = Math.min(mostSceneMemory, 0.75 * SCENE_PER_BYTE * sceneBytes);
@@ -339,9 +351,9 @@ function replace(renderer) {
   renderers[at] = new Renderer(module, state.memoryBytes);
 }
 
+/// Lets a renderer load the scene of a band.
 async function loadScene(renderer, task) {
-  // Progress of the loading is reported for the band that needs the scene, until a renderer gets
-  // rows of this band.
+  // Progress is reported for this band, as long as none of its rows was given to a renderer.
   const step = (amount) => {
     if (task.rowsGiven === task.first && tasks.has(task.id)) {
       program.bytes("session_preparing", session, task.id, task.prepared += amount);
@@ -394,7 +406,8 @@ async function renderRows(renderer, task) {
   if (task.rowsDone === task.last - task.first) finish(task);
 }
 
-/// Joins the rows of a band, and puts it among those that are sent.
+/// Joins the rows of a band, and appends the band to the bands that are sent. Forgets a band that
+/// is not wanted any more.
 function finish(task) {
   if (program.text("session_finished", session, task.id) !== "true") {
     drop(task.id);
@@ -404,7 +417,7 @@ function finish(task) {
   const sums = new Uint8Array((task.last - task.first) * rowBytes);
   for (const part of task.parts) sums.set(new Uint8Array(part.sums), (part.first - task.first) * rowBytes);
   task.parts = [];
-  // While two bands overlap, the time counts once, for the one that ends first.
+  // Time in which two bands were rendered together counts once, for the band that ends first.
   const now = performance.now() / 1000;
   const renderSeconds = now - Math.max(task.began, lastEnd);
   lastEnd = now;
@@ -475,6 +488,8 @@ async function sendOnce(band) {
   return response.status === 429 ? FULL_DISK_MS : sendBackoff.next();
 }
 
+/// Counts and forgets a band that the coordinator has taken. `outcome`: "stored", "duplicate" or
+/// "unwanted", for the log.
 function sent({task}, outcome) {
   drop(task.id);
   sendBackoff.reset();
@@ -534,7 +549,7 @@ const calls = {
     clearTimeout(offering);
     offering = setTimeout(() => connected && reconnect(), OTHER_CORES_MS);
   },
-  /// `why`: a sentence; null: rendering goes on.
+  /// `why`: a sentence that begins a pause, or null, which ends the pause.
   pause({why}) {
     const was = pausedWhy;
     pausedWhy = why;

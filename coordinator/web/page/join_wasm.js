@@ -3,8 +3,8 @@
 const BAD_FILE = 8;  // errno values of WASI, the system interface of WebAssembly
 const NOT_SUPPORTED = 58;
 
-/// Returns the functions of WASI that the program may call. It gets a console, clocks and random numbers, but no files. `memory`: a
-/// function that returns the instance's memory.
+/// Returns the functions of WASI that the program may call. They give the program a console, clocks
+/// and random numbers, but no files. `memory`: a function that returns the instance's memory.
 function system(memory) {
   const view = () => new DataView(memory().buffer);
   const empty = (count, size) => {
@@ -46,7 +46,9 @@ function system(memory) {
   };
 }
 
-/// Returns the functions that the module imports. One that is not known here returns NOT_SUPPORTED when it is called.
+/// Returns the functions that the module imports. An imported function that is not known here
+/// returns NOT_SUPPORTED when it is called. `memory`, `step`: as those of system() and
+/// Program.start().
 function imports(module, memory, step) {
   const known = {...system(memory), step};
   const out = {};
@@ -59,7 +61,8 @@ function imports(module, memory, step) {
 
 /// One instance of the module.
 export class Program {
-  /// `step`: called by the renderer after each step of what it prepares before the first row.
+  /// Returns a promise of a new instance. `step`: called by the renderer after each step of its
+  /// preparation before the first row.
   static async start(module, step = () => {}) {
     const program = new Program();
     const instance = await WebAssembly.instantiate(module, imports(module, () => program.memory, step));
@@ -76,7 +79,8 @@ export class Program {
     return at;
   }
 
-  /// Calls `bandsaw_NAME` with the arguments: numbers as they are, texts and bytes as address and length. Returns its result.
+  /// Calls the function `bandsaw_NAME` and returns its result. Numbers among the arguments are
+  /// passed as they are, texts and bytes as an address and a length.
   run(name, ...args) {
     const placed = [];
     const flat = args.flatMap((arg) => {

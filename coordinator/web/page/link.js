@@ -4,8 +4,8 @@ import {get, post} from "./api.js";
 import {duration, el, text} from "./dom.js";
 import {attempt} from "./notice.js";
 
-/// Returns {element, refresh()}. The element has a button; a click on the button replaces it by the
-/// link. refresh() updates the link if it is shown.
+/// Returns {element, refresh()}. The element shows a button; after a click it shows the link
+/// instead. refresh() updates the link if the link is shown.
 export function browserLink() {
   const code = el("img.code", {alt: "QR code of the link", width: 200, height: 200});
   const address = el("input", {readonly: "", "aria-label": "Link for browsers"});
@@ -26,8 +26,9 @@ export function browserLink() {
       code.src = `/api/link.svg?of=${Date.now()}`;
     }
     const isLocal = /^http:\/\/(127\.|localhost|\[::1\])/.test(link.url);
-    text(note, isLocal ? "It works on this machine only; for others start: bandsaw serve --web 0.0.0.0:8787"
-      : `It ends in ${duration(link.left_s)}.`);
+    text(note, isLocal ? "This link works on this machine only. For other machines, " +
+      "start the coordinator with `bandsaw serve --web 0.0.0.0:8787`."
+      : `This link ends in ${duration(link.left_s)}.`);
   }
   const open = () => attempt(async () => {
     const link = await get("/api/link");

@@ -63,8 +63,8 @@ function lost(error) {
   say(`${error.message}; trying again`, {bad: true, stays: true});
 }
 
-/// Polls once a second while the page is visible. Polling is cheap, and works again after any
-/// interruption of the connection.
+/// Polls once a second while the page is visible, otherwise every ten seconds. After an error waits
+/// three seconds. Polling is cheap, and works again after any interruption of the connection.
 async function refresh() {
   clearTimeout(timer);
   let wait = document.hidden ? 10000 : 1000;
@@ -91,8 +91,9 @@ function start() {
   refresh();
 }
 
-/// Logs in if the address has the secret, and shows the page or the form for a login. The link that `bandsaw serve` writes has the
-/// secret after the #, which browsers do not send.
+/// Logs in if the address has the secret. Then shows the page, or the form for a login. The link
+/// that `bandsaw serve` writes has the secret after the #. Browsers do not send this part of an
+/// address to a server.
 async function enter() {
   const key = location.hash.match(/^#key=(.+)$/);
   if (key) {

@@ -9,7 +9,8 @@ const palette = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2
 /// Returns true if the job has a preview or an image.
 const there = (status) => stateOf(status) === "done" || (Number(status.samples_done) > 0 && !isOver(status));
 
-/// Shows the newest preview; the old one remains until the new one is loaded.
+/// Shows the newest preview. The old one remains until the new one is loaded. `side`: the wanted
+/// length of the preview's longer side, in pixels.
 export function preview(img, status, side) {
   if (!there(status)) return;
   load(img, `/api/jobs/${status.job}/preview.png?side=${side}&at=${stateOf(status) === "done" ? "end" : status.samples_done}`);

@@ -23,8 +23,9 @@ function ticks(low, high) {
   return inside.length <= 6 ? inside : inside.filter((value) => Math.log10(value) % 1 === 0);
 }
 
-/// Returns {element, update(points, goal, over)}. `points`: {t in seconds, error}, an error being a fraction; `goal`: the error at
-/// which the job stops, or 0; `over`: there will be no more points.
+/// Returns {element, update(points, goal, over)}. `points`: an array of {t, error}, where t is in
+/// seconds and the error is a fraction. `goal`: the error at which the job stops; 0: it does not
+/// stop at an error. `over`: there will be no more points.
 export function plot() {
   const svg = draw("svg", {class: "plot", viewBox: `0 0 ${box.width} ${box.height}`, role: "img"});
   const none = el("p.soft.small", {}, "The error is known after the second pass.");

@@ -96,6 +96,7 @@ class BANDSAW_PT_omitted(bpy.types.Panel):
                 self.layout.label(text=line, icon="INFO" if number == 0 else "BLANK1")
 
 
+# Yields the words of a text as lines of at most `width` characters.
 def _lines(text, width):
     words, line = text.split(), ""
     for word in words:
@@ -108,14 +109,16 @@ def _lines(text, width):
 
 
 def compatible_panels():
-    """Returns Blender's own panels that make sense for this engine: of materials, lights, the world, cameras and output."""
+    """Returns Blender's own panels that this engine uses: those of materials, lights, the world,
+    cameras and output."""
     left_out = {"RENDER_PT_eevee_sampling", "VIEWLAYER_PT_filter", "RENDER_PT_simplify", "RENDER_PT_freestyle", "VIEWLAYER_PT_layer_passes"}
     return [panel for panel in bpy.types.Panel.__subclasses__()
             if "BLENDER_RENDER" in getattr(panel, "COMPAT_ENGINES", ()) and panel.__name__ not in left_out]
 
 
 def eevee_panels():
-    """Returns the panels of EEVEE and Cycles that edit what this engine uses too: a material's surface, a light's power, the world's nodes, passes."""
+    """Returns the panels of EEVEE and Cycles whose settings this engine uses too: a material's
+    surface, a light's power, the world's nodes, and passes."""
     names = {"EEVEE_MATERIAL_PT_surface", "EEVEE_MATERIAL_PT_volume", "EEVEE_MATERIAL_PT_context_material", "DATA_PT_EEVEE_light", "EEVEE_WORLD_PT_surface",
              "EEVEE_WORLD_PT_volume", "DATA_PT_light", "DATA_PT_spot", "DATA_PT_camera_dof", "VIEWLAYER_PT_eevee_layer_passes_data"}
     return [panel for panel in bpy.types.Panel.__subclasses__() if panel.__name__ in names and hasattr(panel, "COMPAT_ENGINES")]

@@ -9,17 +9,20 @@ import numpy as np
 
 from . import bandsaw, scene as scenes
 
-# For each pass: Blender's setting, its name, its channels and their letters, its type, and the farm's kind of layer (bandsaw.Job.layer).
+# The passes that the farm can render. For each: Blender's setting that switches the pass on, the
+# pass's name, number of channels, letters of the channels, and type, and the kind of the layer that
+# the farm renders for it (bandsaw.Job.layer).
 PASSES = (("use_pass_z", "Depth", 1, "Z", "VALUE", "depth"), ("use_pass_normal", "Normal", 3, "XYZ", "VECTOR", "normals"),
           ("use_pass_diffuse_color", "DiffCol", 3, "RGB", "COLOR", "albedo"))
 NOISY = "Noisy Image"  # the pass with the image as rendered, if it is denoised; named as that of Cycles
 PATIENCE = 60.0  # seconds for which the engine tries to reach a lost coordinator
 
-last_warnings = []  # of the last render, for the panel
+last_warnings = []  # warnings of the last render, for the panel
 
 
 def preferences():
-    """Returns the add-on's preferences; None: it runs without being installed (headless)."""
+    """Returns the add-on's preferences; None if the add-on runs without being installed
+    (headless)."""
     addon = bpy.context.preferences.addons.get(__package__)
     return addon.preferences if addon is not None else None
 
@@ -45,8 +48,8 @@ class Stopped(Exception):
     """The user pressed Esc."""
 
 
-# Blender calls update_render_passes() and render(). In the methods that these call, `made` is the
-# scene.Scene that is sent to the farm.
+# Blender calls update_render_passes() and render(). In the methods, `made` is the scene.Scene that
+# is sent.
 class BandsawEngine(bpy.types.RenderEngine):
     bl_idname = "BANDSAW"
     bl_label = "Bandsaw"
@@ -78,7 +81,8 @@ class BandsawEngine(bpy.types.RenderEngine):
     def fail(self, message):
         self.report({"ERROR"}, f"Bandsaw: {message}")
         if bpy.app.version < (4, 3):
-            self.error_set(f"Bandsaw: {message}")  # Blender 4.3 would report the message again
+            # From version 4.3 on, error_set() would show the message a second time.
+            self.error_set(f"Bandsaw: {message}")
 
     def render_on_farm(self, depsgraph):
         scene = depsgraph.scene
@@ -124,8 +128,8 @@ class BandsawEngine(bpy.types.RenderEngine):
         self.tell_warnings(job.warnings)
         return job
 
-    # Shows previews until the job is done, then the finished image and the passes. The time between previews grows with the time
-    # that one takes, so that they do not slow the render.
+    # Shows previews until the job is done, then the finished image and the passes. The time between
+    # previews grows with the time that a preview takes, so that previews do not slow the render.
     def follow(self, depsgraph, job, made):
         width, height = made.scene["image"]["width"], made.scene["image"]["height"]
         result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
@@ -176,12 +180,12 @@ class BandsawEngine(bpy.types.RenderEngine):
         self.update_stats("", str(progress) + omitted)
 
     def show_preview(self, job, result, width, height):
-        """Shows the present picture. Returns False if there is none yet, or if the farm cannot be
-        reached."""
+        """Shows the present picture. Returns False if there is none yet, or if the farm does not
+        answer."""
         try:
             picture = job.preview(max(width, height) if width * height <= 4_000_000 else 1024)
         except bandsaw.NoFarm:
-            return False  # the next request to the farm reports it
+            return False  # the next request to the farm reports the error
         if picture is None:
             return False
         pixels = picture.array()
@@ -198,11 +202,12 @@ class BandsawEngine(bpy.types.RenderEngine):
             return
         rows = np.ascontiguousarray(pixels[::-1], dtype=np.float32).reshape(-1, pixels.shape[2])
         try:
-            found.rect.foreach_set(rows)  # Blender 3.4 compares the number of pixels
+            found.rect.foreach_set(rows)  # Blender 3.4 expects one row for each pixel
         except TypeError:
-            found.rect.foreach_set(rows.reshape(-1))  # later versions compare the number of values
+            found.rect.foreach_set(rows.reshape(-1))  # later versions expect one flat row of values
 
-    # Renders the passes. `camera`: the message Camera of the scene.
+    # Submits a job for each pass that the view layer wants, waits for it, and gives its pixels to
+    # Blender. `camera`: the message Camera of the scene.
     def add_passes(self, depsgraph, job, result, camera):
         wanted = [entry for entry in PASSES if getattr(depsgraph.view_layer, entry[0], False)]
         jobs = [(entry, job.layer(entry[5])) for entry in wanted]
@@ -228,14 +233,15 @@ def pass_pixels(kind, pixels, camera):
         return np.stack([n[:, :, 0], -n[:, :, 2], n[:, :, 1]], axis=2)  # from y up to z up
     if kind == "depth":
         # The farm's depth is the distance along the ray. Blender's depth is the distance along the
-        # camera's axis, and 1e10 for a ray that hits nothing.
+        # camera's axis, and 1e10 if the ray hits nothing.
         depth = pixels[:, :, :1] if "orthographic" in camera else pixels[:, :, :1] / ray_lengths(camera["window"], *pixels.shape[:2])
         return np.where(pixels[:, :, :1] > 0, depth, 1e10)
     return pixels
 
 
 def ray_lengths(window, height, width):
-    """Returns the distances (height, width, 1), rows from the top, from a perspective camera to its `window` at the pixels' centres."""
+    """Returns the distances from a perspective camera to the pixels' centres on its `window` (left,
+    right, bottom, top), which is at distance 1: an array (height, width, 1), rows from the top."""
     left, right, bottom, top = window
     x = left + (np.arange(width) + 0.5) / width * (right - left)
     y = top - (np.arange(height) + 0.5) / height * (top - bottom)

@@ -17,10 +17,13 @@ class NeedsCoordinates(Unsupported):
 
 
 class Points:
-    """The points at which nodes are evaluated, n = `count`. Each coordinate is an array of n rows, or None if the points do not have it: `uv` (a
-    dictionary of arrays (n, 2) by the name of the uv map, "" the active one; None for a map of the mesh that they do not have), `generated`, `object`,
-    `normal` (n, 3), all in the object's space; `position`, `world_normal` (n, 3). `used`: a set that gets the names of the coordinates that nodes
-    need."""
+    """The points at which nodes are evaluated. Their number is n = `count`.
+
+    Each coordinate is an array (n, 3), or None if the points do not have it. `generated`, `object`
+    (the parameter `local`) and `normal` are in the object's space, `position` and `world_normal` in
+    the world's. `uv` is a dictionary from the names of uv maps to arrays (n, 2). In it, "" names
+    the active map, and a value None stands for a map of the mesh that the points do not have.
+    `used`: a set that gets the names of the coordinates that nodes need, except for uvs."""
 
     def __init__(self, count, uv=None, generated=None, local=None, normal=None, position=None, world_normal=None, used=None):
         self.count, self.uv, self.generated = count, uv or {}, generated
@@ -29,8 +32,8 @@ class Points:
 
 
 def source(socket):
-    """Returns the socket whose value an input has: an output that is linked to it, through reroutes
-    and muted nodes, or an input whose own value counts."""
+    """Returns the socket that gives an input its value: an output socket, or an input whose own
+    value is used because nothing is linked to it. Passes through reroutes and muted nodes."""
     own = socket
     while socket.is_linked and socket.links and socket.links[0].is_valid and not socket.links[0].is_muted:
         output = socket.links[0].from_socket
@@ -47,13 +50,15 @@ def source(socket):
 
 
 def from_node(socket):
-    """Returns the output socket that feeds an input, through reroutes and muted nodes; None: it is not linked."""
+    """Returns the output socket that feeds an input, through reroutes and muted nodes; None if the
+    input is not linked."""
     found = source(socket)
     return found if found.is_output else None
 
 
 def input_of(node, *names):
-    """Returns the first of these inputs, by identifier or name, that the node has; None: it has none."""
+    """Returns the first of these inputs, by identifier or name, that the node has; None if the node
+    has none of them."""
     for name in names:
         for socket in node.inputs:
             if socket.identifier == name or socket.name == name:
@@ -62,7 +67,8 @@ def input_of(node, *names):
 
 
 def number(value):
-    """Returns a value as a number: the luminance of a colour, or the number itself. (Evaluator.socket converts vectors.)"""
+    """Returns a value as a number: the luminance of a colour, or the number itself. A vector
+    is not converted here but in Evaluator.socket."""
     return value if value.ndim == 1 else value @ np.array([0.2126, 0.7152, 0.0722])
 
 
@@ -72,20 +78,24 @@ def color(value):
 
 
 class Evaluator:
-    """Evaluates nodes at `points` (a Points). `light`: False for what the camera's rays see, True
-    (for lights and the world) for what diffuse rays see. `images`: a function from a Blender image
-    to its pixels (height, width, 4) as linear floats, rows from the bottom; `warn`: a function of a
-    text, which names what is not as in Blender. A node of type T is evaluated by the method
-    node_T(node, output), which returns the value of that output. `groups`: the group nodes around
-    the node that is evaluated, the innermost last; `memory`: values that were computed before."""
+    """Evaluates nodes at `points` (a Points). A node of type T is evaluated by the method
+    node_T(node, output), which returns the value of that output.
+
+    `images`: a function from a Blender image to its pixels (height, width, 4) as linear floats,
+    rows from the bottom. `warn`: a function that gets a text about something that is not shown as
+    in Blender. `light`: true for the nodes of a light or of the world, which are evaluated as
+    diffuse rays see them; all other nodes are evaluated as rays of the camera see them. `groups`:
+    the group nodes around the node that is evaluated, the innermost last. `memory`: values that
+    were computed before."""
 
     def __init__(self, points, images, warn, light=False):
         self.points, self.images, self.warn, self.light = points, images, warn, light
         self.groups, self.memory = [], {}
 
     def socket(self, socket):
-        """Returns the value of an input socket: what is linked to it, or its own. A vector at an input for a number becomes the mean of its
-        components, as in Blender; number() converts a colour."""
+        """Returns the value of an input socket: the value that is linked to it, or its own value. A
+        vector at an input for a number becomes the mean of its components, as in Blender. A colour
+        stays a colour; number() converts it."""
         found = source(socket)
         if found.is_output:
             value = self.output(found)
@@ -102,12 +112,14 @@ class Evaluator:
         return self.socket(socket) if socket is not None else np.array([default])
 
     def one(self, node, *names, default=0.0):
-        """Returns an input as a number that is the same at all points. Raises Unsupported if it is not."""
+        """Returns an input as a number that is the same at all points. Raises Unsupported if the
+        number differs between points."""
         value = number(self.of(node, *names, default=default))
         if value.size > 1 and np.ptp(value) > 1e-6:
             raise Unsupported(f'a texture at "{names[0]}" of the node "{node.name}"')
         return float(value.flat[0])
 
+    # Returns the value of an output socket, and keeps it in `memory`. Raises Unsupported.
     def output(self, output):
         key = (output.node.as_pointer(), output.identifier, tuple(id(group) for group in self.groups))
         if key not in self.memory:
@@ -127,7 +139,8 @@ class Evaluator:
             return self.uv("")
         return self.need("generated", "generated coordinates")
 
-    # Returns the coordinate `name` of the points. Raises NeedsCoordinates if they do not have it; `what` names it then.
+    # Returns the coordinate `name` of the points. If the points do not have it, raises
+    # NeedsCoordinates with the text `what`, which names the coordinate.
     def need(self, name, what):
         array = getattr(self.points, name)
         if array is None:
@@ -427,6 +440,8 @@ class Evaluator:
             return np.nan_to_num(np.asarray(function(a, b, scale), dtype=float))
 
 
+# The operations of Blender's node Math. Each has the parameters x, y and z, the node's three
+# inputs.
 MATH = {
     "ADD": lambda x, y, z: x + y, "SUBTRACT": lambda x, y, z: x - y, "MULTIPLY": lambda x, y, z: x * y,
     "DIVIDE": lambda x, y, z: np.where(y == 0, 0, x / y), "MULTIPLY_ADD": lambda x, y, z: x * y + z,
@@ -450,6 +465,8 @@ def unit(a):
     return a / np.maximum(np.linalg.norm(a, axis=1, keepdims=True), 1e-30)
 
 
+# The operations of Blender's node Vector Math. `a` and `b` are vectors, `s` is the node's input
+# Scale.
 VECTOR_MATH = {
     "ADD": lambda a, b, s: a + b, "SUBTRACT": lambda a, b, s: a - b, "MULTIPLY": lambda a, b, s: a * b,
     "DIVIDE": lambda a, b, s: np.where(b == 0, 0, a / b), "SCALE": lambda a, b, s: a * s[:, None], "NORMALIZE": lambda a, b, s: unit(a),
@@ -498,8 +515,9 @@ def from_hsv(hsv):
 
 
 def blackbody(temperature):
-    """Returns the colour (n, 3) of black bodies of these temperatures (kelvin), of luminance 1, by Planck's law and the CIE's observer (fit of
-    Wyman et al. 2013). The matrix converts from XYZ to linear sRGB."""
+    """Returns the colours (n, 3) of black bodies of these temperatures (kelvin), scaled to the
+    luminance 1. They follow from Planck's law and the CIE's observer (fit of Wyman et al. 2013).
+    The matrix converts from XYZ to linear sRGB."""
     wave = np.arange(380.0, 781.0, 5.0)
 
     def bell(mean, left, right):
@@ -517,23 +535,25 @@ def blackbody(temperature):
 
 
 def covered(node):
-    """Returns true if an image node multiplies colours by their alpha: Cycles does so where the node's alpha is not used. Pixels of float images are
-    multiplied by it already."""
+    """Returns true if the colours of an image node must be multiplied by their alpha. Cycles
+    multiplies them if the node's output Alpha is not used. Pixels of float images are multiplied by
+    alpha already."""
     image = node.image
     return (image.depth == 32 and not image.is_float and image.colorspace_settings.name == "sRGB" and
             image.alpha_mode not in ("CHANNEL_PACKED", "NONE") and not node.outputs["Alpha"].is_linked)
 
 
-# Returns linear pixels (height, width, 4) whose colours are multiplied by alpha. As in Cycles,
-# alpha multiplies the sRGB-encoded values, not the linear ones.
+# Returns linear pixels (height, width, 4) whose colours are multiplied by alpha. As in Cycles, the
+# sRGB-encoded values are multiplied, not the linear ones.
 def multiplied(pixels):
     alpha = pixels[:, :, 3:]
     return np.concatenate([files.linear(files.srgb_codes(pixels[:, :, :3]) / 255 * alpha), alpha], axis=2)
 
 
 def look_up(pixels, uv, extension, nearest):
-    """Returns the values (n, 4) of an image at uv (n, 2). `pixels`: (height, width, 4), rows from the bottom; `extension`: Blender's word for what
-    lies beyond its edges; `nearest`: without interpolation."""
+    """Returns the values (n, 4) of an image at uv (n, 2). `pixels`: (height, width, 4), rows from
+    the bottom. `extension`: Blender's name of the rule for points beyond the image's edges:
+    "REPEAT", "MIRROR", "EXTEND" or "CLIP". `nearest`: without interpolation."""
     height, width = pixels.shape[:2]
     size = np.array([width, height])
 
@@ -565,7 +585,8 @@ def look_up(pixels, uv, extension, nearest):
 
 
 def linear_pixels(image):
-    """Returns the pixels of a Blender image as linear floats (height, width, 4), rows from the bottom. Raises Unsupported."""
+    """Returns the pixels of a Blender image as linear floats (height, width, 4), rows from the
+    bottom. Raises Unsupported if the image has no pixels."""
     width, height = image.size
     if width == 0 or height == 0:
         raise Unsupported(f'the image "{image.name}", whose file is missing or cannot be read')

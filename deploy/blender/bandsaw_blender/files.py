@@ -9,7 +9,8 @@ import numpy as np
 def exr(pixels):
     """Returns the bytes of an uncompressed OpenEXR file of 32-bit floats. `pixels`: (height, width, 3), rows from the top."""
     height, width = pixels.shape[:2]
-    rows = np.ascontiguousarray(pixels[:, :, ::-1].transpose(0, 2, 1), dtype="<f4")  # channels B, G, R, each a line
+    # A row has all its values of B, then those of G, then those of R.
+    rows = np.ascontiguousarray(pixels[:, :, ::-1].transpose(0, 2, 1), dtype="<f4")
 
     def attribute(name, kind, data):
         return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data

@@ -17,18 +17,19 @@ class Vertices:
 
 
 class Triangles:
-    """The triangles of a mesh with one material slot. `positions` (v, 3), `normals` (v, 3) or None
-    (flat everywhere), `uvs`: a list of (v, 2), v = 0 at the bottom, of which at most two are
-    written to files; `indices` (t, 3). `undeformed` (v, 3): where the vertices are without
-    modifiers and shape keys; None: at `positions`. `ends`: None, or the Vertices when the shutter
-    opens and when it closes. Everything else is as at the time of the frame."""
+    """The triangles of a mesh with one material slot, with v vertices and t triangles.
+
+    `positions` (v, 3); `normals` (v, 3), or None if the mesh is flat everywhere. `uvs`: a list of
+    arrays (v, 2), in which 0 is at the bottom of an image; at most two of them are written to
+    files. `indices` (t, 3). `undeformed` (v, 3): positions of the vertices without modifiers and
+    shape keys; None: the same as `positions`. `ends`: None, or the Vertices when the shutter opens
+    and when it closes; all other fields are those at the time of the frame."""
 
     def __init__(self, positions, normals, uvs, indices, undeformed=None, ends=None):
         self.positions, self.normals, self.uvs, self.indices, self.undeformed, self.ends = positions, normals, uvs, indices, undeformed, ends
 
     def _selected(self, which, indices):
-        """Returns Triangles that have only the vertices `which`. `indices`: their triangles, as
-        indices into `which`."""
+        """Returns Triangles with the vertices `which` and the `indices` into them."""
         frame = Vertices(self.positions, self.normals)[which]
         ends = None if self.ends is None else tuple(end[which] for end in self.ends)
         undeformed = None if self.undeformed is None else self.undeformed[which]
@@ -44,7 +45,7 @@ class Triangles:
         return self._selected(flat, np.arange(len(flat)))
 
     def compact(self):
-        """Returns the same triangles without the vertices that none of them uses."""
+        """Returns the same triangles without the vertices that no triangle uses."""
         return self._selected(*np.unique(self.indices.reshape(-1), return_inverse=True))
 
     def corner_normals(self):
@@ -65,8 +66,8 @@ def _get(collection, name, count, width, dtype):
 
 
 def _corner_normals(mesh, loops):
-    """Returns the normals of the corners (loops, 3), also those of flat faces and those that the
-    user has set."""
+    """Returns the normals of the corners (loops, 3). They depend on which faces are flat or smooth,
+    and on the user's own normals."""
     if hasattr(mesh, "corner_normals"):  # Blender 4.1
         return _get(mesh.corner_normals, "vector", loops, 3, np.float32)
     mesh.calc_normals_split()
@@ -76,8 +77,9 @@ def _corner_normals(mesh, loops):
 
 
 class Pose:
-    """A mesh of Blender at a time: `positions`, `undeformed` (vertices, 3), as Triangles has them, `vertex_of_loop` (loops), and
-    `normals` (loops, 3), or None: flat everywhere."""
+    """A mesh of Blender at one time. A loop is Blender's word for a corner of a face. `positions`
+    and `undeformed` (vertices, 3): as in Triangles. `vertex_of_loop` (loops): the index of each
+    loop's vertex. `normals` (loops, 3), or None if the mesh is flat everywhere."""
 
     def __init__(self, mesh):
         vertices, loops = len(mesh.vertices), len(mesh.loops)
@@ -105,9 +107,10 @@ class Pose:
 
 
 def triangles_of(mesh, uv_names, ends=None):
-    """Returns a dictionary from the indices of the material slots that the mesh uses to their Triangles. `uv_names`: the names of the uv maps to
-    keep, "" is the active one. `ends`: the Poses of the mesh when the shutter opens and when it closes, which fit to it; None: it
-    does not deform."""
+    """Returns a dictionary from the indices of the material slots that the mesh uses to their
+    Triangles. `uv_names`: the names of the uv maps to keep, "" is the active one. `ends`: the Poses
+    of the mesh when the shutter opens and when it closes, which must fit the mesh (Pose.fits);
+    None: the mesh does not deform."""
     mesh.calc_loop_triangles()
     count, loops = len(mesh.loop_triangles), len(mesh.loops)
     if count == 0:
@@ -123,13 +126,15 @@ def triangles_of(mesh, uv_names, ends=None):
     return {int(slot): _indexed(pose, uvs, corners[slots == slot], of_corner[slots == slot], ends).compact() for slot in used}
 
 
+# Returns true if the mesh has marks for sharp edges.
 def _has_sharp(mesh):
     attribute = mesh.attributes.get("sharp_edge") if hasattr(mesh, "attributes") else None
     return attribute is not None
 
 
 def uv_layers(mesh, names):
-    """Returns the uv maps of the mesh with these names, each once; the active one for "" and for a name that the mesh does not have."""
+    """Returns the uv maps of the mesh with these names, each map once. The active map is returned
+    for "" and for a name that the mesh does not have."""
     if not len(mesh.uv_layers):
         return []
     active = next((layer for layer in mesh.uv_layers if layer.active_render), mesh.uv_layers[0])
@@ -142,9 +147,13 @@ def uv_layers(mesh, names):
 
 
 def _indexed(pose, uvs, corners, of_corner, ends):
-    """Returns Triangles whose corners share a vertex if their normals and uvs are the same.
-    Vertices are added for the other corners only, so that a mesh without seams is converted as fast
-    as one without uvs."""
+    """Returns Triangles in which corners share a vertex of the mesh if their normals and uvs are
+    the same. `corners`, `of_corner` (t, 3): the indices of the triangles' loops and of their
+    vertices.
+
+    One corner of each vertex represents it. New vertices are made only for the corners that differ
+    from the representative of their vertex, so a mesh without seams is as fast as one without
+    uvs."""
     flat, vertex = corners.reshape(-1), of_corner.reshape(-1)
     poses = [pose, *(ends or ())]
     per_corner = [each.normals for each in poses if each.normals is not None] + uvs
@@ -154,7 +163,7 @@ def _indexed(pose, uvs, corners, of_corner, ends):
     values = [a[flat] for a in per_corner]
     representative = np.zeros(len(pose.positions), dtype=np.int64)
     representative[vertex] = np.arange(len(flat))  # the last corner of each vertex
-    other = np.zeros(len(flat), dtype=bool)
+    other = np.zeros(len(flat), dtype=bool)  # corners that differ from their representative
     for a in values:
         other |= (a != a[representative[vertex]]).any(axis=1)
     index = vertex.astype(np.uint32)
@@ -188,10 +197,12 @@ DEFORMS = "deforms"  # the name of the animation of a mesh that deforms
 
 def glb(triangles):
     """Returns the bytes of a GLB file with this one mesh. If the mesh deforms, its vertices are
-    where they are when the shutter opens, and a morph target has them where they are when it
-    closes. From the time 0 to 1, the animation DEFORMS moves them from the first to the second."""
+    those when the shutter opens, and a morph target has the vertices when the shutter closes. The
+    animation DEFORMS leads from the mesh to the morph target in the time from 0 to 1."""
     parts, views, accessors, attributes = [], [], [], {}
 
+    # Adds an array and returns the index of its accessor. `component` and `target`: constants of
+    # glTF 2.0 (5125: uint32, 5126: float; 34962: vertex data, 34963: indices, None: other data).
     def add(array, kind, component, target, **more):
         data = memoryview(array).cast("B")  # not copied: meshes may be large
         views.append({"buffer": 0, "byteOffset": sum(map(len, parts)), "byteLength": len(data), **({"target": target} if target else {})})
@@ -234,15 +245,17 @@ def glb(triangles):
                      struct.pack("<II", size, 0x004E4942), *parts])
 
 
-# ---- an atlas: an image with a place of its own for each triangle ----
+# ---- an atlas: an image in which each triangle has texels of its own ----
 
 
 class Atlas:
-    """Each pair of triangles has a square cell, `cell` texels wide, of a square image, `side`
-    texels wide. `uvs` (3 t, 2): the corners' places. `triangle` (side * side): the triangle at each
-    texel's centre, rows from the bottom; -1: none. `weights` (side * side, 3): the barycentric
-    coordinates of the texel's centre in this triangle. For texels around a triangle they continue
-    beyond its edges."""
+    """An atlas is a square image of `side` texels a side. It is divided into square cells of `cell`
+    texels a side, one for each pair of triangles.
+
+    `uvs` (3 t, 2): the places of the triangles' corners in the image. `triangle` (side * side): the
+    index of the triangle at each texel, rows from the bottom; -1 for a texel without a triangle.
+    `weights` (side * side, 3): the barycentric coordinates of each texel's centre in that triangle.
+    The texels around a triangle belong to it too; some of their coordinates are negative."""
 
     def __init__(self, triangles, most_side=1024):
         pairs = (triangles + 1) // 2

@@ -21,7 +21,8 @@ _folder, _name = [""], ["scene"]  # FOLDER and NAME of the export in progress, f
 
 
 class ExportEngine(bpy.types.RenderEngine):
-    """Renders nothing, but writes the scene's files: only a render engine gets a dependency graph in render mode."""
+    """Renders nothing, but writes the scene's files. It is a render engine, because only a render
+    engine gets a dependency graph in render mode."""
 
     bl_idname = "BANDSAW_EXPORT"
     bl_label = "Bandsaw (scene files)"
@@ -42,6 +43,7 @@ class ExportEngine(bpy.types.RenderEngine):
             fail(_folder[0], str(error) or type(error).__name__)
 
 
+# Writes the files and the warnings of a scene.Scene into the folder.
 def write(folder, made):
     for name, content in {**made.files, _name[0] + ".json": made.text().encode()}.items():
         if isinstance(content, str):
@@ -58,8 +60,7 @@ def fail(folder, message):
         file.write(message.replace("\n", " ") + "\n")
 
 
-# Removes the files of the previous frame. The add-on's zip `addon`, which lies in the same folder,
-# stays.
+# Removes the files of the previous frame, but not the add-on, which lies in the same folder.
 def remove_results(folder, addon="bandsaw_blender.zip"):
     for name in os.listdir(folder):
         if name != addon:
@@ -79,6 +80,8 @@ def main(folder, name="scene", frame=None):
         os.write(1, b"\nbandsaw: done\n")
 
 
+# Writes the scene's files by a render with ExportEngine. `frame`: a number as text; None: the
+# present frame.
 def export(folder, name, frame):
     _folder[0], _name[0] = folder, name
     if not ExportEngine.is_registered:

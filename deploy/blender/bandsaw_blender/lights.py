@@ -37,7 +37,7 @@ def add_light(out, thing, matrix):
 
 
 def node_factor(out, light):
-    """Returns the colour that the light's nodes multiply its power with."""
+    """Returns the colour by which the light's nodes multiply its power."""
     if not light.use_nodes or light.node_tree is None:
         return np.ones(3)
     end = shading.output_node(light.node_tree)
@@ -55,7 +55,8 @@ def node_factor(out, light):
 
 
 def evaluator(out, where, points, light=False):
-    """Returns the Evaluator of the nodes of `where`, a text for warnings. `light`: as Evaluator has it."""
+    """Returns an Evaluator. `where`: the owner of the nodes, a text for warnings. `light`: as in
+    Evaluator."""
     return evaluate.Evaluator(points, out.images.pixels, lambda text: out.warn(f"{where}: {text}"), light)
 
 
@@ -68,9 +69,11 @@ def add_sun(out, thing, placed, place, toward, tint):
 
 
 def finish_suns(out, center, radius):
-    """Adds suns with a size as disks far behind everything. `center`, `radius`: of a sphere around the scene."""
+    """Adds the suns that have a size, as disks far outside the scene. `center` and `radius` are
+    those of a sphere around the scene."""
     for toward, angle, tint in out.suns:
-        # A point of the scene that is `radius` off the axis sees the disk's direction changed by 1 / 4,096.
+        # For a point of the scene at distance `radius` from the disk's axis, the direction to the
+        # disk differs by about 1 / 4,096 radian.
         distance = 4096 * max(radius, 1e-3)
         half = angle / 2
         radiance = tint / (math.pi * math.sin(half) ** 2)
@@ -95,7 +98,7 @@ def add_spot(out, thing, placed, place, toward, tint):
         out.warn(f'the shadows of the spot light "{thing.name}" are hard; its radius is not shown')
     if getattr(light, "use_square", False):
         out.warn(f'the cone of the spot light "{thing.name}" is round, not square')
-    # In Blender, the cone has its full intensity up to this angle from the axis.
+    # Blender's cone has its full intensity up to the angle `inner` from the axis.
     inner = math.acos(min(math.cos(outer) + (1 - math.cos(outer)) * light.spot_blend, 1.0))
     spot = {"position": place, "direction": toward, "intensity": rgb(tint / (4 * math.pi)), "inner_angle": math.degrees(inner),
             "outer_angle": math.degrees(outer), "falloff": "FALLOFF_SMOOTH"}
@@ -113,8 +116,7 @@ def add_area(out, thing, placed, place, toward, tint):
         out.warn(f'the spread of the area light "{thing.name}" is not shown')
     radiance = tint / (area * (math.pi if bpy.app.version >= (4, 0) else 4))  # before Blender 4.0 the power was not that of a Lambertian emitter
     if not round_one:
-        # The order of u and v makes the quad's normal u x v point along the light's -z, also if the
-        # light is mirrored.
+        # The normal u x v of the quad must be along the light's -z, also if the light is mirrored.
         u, v = (across, along) if across.cross(along).dot(Vector(toward)) > 0 else (along, across)
         corner = Vector(place) - across / 2 - along / 2
         out.lamp({"quad": {"corner": vector(corner), "u": vector(u), "v": vector(v)}}, radiance, not thing.visible_camera)
@@ -154,6 +156,7 @@ def add_world(out, world):
             out.scene["fog"] = "fog"
 
 
+# Returns the message Background of a world. Raises Unsupported.
 def world_background(out, world):
     if not world.use_nodes or world.node_tree is None:
         return {"constant": rgb(world.color)}
@@ -169,7 +172,8 @@ def world_background(out, world):
 
 
 def radiance_of(out, output, points, values=None):
-    """Returns the radiance of the world's shader at points, whose generated coordinates are directions."""
+    """Returns the radiance of the world's shader at `points`, whose generated coordinates are
+    directions. `values`: the Evaluator to use; None: a new one."""
     node = output.node
     values = values or evaluator(out, "the world", points, light=True)
     if node.type in ("BACKGROUND", "EMISSION"):
@@ -185,7 +189,8 @@ def radiance_of(out, output, points, values=None):
 
 
 def plain_environment(out, output):
-    """Returns the message Background of a world that is one environment image, only turned and scaled; None: it is more than that."""
+    """Returns the message Background of a world that is one environment image, which may be rotated
+    and multiplied by a strength. Returns None for every other world."""
     node = output.node
     if node.type not in ("BACKGROUND", "EMISSION") or from_node(input_of(node, "Strength")) is not None:
         return None
@@ -237,8 +242,8 @@ def baked_environment(out, output, width=1024):
 
 
 def medium_of(out, output, where):
-    """Returns the message Medium of a volume shader, without a name; None: it cannot be shown, and a warning says so. `where`: the volume's
-    owner, for warnings."""
+    """Returns the message Medium of a volume shader, without a name. If the volume cannot be shown,
+    warns and returns None. `where`: the volume's owner, for warnings."""
     node = output.node
     values = evaluator(out, where, evaluate.Points(1))
     try:

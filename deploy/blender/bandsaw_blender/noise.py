@@ -1,5 +1,5 @@
 """Blender's procedural textures as numpy functions of points: Perlin noise and its fractal, Voronoi
-cells, checker, gradients, waves. Points are arrays of shape (n, 3); results have n rows. The
+cells, checker, gradients and waves. Points are arrays of shape (n, 3); results have n rows. The
 functions follow Blender's definitions, including its hash, so that the patterns are the same."""
 
 import numpy as np
@@ -42,7 +42,8 @@ def _hash_floats(*keys):
 
 
 def _offset(seed):
-    """Returns the shift by which Blender makes a second, independent noise."""
+    """Returns the shift (3) of the points by which Blender gets another, independent noise for each
+    `seed`."""
     one = np.full(1, seed, dtype=np.float32)
     return 100 + 100 * np.array([_hash_floats(one, np.full(1, k, dtype=np.float32))[0] for k in (0, 1, 2)])
 
@@ -72,8 +73,10 @@ def signed(p):
 
 
 def fractal(p, detail, roughness, lacunarity=2.0):
-    """Returns Blender's fractal noise in [0, 1]: octaves of noise, normalised by their amplitudes. `detail`: the number of further octaves,
-    not always whole; `roughness`: the amplitude of an octave over that of the one before; `lacunarity`: the same for the frequency."""
+    """Returns Blender's fractal noise in [0, 1]: a sum of octaves of noise, divided by the sum of
+    their amplitudes. `detail`: number of octaves after the first one, not always whole.
+    `roughness`: the amplitude of an octave divided by the amplitude of the octave before.
+    `lacunarity`: the frequency of an octave divided by the frequency of the octave before."""
     detail = min(max(float(detail), 0.0), 15.0)
     whole = int(detail)
     scale = amplitude = 1.0
@@ -121,7 +124,7 @@ def _hash_point(k):
     return np.stack([_hash(x, y, z).astype(np.float64) / 0xFFFFFFFF, _hash4(x, y, z, four[0]), _hash4(x, y, z, four[1])], axis=1)
 
 
-# Returns numbers in [0, 1] for four uint32 arrays, by lookup3 as _hash().
+# Returns numbers in [0, 1] for four uint32 arrays, row by row. It uses lookup3, like _hash().
 def _hash4(kx, ky, kz, kw):
     start = np.uint32((0xDEADBEEF + (4 << 2) + 13) & 0xFFFFFFFF)
     with np.errstate(over="ignore"):
@@ -171,7 +174,8 @@ def gradient(p, kind):
 
 
 def wave(p, node, distortion, detail, detail_scale, roughness, phase):
-    """Returns the Wave Texture in [0, 1]. `node`: for its kind, direction and profile."""
+    """Returns the Wave Texture in [0, 1]. `node`: the node, which has the kind, the direction and
+    the profile of the waves."""
     q = (p + 0.000001) * 0.999999
     if node.wave_type == "BANDS":
         axis = {"X": q[:, 0], "Y": q[:, 1], "Z": q[:, 2]}.get(node.bands_direction)

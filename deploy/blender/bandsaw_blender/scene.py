@@ -21,12 +21,14 @@ GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
 class Scene:
-    """A scene in the making. `scene`: the message Scene as a dictionary; `files`: from names to bytes or paths; `warnings`: sentences; `suns`: the
-    suns with a size, for lights.finish_suns; `low`, `high`: the box around the scene in Blender's axes. Large files are kept in a temporary folder,
-    which is removed with the scene, because Blender needs the memory."""
+    """A scene in the making. `scene`: the message Scene as a dictionary; `files`: a dictionary from
+    names to bytes or paths; `warnings`: sentences; `suns`: the suns with a size, for
+    lights.finish_suns; `low`, `high`: the box around the scene in Blender's axes. Large files are
+    kept in a temporary folder, because Blender needs the memory. The folder is removed with the
+    scene."""
 
-    MAIN = "scene.json"
-    LARGE = 16 << 20  # bytes
+    MAIN = "scene.json"  # name of the scene file
+    LARGE = 16 << 20  # size in bytes from which a file is large
 
     def __init__(self):
         self.scene = {"texture": [], "material": [], "group": [], "instance": [], "model": [], "shape": [], "light": [], "medium": []}
@@ -42,7 +44,8 @@ class Scene:
             self.warnings.append(text)
 
     def store(self, name, data):
-        """Adds a file; files of the same bytes are one. Returns its name."""
+        """Adds a file and returns its name, which has the suffix of `name`. Equal files are stored
+        once."""
         stored = hashlib.sha256(data).hexdigest()[:24] + os.path.splitext(name)[1]
         if stored not in self.files:
             self.files[stored] = data if len(data) < self.LARGE else self._written(stored, data)
@@ -57,14 +60,14 @@ class Scene:
         return path
 
     def material(self, message):
-        """Adds a material; equal ones are one. Returns its name."""
+        """Adds a material and returns its name. Equal materials are added once."""
         key = json.dumps(message, sort_keys=True)
         if key not in self._materials:
             self._materials[key] = f"m{len(self._materials)}"
             self.scene["material"].append({"name": self._materials[key], **message})
         return self._materials[key]
 
-    # Adds a medium; equal ones are one. Returns its name.
+    # Adds a medium and returns its name. Equal media are added once.
     def medium(self, message):
         key = json.dumps(message, sort_keys=True)
         if key not in self._media:
@@ -93,7 +96,8 @@ class Scene:
         return json.dumps({field: value for field, value in self.scene.items() if value not in ([], "", {})})
 
     def grow(self, box, matrices):
-        """Extends the box around the scene, in Blender's axes, by placements of a mesh; `box`: two corners, in the space of the mesh."""
+        """Extends the box around the scene by placements of a mesh. `box`: two corners of the
+        mesh's box, in the space of the mesh; `matrices`: the placements, in Blender's axes."""
         low, high = box
         corners = np.array([[(low, high)[k >> a & 1][a] for a in range(3)] + [1] for k in range(8)])
         placed = np.einsum("kj,nij->nki", corners, np.array([[list(row) for row in matrix] for matrix in matrices]))[:, :, :3].reshape(-1, 3)
@@ -101,17 +105,20 @@ class Scene:
 
 
 class Shape:
-    """A mesh with its materials, which all its placements share. `parts`: for each material slot, fields of the message Model, its "box", and
-    "in_world": whether its textures depend on where it is; `placements`: pairs of a matrix and, if it moves, the matrices at both
-    ends of the shutter."""
+    """A mesh with its materials, which all its placements share. `parts`: for each material slot a
+    dictionary with fields of the message Model and two more: "box", and "in_world", which is true
+    if the textures depend on the mesh's position in the world. `placements`: pairs of a matrix and,
+    if the object moves, the matrices when the shutter opens and when it closes (otherwise None)."""
 
     def __init__(self, parts):
         self.parts, self.placements = parts, []
 
 
 def build(depsgraph, scene, size, region=None, camera=None, frame_set=None):
-    """Returns the Scene of an evaluated dependency graph in render mode. `size`: (width, height) of the whole image; `region`: (x0, y0, x1, y1) in
-    pixels from the lower left, or None; `frame_set`: a function of (frame, subframe) that moves the graph in time, for motion blur."""
+    """Returns the Scene of an evaluated dependency graph in render mode. `size`: (width, height) of
+    the whole image; `region`: (x0, y0, x1, y1) in pixels from the lower left, or None; `camera`: an
+    object, or None for the scene's camera; `frame_set`: a function of (frame, subframe) that moves
+    the graph in time, for motion blur."""
     out = Scene()
     moved = Moved(depsgraph, scene, frame_set)
     camera = camera or scene.camera
@@ -152,8 +159,9 @@ def build(depsgraph, scene, size, region=None, camera=None, frame_set=None):
 
 
 class Moved:
-    """Finds what moves: the placements at the times when the shutter opens and closes, and the poses of meshes that may deform. Without motion blur
-    there are no placements and poses, and `times` is None."""
+    """The placements of all objects, and the poses of meshes that may deform, at the times when the
+    shutter opens (`before`, `poses_before`) and closes (`after`, `poses_after`). Without motion
+    blur these dictionaries are empty, and `times` is None."""
 
     def __init__(self, depsgraph, scene, frame_set):
         self.times, self.before, self.after = None, {}, {}
@@ -187,7 +195,8 @@ class Moved:
             return
         data = thing.data.as_pointer()
         if thing.name_full in poses:
-            # Geometry nodes place other meshes under the name of their object.
+            # Geometry nodes may place other meshes under the name of their object. Such a name has
+            # no pose.
             if poses[thing.name_full][0] != data:
                 poses[thing.name_full] = data, None
             return
@@ -195,7 +204,8 @@ class Moved:
             poses[thing.name_full] = data, geometry.Pose(mesh) if mesh is not None else None
 
     def ends_of(self, out, thing, mesh):
-        """Returns the Poses of a mesh when the shutter opens and when it closes; None: it does not deform."""
+        """Returns the Poses of a mesh when the shutter opens and when it closes; None if the mesh
+        does not deform, or if its deformation cannot be blurred."""
         if self.times is None or not may_deform(thing):
             return None
         first, last = (poses.get(thing.name_full, (None, None))[1] for poses in (self.poses_before, self.poses_after))
@@ -208,7 +218,7 @@ class Moved:
         return first, last
 
     def of(self, instance):
-        """Returns the two placements of an instance that moves; None: it does not."""
+        """Returns the two placements of an instance that moves; None if it does not move."""
         if self.times is None or not blurred(instance.object, "use_motion_blur"):
             return None
         key = self.key(instance)
@@ -245,8 +255,9 @@ def mesh_of(thing):
 
 
 def key_of(time, matrix, previous=None):
-    """Returns the message Key of a placement at a time, in the axes of scene files, and the placement's rotation. `previous`: the rotation of the
-    key before, so that both are on one side and the rotation takes the shorter way."""
+    """Returns the message Key of a placement at a time, in the axes of scene files, and the
+    placement's rotation, a quaternion. `previous`: the rotation of the key before, or None. The
+    quaternion is negated if this makes the rotation between both keys take the shorter way."""
     location, rotation, scale = (TO_SCENE @ matrix).decompose()
     if previous is not None and rotation.dot(previous) < 0:
         rotation.negate()
@@ -257,7 +268,8 @@ def key_of(time, matrix, previous=None):
     return made, rotation
 
 
-# True if a placement is not a product of a scale, a rotation and a translation, as a Key must be.
+# Returns true if a placement is not a product of a scale, a rotation and a translation, as a Key
+# must be.
 def sheared(matrix):
     location, rotation, scale = matrix.decompose()
     again = Matrix.LocRotScale(location, rotation, scale)
@@ -269,13 +281,15 @@ def sheared(matrix):
 
 
 def view(matrix_world):
-    """Returns the fields of a message Camera that say where it is."""
+    """Returns the fields of a message Camera that give its position and orientation."""
     matrix = TO_SCENE @ matrix_world.normalized()
     turned = matrix.to_3x3()
     place, ahead, up = matrix.translation, -turned.col[2], turned.col[1]
     return {"position": vector(place), "look_at": vector(place + ahead), "up": vector(up)}
 
 
+# Adds the messages Camera and Image. The image has the size of `region`. If the camera moves, its
+# position and orientation get keys at both ends of the shutter. `size`, `region`: as in build().
 def add_camera(out, camera, depsgraph, scene, size, region, moved):
     data = camera.data
     width, height = size
@@ -288,7 +302,7 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
     flat = data.type == "ORTHO"
     message = view(camera.matrix_world)
     # The edges of the image, in the camera's axes. For a perspective camera they are measured at distance 1.
-    axes = (0, 0, 1, 1)
+    axes = (0, 0, 1, 1)  # the axis, x or y, of each edge
     offset = 3 if flat else 2
     sign = -1 if flat else 1
     message["window"] = [(corner + sign * projection[axis][offset]) / projection[axis][axis] for corner, axis in zip(corners, axes)]
@@ -297,7 +311,7 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
     else:
         message["vertical_fov"] = 90.0
     if data.clip_start > 0.1 + 1e-6:  # Blender's default
-        out.warn("what is nearer to the camera than its Clip Start is shown")
+        out.warn("objects that are nearer to the camera than its Clip Start are shown")
     if data.dof.use_dof and flat:
         out.warn("the depth of field of an orthographic camera is not shown")
     elif data.dof.use_dof:
@@ -322,8 +336,8 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
 # ---- geometry ----
 
 
-# Settings of Blender's objects that Bandsaw does not have. For each setting: its name, the value
-# that has an effect in Blender, and the warning about an object that has this value.
+# Settings of objects that Bandsaw does not have. For each: its name, the value that has an effect
+# in Blender, and the text of the warning if the setting has this value.
 IGNORED = (("visible_camera", False, "is seen by the camera, although its setting says that it is not"),
            ("visible_diffuse", False, "is seen by diffuse rays, although its setting says that it is not"),
            ("visible_glossy", False, "is seen by glossy rays, although its setting says that it is not"),
@@ -334,17 +348,21 @@ IGNORED = (("visible_camera", False, "is seen by the camera, although its settin
            ("is_holdout", True, "is shown, although it is a holdout"))
 
 
+# Warns of the settings of an object that have an effect in Blender and none in Bandsaw.
 def name_ignored(out, thing):
     for setting, effective, what in IGNORED:
         if getattr(thing, setting) == effective:
             out.warn(f'"{thing.name}" {what}')
 
 
+# Returns the materials of the object's slots, or those of the mesh if the object has no slots.
 def materials_of(thing, mesh):
     slots = [slot.material for slot in thing.material_slots]
     return slots or [material for material in mesh.materials]
 
 
+# Adds a placement of an object's mesh to `shapes`, a dictionary of Shapes. Converts the mesh if it
+# has no Shape yet. `motion`: the placements at both ends of the shutter, or None.
 def add_geometry(out, shapes, thing, matrix, moved, motion):
     data = thing.data
     key = (data.as_pointer() if thing.type == "MESH" else (thing.name_full, data.as_pointer()),
@@ -358,7 +376,8 @@ def add_geometry(out, shapes, thing, matrix, moved, motion):
         out.warn(f'the motion of "{thing.name}", which is sheared, is not blurred')
         motion = None
     if shape.placements and any(part["in_world"] for part in shape.parts):
-        out.warn(f'textures of the mesh "{data.name}" depend on where it is; all that share it have those of the first one')
+        out.warn(f'textures of the mesh "{data.name}" depend on where it is; '
+                 'all objects that share the mesh have the textures of the first one')
     shape.placements.append((matrix, motion))
 
 
@@ -368,6 +387,7 @@ def parts_of(out, thing, mesh, matrix, ends):
     names = [""] + [name for name in uv_names(materials) if name]
     parts = []
     pieces = geometry.triangles_of(mesh, names, ends)
+    # The names of the uv maps that the triangles have, in the same order.
     real = [layer.name for layer in geometry.uv_layers(mesh, names)]
     size = np.array(mesh.texspace_size, dtype=float) * 2
     low = np.array(mesh.texspace_location, dtype=float) - size / 2
@@ -402,7 +422,8 @@ def uv_names(materials):
 
 
 def material_part(out, material, piece, thing):
-    """Returns fields of Model for a piece of geometry; None: nothing of it is visible."""
+    """Returns fields of the message Model for a piece of geometry; None if nothing of the piece is
+    visible."""
     if material is None:
         return {"material": out.material({"diffuse": {"color": shading.rgb((0.8, 0.8, 0.8))}})}
     medium = interior_of(out, material, thing)
@@ -427,6 +448,8 @@ def material_part(out, material, piece, thing):
     return part
 
 
+# Returns the message Medium of a material's volume, without a name; None if there is none or it
+# cannot be shown.
 def interior_of(out, material, thing):
     if not material.use_nodes or material.node_tree is None:
         return None
@@ -468,7 +491,8 @@ def add_grid(out, thing, matrix):
 
 
 def place(out, shapes):
-    """Writes the placements: as models where there is one, otherwise as instances of a group."""
+    """Writes the placements of all Shapes. A mesh with one placement becomes models; a mesh with
+    several placements becomes a group and its instances."""
     for shape in shapes.values():
         models = [{field: value for field, value in part.items() if field not in ("box", "in_world")} for part in shape.parts]
         if not models:
@@ -485,7 +509,8 @@ def place(out, shapes):
             out.scene["instance"].append({"of": name, **placed(out, *placement)})
 
 
-# Returns the fields of Model and Instance for a placement: a matrix, or keys at both ends of the shutter.
+# Returns the field of Model or Instance for a placement: a matrix, or keys at both ends of the
+# shutter.
 def placed(out, matrix, motion):
     if motion is None:
         return {"matrix": out.rows(TO_SCENE @ matrix)}

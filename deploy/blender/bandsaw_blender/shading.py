@@ -1,15 +1,17 @@
 """Converts Blender's materials to materials of a scene file.
 
-The nodes between the textures and a shader are evaluated (evaluate.py). What is the same everywhere becomes a number; an image that is
-used as it is stays an image; everything else is baked: into an image over the uvs where nothing but uvs matters, otherwise into an atlas that
-has a place of its own for each triangle (geometry.Atlas), which becomes the second uv set of the mesh."""
+The nodes between the textures and a shader are evaluated (evaluate.py). A value that is the same
+everywhere becomes a number. An image whose values are used without change stays an image. All other
+values are baked. A value that depends on uvs alone is baked into an image over the uvs. Every other
+value is baked into an atlas (geometry.Atlas), in which each triangle has texels of its own; the uvs
+of the atlas become the second uv set of the mesh."""
 
 import numpy as np
 
 from . import evaluate, files, geometry
 from .evaluate import Unsupported, from_node, input_of
 
-MOST_BAKED = 2048  # texels a side
+MOST_BAKED = 2048  # largest side of an image that is baked over the uvs, in texels
 
 
 class Value:
@@ -42,7 +44,7 @@ class Value:
         return Value(texture={"product": {"a": self.message(), "b": other.message()}})
 
     def inverse(self):
-        """1 minus the value."""
+        """Returns 1 minus the value."""
         if self.constant is not None:
             return Value(1 - self.constant)
         return Value(texture={"mix": {"a": {"color": rgb((1, 1, 1))}, "b": {"color": rgb((0, 0, 0))}, "amount": self.texture}})
@@ -59,8 +61,10 @@ def rgb(values):
 
 
 class Surface:
-    """A material in the making. `kind`: the field of Material, "" for nothing but emission, or "transparent"; `fields`: its message;
-    `emission`: a Value or None; `opacity`: a Value; `normal`: a Value or None with `normal_scale`."""
+    """A material in the making. `kind`: the name of a field of the message Material, or "" for a
+    surface that does nothing except emit, or "transparent". `fields`: the fields of that field's
+    message. `emission`: a Value or None; `opacity`: a Value; `normal`: the normal map, a Value or
+    None, with `normal_scale`. A Surface of the kind "mix" also has `parts`, its two Surfaces."""
 
     def __init__(self, kind, **fields):
         self.kind, self.fields = kind, fields
@@ -68,9 +72,10 @@ class Surface:
 
 
 class Piece:
-    """A piece of geometry with one material. `triangles`; `low`, `size`: the box of the whole mesh, for generated coordinates; `world`: the
-    matrix that places it, 4 x 4; `uv_names`: the names of the uv sets. `atlas`: made when a texture needs it; `used`: the names
-    of the coordinates that its textures need, as Points has them."""
+    """A piece of geometry with one material. `triangles`: a geometry.Triangles; `low`, `size`: the
+    box of the whole mesh, for generated coordinates; `world`: the 4 x 4 matrix that places the
+    piece; `uv_names`: the names of the uv sets. `atlas`: a geometry.Atlas, made when a texture
+    needs it; `used`: the names of the coordinates that the textures need, as in evaluate.Points."""
 
     def __init__(self, triangles, low, size, world, uv_names):
         self.triangles, self.low, self.size, self.world, self.uv_names = triangles, low, size, world, uv_names
@@ -78,12 +83,13 @@ class Piece:
 
     def make_atlas(self):
         if self.atlas is None:
-            # The atlas takes the place of the second uv set: look-ups in that one are baked too.
+            # The atlas takes the place of the second uv set. Look-ups in the second uv set are
+            # baked too.
             self.atlas = geometry.Atlas(len(self.triangles.indices))
         return self.atlas
 
     def finished(self):
-        """Returns the triangles as they are sent."""
+        """Returns the Triangles to send: with an atlas, its uvs are their second uv set."""
         if self.atlas is None:
             return self.triangles
         corners = self.triangles.corners()
@@ -96,9 +102,9 @@ class Piece:
         atlas = self.make_atlas()
         weights = atlas.weights
         if du or dv:
-            # A triangle's legs are atlas.cell - 4 texels long (geometry.Atlas), so one texel
-            # changes a barycentric coordinate by 1 / (atlas.cell - 4). The second triangle of a
-            # pair is turned by half a turn.
+            # The legs of a triangle are atlas.cell - 4 texels long (geometry.Atlas). So a step of
+            # one texel changes a barycentric coordinate by 1 / (atlas.cell - 4). The second
+            # triangle of a pair is rotated by 180 degrees, so the sign is the opposite one.
             sign = np.where(atlas.triangle % 2 == 0, 1.0, -1.0) / (atlas.cell - 4.0)
             b, c = weights[:, 1] + du * sign, weights[:, 2] + dv * sign
             weights = np.stack([1 - b - c, b, c], axis=1)
@@ -144,8 +150,10 @@ class Images:
         return "ENCODING_SRGB"
 
     def file(self, image, unlimited=True, covered=False):
-        """Returns the name of the image's file in the scene. `unlimited`: its values may exceed 1; otherwise those become 1. `covered`: its colours
-        are multiplied by alpha. Raises Unsupported if there is no file."""
+        """Returns the name of the image's file in the scene. `unlimited`: values may exceed 1;
+        otherwise larger values become 1. `covered`: the colours are multiplied by alpha. Raises
+        Unsupported if the image has no file."""
+        # lower: the file needs limited values; darker: it needs colours multiplied by alpha.
         lower = not unlimited and image.is_float and bool(self.pixels(image)[:, :, :3].max() > 1)
         darker = covered and bool(self.pixels(image)[:, :, 3].min() < 1)
         key = image.name_full, lower, darker
@@ -156,6 +164,8 @@ class Images:
                 self._files[key] = self._encoded(image, evaluate.multiplied(self.pixels(image))) if darker else self._stored(image)
         return self._files[key]
 
+    # Stores the image's own file if Bandsaw reads its format and the image was not changed in
+    # Blender. Otherwise encodes the pixels. Returns the file's name.
     def _stored(self, image):
         suffix = self.READABLE.get(image.file_format)
         if image.source == "FILE" and not image.is_dirty and suffix is not None:
@@ -169,8 +179,8 @@ class Images:
                 raise Unsupported(f'the image "{image.name}", whose file is missing ({path})')
         return self._encoded(image, self.pixels(image))
 
-    # Stores `pixels`, linear, as EXR if `image` is a float image, otherwise as PNG in the image's
-    # encoding. Returns the file's name.
+    # Stores `pixels` as an OpenEXR file if the image has floats, otherwise as a PNG file. Returns
+    # the file's name.
     def _encoded(self, image, pixels):
         pixels = pixels[::-1, :, :3]
         if image.is_float:
@@ -199,7 +209,8 @@ class Shader:
         return made
 
     def constant(self, socket):
-        """Returns the value if it is the same everywhere; None: it is not. Raises Unsupported."""
+        """Returns the value of an input, an array of 3, if it is the same everywhere; otherwise
+        None. Raises Unsupported."""
         try:
             value = self.evaluator(evaluate.Points(1)).socket(socket)
         except evaluate.NeedsCoordinates:
@@ -207,8 +218,9 @@ class Shader:
         return value[0] if value.ndim == 2 else np.repeat(value[:1], 3)
 
     def value(self, socket, is_number=False, default=0.0, unlimited=False):
-        """Returns the Value of an input; `default` if the shader has no such input. `unlimited`: it may exceed 1, as emission does; otherwise it is
-        limited to [0, 1]. If it cannot be evaluated, warns and returns the input's own value."""
+        """Returns the Value of an input, or of `default` if the shader has no such input.
+        `unlimited`: the value may exceed 1, as emission does; otherwise it is limited to [0, 1]. If
+        the input cannot be evaluated, warns and returns the input's own value."""
         if socket is None:
             return Value(default)
         limit = (lambda value: value) if unlimited else limited
@@ -227,9 +239,8 @@ class Shader:
         return self.value(input_of(node, *names), True, default, unlimited)
 
     def plain(self, node, *names, default=0.0):
-        """Returns a number for a field that takes no texture. For a baked texture, warns and
-        returns its mean. For an image that is used as it is, warns and returns the input's own
-        value, because the mean is not known."""
+        """Returns a number for a field that takes no texture. For a texture, warns and returns its
+        mean."""
         socket = input_of(node, *names)
         value = self.value(socket, True, default, unlimited=True)
         if value.constant is None:
@@ -238,7 +249,8 @@ class Shader:
         return value.number
 
     def direct_image(self, socket, unlimited=False):
-        """Returns the Value of an image that is used as it is; None: it has to be baked. `unlimited`: its values may exceed 1."""
+        """Returns the Value of an input that is an image without any change; None if the input has
+        to be baked. `unlimited`: values may exceed 1."""
         output = from_node(socket)
         if output is None or output.node.type != "TEX_IMAGE" or output.name != "Color" or self.in_group(output):
             return None
@@ -259,7 +271,8 @@ class Shader:
         return output.node.id_data != self.tree
 
     def placement(self, node):
-        """Returns how the image of a node lies on the first uv set, as fields of ImageTexture; None: it does not lie on that set."""
+        """Returns the fields of ImageTexture that place the image of a node on the first uv set;
+        None if the image is placed in another way."""
         output = from_node(input_of(node, "Vector"))
         fields = {}
         if output is not None and output.node.type == "MAPPING" and output.node.vector_type == "POINT" and not self.in_group(output):
@@ -284,8 +297,9 @@ class Shader:
             return None
         return fields if name in ("", self.piece.uv_names[0]) else None
 
-    # Returns the Value of an input as an image: over the uvs if they lie in [0, 1] and nothing else matters, otherwise in the atlas. `unlimited`:
-    # its values may exceed 1.
+    # Returns the Value of an input as a baked image. The image lies over the uvs if the uvs are in
+    # [0, 1] and the input depends on nothing else; otherwise it is an atlas. `unlimited`: values
+    # may exceed 1.
     def baked(self, socket, is_number, unlimited=False):
         uvs = self.piece.triangles.uvs
         if uvs and uvs[0].min() >= -1e-6 and uvs[0].max() <= 1 + 1e-6:
@@ -304,8 +318,9 @@ class Shader:
         return self.stored(value, (side, side), is_number, unlimited, {"uv_set": "UV_SET_SECOND", "wrap": "WRAP_CLAMP"})
 
     def bake_size(self, socket):
-        """Returns the width and height for baking an input: those of the largest image among the nodes before it, and at least 1,024 with a
-        procedural texture; at most MOST_BAKED."""
+        """Returns the width and the height for baking an input. They are those of the largest image
+        among the nodes before it, at least 256, at least 1,024 with a procedural texture or a
+        group, and at most MOST_BAKED."""
         width, height, seen, waiting = 256, 256, set(), [from_node(socket)]
         while waiting:
             output = waiting.pop()
@@ -320,8 +335,9 @@ class Shader:
             waiting.extend(from_node(s) for s in node.inputs)
         return min(width, MOST_BAKED), min(height, MOST_BAKED)
 
-    # Stores baked values as an image of `size` (width, height), rows from the bottom. Returns its Value, whose `mean` is set. `unlimited`: values
-    # may exceed 1; otherwise they are limited to [0, 1]. `fields`: of ImageTexture.
+    # Stores baked values, rows from the bottom, as an image of `size` (width, height). Returns its
+    # Value, whose `mean` is set; a single value becomes a constant. `unlimited`: values may exceed
+    # 1; otherwise they are limited to [0, 1]. `fields`: further fields of ImageTexture.
     def stored(self, value, size, is_number, unlimited, fields):
         width, height = size
         value = np.nan_to_num(evaluate.number(value) if is_number else evaluate.color(value))
@@ -354,7 +370,7 @@ class Shader:
         except (Unsupported, ValueError) as error:
             self.warn(f"{error} cannot be shown; the surface keeps its own normal")
 
-    # Returns the normal map that a node gives, a Value, and its scale. Raises Unsupported.
+    # Returns the normal map of a node, a Value, and its scale. Raises Unsupported.
     def normal_of(self, output):
         node = output.node
         if node.type == "NORMAL_MAP" and node.space == "TANGENT":
@@ -370,7 +386,8 @@ class Shader:
         raise Unsupported(f'the node "{node.name}" ({node.bl_label}) as a normal')
 
     def bump(self, node):
-        """Returns a normal map in the atlas: the slope of the height at each texel, by differences of half a texel to both sides."""
+        """Returns a normal map in the atlas, a Value. It follows from the slope of the height at
+        each texel. The slope is the difference between the heights half a texel to both sides."""
         height = input_of(node, "Height")
         if from_node(height) is None:
             raise Unsupported("a bump without height")
@@ -380,15 +397,16 @@ class Shader:
         distance = self.constant(input_of(node, "Distance"))
         distance = 1.0 if distance is None else float(distance[0])
         distance *= -1.0 if node.invert else 1.0
-        # The slopes along u and v, and the edges of the triangle in the world for one texel (along_u, along_v), give the gradient of the
-        # height on the surface; the normal n is bent against it.
+        # The gradient of the height on the surface follows from the slopes along u and v, and from
+        # the vectors in the world that belong to one texel (along_u, along_v). The normal n is bent
+        # against the gradient.
         atlas = self.piece.make_atlas()
 
         def at(du, dv):
             value = evaluate.number(self.evaluator(self.piece.points(du, dv)).socket(height))
             return np.broadcast_to(value, atlas.triangle.shape)
 
-        slope_u, slope_v = at(0.5, 0) - at(-0.5, 0), at(0, 0.5) - at(0, -0.5)  # per texel
+        slope_u, slope_v = at(0.5, 0) - at(-0.5, 0), at(0, 0.5) - at(0, -0.5)  # for one texel
         corners = self.piece.triangles.positions.astype(np.float64)[self.piece.triangles.indices]
         linear = np.array(self.piece.world)[:3, :3]
         corners = corners @ linear.T
@@ -406,7 +424,7 @@ class Shader:
         bent /= np.maximum(np.linalg.norm(bent, axis=1, keepdims=True), 1e-30)
         bent = strength * bent + (1 - strength) * n
         bent /= np.maximum(np.linalg.norm(bent, axis=1, keepdims=True), 1e-30)
-        # Converts the bent normal to the tangent frame of the atlas's uvs.
+        # Converts the bent normal to the tangent frame (x, y, n) of the atlas's uvs.
         x = pu - n * (pu * n).sum(axis=1, keepdims=True)
         x /= np.maximum(np.linalg.norm(x, axis=1, keepdims=True), 1e-30)
         y = np.cross(n, x)
@@ -420,7 +438,7 @@ class Shader:
     # ---- shaders ----
 
     def surface(self):
-        """Returns the Surface of the material; None: it is a volume alone."""
+        """Returns the Surface of the material; None if the material is a volume alone."""
         if not self.blender.use_nodes or self.blender.node_tree is None:
             self.tree = None
             return self.plain_surface()
@@ -583,7 +601,8 @@ class Shader:
         return self.mixture(a, b, factor)
 
     def fresnel_index(self, node):
-        """Returns the index of a Fresnel node that controls the mixture, or of a Layer Weight node's Fresnel output; None: another control."""
+        """Returns the index of refraction of the Fresnel node that controls a mixture, or of the
+        Fresnel output of a Layer Weight node. Returns None for every other control."""
         output = from_node(node.inputs[0])
         try:
             if output is not None and output.node.type == "FRESNEL":
@@ -595,6 +614,8 @@ class Shader:
             pass
         return None
 
+    # Returns the Value of a Mix Shader's factor. A factor that depends on the view becomes its
+    # mean.
     def factor(self, node):
         output = from_node(node.inputs[0])
         if output is not None and output.node.type in ("FRESNEL", "LAYER_WEIGHT"):
@@ -605,6 +626,8 @@ class Shader:
             return Value(f0 + (1 - f0) / 21 if output.name != "Facing" else 0.5)  # the mean of Schlick's Fresnel over a cosine
         return self.value(node.inputs[0], True)
 
+    # Returns the types of the two shader nodes that a Mix Shader mixes; "" for an input without a
+    # link.
     def kinds(self, node):
         found = []
         for socket in list(node.inputs)[1:3]:
@@ -613,7 +636,7 @@ class Shader:
         return tuple(found)
 
     def mixture(self, a, b, factor):
-        """Returns the Surface that is a where factor is 0, and b where it is 1."""
+        """Returns the Surface that is `a` where `factor` is 0, and `b` where `factor` is 1."""
         if a.kind == "transparent" and b.kind == "transparent":
             return a
         if a.kind == "transparent":
@@ -660,10 +683,11 @@ class Shader:
         return made
 
     def old_diffuse(self, metallic, roughness, index):
-        """Returns the factor on a base colour that makes a surface as bright as with the Principled
-        BSDF before Blender 4. That BSDF adds its reflection to the diffuse part; here, the diffuse
-        part gets only the light that is not reflected. Its diffuse part (Burley 2012) also depends
-        on the roughness. The factor is fitted to the values in deploy/blender/README.md."""
+        """Returns the factor by which a base colour is multiplied to make a surface as bright as
+        with the Principled BSDF of Blender before version 4. That BSDF adds its reflection to its
+        diffuse part. In Bandsaw, the diffuse part gets only the light that is not reflected. That
+        BSDF's diffuse part (Burley 2012) also depends on the roughness. The formula is fitted to
+        the values in deploy/blender/README.md."""
         if self.version >= (4, 0, 0) or metallic.constant is None or roughness.constant is None:
             return 1.0
         r, f0 = roughness.number, ((index - 1) / (index + 1)) ** 2
@@ -671,7 +695,8 @@ class Shader:
         return 1 + (factor - 1) * (1 - min(max(metallic.number, 0.0), 1.0))
 
     def index(self, node):
-        """Returns the index of refraction with the reflection at normal incidence that Blender's inputs give."""
+        """Returns the index of refraction that reflects as much at normal incidence as Blender's
+        inputs say."""
         level = input_of(node, "Specular IOR Level")
         if level is not None:
             index = self.plain(node, "IOR", default=1.5)
@@ -697,6 +722,7 @@ class Shader:
         if tint is not None and not self.value(tint).is_constant(1):
             self.warn("the tint of a coat is not shown")
 
+    # Warns of the features of a Principled BSDF that the node uses and that are not shown.
     def name_omitted(self, node):
         for names, what in ((("Subsurface", "Subsurface Weight"), "subsurface scattering is shown as a diffuse surface"), (("Sheen", "Sheen Weight"), "sheen is not shown"),
                             (("Anisotropic",), "anisotropic reflection is shown isotropic"), (("Thin Film Thickness",), "a thin film is not shown"),
@@ -714,7 +740,8 @@ def parameter(value):
 
 
 def added(a, b):
-    """Returns the sum of two emissions. Textures can be mixed but not added, so it is twice their mean."""
+    """Returns the sum of two emissions. Textures can be mixed but not added, so the sum is twice
+    their mean."""
     if a.constant is not None and b.constant is not None:
         return Value(a.constant + b.constant)
     mean = Value(texture={"mix": {"a": a.message(), "b": b.message()}})
@@ -728,7 +755,8 @@ def output_node(tree):
 
 
 def message(surface, out):
-    """Returns the Material message of a Surface, without a name. Materials that it is mixed of are added to `out`."""
+    """Returns the message Material of a Surface, without a name. If the Surface is a mixture, the
+    materials of its parts are added to `out`."""
     fields, emission, opacity = dict(surface.fields), surface.emission, surface.opacity
     if surface.kind == "mix":
         for part in surface.parts:  # both parts get the emission and the opacity of the mixture
@@ -745,7 +773,8 @@ def message(surface, out):
         if plain and surface.kind != "transparent":
             return {"diffuse": {"texture": color}}
         if surface.kind == "diffuse" and surface.normal is not None and out.version >= (4, 0, 0):
-            # Cycles of Blender 4 keeps a normal that faces away from the viewer; before, and in glTF's material, it is turned towards the viewer.
+            # In Blender 4, Cycles keeps a normal that faces away from the viewer. Before Blender 4,
+            # and in glTF's material, such a normal is turned towards the viewer.
             return with_properties("diffuse", {"texture": color}, surface, emission, opacity)
         # glTF's material without reflection is a diffuse surface, with fields for alpha, emission and normals.
         fields = {"base_color_texture": color, "metallic": 0.0, "roughness": 1.0, "index_of_refraction": 1.0}
