@@ -3,7 +3,7 @@
 const GIGABYTE = 2 ** 30;
 // Limit of the memory that scenes may take in one instance of bandsaw.wasm. It is below the limit
 // of a 32-bit WebAssembly instance, which has at most 4 GB of memory for everything.
-const MOST_OF_AN_INSTANCE = 3.5 * GIGABYTE;
+const MAX_INSTANCE_BYTES = 3.5 * GIGABYTE;
 
 /// Returns the number of bytes that the scenes of all cores together may take: half of the device's
 /// memory. If the browser does not report the device's memory, 4 GB are assumed.
@@ -42,7 +42,7 @@ export function startEngine({secret, base = location.origin, cores = 1, name = "
   };
   const send = (message) => over || worker.postMessage(message);
   send({call: "start", secret, base, cores, name: name || describe(), build: `WebAssembly, ${describe()}`,
-    memory: memory(), mostOfAnInstance: MOST_OF_AN_INSTANCE});
+    memory: memory(), maxInstanceBytes: MAX_INSTANCE_BYTES});
   return {
     setCores: (count) => send({call: "cores", count}),
     /// Finishes the bands that are held, and takes no more. `why`: a sentence.

@@ -4,12 +4,12 @@
 
 // Maximum number of loaded scenes. In a sequence they are those of the present frame and of the
 // next one.
-const SCENES = 2;
+const MAX_SCENES = 2;
 // Number of blobs that are fetched in advance, while the web worker copies earlier ones.
-const AHEAD = 4;
+const BLOBS_AHEAD = 4;
 // A scene is assumed to take so many bytes of memory for each byte of its blobs
 // (coordinator/scheduler/README.md).
-export const SCENE_PER_BYTE = 4;
+export const MEMORY_PER_BLOB_BYTE = 4;
 
 /// The renderer has ended; another one can be started in its place. `sceneBytes`: if the renderer
 /// had or was loading exactly one scene, the number of bytes of that scene's blobs; otherwise 0.
@@ -122,13 +122,13 @@ export class Renderer {
   /// Loads a scene, as load(). First drops other scenes, until there is a place and memory for this
   /// one.
   async loadBlobs(scene, get, step) {
-    while (this.scenes.size >= SCENES) await this.drop();
+    while (this.scenes.size >= MAX_SCENES) await this.drop();
     const manifest = await get(scene);
     this.loading = manifest.byteLength;
     let blobs = await this.ask("begin", {scene, manifest});
     const size = manifest.byteLength + blobs.reduce((sum, blob) => sum + blob.size, 0);
     const loaded = [...this.scenes.values()].reduce((sum, one) => sum + one.size, 0);
-    if (this.scenes.size > 0 && SCENE_PER_BYTE * (size + loaded) > this.memoryBytes) {
+    if (this.scenes.size > 0 && MEMORY_PER_BLOB_BYTE * (size + loaded) > this.memoryBytes) {
       while (this.scenes.size > 0) await this.drop();
       // Now `blobs` also has the blobs that this scene shared with a dropped scene.
       blobs = await this.ask("begin", {scene, manifest});
@@ -141,7 +141,7 @@ export class Renderer {
       bytes.catch(() => {});  // the loop below awaits the promise and handles its error
       fetched.push(bytes);
     };
-    for (let i = 0; i < AHEAD; ++i) fetchNext();
+    for (let i = 0; i < BLOBS_AHEAD; ++i) fetchNext();
     for (let i = 0; i < blobs.length; ++i) {
       const bytes = await fetched[i];
       fetched[i] = null;

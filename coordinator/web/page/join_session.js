@@ -4,20 +4,20 @@
 // never computes for long, so that heartbeats go on.
 
 import {Blobs, Final, LinkEnded, sentence} from "/join_blobs.js";
-import {Renderer, RendererEnded, SCENE_PER_BYTE} from "/join_renderer.js";
+import {Renderer, RendererEnded, MEMORY_PER_BLOB_BYTE} from "/join_renderer.js";
 import {Alarm, Backoff} from "/join_wait.js";
 import {Program, fromBase64} from "/join_wasm.js";
 
 const PIECE_S = 0.1;            // rendering time of the rows that a renderer is given at once
 const RATE_OVER_S = 8;          // samplesPerSecond is the mean over this time
 const STATE_EVERY_MS = 200;     // the page gets the state at most this often
-const OTHER_CORES_MS = 1000;    // time from a change of the cores to the report
+const REPORT_CORES_MS = 1000;   // time from a change of the cores to the report
 const SILENCE_MS = 15000;       // after this silence, tests if the coordinator answers HTTP
 const ANSWER_MS = 10000;        // time limit for the answer to that request
 const FULL_DISK_MS = 5000;      // wait if the coordinator's disk is full
 // A finished band may be refused so many times with the status 403 or 409. A restarted coordinator
 // refuses it until it has leased the band to this tab again.
-const NOT_ADMITTED_TIMES = 20;
+const MAX_REFUSALS = 20;
 const LOG_LINES = 50;
 
 const alarm = new Alarm();      // rings when the coordinator has admitted this tab
@@ -87,7 +87,7 @@ function setPhase(phase, text) {
 }
 
 /// Sets the phase of the state from what the session does now.
-function look() {
+function updatePhase() {
   if (over) return;
   const held = tasks.size;
   const rendering = [...tasks.values()].some((task) => task.rowsGiven > task.first);
@@ -167,7 +167,7 @@ function lost() {
   connected = false;
   clearInterval(beating);
   program.bytes("session_disconnected", session);
-  look();
+  updatePhase();
 }
 
 /// Handles the end of the stream: ends the engine if the link has ended, otherwise connects again
@@ -225,7 +225,7 @@ function receive(message) {
   if (!connected) welcomed();
   if (orders.start) take(orders.start);
   if (orders.dismissal) dismiss(orders.dismissal);
-  look();
+  updatePhase();
 }
 
 /// Begins heartbeats and wakes sendBands() if the coordinator has admitted this tab.
@@ -293,7 +293,7 @@ function fail(task, reason) {
   log(`failed job=${task.job} rows=${task.first}:${task.last}: ${reason}`);
   send(program.bytes("session_failed", session, task.id, reason, lastLines.join("\n")));
   leaveIfDrained();
-  look();
+  updatePhase();
 }
 
 /// Gives work to the renderers that have none.
@@ -308,7 +308,7 @@ function pump() {
       renderer.busy = false;
       if (renderer.ended) replace(renderer);
       if (renderer.leaving) renderer.end("fewer cores are wanted");
-      look();
+      updatePhase();
       pump();
     });
   }
@@ -333,7 +333,7 @@ function failed(renderer, task, error) {
 /// most three quarters of this size.
 function takeOnlySmaller(job, sceneBytes) {
   tooLarge = `The scene of job ${job} needs more memory than this browser gives; other machines render it.`;
-  mostSceneMemory = Math.min(mostSceneMemory, 0.75 * SCENE_PER_BYTE * sceneBytes);
+  mostSceneMemory = Math.min(mostSceneMemory, 0.75 * MEMORY_PER_BLOB_BYTE * sceneBytes);
   setCores(state.cores);
   program.bytes("session_offer", session, state.cores, state.memoryBytes);
   if (connected) reconnect();
@@ -361,7 +361,7 @@ async function loadScene(renderer, task) {
   };
   step(1);
   beat();
-  look();
+  updatePhase();
   const wanted = () => !over && [...tasks.values()].some((one) => one.scene === task.scene);
   const began = performance.now();
   await renderer.load(task.scene, (digest) => blobs.get(digest, wanted, step), () => step(1));
@@ -386,7 +386,7 @@ async function renderRows(renderer, task) {
     beat();
   }
   task.rowsGiven = last;
-  look();
+  updatePhase();
   renderer.step = () => {
     if (tasks.get(task.id) === task) program.bytes("session_rendering", session, task.id, 0, new Uint8Array(0));
   };
@@ -480,7 +480,7 @@ async function sendOnce(band) {
   }
   log(`kept job=${task.job} rows=${task.first}:${task.last}: ${why}`);
   const final = response.status === 400 || response.status === 404 || response.status === 413 ||
-    ((response.status === 403 || response.status === 409) && ++band.refusals > NOT_ADMITTED_TIMES);
+    ((response.status === 403 || response.status === 409) && ++band.refusals > MAX_REFUSALS);
   if (final) {
     fail(task, why);
     return 0;
@@ -496,7 +496,7 @@ function sent({task}, outcome) {
   ++state.bandsDone;
   log(`${outcome} job=${task.job} rows=${task.first}:${task.last}`);
   leaveIfDrained();
-  look();
+  updatePhase();
   show();
 }
 
@@ -516,7 +516,7 @@ function leaveIfDrained() {
 
 function setCores(count) {
   state.cores = Math.max(1, Math.floor(count));
-  state.memoryBytes = Math.floor(Math.min(options.memory / state.cores, options.mostOfAnInstance, mostSceneMemory));
+  state.memoryBytes = Math.floor(Math.min(options.memory / state.cores, options.maxInstanceBytes, mostSceneMemory));
   while (renderers.length < state.cores) renderers.push(new Renderer(module, state.memoryBytes));
   for (const renderer of renderers.splice(state.cores)) {
     renderer.leaving = true;
@@ -540,14 +540,14 @@ const calls = {
     session = program.run("session_new", instance, given.name, given.build, state.cores, state.memoryBytes) >>> 0;
     program.read(program.run("session_answer", session));
     blobs = new Blobs(given.base, given.secret, sha256);
-    look();
+    updatePhase();
     if (!pausedWhy) connect();
   },
   cores({count}) {
     setCores(count);
     program.bytes("session_offer", session, state.cores, state.memoryBytes);
     clearTimeout(offering);
-    offering = setTimeout(() => connected && reconnect(), OTHER_CORES_MS);
+    offering = setTimeout(() => connected && reconnect(), REPORT_CORES_MS);
   },
   /// `why`: a sentence that begins a pause, or null, which ends the pause.
   pause({why}) {
@@ -560,7 +560,7 @@ const calls = {
       program.bytes("session_resume", session);
       reconnect();
     }
-    look();
+    updatePhase();
   },
   stop() {
     end("stopped", "Stopped. Bands that were not finished are rendered by others.");
