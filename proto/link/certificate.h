@@ -1,7 +1,8 @@
 #pragma once
 
-// Keys and self-signed certificates, by OpenSSL: the coordinator makes its own (identity.h), and
-// whoever connects to it compares the certificate's digest with that in the join string.
+// Keys and self-signed certificates, by OpenSSL. The coordinator makes a key and a certificate for
+// itself (identity.h). Each client compares the digest of this certificate with the digest in the
+// join string.
 
 #include <string>
 
@@ -32,15 +33,15 @@ struct Validity {
   double from = 0;
   double until = 0;
 };
-/// INVALID_ARGUMENT: not a certificate.
+/// Returns the validity period. INVALID_ARGUMENT: not a certificate.
 absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem);
 
-/// Checks that the machine's clock is within the certificate's validity. UNAVAILABLE: it is not, or
-/// this is not a certificate.
+/// Checks that the machine's clock is within the certificate's validity. UNAVAILABLE: the clock
+/// is outside of the validity, or `certificate_pem` is not a certificate.
 absl::Status check_clock(const std::string& certificate_pem);
 
-/// Checks that the key belongs to the certificate. INVALID_ARGUMENT: it is not a private key, or it
-/// belongs to another certificate.
+/// Checks that the key belongs to the certificate. INVALID_ARGUMENT: `key_pem` is not a private
+/// key, `certificate_pem` is not a certificate, or the key belongs to another certificate.
 absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem);
 
 }  // namespace bandsaw::link

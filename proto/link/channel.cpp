@@ -99,9 +99,9 @@ absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseco
   std::vector<std::string> reasons;
   std::size_t wrong = 0;  // number of addresses that presented another certificate
   // True if one of these addresses is on another machine. If only servers on this machine present
-  // another certificate, the wanted farm may still exist: the join string names addresses that
-  // every machine has (loopback, those of bridges for containers), and this machine may run another
-  // farm.
+  // another certificate, the wanted farm may still exist. The reason is that this machine may run
+  // another farm, and that the join string names addresses that every machine has (loopback,
+  // bridges for containers).
   bool wrong_elsewhere = false;
   for (const std::string& address : join.addresses) {
     const Deadline deadline{std::chrono::steady_clock::now() + timeout, stopped};

@@ -20,10 +20,10 @@ namespace bandsaw::link {
 /// Metadata key of the secret.
 inline constexpr char kSecretKey[] = "bandsaw-secret";
 
-/// Lets gRPC look up host names with the system's resolver, which knows names of mDNS such as
-/// studio.local, and those of NIS. gRPC's own resolver knows /etc/hosts and DNS only. MUST be
-/// called before the first channel is made, while the process has one thread, because it sets a
-/// variable of the environment (GRPC_DNS_RESOLVER; a value that the user has set is kept).
+/// Lets gRPC look up host names with the system's resolver, which knows the names of mDNS, such as
+/// studio.local, and of NIS. gRPC's own resolver knows /etc/hosts and DNS only. The function sets
+/// the environment variable GRPC_DNS_RESOLVER, unless the user has set it. So it MUST be called
+/// before the first channel is made, while the process has one thread.
 void use_system_resolver();
 
 /// A connection to the address that answered with the certificate of the join string.
@@ -37,8 +37,8 @@ struct Connected {
 /// Stops soon after `stopped` returns true (UNAVAILABLE); see Deadline.
 /// Verifies the server's identity only; a wrong secret or role is detected by the first call.
 /// UNAVAILABLE: no address answered, or this machine's clock is outside the certificate's validity
-/// (the message gives the reason for each address). UNAUTHENTICATED: a server answered with another
-/// certificate, on another machine or at all addresses.
+/// (the message gives the reason for each address). UNAUTHENTICATED: a server on another machine
+/// presented another certificate, or the servers at all addresses did.
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout,
                                   const std::function<bool()>& stopped = {});
 

@@ -31,6 +31,7 @@ std::string to_text(const Identity& identity) {
                       identity.farm_secret, "\n", identity.certificate_pem, identity.key_pem);
 }
 
+/// Returns the error for an identity file that cannot be used because of `what`.
 absl::Status damaged(const std::string& path, absl::string_view what) {
   return absl::DataLossError(absl::StrCat(
       path, ": the farm's identity is damaged: ", what,
@@ -38,6 +39,7 @@ absl::Status damaged(const std::string& path, absl::string_view what) {
       "new join string)"));
 }
 
+/// Parses the text of an identity file. `path` is for error messages.
 absl::StatusOr<Identity> from_text(const std::string& text, const std::string& path) {
   const std::vector<std::string> lines = absl::StrSplit(text, absl::MaxSplits('\n', 3));
   if (lines.size() != 4 || lines[0] != kHeading || !absl::StartsWith(lines[1], kWorkerLine) ||
@@ -142,7 +144,7 @@ absl::StatusOr<Role> role_of_secret(const Identity& identity, const std::string&
     return Role::kFarm;
   }
   return absl::UnauthenticatedError(
-      "the secret is not one of this farm's: is the join string of another farm, or an old one?");
+      "the secret is not one of this farm's: is the join string old, or that of another farm?");
 }
 
 }  // namespace bandsaw::link

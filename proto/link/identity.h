@@ -35,7 +35,8 @@ inline constexpr char kServerName[] = "bandsaw";
 /// secret belongs to no role.
 absl::StatusOr<Role> role_of_secret(const Identity& identity, const std::string& secret);
 
-/// Compares secrets; the time reveals their length only.
+/// Returns true if the secrets are equal. The time that the comparison takes reveals nothing except
+/// the lengths of the secrets.
 bool is_same_secret(const std::string& a, const std::string& b);
 
 }  // namespace bandsaw::link

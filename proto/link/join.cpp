@@ -20,6 +20,7 @@
 namespace bandsaw::link {
 namespace {
 
+/// Every join string begins with this; the number is the version of the format.
 constexpr char kForm[] = "bsw1-";
 constexpr char kPlain[] = "plain";
 constexpr std::size_t kDigestLength = 43;  // 32 bytes, base64url without padding
@@ -72,8 +73,9 @@ absl::StatusOr<std::vector<std::string>> parse_addresses(absl::string_view text)
   return addresses;
 }
 
-/// Splits "-TAIL" off the end of `rest`; the tail has `length` characters. Digest and secret may
-/// contain dashes, so the string cannot be split at dashes.
+/// Removes "-TAIL" from the end of `rest` and sets `tail`, which has `length` characters. Returns
+/// false if there is no dash at that place. Digest and secret may contain dashes, so the string
+/// cannot be split at dashes.
 bool take_tail(absl::string_view& rest, std::size_t length, absl::string_view& tail) {
   if (rest.size() < length + 1 || rest[rest.size() - length - 1] != '-') {
     return false;

@@ -3,13 +3,14 @@
 // The join string: one line with everything that a machine needs to connect to a farm.
 //
 //   bsw1-w-192.168.1.5:7878,10.0.0.5:7878-<43>-<22>
-//   format version, role (w worker, f farm user), addresses,
-//   base64url of the certificate's SHA-256 (43 characters), of the secret (128 bits, 22 characters)
+//   format version; role (w: worker, f: farm user); addresses;
+//   SHA-256 of the certificate in base64url (43 characters);
+//   secret of 128 bits in base64url (22 characters)
 //
 // An IPv6 address is written in brackets. A coordinator without TLS (--insecure) writes "plain"
-// instead of the digest. The users' string also has the dashboard's place after the addresses, for
-// programs that speak HTTP (deploy/python/bandsaw.py): "+8787" is a port of the same hosts,
-// "+127.0.0.1:8787" another address.
+// instead of the digest. The users' string also names the dashboard, after the addresses, for
+// programs that speak HTTP (deploy/python/bandsaw.py). "+8787" is a port of the hosts in the
+// addresses, and "+127.0.0.1:8787" is an address of its own.
 
 #include <optional>
 #include <string>
@@ -40,8 +41,8 @@ absl::StatusOr<JoinString> parse_join_string(const std::string& text);
 /// standard input.
 absl::StatusOr<JoinString> join_string_from(const std::string& text);
 
-/// Overwrites the join strings in the process's arguments, which every user of the machine could
-/// list while it runs. Must be called after the arguments are parsed.
+/// Overwrites the join strings in the process's arguments, because every user of the machine can
+/// list the arguments while the process runs. MUST be called after the arguments are parsed.
 void hide_join_strings(absl::Span<char* const> arguments);
 
 }  // namespace bandsaw::link

@@ -14,11 +14,11 @@ namespace bandsaw::link {
 absl::Status make_private_folder(const std::string& folder);
 
 /// Reads a file of at most 1 MiB. NOT_FOUND: no such file. PERMISSION_DENIED: not readable by this
-/// user, or readable by others (the message says how to repair it). RESOURCE_EXHAUSTED: longer.
+/// user, or readable by others (the message says how to repair it). RESOURCE_EXHAUSTED: larger.
 absl::StatusOr<std::string> read_private_file(const std::string& path);
 
-/// Writes a file of mode 0600 by temporary file, fsync, rename and fsync of the folder. If it
-/// fails, the previous file is kept.
+/// Writes a file of mode 0600 by temporary file, fsync, rename and fsync of the folder. After an
+/// error the previous file is kept, unless only the fsync of the folder failed.
 absl::Status write_private_file(const std::string& path, const std::string& text);
 
 }  // namespace bandsaw::link

@@ -1,5 +1,7 @@
 #pragma once
 
+// Random bytes, unique ids and secrets.
+
 #include <cstddef>
 #include <string>
 
@@ -12,9 +14,9 @@ std::string random_bytes(std::size_t count);
 /// Returns `count` random bytes as 2 x count hexadecimal digits, for unique ids.
 std::string random_hex(std::size_t count);
 
-/// Characters of a secret: 128 bits as base64url.
+/// Number of characters of a secret, which is 128 bits as base64url.
 inline constexpr std::size_t kSecretLength = 22;
-/// Returns a random secret.
+/// Returns a random secret for a join string (join.h).
 std::string make_secret();
 
 }  // namespace bandsaw::link

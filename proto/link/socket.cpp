@@ -24,6 +24,8 @@ absl::Status unavailable(int error) {
   return absl::UnavailableError(absl::AsciiStrToLower(std::strerror(error)));
 }
 
+/// Waits with poll() for `events` of `fd`. UNAVAILABLE: the deadline has passed, or
+/// `deadline.stopped` returned true.
 absl::Status wait_for(int fd, short events, const Deadline& deadline) {
   using std::chrono::milliseconds;
   while (true) {
@@ -48,6 +50,7 @@ absl::Status wait_for(int fd, short events, const Deadline& deadline) {
   }
 }
 
+/// Connects the non-blocking socket `fd` to one address.
 absl::Status connect_one(int fd, const addrinfo& info, const Deadline& deadline) {
   if (::connect(fd, info.ai_addr, info.ai_addrlen) == 0) {
     return absl::OkStatus();
@@ -126,8 +129,9 @@ bool Socket::is_to_this_machine() const {
   } else if (peer.ss_family == AF_INET6) {
     reinterpret_cast<sockaddr_in6&>(peer).sin6_port = 0;
   }
-  // Only an address of this machine can be bound. The address of the connection's own end would not
-  // be enough: a connection to 127.0.0.2 comes from 127.0.0.1.
+  // Only an address of this machine can be bound. To compare the addresses of both ends would not
+  // be enough, because they can differ on one machine: a connection to 127.0.0.2 comes from
+  // 127.0.0.1.
   const Socket probe(::socket(peer.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   return bind(probe.fd_, reinterpret_cast<const sockaddr*>(&peer), size) == 0;
 }

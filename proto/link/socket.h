@@ -32,7 +32,7 @@ class Socket {
   static absl::StatusOr<Socket> connect(const std::string& address, const Deadline& deadline);
   /// Tries the addresses of a resolved name in order, and connects to the first one that accepts.
   /// Before each attempt, the remaining time is divided equally among the remaining addresses.
-  /// `list` stays the caller's.
+  /// The caller keeps ownership of `list`.
   static absl::StatusOr<Socket> connect(const addrinfo* list, const Deadline& deadline);
   Socket(Socket&& other) noexcept;
   Socket& operator=(Socket&&) = delete;

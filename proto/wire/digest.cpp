@@ -1,4 +1,4 @@
-// SHA-256 by OpenSSL, or by our own code in WebAssembly; conversion of digests to and from text.
+// SHA-256 by OpenSSL, or by sha256.h in WebAssembly; conversion of digests to and from text.
 
 #include "proto/wire/digest.h"
 

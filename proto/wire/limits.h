@@ -1,8 +1,8 @@
 #pragma once
 
-// Upper bounds of all messages and files, in one place. Exceeding one is INVALID_ARGUMENT or
-// RESOURCE_EXHAUSTED with the bound's name and value; data is never truncated silently. Bounds of
-// an image are in renderlib/render/settings.h.
+// Upper bounds of all messages and files, in one place. If data exceeds one, the error is
+// INVALID_ARGUMENT or RESOURCE_EXHAUSTED with the name and the value of the bound; data is never
+// truncated silently. Bounds of an image are in renderlib/render/settings.h.
 
 #include <cstddef>
 #include <cstdint>
@@ -30,9 +30,10 @@ inline constexpr std::size_t kWrongSecretsPerMinute =
     120;  ///< per address; further calls with a wrong secret get RESOURCE_EXHAUSTED
 inline constexpr std::size_t kLogLines = 50;  ///< of a worker's log, in one message
 inline constexpr std::size_t kLogLineBytes = 500;
-/// Lines of one worker's log kept by the coordinator.
+/// Lines of one worker's log that the coordinator keeps.
 inline constexpr std::size_t kLogLinesKept = 200;
-inline constexpr std::size_t kLogBytesKept = 64 << 20;  ///< total size of all workers' logs there
-inline constexpr std::size_t kReasonBytes = 2'000;      ///< an error's or a dismissal's text
+/// Total size of all workers' logs that the coordinator keeps.
+inline constexpr std::size_t kLogBytesKept = 64 << 20;
+inline constexpr std::size_t kReasonBytes = 2'000;  ///< an error's or a dismissal's text
 
 }  // namespace bandsaw::wire

@@ -66,7 +66,7 @@ class Sha256 {
       0x748f82ee, 0x78a5636f, 0x84c87814, 0x8cc70208, 0x90befffa, 0xa4506ceb, 0xbef9a3f7,
       0xc67178f2};
 
-  /// Returns the block as 16 words, extended to 64.
+  /// Returns the message schedule: the 16 words of the block, extended to 64.
   Words schedule() const {
     Words w;
     for (std::size_t i = 0; i < 16; ++i) {
@@ -84,6 +84,8 @@ class Sha256 {
     return w;
   }
 
+  /// Adds the block to the state: 64 rounds with the working variables a to h. `first` and `second`
+  /// are T1 and T2 of the standard.
   void compress() {
     const Words w = schedule();
     auto [a, b, c, d, e, f, g, h] = state_;

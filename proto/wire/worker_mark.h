@@ -6,10 +6,10 @@
 
 namespace bandsaw::wire {
 
-/// States the version of a worker in its program file. A coordinator reads it before it offers the
-/// file for download; it cannot run the program, which may be for another architecture. The mark is
-/// in the read-only data of each bandsaw-worker and is found by `magic`. Little-endian, without
-/// padding. Another layout gets another `magic`.
+/// States the version of a worker in its program file. A coordinator reads the mark before it
+/// offers the file for download. It cannot run the program instead, because the program may be for
+/// another architecture. The mark is in the read-only data of each bandsaw-worker and is found by
+/// `magic`. Little-endian, without padding. A mark with another layout MUST have another `magic`.
 struct WorkerMark {
   char magic[16] = "\177bandsaw-worker";
   std::uint32_t protocol = kProtocol;

@@ -18,7 +18,8 @@ double packs_of(std::uint32_t count) {
 
 Binning::Binning(const LaneBox& centres) {
   const FloatBox box = centres.box();
-  // In the unused lanes the result is 0, and no potentially denormal number is multiplied.
+  // For the unused lanes, which may hold denormal numbers, `first` is 1 and `scale` is 0. So
+  // place() returns 0 in these lanes, and multiplies no denormal number, which would be slow.
   std::array<float, 8> first = {0, 0, 0, 1, 1, 1, 1, 1};
   std::array<float, 8> scale = {};
   for (std::size_t k = 0; k < 3; ++k) {

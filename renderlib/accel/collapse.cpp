@@ -21,8 +21,8 @@ constexpr float kPackCost = 1.5f;
 
 /// Minimum costs of a subtree of the binary tree. Element i is the cost if the subtree may fill at
 /// most i + 1 slots of the wide node above it, each with a part of the subtree. Element 0: the
-/// subtree fills one slot, so it becomes a leaf or a wide node of its own. Element 7 is the total
-/// cost of the children of this wide node of its own.
+/// subtree fills one slot, so it becomes a leaf, or its root becomes a wide node. Element 7 is also
+/// the total cost of the children of that wide node.
 struct Costs {
   std::array<float, kSlots> slots;
 };
@@ -47,6 +47,7 @@ class Collapse {
     std::array<std::uint32_t, kSlots> index;
     std::size_t count = 0;
   };
+  /// Sets the costs of node `index` from those of its children, which MUST be set already.
   void set_costs(std::size_t index);
   /// Returns how many of `slots` (>= 2) the left child gets at minimum cost, and sets `cost` to
   /// that cost.
@@ -77,7 +78,8 @@ std::size_t Collapse::left_share(const BinaryNode& node, std::size_t slots, floa
 
 void Collapse::set_costs(std::size_t index) {
   const BinaryNode& node = tree_.nodes[index];
-  // Relative to the root's area, to stay within the range of float; 1e-300 prevents 0 / 0.
+  // The area is relative to that of the root, so that it stays within the range of float. The
+  // number 1e-300 prevents 0 / 0.
   const auto area =
       static_cast<float>(node.box.area() / std::max(tree_.nodes[0].box.area(), 1e-300));
   Costs& costs = costs_[index];

@@ -8,8 +8,8 @@
 
 namespace bandsaw {
 
-/// Makes a ray traced through the tree test all primitives in it. The hits stay the same, to the
-/// bit.
+/// Changes the tree so that a ray traced through it tests all its primitives. The hits stay the
+/// same, to the bit.
 void disable_culling(WideTree& tree);
 /// Does the same for nodes whose bounds move by `changes` (moving_nodes.h), and sets all changes to
 /// zero. `changes` is empty if the nodes do not move.

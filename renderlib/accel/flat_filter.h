@@ -12,9 +12,9 @@ namespace bandsaw {
 /// Bound of the relative rounding error of a corner's weight, which is its barycentric coordinate
 /// times `volume` (normal times direction).
 inline constexpr float kWeightError = 26 * 0x1p-24f;
-/// The same for `volume` and for the distance times `volume`.
+/// Bound of the relative rounding error of `volume`, and of the distance times `volume`.
 inline constexpr float kDistanceError = 24 * 0x1p-24f;
-/// Share of a length that covers the rounding of the double test.
+/// This share of a length covers the rounding of the double test.
 inline constexpr float kDoubleError = 0x1p-27f;
 
 /// Eight vectors. about_fused(a, b, c) is a b + c, and about_fused_minus(a, b, c) is a b - c; both
@@ -44,9 +44,9 @@ struct FlatLanes {
 };
 
 /// Finds the triangles that may be hit before `bound`, and those that are certainly hit at a t in
-/// (0, sure_bound). If `sure_bound` is 0, hits that are certain are not computed. Both bounds are
-/// in the ray's units: `bound` is FloatRay::above() of a distance, and `sure_bound` is
-/// FloatRay::below() of a distance.
+/// (0, sure_bound). If `sure_bound` is 0, the result has no triangles that are certainly hit. Both
+/// bounds are in the ray's units: `bound` is FloatRay::above() of a distance, and `sure_bound` is
+/// FloatRay::below() of a distance. README.md, "Triangles", gives the formulas.
 template <class Float = Float8>
 [[gnu::always_inline]] inline FlatLanes filter_flats(const FlatPack& pack, const FloatRay& ray,
                                                      float bound, float sure_bound) {
@@ -74,8 +74,8 @@ template <class Float = Float8>
   const Float error = about_fused(Float(kWeightError * ray.direction_size) * reach,
                                   about_fused(Float(kDoubleError), reach, size), Float(ray.floor));
   const Float minus_error = Float(0.0f) - error;
-  // If any weight is NaN, so is weight_a; min and max return their second operand then, so `least`
-  // and `most` are NaN and reject nothing.
+  // If any weight is NaN, weight_a is NaN as well. Then min() and max() return their second
+  // operand, which is weight_a. So `least` and `most` are NaN, and the triangle is not rejected.
   const Float least = min(min(weight_b, weight_c), weight_a);
   const Float most = max(max(weight_b, weight_c), weight_a);
   const unsigned outside = ((least < minus_error) & (error < most)).bits();

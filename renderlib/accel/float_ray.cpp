@@ -15,18 +15,18 @@ namespace bandsaw {
 namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
+/// The number u of README.md: the largest relative error when a number is rounded to float.
 constexpr double kUnit = 0x1p-24;
 /// Above this, products of four lengths, as in the triangle filter, may overflow float.
 constexpr double kLargest = 0x1p30;
-/// Above this, the product of a length and the largest factor, as in the box test, may overflow
-/// float.
+/// Above this, the product of a length and kSteepest, as in the box test, may overflow float.
 constexpr double kLargestBox = 0x1p60;
-/// Largest slope factor. If a direction is closer to perpendicular to an axis, the factor of this
-/// axis is clamped to this number, so that it is finite.
+/// Largest factor of the box test, 1 / a component of the scaled direction. A larger factor, which
+/// may be infinite, is replaced by this number.
 constexpr double kSteepest = 0x1p60;
 /// Bytes of a row of WideNode::bounds.
 constexpr std::size_t kRow = sizeof(WideNode::bounds[0]);
-/// Far above the error of float underflow.
+/// An error bound far above the error of float underflow.
 constexpr double kTiny = 0x1p-100;
 /// Rounds up a value that was rounded to float.
 constexpr double kUp = 1 + 0x1p-22;
@@ -39,8 +39,8 @@ FloatRay::FloatRay(const TracedRay& ray, float reach) {
   scale = std::bit_cast<double>(exponent);
   // 1 / scale, exactly: the biased exponents of both add up to 2046, twice the bias.
   const double unscale = std::bit_cast<double>((std::uint64_t{2046} << 52) - exponent);
-  double o1 = 0;
-  double d1 = 0;
+  double o1 = 0;  // |origin|_1
+  double d1 = 0;  // |direction|_1
   double steepest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double d = ray.direction[k] * unscale;

@@ -1,8 +1,8 @@
 #pragma once
 
-// A ray prepared for the float tests of boxes and packs. Distances are t times `scale`, a power of
-// two that brings the longest component of the direction into [1, 2). README.md derives the tests'
-// margins for rounding.
+// A ray prepared for the float tests of boxes and packs. The direction is divided by `scale`, a
+// power of two, so that its longest component is in [1, 2). Distances are t times `scale`.
+// README.md derives the tests' margins for rounding.
 
 #include <array>
 #include <cstddef>
@@ -27,7 +27,7 @@ struct FloatRay {
   std::array<float, 3> direction;  ///< scaled
   float origin_size;               ///< at least |origin|_1; bounds the rounding of the origin
   float direction_size;            ///< at least |direction|_1
-  float length;                    ///< at least |direction|, within 2^-19 of it
+  float length;                    ///< at least |direction|, at most (1 + 2^-19) |direction|
   /// Added to every error bound, for underflow. It is infinite if the numbers are so large that
   /// float may overflow. In that case the float tests of primitives decide nothing.
   float floor;

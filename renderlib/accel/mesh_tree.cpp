@@ -89,6 +89,7 @@ FloatBox bounds(const Mesh& mesh, std::size_t triangle) {
   return all_finite(corners) ? box_of(corners) : FloatBox{};
 }
 
+/// Returns an item for each triangle that can be hit; its index is that of the triangle.
 TreeItems items_of(const Mesh& mesh, Pool* pool) {
   TreeItems items(mesh.triangles.size());
   std::atomic<bool> all = true;
@@ -112,6 +113,7 @@ struct Leaf {
   std::uint32_t count;
 };
 
+/// Fills the packs of `tree`, one for each leaf, with the triangles of the leaf.
 void fill_packs(const Mesh& mesh, const BinaryTree& binary, const std::vector<Leaf>& leaves,
                 Pool* pool, MeshTree& tree) {
   tree.packs.resize(leaves.size());
@@ -163,7 +165,8 @@ FlatPack pack_at(const MeshTree& mesh, std::uint32_t index, const ShutterTime& n
 }
 
 MeshTree build_mesh_tree(const Mesh& mesh, Pool* pool) {
-  BANDSAW_CHECK(mesh.triangles.size() <= kMaxTreeItems, "scene/check_counts.h refuses more");
+  BANDSAW_CHECK(mesh.triangles.size() <= kMaxTreeItems,
+                "scene/check_counts.h refuses more triangles");
   MeshTree result;
   const BinaryTree binary = build_binary_tree(items_of(mesh, pool), pool);
   if (binary.nodes.empty()) {

@@ -36,9 +36,10 @@ FlatPack pack_at(const MeshTree& mesh, std::uint32_t pack, const ShutterTime& no
 
 /// Builds the tree. Omits triangles with a corner that is not finite or does not exist. Omits also
 /// triangles with two equal corners (equal at both ends, if the mesh deforms), because their
-/// neighbours cover the same points. Triangles of three different collinear points are kept: they
-/// close T-junctions. If `pool` is null, the build runs on this thread. (Scene::build has removed
-/// triangles that cannot be hit, so these rules matter for geometry that is traced without it.)
+/// neighbours cover the same points. Triangles of three different collinear points are kept,
+/// because they close T-junctions. If `pool` is null, the build runs on this thread. (Scene::build
+/// removes triangles that cannot be hit. So these rules matter for geometry that is traced
+/// without Scene::build.)
 MeshTree build_mesh_tree(const Mesh& mesh, Pool* pool);
 
 }  // namespace bandsaw

@@ -39,7 +39,7 @@ class Bounds {
     }
     MovingBox all;
     for (std::size_t i = 0; i < WideNode::kChildren; ++i) {
-      // The node is not referenced across the recursion, which needs only its index.
+      // No reference to the node is kept during the recursion; its index is enough.
       const bool used = tree_.nodes[ref.node_index()].bounds[0][i] != FloatBox::kInf;
       if (used) {
         const MovingBox child = set(tree_.nodes[ref.node_index()].child[i]);

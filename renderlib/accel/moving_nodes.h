@@ -18,24 +18,26 @@ namespace bandsaw {
 
 /// Element [node][row][child] is the change of WideNode::bounds[row][child] from the beginning to
 /// the end of the interval. The tree itself has the bounds at the beginning. Its `reach`, the
-/// largest absolute coordinate of any bound, by which FloatRay bounds rounding errors, is valid for
-/// all times.
+/// largest absolute coordinate of any bound, is valid for all times. (FloatRay uses `reach` to
+/// bound rounding errors.)
 using NodeChanges = HugeVector<std::array<std::array<float, WideNode::kChildren>, 6>>;
 
 /// Returns a box that contains both.
 Box both(const Box& a, const Box& b);
-/// Returns the box at the middle of the interval, by which trees are built.
+/// Returns the box at the middle of the interval. Trees are built from these boxes.
 Box middle(const MovingBox& box);
 
-/// Replaces the bounds of all nodes by those at the beginning of the interval, and returns their
-/// changes; also sets tree.reach. leaf_box(leaf) returns the bounds of a leaf at both ends. The
-/// stored bounds have a margin: even when they are interpolated in float, the box of a node
-/// contains the boxes of its leaves at all times (README.md, "Moving boxes").
+/// Replaces the bounds of all nodes by those at the beginning of the interval, and sets tree.reach.
+/// Returns the changes of the bounds until the end of the interval. leaf_box(leaf) returns the
+/// bounds of a leaf at both ends. The stored bounds have a margin: even when they are interpolated
+/// in float, the box of a node contains the boxes of its leaves at all times (README.md, "Moving
+/// boxes").
 NodeChanges set_moving_bounds(absl::FunctionRef<MovingBox(ChildRef leaf)> leaf_box, WideTree& tree);
 
-/// Does what enter_children() (accel/traverse.h) does: sets `enter` to the distances at which the
-/// ray enters the boxes of the children, and returns a bit for each box that it hits. The node is
-/// `index`, and the time is `share` of the interval, in [0, 1].
+/// Does for moving boxes what enter_children() (accel/traverse.h) does for boxes that rest. Returns
+/// the mask of the children of node `index` that the ray enters before `bound` (in the ray's
+/// units), and sets `enter` to the distances at which it enters them. The time is `share` of the
+/// interval, in [0, 1].
 template <class Float = Float8>
 inline unsigned enter_moving_children(const WideTree& tree, const NodeChanges& changes,
                                       std::uint32_t index, float share, const FloatRay& ray,

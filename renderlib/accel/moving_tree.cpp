@@ -1,5 +1,5 @@
-// Builds the tree of the instances that move, from their boxes in the middle of the motion. Then
-// its nodes get moving bounds.
+// Builds the tree of the instances that move, from their boxes at the middle of the shutter
+// interval. Then the nodes of the tree get bounds that move.
 
 #include "renderlib/accel/moving_tree.h"
 
@@ -13,6 +13,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns true if the transforms differ at most in their translations.
 bool same_linear_part(const Transform& a, const Transform& b) {
   Transform moved = b;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -52,17 +53,20 @@ MovingTree build_moving_tree(const Geometry& geometry, const Prototypes& prototy
                         items)) {
       boxes.push_back(*box);
       const Transform at_open = to_world_at(geometry, instance, geometry.shutter.open);
+      // The number of an instance in hits is its index + 1 (PrimitiveId).
       result.moving.push_back({*prototype, static_cast<std::uint32_t>(i + 1),
                                slides(geometry, instance.frame),
                                inverse(at_open).value_or(Transform{})});
     }
   }
-  BANDSAW_CHECK(items.size() <= kMaxTreeItems, "scene/check_counts.h refuses more");
+  BANDSAW_CHECK(items.size() <= kMaxTreeItems, "scene/check_counts.h refuses more items");
   const BinaryTree binary = build_binary_tree(std::move(items), pool);
   result.tree = collapse(binary, [&](const BinaryNode& leaf) {
     return ChildRef::leaf(LeafKind::kInstance, binary.items[leaf.first].index);
   });
   const auto box_of = [&](ChildRef leaf) { return boxes[leaf.leaf_index()]; };
+  // Sets the bounds of the nodes to those at the beginning of the interval. `changes` holds how far
+  // each bound moves until the end of the interval.
   result.changes = set_moving_bounds(box_of, result.tree);
   return result;
 }

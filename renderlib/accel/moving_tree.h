@@ -29,7 +29,8 @@ struct MovingTree {
   }
 };
 
-/// Builds the tree over the instances that move, for Geometry::shutter.
+/// Builds the tree over the instances that move. Its boxes are valid at all times of
+/// Geometry::shutter.
 MovingTree build_moving_tree(const Geometry& geometry, const Prototypes& prototypes, Pool* pool);
 
 }  // namespace bandsaw

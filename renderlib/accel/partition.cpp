@@ -12,8 +12,8 @@ namespace bandsaw {
 namespace {
 
 /// A range that fits one pack (the primitives of a leaf, which are tested together) is split only
-/// if the sum of the parts' areas is below this share of its area (README.md, "Traversal and
-/// leaves").
+/// if the sum of the areas of both parts' boxes is below this share of the area of the range's box
+/// (README.md, "Traversal and leaves").
 constexpr double kWorthSplitting = 0.7;
 
 bool one_kind(absl::Span<const TreeItem> items) {

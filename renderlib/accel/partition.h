@@ -18,7 +18,7 @@ struct Range {
   std::uint32_t first;
   std::uint32_t end;
   std::size_t depth;  ///< 1 for the root
-  std::size_t list;   ///< 0 or 1: the one of TwoLists that holds the items
+  std::size_t list;   ///< index in TwoLists of the list that holds the items, 0 or 1
   LaneBox box;
   LaneBox centres;  ///< bounding box of twice_centre()
 

@@ -1,8 +1,8 @@
 #pragma once
 
 // The queries for a ray: its closest hit, its closest hit beyond an earlier one, or whether it hits
-// anything. A query is the template parameter `Query` of the functions of trace.h, which pass to
-// found() every hit that the double tests find, in any order.
+// anything. A query is the template parameter `Query` of the functions of trace.h. These functions
+// pass every hit that the double tests find to found(), in any order.
 
 #include "renderlib/geometry/intersect.h"
 #include "renderlib/geometry/ray.h"
@@ -33,7 +33,7 @@ class ClosestQuery {
   Hit best_;
 };
 
-/// Finds the closest hit beyond another one in the order (t, instance, primitive).
+/// Finds the closest hit beyond the hit `after`, in the order (t, instance, primitive).
 class AfterQuery {
  public:
   static constexpr bool kAny = false;

@@ -105,7 +105,7 @@ ShapesTree build_shapes_tree(const Shapes& shapes, Pool* pool) {
   ShapeItems shape_items(shapes, result);
   TreeItems items;
   shape_items.add_all(items);
-  BANDSAW_CHECK(items.size() <= kMaxTreeItems, "scene/check_counts.h refuses more");
+  BANDSAW_CHECK(items.size() <= kMaxTreeItems, "scene/check_counts.h refuses more items");
   const BinaryTree binary = build_binary_tree(std::move(items), pool);
   result.tree =
       collapse(binary, [&](const BinaryNode& leaf) { return shape_items.make_leaf(binary, leaf); });

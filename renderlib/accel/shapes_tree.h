@@ -50,7 +50,7 @@ class ShapeItems {
   ShapesTree& tree_;
 };
 
-/// Appends an item. Returns false if its box cannot be hit and the item is left out.
+/// Appends an item to `items`. If `box` cannot be hit, appends nothing and returns false.
 bool add_item(const Box& box, std::uint32_t index, LeafKind kind, TreeItems& items);
 
 /// Builds the tree of a group. `shapes` MUST outlive the result and not be moved in memory. If

@@ -10,6 +10,8 @@
 namespace bandsaw {
 namespace {
 
+/// Appends an item and an element of top.placed for each instance that does not move and can be
+/// hit.
 void add_instances(const Geometry& geometry, const Prototypes& prototypes, TopTree& top,
                    TreeItems& items) {
   for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
@@ -19,6 +21,7 @@ void add_instances(const Geometry& geometry, const Prototypes& prototypes, TopTr
     if (instance.frame == kNoFrame && to_object && prototype &&
         add_item(placed_bounds(prototype->box(), instance.to_world, *to_object),
                  static_cast<std::uint32_t>(top.placed.size()), LeafKind::kInstance, items)) {
+      // The number of an instance in hits is its index + 1 (PrimitiveId).
       top.placed.push_back({*prototype, static_cast<std::uint32_t>(i + 1),
                             instance.to_world == Transform{}, *to_object});
     }
@@ -46,7 +49,7 @@ TopTree build_top_tree(const Geometry& geometry, const Prototypes& prototypes, P
   TreeItems items;
   shape_items.add_all(items);
   add_instances(geometry, prototypes, top, items);
-  BANDSAW_CHECK(items.size() <= kMaxTreeItems, "scene/check_counts.h refuses more");
+  BANDSAW_CHECK(items.size() <= kMaxTreeItems, "scene/check_counts.h refuses more items");
   const BinaryTree binary = build_binary_tree(std::move(items), pool);
   top.tree = collapse(binary, [&](const BinaryNode& leaf) {
     const ItemRef& first = binary.items[leaf.first];

@@ -18,10 +18,11 @@
 
 namespace bandsaw {
 
+/// Stands for no primitive: the ray starts on none of the primitives that are tested.
 inline constexpr std::uint32_t kNoneSkipped = 0xffffffffu;
 
-/// The instance whose primitives are tested, and the primitive in it on which the ray starts
-/// (kNoneSkipped if the ray starts elsewhere).
+/// The number of the instance whose primitives are tested (`instance`), and the primitive in it on
+/// which the ray starts (`on`; kNoneSkipped if the ray starts elsewhere).
 struct Started {
   Started(std::uint32_t of, const PrimitiveId& from)
       : instance(of), on(from.instance == of ? from.primitive : kNoneSkipped) {}
@@ -58,7 +59,7 @@ inline bool test_flats(const FlatPack& pack, const FloatRay& ray, std::uint32_t 
   return false;
 }
 
-/// Traces a mesh that does not deform.
+/// Traces a mesh that does not deform. `from` is the primitive on which the ray starts.
 template <class Query>
 inline bool trace_mesh(const MeshTree& mesh, const TracedRay& ray, std::uint32_t instance,
                        const PrimitiveId& from, Query& query) {
@@ -118,6 +119,7 @@ inline bool trace_spheres(const SpherePack& pack, const Shapes& shapes, const Tr
   return false;
 }
 
+/// Tests a leaf of disks. The number of a disk is `first` + its index among the disks.
 template <class Query>
 [[gnu::noinline]] bool trace_disks(const SpherePack& pack, const Shapes& shapes,
                                    const TracedRay& ray, const FloatRay& floats,
@@ -151,6 +153,7 @@ inline bool trace_leaf(ChildRef leaf, const ShapesTree& tree, const Shapes& shap
   return trace_disks(tree.disks[index], shapes, ray, floats, started, bound, query);
 }
 
+/// Traces a group of shapes. `from` is the primitive on which the ray starts.
 template <class Query>
 [[gnu::noinline]] bool trace_group(const ShapesTree& group, const TracedRay& ray,
                                    std::uint32_t instance, const PrimitiveId& from, Query& query) {
@@ -162,8 +165,8 @@ template <class Query>
   });
 }
 
-/// Traces a mesh that deforms, at the time of `world`. The function is not inlined, so that other
-/// meshes are faster.
+/// Traces a mesh that deforms, at the time of `world`, the ray before it was transformed. The
+/// function is not inlined, so that other meshes are faster.
 template <class Query>
 [[gnu::noinline]] bool trace_deforming(const MeshTree& mesh, const Interval& shutter,
                                        const TracedRay& ray, std::uint32_t instance,

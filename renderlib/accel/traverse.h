@@ -182,7 +182,7 @@ template <bool kSorted, class Enter, class Leaf>
   }
 }
 
-/// Traverses a tree without motion in the same way.
+/// Does the same for a tree whose boxes do not move.
 template <bool kSorted, class Leaf>
 [[gnu::always_inline]] inline bool traverse(const WideTree& tree, const FloatRay& ray,
                                             const float& bound, Leaf&& leaf) {

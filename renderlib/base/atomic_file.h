@@ -19,7 +19,7 @@ absl::Status write_file_atomically(const std::string& path, absl::Span<const std
 
 /// Gives its final name to a file that another program has written. `part` is that file and is in
 /// the folder of `path`. The function syncs `part`, renames it to `path`, replacing a file there,
-/// and syncs the folder. Returns the system's error. After an error `part` is still there, unless
+/// and syncs the folder. Returns the system's error. After an error `part` still exists, unless
 /// only the sync of the folder failed.
 absl::Status name_file(const std::string& part, const std::string& path);
 

@@ -1,9 +1,9 @@
 #pragma once
 
-// std::vector for tables of megabytes that are read at random: from 2 MiB on, its memory is on huge
-// pages if the system provides them (WebAssembly has no pages), so that a read seldom misses the
-// TLB. resize() and similar functions default-initialise new elements, so memory is not written
-// twice.
+// std::vector for tables of megabytes that are read in random order. From 2 MiB on, its memory is
+// on huge pages if the system provides them, so that a read seldom misses the TLB. (WebAssembly has
+// no pages.) resize() and similar functions default-initialise new elements, so memory is not
+// written twice.
 
 #if !defined(__wasm__)
 #include <sys/mman.h>
@@ -15,7 +15,8 @@
 
 namespace bandsaw {
 
-/// The allocator of HugeVector. Memory is aligned to 64 bytes, or to a huge page if it is as large.
+/// The allocator of HugeVector. Memory is aligned to 64 bytes, or to the size of a huge page if it
+/// is at least as large as a huge page.
 template <class T>
 struct HugePages {
   using value_type = T;

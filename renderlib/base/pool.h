@@ -55,7 +55,8 @@ class Pool {
   Mutex mutex_;
   CondVar work_;  ///< a range was added, or the pool stops
   CondVar done_;  ///< a range was completed
-  /// The ranges that have indices left, oldest first; each is a variable of its parallel_for().
+  /// The ranges that have indices left, oldest first. Each is a local variable of a parallel_for()
+  /// that has not returned.
   std::deque<Range*> ranges_ GUARDED_BY(mutex_);
   bool stopping_ GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;
