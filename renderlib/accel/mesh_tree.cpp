@@ -63,14 +63,14 @@ FloatBox middle_bounds(const FlatPacker::Corners& open, const FlatPacker::Corner
     }
   }
   FlatPacker::Corners change{};
-  FlatPacker::Corners half{};
+  FlatPacker::Corners halfway{};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       change[i][k] = close[i][k] - open[i][k];  // as ShutterTime computes it; may overflow
-      half[i][k] = 0.5f * open[i][k] + 0.5f * close[i][k];
+      halfway[i][k] = 0.5f * open[i][k] + 0.5f * close[i][k];
     }
   }
-  return all_finite(open) && all_finite(close) && all_finite(change) ? box_of(half) : FloatBox{};
+  return all_finite(open) && all_finite(close) && all_finite(change) ? box_of(halfway) : FloatBox{};
 }
 
 /// Returns the box of a triangle; it is empty if build_mesh_tree() omits the triangle.
@@ -92,16 +92,16 @@ FloatBox bounds(const Mesh& mesh, std::size_t triangle) {
 /// Returns an item for each triangle that can be hit; its index is that of the triangle.
 TreeItems items_of(const Mesh& mesh, Pool* pool) {
   TreeItems items(mesh.triangles.size());
-  std::atomic<bool> all = true;
+  std::atomic<bool> all_can_be_hit = true;
   in_pieces(items.size(), pool, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       items[i] = {bounds(mesh, i), static_cast<std::uint32_t>(i)};
       if (!items[i].can_be_hit()) {
-        all = false;
+        all_can_be_hit = false;
       }
     }
   });
-  if (!all) {
+  if (!all_can_be_hit) {
     std::erase_if(items, [](const TreeItem& item) { return !item.can_be_hit(); });
   }
   return items;
