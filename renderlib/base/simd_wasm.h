@@ -67,8 +67,8 @@ class Float8 {
   friend Float8 operator/(Float8 a, Float8 b) {
     return {wasm_f32x4_div(a.low_, b.low_), wasm_f32x4_div(a.high_, b.high_)};
   }
-  /// There is no instruction for this, so it is slow. Only the corners of meshes that deform need
-  /// the exact bits.
+  /// There is no instruction that rounds a b + c once, so this function is slow. Only the corners
+  /// of meshes that deform need the exact bits.
   friend Float8 fused(Float8 a, Float8 b, Float8 c) {
     float p[simd_plain::kLanes];
     float q[simd_plain::kLanes];
@@ -86,7 +86,8 @@ class Float8 {
   }
   friend Float8 about_fused(Float8 a, Float8 b, Float8 c) { return a * b + c; }
   friend Float8 about_fused_minus(Float8 a, Float8 b, Float8 c) { return a * b - c; }
-  /// pmin and pmax return the first operand in lanes where either is NaN, so b is passed first.
+  /// pmin and pmax return their first operand in lanes where either operand is NaN. min() and max()
+  /// must return b there (simd_plain.h), so b is passed first.
   friend Float8 min(Float8 a, Float8 b) {
     return {wasm_f32x4_pmin(b.low_, a.low_), wasm_f32x4_pmin(b.high_, a.high_)};
   }

@@ -220,12 +220,12 @@ RayGenerator::Projection RayGenerator::between(double share) const {
     return out;
   }
   // The interpolated axes are made perpendicular again, so that image and lens belong to one view
-  // direction.
+  // direction. `aside` is the interpolated direction to the right.
   out.forward = normalize(at(a.forward, b.forward));
   const Vec3 aside = at(normalize(a.dx), normalize(b.dx));
   const Vec3 right = normalize(aside - out.forward * dot(aside, out.forward));
   const Vec3 across = cross(out.forward, right);
-  // A mirrored image stays mirrored.
+  // `across` points down, or up in a mirrored image. A mirrored image stays mirrored.
   const Vec3 down = dot(cross(a.forward, a.dx), a.dy) > 0 ? across : -across;
   out.dx = right * at(length(a.dx), length(b.dx));
   out.dy = down * at(length(a.dy), length(b.dy));
@@ -266,8 +266,8 @@ Ray RayGenerator::ray_now(const Projection& now, double x, double y, double lens
   }
   const Vec2 on_lens = sample_disk(lens_u, lens_v);
   const Vec3 from = now.lens_x * on_lens.x + now.lens_y * on_lens.y;
-  // The ray passes through the point in focus, origin + focus_distance at. Its direction is
-  // computed in units of the focus distance, which may be huge.
+  // The ray passes through the point in focus, origin + focus_distance * at. Its direction is
+  // computed in units of the focus distance, because that distance may be huge.
   return {.origin = now.origin + from, .direction = normalize(at - from / now.focus_distance)};
 }
 

@@ -20,8 +20,8 @@ struct View {
   Vec3 up{0, 1, 0};        ///< not parallel to the view direction
 };
 
-/// Exposure interval: the times of rays are uniformly distributed from open to close. If both are
-/// equal, all rays have this time. The unit is that of the scene's animation.
+/// Exposure interval. The times of rays are uniformly distributed from `open` to `close`. If `open`
+/// and `close` are equal, all rays have this time. The unit is that of the scene's animation.
 struct Shutter {
   double open = 0;
   double close = 0;  ///< >= open
@@ -109,9 +109,9 @@ class RayGenerator {
   /// lens_v) in [0, 1)^2 selects the point on the lens. The direction is a unit vector. `share` in
   /// [0, 1] is the position of the ray's time in the shutter interval.
   Ray ray(double x, double y, double lens_u, double lens_v, double share = 0) const;
-  /// Returns the view through the lens (camera/lens_view.h) at this image position and share of the
-  /// shutter interval; std::nullopt if there is no lens, or its radius is not less than the
-  /// distance to the point in focus.
+  /// Returns the view through the lens (camera/lens_view.h) at image position (x, y) and at `share`
+  /// of the shutter interval. Returns std::nullopt if there is no lens, or if the radius of the
+  /// lens is not less than the distance to the point in focus.
   std::optional<LensView> lens_view(double x, double y, double share = 0) const;
 
  private:
@@ -132,8 +132,8 @@ class RayGenerator {
   };
   static Projection project(const PerspectiveCamera& camera, int width, int height);
   static Projection project(const OrthographicCamera& camera, int width, int height);
-  /// Sets the axes of the image: `centre` is the point where the view direction passes through it,
-  /// `half` is half its height.
+  /// Sets the corner and the axes of the image in `to`. The view direction passes through the image
+  /// plane at `centre`; `half` is half the height that the camera shows without a window.
   static void set_image(const Vec3& centre, const Vec3& right, const Vec3& up, double half,
                         const std::optional<ImageWindow>& window, int width, int height,
                         Projection& to);

@@ -1,6 +1,6 @@
 // The directions in which the lens is seen from the point in focus lie within a cone, because the
-// lens fits into a sphere of its radius. The pdf is that of the directions of rays from a uniformly
-// chosen point of the lens through the point in focus.
+// lens fits into a sphere of its radius. pdf() assumes that a ray starts at a uniformly chosen
+// point of the lens and passes through the point in focus.
 
 #include "renderlib/camera/lens_view.h"
 

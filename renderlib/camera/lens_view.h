@@ -26,13 +26,13 @@ class LensView {
   /// Returns a cone that contains all directions in which rays continue beyond the point in focus.
   const Cone& beyond() const { return beyond_; }
 
-  /// Returns the point on the lens of the ray that continues in this unit direction; std::nullopt
-  /// if the ray misses the lens.
+  /// Returns the point on the lens where a ray starts that passes through the point in focus in the
+  /// unit direction `direction`. Returns std::nullopt if the line of the ray misses the lens.
   std::optional<Vec3> on_lens(const Vec3& direction) const;
-  /// Returns the pdf, by solid angle, of the direction of the ray from a uniformly sampled point of
-  /// the lens through the point in focus. `direction` MUST be a unit vector that such a ray has.
-  /// With the lens' area A and the angle a between direction and `forward`, it is distance^2 / (A
-  /// cos^3 a).
+  /// Returns the pdf, by solid angle, of a ray's direction, if the ray starts at a uniformly
+  /// sampled point of the lens and passes through the point in focus. `direction` MUST be the unit
+  /// direction of such a ray. With the lens' area A and the angle a between `direction` and
+  /// `forward`, the pdf is distance^2 / (A cos^3 a).
   double pdf(const Vec3& direction) const;
 
  private:

@@ -1,4 +1,5 @@
-// Samples a place in a pixel with the density of the filter: box, tent, or truncated Gaussian.
+// Samples an offset from a pixel's centre with the density of the filter, which is a box, a tent or
+// a truncated Gaussian.
 
 #include "renderlib/camera/pixel_filter.h"
 
@@ -14,7 +15,7 @@ namespace {
 double tent(double u) { return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u)); }
 
 /// Samples a normal distribution of standard deviation 1, truncated at the radius 3 (Box and Muller
-/// 1958, with the radial distribution rescaled to end there).
+/// 1958, with the radial distribution rescaled to end at this radius).
 Vec2 gaussian(double u, double v) {
   constexpr double kCut = 3;
   const double r = std::sqrt(-2 * log1p(u * expm1(-kCut * kCut / 2)));

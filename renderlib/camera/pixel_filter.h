@@ -29,7 +29,7 @@ double default_radius(PixelFilter::Kind kind);
 absl::Status validate(const PixelFilter& filter);
 
 /// Returns the sample's offset from the pixel's centre, in pixels; u, v in [0, 1). For the default
-/// filter it is exactly (u - 0.5, v - 0.5) for multiples of 2^-32.
+/// filter the offset is exactly (u - 0.5, v - 0.5) if u and v are multiples of 2^-32.
 Vec2 sample(const PixelFilter& filter, double u, double v);
 
 }  // namespace bandsaw

@@ -100,6 +100,7 @@ void add_group(const Image& image, const Image& reference, absl::Span<const Pixe
   }
 }
 
+// Returns the moments of the mean differences of all groups in a tile. Adds the groups to `totals`.
 Moments block_of(const Image& image, const Image& reference, const TileGrid& grid, std::size_t tile,
                  Totals& totals) {
   Moments block;

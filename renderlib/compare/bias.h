@@ -1,7 +1,7 @@
 #pragma once
 
-// Statistical test of whether an image differs from a reference by more than noise: differences
-// that noise causes have random signs, differences that a bias causes have one sign.
+// Statistical test of whether an image differs from a reference by more than noise. Differences
+// that noise causes have random signs. Differences that a bias causes have one sign.
 
 #include <cstdint>
 
@@ -11,16 +11,17 @@ namespace bandsaw {
 
 /// Result of the test. Blocks are the tiles of 16 x 16 pixels (render/tile_samples.h). The values
 /// tested are mean differences in luminance over the groups of pixels that may share paths
-/// (render/pixel_groups.h): the noise of different groups is independent. For each block, Student's
-/// t of the mean is computed from the values' spread, which includes the noise of the reference.
+/// (render/pixel_groups.h), because the noise of different groups is independent. For each block,
+/// Student's t of the mean is computed from the values' spread, which includes the noise of the
+/// reference.
 /// Blocks of fewer than 8 values are left out.
 struct BiasTest {
   std::uint32_t blocks = 0;
   /// t of the whole image: the mean over all values divided by its standard error. |t| above 4 is
   /// significant.
   double t = 0;
-  /// Sum of the differences to the reference over the sum of the reference; 0 if the reference is
-  /// black.
+  /// Sum of the differences in luminance to the reference, divided by the sum of the reference's
+  /// luminance; 0 if the reference is black.
   double relative_bias = 0;
   /// Number of blocks whose |t| exceeds a bound. The bound is such that one in a hundred unbiased
   /// images has a block that exceeds it (Sidak's correction; for normal noise).

@@ -52,6 +52,8 @@ struct PixelError {
   double largest = 0;           ///< largest absolute difference
 };
 
+/// Adds the channels of a pixel whose two values are finite to `sums`, and the number of the other
+/// channels to `not_finite`. Returns the errors of the pixel.
 PixelError add_pixel(const Rgb& image, const Rgb& reference, Sums& sums,
                      std::uint64_t& not_finite) {
   const float a[3] = {image.r, image.g, image.b};
@@ -68,8 +70,8 @@ PixelError add_pixel(const Rgb& image, const Rgb& reference, Sums& sums,
   return error;
 }
 
-// Returns the mean of the pixels' sums without the largest thousandth of them, rounded up. A single
-// sum is not left out.
+// Returns the mean of `sums`, which holds one sum for each pixel, without the largest thousandth of
+// them. The number left out is rounded up, but a single sum is not left out. Reorders `sums`.
 double trimmed_mean(std::vector<double>& sums) {
   const std::size_t worst = sums.size() < 2 ? 0 : (sums.size() + 999) / 1000;
   std::nth_element(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(worst), sums.end(),
@@ -78,6 +80,8 @@ double trimmed_mean(std::vector<double>& sums) {
          static_cast<double>(sums.size() - worst);
 }
 
+// Sets the metrics that are means. `pixels` holds each pixel's sum of relative squared errors.
+// sums.count MUST NOT be 0.
 void set_means(const Sums& sums, std::vector<double>& pixels, ErrorMetrics& metrics) {
   const auto count = static_cast<double>(sums.count);
   const double mean = sums.reference / count;

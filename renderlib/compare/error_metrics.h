@@ -17,7 +17,7 @@ struct ErrorMetrics {
   /// mean((a - b)^2 / (b^2 + 0.01)), as in Rousselle et al. 2011, "Adaptive Sampling and
   /// Reconstruction using Greedy Error Minimization", section 5.
   double relative_mse = 0;
-  /// `relative_mse` without the worst 0.1 % of the pixels, rounded up.
+  /// `relative_mse` without the worst 0.1 % of the pixels; their number is rounded up.
   double trimmed_relative_mse = 0;
   double mape = 0;  ///< mean(|a - b| / (|b| + 0.01))
   /// Decibels, of the sRGB-coded values in [0, 1]; infinite if these values are equal.

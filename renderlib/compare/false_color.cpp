@@ -12,13 +12,14 @@
 namespace bandsaw {
 namespace {
 
-// sRGB codes, evenly spaced, with lightness in even steps.
+// The colours of evenly spaced values, as sRGB codes. Their lightness rises in even steps.
 using Code = std::array<double, 3>;
 constexpr std::array<Code, 6> kStops = {
     {{0, 0, 0}, {58, 9, 99}, {150, 38, 103}, {221, 81, 58}, {252, 165, 10}, {252, 255, 220}}};
 
 float linear(double code) { return srgb_table()[static_cast<std::size_t>(std::lround(code))]; }
 
+// Returns the colour of a value, which is clamped to [0, 1], in linear RGB.
 Rgb color_of(double value) {
   const double at = std::clamp(value, 0.0, 1.0) * (kStops.size() - 1);
   const std::size_t below = std::min(static_cast<std::size_t>(at), kStops.size() - 2);

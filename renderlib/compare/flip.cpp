@@ -38,6 +38,7 @@ double nearly_white() {
   return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
 
+// Returns the image as a screen shows it: radiance times `factor`, through the film curve.
 Image exposed(const Image& image, double factor) {
   Image out = image;
   for (Rgb& pixel : out.pixels) {
@@ -47,7 +48,7 @@ Image exposed(const Image& image, double factor) {
   return out;
 }
 
-// A geometric series of factors of the radiance.
+// A geometric series of factors of the radiance: first, first * step, first * step^2, ...
 struct Exposures {
   double first = 1;
   double step = 1;
@@ -56,8 +57,8 @@ struct Exposures {
 
 double log2_of(double x) { return log(x) / log(2.0); }
 
-// Returns the exposures by equations 2 and 3 of the second paper. If the reference's median is
-// black, only the exposure of its maximum is used.
+// Returns the exposures by equations 2 and 3 of Andersson et al. 2021 (flip.h). If the reference's
+// median is black, only the exposure of its maximum is used.
 Exposures exposures_of(const Image& reference) {
   std::vector<double> light;
   for (const Rgb& pixel : reference.pixels) {
@@ -92,7 +93,8 @@ Plane flip(const Image& image, const Image& reference, double pixels_per_degree)
   Plane out = flip_color(a, b, pixels_per_degree);
   const Plane features = flip_features(a, b, pixels_per_degree);
   for (std::size_t i = 0; i < out.values.size(); ++i) {
-    out.values[i] = pow(out.values[i], 1 - features.values[i]);  // equation 13
+    // Equation 13 of Andersson et al. 2020.
+    out.values[i] = pow(out.values[i], 1 - features.values[i]);
   }
   return out;
 }

@@ -18,8 +18,9 @@ inline constexpr double kPixelsPerDegree = 67;
 Plane flip(const Image& image, const Image& reference, double pixels_per_degree = kPixelsPerDegree);
 
 /// Returns the error per pixel, in [0, 1], of HDR-FLIP: the maximum of flip() over a range of
-/// exposures, each through a film curve (section 3 of the second paper). The range is from the
-/// exposure for the reference's maximum to that for its median. The images MUST have the same size.
+/// exposures, each through a film curve (Andersson et al. 2021, section 3). The range is from the
+/// exposure for the reference's maximum to the exposure for its median. The images MUST have the
+/// same size.
 Plane hdr_flip(const Image& image, const Image& reference,
                double pixels_per_degree = kPixelsPerDegree);
 

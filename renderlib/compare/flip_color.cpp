@@ -25,6 +25,7 @@ constexpr double kColorExponent = 0.7;  // q_c
 constexpr double kKneeError = 0.4;      // p_c
 constexpr double kKneeResult = 0.95;    // p_t
 
+// Returns three standard deviations of the widest Gaussian, in pixels, rounded up.
 int kernel_radius(double pixels_per_degree) {
   return static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
 }
@@ -80,6 +81,7 @@ Vec3 hunt(const Vec3& lab) { return {lab.x, 0.01 * lab.x * lab.y, 0.01 * lab.x *
 // Returns the colour in L*a*b* with the Hunt effect.
 Vec3 adjusted(const Rgb& linear) { return hunt(lab(xyz_over_white(linear))); }
 
+// Returns the colour of pixel i, clamped to [0, 1] in linear RGB, in L*a*b* with the Hunt effect.
 Vec3 adjusted(const Opponents& planes, std::size_t i) {
   const Vec3 linear =
       linear_of(xyz_of_opponents({planes[0].values[i], planes[1].values[i], planes[2].values[i]}));
@@ -94,7 +96,8 @@ double distance(const Vec3& a, const Vec3& b) {
   return pow(hyab, kColorExponent);
 }
 
-// Maps errors to [0, 1] by equation 9, with most of the range for small errors.
+// Maps an error in [0, largest] to [0, 1] by equation 9. Errors below the share kKneeError of
+// `largest` get the range from 0 to kKneeResult.
 double redistributed(double error, double largest) {
   const double knee = kKneeError * largest;
   return error < knee ? kKneeResult / knee * error

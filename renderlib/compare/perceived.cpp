@@ -40,6 +40,7 @@ Vec3 xyz_over_white(const Rgb& linear) {
 }
 
 Vec3 linear_of(const Vec3& over_white) {
+  // Solves kToXyz * linear = xyz by Cramer's rule.
   const Vec3 a{kToXyz[0][0], kToXyz[1][0], kToXyz[2][0]};
   const Vec3 b{kToXyz[0][1], kToXyz[1][1], kToXyz[2][1]};
   const Vec3 c{kToXyz[0][2], kToXyz[1][2], kToXyz[2][2]};

@@ -74,8 +74,8 @@ struct Strip {
   FitOutputs fits;
 };
 
-/// Chooses between the filters and the rendered value in a strip. Coordinates and maps are those of
-/// the rows for which there are filtered values.
+/// Chooses between the filters and the rendered value in a strip. Coordinates and maps cover the
+/// rows for which there are filtered values: row 0 is planes_.wanted.first.
 class Selection {
  public:
   Selection(const Strip& strip, Pool& pool)
@@ -101,7 +101,7 @@ class Selection {
       }
     });
   }
-  /// Returns the row of the planes that is row y here.
+  /// Returns the row of the planes that is row y of the maps.
   int plane_row(int y) const { return y + planes_.wanted.first; }
   /// Returns the index of a pixel in the whole image.
   std::size_t in_image(int x, int y) const { return size_.index(x, strip_.first + plane_row(y)); }
@@ -114,11 +114,15 @@ class Selection {
   /// offset is 3 % of the squared mean of the image, so that dark pixels do not dominate.
   Map scales() const;
   Map error_of(std::size_t candidate, const Map& scale) const;
+  /// Sets shares_: at each pixel, chooses the candidate with the least estimated error, and smooths
+  /// the choices.
   void choose();
   /// Returns true if the pixel stays as it was rendered.
   bool is_rendered(int x, int y) const;
   /// Returns half `h` of the result at a pixel, for channel `c`.
   float mixed(int x, int y, std::size_t h, std::size_t c) const;
+  /// Returns the pixel of the result: the rendered value, or the mean of both mixed halves by
+  /// their shares of the samples.
   Rgb value_of(int x, int y) const;
   /// Adds a pixel to the sums if it has finite parts. If the filters did not use it, because it is
   /// negative or too bright, it is added as it was rendered.
@@ -145,8 +149,8 @@ Map Selection::scales() const {
   return scales;
 }
 
-/// Returns the estimated squared error, times `scale`, of candidate 0 (the rendered value) or k
-/// (filter k - 1), smoothed within surfaces.
+/// Returns the estimated squared error of a candidate, times `scale`, smoothed within surfaces.
+/// Candidate 0 is the rendered value, and candidate k > 0 is filter k - 1.
 Map Selection::error_of(std::size_t candidate, const Map& scale) const {
   Map error(size_.pixels());
   each([&](int x, int y, std::size_t i) {
@@ -239,7 +243,7 @@ void Selection::add_pixel(int x, int y, RowSums& sums) const {
 }
 
 void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
-  const int first = strip_.first + planes_.wanted.first;  // row of the image that is row 0 here
+  const int first = strip_.first + planes_.wanted.first;  // row of the image: row 0 of the maps
   const RowSpan rows{strip_.rows.first - first, strip_.rows.last - first};
   Map errors(size_.pixels());
   Map variances(size_.pixels());
@@ -302,6 +306,7 @@ Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int str
   // A result depends on filtered values up to kFitted rows away, because values pass through at
   // most three smoothings: of errors, of shares, and of the errors of the result.
   constexpr int kFitted = 3 * SurfaceSmoothing::kRadius;
+  // The first and last 5 rows of prepare_fit() lack neighbours.
   static_assert(kFitted + kFitReach + 5 <= kDenoiseReach && kDenoiseReach % 2 == 0);
   const int height = static_cast<int>(input.mean.height);
   const ImageMeans means = means_of(input);

@@ -16,15 +16,15 @@ namespace bandsaw {
 struct DenoiseInput {
   Image mean;   ///< mean of all samples of each pixel, linear radiance
   Image first;  ///< mean of the first of two independent parts of the samples
-  /// Share of that part in each pixel's samples, in (0, 1).
+  /// Share of the first part in each pixel's samples, (0, 1).
   std::vector<float> first_share;
   Image albedo;  ///< guide: by the integrator kGuideAlbedo (scene/guide_integrators.h)
   Image shape;   ///< guide: normal and distance, by the integrator kGuideShape
 };
 
-/// Estimated errors over all channels of the pixels whose values are finite in the image and in
-/// both parts of the samples. All errors are zero if there is no such pixel. "Raw" is the image as
-/// rendered, and "clean" is the result.
+/// Estimated errors over all channels of the pixels whose values are finite, in the image and in
+/// both parts of the samples. All members are 0 if there is no such pixel. "Raw" is the image as
+/// rendered, "clean" is the result.
 struct CleanError {
   double mean = 0;        ///< mean value of the image
   double rmse_raw = 0;    ///< RMSE of the image as rendered
@@ -33,8 +33,8 @@ struct CleanError {
 
   double relative_raw() const { return mean > 0 ? rmse_raw / mean : 0; }
   double relative_clean() const { return mean > 0 ? rmse_clean / mean : 0; }
-  /// Returns a bound of the clean image's relative error, which stop rules compare with their
-  /// target.
+  /// Returns an upper bound of the clean image's relative error. Stop rules compare this bound with
+  /// their target.
   double at_most() const { return kMargin * relative_clean(); }
   /// This factor covers the ratios of true and estimated error in the first measurements of
   /// NOTES.md. It was not calibrated with many seeds.
@@ -46,18 +46,19 @@ struct CleanError {
 struct Denoised {
   Image image;
   /// Estimated error of each pixel: the root of the mean squared error over its channels and over
-  /// the pixels around it. All channels of the image have this value.
+  /// the pixels around it. All three channels of a pixel hold this value.
   Image error;
   CleanError total;
 };
 
-/// Removes the noise. `fit` is the function fit() of any kernel (render/kernel.h). The result has
-/// the same bits for any number of threads and any kernel. Where the estimated error of the
-/// filtered value is not below that of the rendered one, and where a value is negative, above 1e15
-/// or not finite, the pixel stays as it was rendered. The image is filtered in strips of
-/// `strip_rows` rows, which MUST be an even number. With 0, a strip has about a quarter of a
-/// megapixel, but at least 64 rows. In addition to input and result, this needs less than 350 bytes
-/// for each pixel of a strip and of the rows around it. The bits do not depend on `strip_rows`.
+/// Removes the noise. `fit` is the fit() of any kernel (render/kernel.h). The pixel stays as it was
+/// rendered where the estimated error of the filtered value is not below that of the rendered
+/// value, and where a value is negative, above 1e15 or not finite.
+///
+/// The image is filtered in strips of `strip_rows` rows, an even number. If `strip_rows` is 0, a
+/// strip has about a quarter of a megapixel. In addition to input and result, denoise() needs less
+/// than 350 bytes for each pixel of a strip and of the rows around it. The result has the same bits
+/// for any number of threads, any kernel and any `strip_rows`.
 Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int strip_rows = 0);
 
 }  // namespace bandsaw

@@ -236,7 +236,7 @@ void Evaluation::add_centres(int i, int parity, int y, int k, int cy, Sums& sums
 void Evaluation::evaluate(int i, int parity, int y) {
   Sums sums;
   for (std::size_t h = 0; h < 2; ++h) {
-    // Where no centre resembles the pixel, its own value is left.
+    // Where no centre resembles the pixel, the pixel keeps its own value.
     const Float8 own = Float8(kOwnWeight) * Float8::load(input_.valid.row(parity, y) + i);
     sums.weights[h] = own + Float8(1e-12f);
     for (std::size_t c = 0; c < 3; ++c) {

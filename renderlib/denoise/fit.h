@@ -43,11 +43,11 @@ struct FitInput {
   std::array<std::array<SplitPlane, 3>, 2> halves;
   std::array<SplitPlane, 2> variance;      ///< variance of a half: sum over channels, > 0
   std::array<SplitPlane, kGuides> guides;  ///< each in [0, 1]
-  SplitPlane valid;  ///< 1 for pixels whose values may be used, otherwise 0, as in the margin
+  SplitPlane valid;  ///< 1 for pixels whose values may be used, otherwise 0; 0 in the margin
 };
 
-/// Settings of one filter. Each reach is a limit of a difference: pixels that differ more from the
-/// centre have little weight.
+/// Settings of one filter. A pixel has little weight if one of its differences from the centre is
+/// larger than the reach of this difference.
 struct FitSettings {
   float color_reach = 1;      ///< difference of patches, in standard deviations
   float albedo_reach = 2;     ///< difference of the albedo
@@ -59,7 +59,8 @@ struct FitSettings {
 inline constexpr std::size_t kFilters = 2;
 using FilterSettings = std::array<FitSettings, kFilters>;
 
-/// A filtered value depends on rows up to this distance away: centres, windows, patches.
+/// A filtered value depends on rows up to this distance away. The sum is the largest distance of a
+/// centre from the pixel, plus the radius of a window, plus the radius of a patch.
 inline constexpr int kFitReach = 2 + 7 + 3;
 
 /// The two halves of a filtered image: values of the wanted rows for each channel.

@@ -20,7 +20,7 @@ inline constexpr int kFitPatch = 3;      ///< radius of a patch, pixels
 inline constexpr int kTileColumns = 32;  ///< centres in a row of a tile
 inline constexpr int kTileRows = 8;      ///< rows of centres in a tile
 
-/// Returns about exp(-x) for x in [0, 4]: (1 - x / 4)^4, and 0 from there on; 1 for negative x.
+/// Returns (1 - x / 4)^4, about exp(-x), for x in [0, 4]; 1 for smaller x and 0 for larger x.
 inline Float8 falling(const Float8& x) {
   const Float8 one(1.0f);
   const Float8 y = max(min(one - x * Float8(0.25f), one), Float8(0.0f));
@@ -37,11 +37,11 @@ class PatchDistances {
 
   /// Computes the distances of the tile whose first centre is pixel (x, y); both are even.
   void compute(int x, int y);
-  /// Returns eight distances: those of the patches around eight centres, which begin at `column` of
-  /// `row` in the tile, from the patches around the pixels at (dx, dy) from these centres. The
-  /// distance of two patches is the mean over their pixels of (d^2 - v) / v, where d is the
-  /// difference of the pixels and v the variance of d. It is 0 on average for patches of the same
-  /// radiance.
+  /// Returns the distances for eight adjacent centres of the tile. The first of these centres is at
+  /// `column` of `row`. The distance compares the patch around a centre with the patch around the
+  /// pixel at (dx, dy) from this centre. It is the mean over the patch of (d^2 - v) / v, where d is
+  /// the difference of two pixels and v the variance of d. It is 0 on average for patches of the
+  /// same radiance.
   const float* to(int dx, int dy, int row, int column) const {
     const int offset = (dy + kFitRadius) * kFitSide + dx + kFitRadius;
     return &all_[static_cast<std::size_t>((offset * kTileRows + row) * kTileColumns + column)];
@@ -52,6 +52,7 @@ class PatchDistances {
   static constexpr int kBefore = 2;  ///< columns of each parity before the tile's first
   static constexpr int kColumns = kTileColumns + kFitLanes;  ///< columns of each parity
 
+  /// Sets differences_ for one offset (dx, dy) in the tile whose first centre is pixel (x, y).
   void compare(int x, int y, int dx, int dy);
   /// Writes the distances of the patches of all centres of the tile for one offset.
   void sum_patches(float* to) const;
@@ -67,7 +68,7 @@ inline constexpr std::size_t kTerms = 3 + kGuides;  ///< 1, x, y, guides
 /// Normal equations of eight centres, in one half of the samples.
 struct NormalEquations {
   NormalEquations();
-  /// Adds a pixel.
+  /// Adds one pixel of the window of each of the eight centres.
   void add(const Float8& weight, const Float8 (&terms)[kTerms], const Float8 (&value)[3]);
   /// Adds a small multiple of the sum of the weights to the diagonal, except for the first term, so
   /// that the equations can be solved.

@@ -1,5 +1,5 @@
-// Estimates the error of a denoised image from denoised images of its two parts, for filters of
-// which nothing else is known (OpenImageDenoise).
+// Estimates the error of a denoised image from denoised images of the two parts of its samples. The
+// estimate needs no other knowledge of the filter, for example OpenImageDenoise.
 
 #include "renderlib/denoise/halves.h"
 
@@ -16,7 +16,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr int kSmoothing = 2;  ///< radius of the map of errors
+constexpr int kSmoothing = 2;  ///< radius, in pixels, of the mean that smooths the map of errors
 
 std::array<double, 3> channels(const Rgb& color) { return {color.r, color.g, color.b}; }
 

@@ -23,8 +23,8 @@ Guide guide_at(const FitInput& input, int x, int y) {
   return guide;
 }
 
-/// Returns a factor, in [0, 1], of the weight that a pixel with the guides b has in the mean for a
-/// pixel with the guides a.
+/// Returns how similar the guides of two pixels are, in [0, 1]; 1 for equal guides. In the mean for
+/// a pixel with the guides `a`, the weight of a pixel with the guides `b` has this factor.
 float similarity(const Guide& a, const Guide& b) {
   float distance = 0;
   for (std::size_t g = 0; g < kGuides; ++g) {

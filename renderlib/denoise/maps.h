@@ -24,7 +24,7 @@ struct MapSize {
   }
 };
 
-/// Replaces each value by the mean of those up to `radius` pixels away in x and y, inside the
+/// Replaces each value by the mean of the values up to `radius` pixels away in x and y, inside the
 /// image.
 void smooth(Map& map, const MapSize& size, int radius, Pool& pool);
 

@@ -9,8 +9,8 @@ namespace {
 /// The ridge is this many times the sum of the weights. Without it, a guide that is constant in the
 /// window would make the equations singular.
 constexpr float kRidge = 1e-5f;
-/// Least element of D, relative to the element of the matrix on the diagonal: smaller ones are
-/// rounding errors.
+/// Minimum of an element of D, relative to the diagonal element of the matrix. Smaller elements are
+/// only rounding errors and are replaced by this minimum.
 constexpr float kMinPivot = 1e-6f;
 
 /// A symmetric matrix as L D L^T: D on the diagonal, L below it.

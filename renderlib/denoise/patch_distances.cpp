@@ -25,7 +25,7 @@ void PatchDistances::compute(int x, int y) {
 void PatchDistances::compare(int x, int y, int dx, int dy) {
   const auto& color = input_.halves[half_];
   const SplitPlane& variance = input_.variance[half_];
-  const Float8 most(32.0f);  // so that one pixel cannot decide for a whole patch
+  const Float8 most(32.0f);  // limits each pixel, so that no pixel decides for a whole patch
   const int first = x / 2 - kBefore;
   for (int row = 0; row < kRows; ++row) {
     const int from = y + row - kFitPatch;
@@ -62,6 +62,7 @@ void PatchDistances::sum_patches(float* to) const {
       }
     }
     for (int i = 0; i < kTileColumns; i += kFitLanes) {
+      // Around an even column, a patch has three even and four odd columns.
       const float* const even = &sums[0][i + kBefore];
       const float* const odd = &sums[1][i + kBefore];
       const Float8 evens = (Float8::load(even - 1) + Float8::load(even)) + Float8::load(even + 1);

@@ -10,11 +10,13 @@
 namespace bandsaw {
 namespace {
 
-/// Limit of radiance and depth, so that sums of squares stay within the range of float.
+/// Limit of radiance (per channel) and of depth, so that sums of squares stay within the range of
+/// float. A pixel with a larger radiance is not filtered. A larger depth counts as infinite.
 constexpr float kMaxDepthValue = 1e15f;
 constexpr int kAround = 2;  ///< radius, in pixels, of the neighbours that limit a bright pixel
-/// Least standard deviation of a half, as a share of the brightness around a pixel: smaller
-/// differences are never taken for detail.
+/// Minimum standard deviation of a half, as a share of the brightness around a pixel. The filters
+/// compare differences with the standard deviation, so they never treat smaller differences as
+/// detail.
 constexpr float kMinNoise = 3e-3f;
 
 using Channels = std::array<float, 3>;
@@ -75,7 +77,8 @@ Parts parts_of(const DenoiseInput& input, std::size_t first_pixel, const MapSize
 
 float brightness(const Channels& color) { return (color[0] + color[1]) + color[2]; }
 
-/// Returns a half with its single bright pixels scaled down.
+/// Returns `half` with its single bright pixels scaled down. A pixel that is brighter than all
+/// pixels around it in `other` gets the brightness of the brightest of them.
 std::vector<Channels> limited(const std::vector<Channels>& half, const std::vector<Channels>& other,
                               const MapSize& size, Pool& pool) {
   std::vector<Channels> out = half;
@@ -100,7 +103,9 @@ std::vector<Channels> limited(const std::vector<Channels>& half, const std::vect
   return out;
 }
 
-/// Returns the guides of a pixel, each in [0, 1]. A depth of `typical` becomes 1/2.
+/// Returns the guides of a pixel, each in [0, 1]. `shape` is a pixel of DenoiseInput::shape: `r`
+/// and `g` hold the normal, and `b` is the depth, 0 where there is no surface. A depth of `typical`
+/// becomes 1/2.
 std::array<float, kGuides> guides_of(const Rgb& albedo, const Rgb& shape, float typical) {
   const auto bounded = [](float v) { return v > 0 ? std::min(v, 1.0f) : 0.0f; };  // NaN: 0
   const float depth =
@@ -167,7 +172,8 @@ FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const R
   smooth(noise, size, 1, pool);
   smooth(around, size, 3, pool);
   for (std::size_t h = 0; h < 2; ++h) {
-    // The variance of a part is inverse to its number of samples.
+    // The variance of a half is inversely proportional to its number of samples. So the first half
+    // has the part 1 - share of the variance of the difference, and the second half the part share.
     out.variance[h] = plane_of(size, pool, [&](int x, int y) {
       const std::size_t i = size.index(x, y);
       const float share = std::clamp(input.first_share[first_pixel + i], 0.0f, 1.0f);

@@ -22,9 +22,9 @@ T squared_error(T a, T b, T first, T second, T share) {
   return share * of_a + (1 - share) * of_b - share * (1 - share) * ((a - b) * (a - b));
 }
 
-/// Returns an estimated squared error, but at least the part of it that is noise: `variance` is
-/// share (1 - share) (a - b)^2. The estimate alone may be far too small, even negative, because two
-/// parts of one Sobol' sequence differ more than independent ones.
+/// Returns the larger of an estimated squared error and `variance`, the part of the error that is
+/// noise: share (1 - share) (a - b)^2. The estimate alone may be far too small, even negative,
+/// because two parts of one Sobol' sequence differ more than independent parts.
 template <class T>
 T at_least_variance(T squared_error, T variance) {
   return squared_error > variance ? squared_error : variance;

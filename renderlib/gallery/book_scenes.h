@@ -2,15 +2,15 @@
 
 // The scenes of the "weekend" books (Shirley, Black and Hollasch, "Ray Tracing in One Weekend",
 // "Ray Tracing: The Next Week") that consist of hundreds of shapes at random places, as text. The
-// books use random numbers of the C library and these scenes use ours, so the places of small
-// shapes differ.
+// books use random numbers of the C library, but these scenes use SplitMix64. So the places of the
+// small shapes differ from those in the books.
 
 #include <string>
 
 namespace bandsaw::gallery {
 
-/// Returns the last scene of the first book, or if `bouncing` the first scene of the second book,
-/// whose diffuse spheres move up while the shutter is open.
+/// Returns the last scene of the first book. If `bouncing` is true, returns the first scene of the
+/// second book instead, whose small diffuse spheres move up while the shutter is open.
 std::string many_spheres(bool bouncing);
 
 /// Returns the last scene of the second book.

@@ -56,8 +56,8 @@ double fractal(const Vec3& p, int first, int last) {
   return sum;
 }
 
-/// Returns the colour of the sea. `broad` is the height without its finer octaves: the floor of the
-/// open sea is smooth.
+/// Returns the colour of the sea. `broad` is the height without its finer octaves. It gives the
+/// colour of the open sea, whose floor is smooth.
 Vec3 sea(double height, double broad) {
   const Vec3 open = lerp(kDeepSea, kOpenSea, rise(-0.55, -0.1, broad));
   return lerp(open, kShelf, rise(-kShelfDepth, 0, height));
@@ -97,6 +97,7 @@ Vec3 color_at(const Vec3& p, int octaves) {
   return ice == 1 ? kIce : lerp(uncovered(p, latitude, rain, octaves), kIce, ice);
 }
 
+/// Rounds a colour value in [0, 255] to an sRGB code.
 std::uint8_t code(double value) { return static_cast<std::uint8_t>(value + 0.5); }
 
 }  // namespace

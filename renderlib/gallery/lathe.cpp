@@ -32,10 +32,12 @@ struct Rings {
   std::vector<std::size_t> low;
 };
 
+/// Returns the rings of the profile. Two pieces that meet at less than 40 degrees share a ring,
+/// with the mean of their normals. At a sharper edge each piece has a ring of its own.
 Rings rings_of(absl::Span<const Vec2> profile) {
   constexpr double kSmooth = 0.766;  // the cosine of 40 degrees
   std::vector<Vec2> normals;
-  std::vector<double> reached = {0};
+  std::vector<double> reached = {0};  // length of the profile up to each point
   for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
     const Vec2 along = minus(profile[i + 1], profile[i]);
     reached.push_back(reached.back() + std::sqrt(dot2(along, along)));
@@ -113,6 +115,7 @@ std::vector<Vec2> smooth_profile(absl::Span<const Vec2> corners, int steps) {
       const double t = static_cast<double>(step) / steps;
       const Vec2 slope0 = minus(at(i + 1), before) * 0.5;
       const Vec2 slope1 = minus(after, at(i)) * 0.5;
+      // A cubic Hermite curve from at(i) to at(i + 1) with these slopes.
       const double s = 1 - t;
       Vec2 p = at(i) * (s * s * (1 + 2 * t)) + slope0 * (s * s * t) +
                at(i + 1) * (t * t * (3 - 2 * t)) + slope1 * (-s * t * t);

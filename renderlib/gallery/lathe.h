@@ -12,14 +12,14 @@ namespace bandsaw::gallery {
 
 /// Returns a Wavefront OBJ of the profile rotated around the y axis. The x of a point is its
 /// radius, >= 0, and its y is the height. A profile that goes up has its outside to the right.
-/// Edges sharper than 40 degrees stay sharp, others have smooth normals; uv is (turn, share of the
-/// profile's length). The profile has at least two points, no two consecutive ones equal. `around`,
-/// >= 3, is the number of faces of a ring.
+/// Edges sharper than 40 degrees stay sharp, and other edges have smooth normals. uv is (turn,
+/// share of the profile's length). The profile MUST have at least two points, and consecutive
+/// points MUST differ. `around`, >= 3, is the number of faces of a ring.
 std::string lathe_obj(absl::Span<const Vec2> profile, int around);
 
-/// Returns points of a smooth curve through `corners` (at least two), `steps` (>= 1) for each span
-/// between two of them (Catmull and Rom 1974, "A class of local interpolating splines"); radii stay
-/// >= 0.
+/// Returns points of a smooth curve through `corners`, at least two (Catmull and Rom 1974, "A class
+/// of local interpolating splines"). Each span between two consecutive corners gets `steps` points,
+/// >= 1. Negative radii are replaced by 0.
 std::vector<Vec2> smooth_profile(absl::Span<const Vec2> corners, int steps);
 
 }  // namespace bandsaw::gallery

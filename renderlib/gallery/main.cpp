@@ -1,8 +1,8 @@
-// bandsaw-gallery: generates the files of the gallery that are defined by formulas, such as globe
-// maps, which are too large for the repository, surfaces of revolution, skies, and scenes of
+// bandsaw-gallery: generates the files of the gallery that are defined by formulas. They include
+// globe maps (too large for the repository), surfaces of revolution, skies, volumes, and scenes of
 // hundreds of shapes.
 //
-//   bandsaw-gallery FOLDER    FOLDER/study/globe_512.png …; replaces existing files
+//   bandsaw-gallery FOLDER    writes FOLDER/study/globe_512.png …; replaces existing files
 //
 // Every run on every machine writes the same bytes. Exit status 0: success, 1: failure, 2: wrong
 // usage.

@@ -59,8 +59,9 @@ std::string block(Mesh mesh, const Vec3& centre, const Vec3& size) {
                          triple(size));
 }
 
-/// Returns a node at `from` whose -z axis, the direction of glTF's cameras (glTF 2.0, 5.12), points
-/// to `to`: the columns of its matrix are its axes.
+/// Returns a node with the camera of number `camera` at `from`. The node's -z axis, along which a
+/// glTF camera looks (glTF 2.0, 5.12), points to `to`. The columns of the node's matrix are its
+/// axes and `from`.
 std::string stand(const char* name, int camera, const Vec3& from, const Vec3& to, const Vec3& up) {
   const Vec3 z = normalize(from - to);
   const Vec3 x = normalize(cross(up, z));
@@ -72,6 +73,7 @@ std::string stand(const char* name, int camera, const Vec3& from, const Vec3& to
                          camera, column(x, 0), column(y, 0), column(z, 0), column(from, 1));
 }
 
+/// Returns the nodes: ground, basin, pillars, beams, slats and the three cameras.
 std::vector<std::string> nodes() {
   std::vector<std::string> nodes = {
       block(kStone, {0, -0.1, 0}, {15, 0.2, 9}), block(kStone, {0, 0.06, 0}, {7.6, 0.12, 2.2}),
@@ -104,6 +106,7 @@ constexpr char kCube[] = R"("meshes": [
   {"buffer": 0, "byteLength": 288}, {"buffer": 0, "byteOffset": 288, "byteLength": 288}, {"buffer": 0, "byteOffset": 576, "byteLength": 72}],
 )";
 
+// Cameras, in the order of the numbers that nodes() uses, and the materials of kCube.
 constexpr char kLooks[] = R"("cameras": [
   {"name": "walker", "type": "perspective", "perspective": {"yfov": 0.72, "znear": 0.1}},
   {"name": "map", "type": "orthographic", "orthographic": {"xmag": 7.8, "ymag": 5.2, "znear": 0.1, "zfar": 50}}],

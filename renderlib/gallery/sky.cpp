@@ -31,7 +31,8 @@ struct Frame {
   Environment environment;
 };
 
-/// Draws one image of an environment (`face` 0 to 5 of a cube, otherwise 0).
+/// Draws one image of an environment (`face` 0 to 5 of a cube, otherwise 0). A texel is the mean of
+/// `sky` in kFine x kFine directions.
 Image draw(Rgb (*sky)(const Vec3&), const Frame& frame, std::uint32_t face, std::uint32_t width,
            std::uint32_t height) {
   constexpr int kFine = 8;
@@ -50,7 +51,7 @@ Image draw(Rgb (*sky)(const Vec3&), const Frame& frame, std::uint32_t face, std:
   return image;
 }
 
-constexpr double kSunAzimuth = 40;
+constexpr double kSunAzimuth = 40;  // degrees
 
 /// Returns a unit direction. Its azimuth is measured from +x towards +z, its height from the
 /// horizon.
@@ -61,8 +62,8 @@ Vec3 direction(double azimuth_degrees, double height_degrees) {
 }
 
 /// Returns the amount of cloud in a direction above the horizon, in [0, 0.85]: turbulence at the
-/// point where the direction intersects a layer above, stretched along x. A larger `from` leaves
-/// less cloud.
+/// point where the direction intersects a layer above, stretched along x. `from` is subtracted, so
+/// a larger value leaves less cloud.
 float cover(const Vec3& unit, double from) {
   const double layer = 1 / (unit.y + 0.12);
   const double cloud =

@@ -20,10 +20,10 @@ struct Box {
   bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
 };
 
-/// Moves the distance t of a hit into the part of the ray that is inside the box (`lo`, `hi`) of
-/// the primitive. Returns false if the ray misses the box by more than the tolerance, 2^-40 of t,
-/// which is far above the rounding error of the primitive tests and far below the tolerance of a
-/// BVH's boxes.
+/// Moves the distance t of a hit into the part of the ray that is inside the primitive's box from
+/// `lo` to `hi`. Returns false if the ray misses the box by more than a tolerance of 2^-40 of t.
+/// This tolerance is far above the rounding error of the primitive tests and far below the
+/// tolerance of a BVH's boxes.
 ///
 /// Every primitive test calls this function. Without it, hits whose t is mostly rounding error (on
 /// a triangle seen edge-on) could lie outside the boxes of a BVH, and it would depend on the tree

@@ -1,6 +1,6 @@
-// Counts the open edges of a mesh. An edge is open if its triangles, each traversed in the order of
-// its vertices, do not pass it equally often in both directions.
-// Vertices at the same position count as one.
+// Counts the open edges of a mesh. Each triangle passes its edges in the order of its vertices. An
+// edge is open if the triangles do not pass it equally often in both directions. Vertices at the
+// same position count as one.
 
 #include "renderlib/geometry/closed.h"
 

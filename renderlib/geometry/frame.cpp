@@ -12,6 +12,7 @@ namespace {
 /// Tolerance of decompose(), relative to the largest element of the linear part.
 constexpr double kDecomposed = 1e-9;
 
+/// Returns the largest magnitude of an element of the linear part.
 double largest(const Transform& t) {
   double most = 0;
   for (const auto& row : t.m) {
@@ -26,7 +27,7 @@ Transform compose(const Pose& pose) {
   return translation(pose.translate) * rotation(pose.rotate) * scaling(pose.scale);
 }
 
-/// Interpolates between consecutive keys; `time` is between the times of both.
+/// Returns the motion at `time`, which lies between the times of the consecutive keys `a` and `b`.
 Transform between(const Key& a, const Key& b, double time) {
   const double u = (time - a.time) / (b.time - a.time);
   const Vec3 moved = a.pose.translate + u * (b.pose.translate - a.pose.translate);

@@ -56,8 +56,8 @@ bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing) {
                                            sheared(ray, to_u), at_opposite, first);
   const bool hit_second = intersect_sheared(ray, corner, opposite, to_v, at_corner, at_opposite,
                                             sheared(ray, to_v), second);
-  // On the diagonal both triangles are hit; the nearer hit is taken, and the first one if t is
-  // equal.
+  // On the diagonal both triangles are hit. The nearer hit is used, or that of the first triangle
+  // if t is equal.
   if (hit_first && (!hit_second || first.t <= second.t)) {
     crossing = {first.t, std::min(1.0, first.u + first.v), first.v};
     return true;
@@ -68,9 +68,9 @@ bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing) {
   return hit_second;
 }
 
-// Solves a t^2 - 2 b t + c = 0 with c = |f|^2 - r^2, which is `product`. The discriminant (b^2 - a
-// c) / a is r^2 minus the squared distance of the centre from the ray's line; this form does not
-// cancel.
+// Solves a t^2 - 2 b t + c = 0, where c = |f|^2 - r^2 is the variable `product`. The discriminant
+// (b^2 - a c) / a is computed as r^2 minus the squared distance of the centre from the ray's line,
+// because this form does not cancel.
 bool intersect(const TracedRay& ray, const Sphere& sphere, bool starts_on_it, Crossing& crossing) {
   const Vec3 f = Vec3{ray.origin[0], ray.origin[1], ray.origin[2]} - sphere.center;
   const Vec3 d = {ray.direction[0], ray.direction[1], ray.direction[2]};
@@ -85,7 +85,7 @@ bool intersect(const TracedRay& ray, const Sphere& sphere, bool starts_on_it, Cr
   const double q = b < 0 ? b - root : b + root;
   const double distance = length(f);
   const double product = (distance - sphere.radius) * (distance + sphere.radius);
-  // One root is product / q, the other q / a; the near one is the first if b >= 0.
+  // The roots are product / q and q / a. The near root is product / q if b >= 0, otherwise q / a.
   const bool near_by_product = !(b < 0);
   double t = starts_on_it ? -1 : near_by_product ? product / q : q / a;
   if (!(t > 0)) {

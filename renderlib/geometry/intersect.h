@@ -1,8 +1,8 @@
 #pragma once
 
-// Ray-primitive intersection: for each kind of primitive one deterministic function of (ray,
-// primitive) in double. Because every hit is decided by the same function, the closest hit does not
-// depend on the BVH.
+// Ray-primitive intersection. Each kind of primitive has one deterministic function in double,
+// which depends only on the ray and the primitive. This function decides every hit, so the closest
+// hit does not depend on the BVH.
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +91,7 @@ template <class Point>
   return true;
 }
 
-/// Does the same with the corners in the triangle's space only.
+/// Does the same as intersect_sheared(), but computes the corners in the ray's space itself.
 template <class Point>
 inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point& b, const Point& c,
                                Crossing& crossing) {
@@ -106,19 +106,22 @@ Box bounds(const Sphere& sphere);
 Box bounds(const Quad& quad);
 Box bounds(const Triangle& triangle);
 
+/// Intersects the triangle. Like the next two functions, it returns true and sets `crossing` if the
+/// primitive is hit.
 bool intersect(const TracedRay& ray, const Triangle& triangle, Crossing& crossing);
 
-/// Intersects the quad as two triangles that share the diagonal from `corner`. Like the functions
-/// above and below, it returns true and sets `crossing` if the primitive is hit.
+/// Intersects the quad as two triangles that share the diagonal from `corner`.
 bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing);
 
 /// Intersects a sphere (Haines, Günther, Akenine-Möller 2019, "Precision Improvements for
-/// Ray/Sphere Intersection", Ray Tracing Gems, ch. 7): the discriminant is computed from the vector
-/// to the closest approach, the roots without cancellation. `starts_on_it` is true if the ray
-/// starts on this sphere (Ray::from); then the near root, which is the start or lies behind it, is
-/// no hit. Origins lie 2^-40 off the surface (geometry/surface.h), so the far root is not affected
-/// by rounding either: it is negative for a ray that leaves outwards, and at least 2^-20 of the
-/// radius for one that goes inwards.
+/// Ray/Sphere Intersection", Ray Tracing Gems, ch. 7). The discriminant is computed from the vector
+/// to the closest approach, and the roots are computed without cancellation.
+///
+/// `starts_on_it` is true if the ray starts on this sphere (Ray::from). Then the near root is no
+/// hit, because it is the start of the ray or lies behind it. Origins lie 2^-40 off the surface
+/// (geometry/surface.h), so rounding does not change whether the far root is a hit. The far root is
+/// negative for a ray that leaves outwards, and at least 2^-20 of the radius for a ray that goes
+/// inwards.
 bool intersect(const TracedRay& ray, const Sphere& sphere, bool starts_on_it, Crossing& crossing);
 
 }  // namespace bandsaw

@@ -71,7 +71,8 @@ class MeshList {
   }
 
  private:
-  std::vector<std::shared_ptr<Mesh>> meshes_;  ///< none is null; made as Mesh, not as const Mesh
+  /// No pointer is null. Each mesh was made as Mesh, not as const Mesh, so change() may alter it.
+  std::vector<std::shared_ptr<Mesh>> meshes_;
 };
 
 }  // namespace bandsaw

@@ -1,6 +1,6 @@
-// Samples the instance's box at times between which its motion deviates little from a straight
-// line, enlarges the boxes by a bound of that deviation, and finds a box with linearly moving sides
-// that contains them all.
+// Bounds of instances. For a moving instance, the box is sampled at times between which the motion
+// deviates little from a straight line. Each sampled box is enlarged by a bound of that deviation.
+// The result is a box with linearly moving sides that contains all enlarged boxes.
 
 #include "renderlib/geometry/moving_bounds.h"
 
@@ -15,12 +15,12 @@ namespace bandsaw {
 namespace {
 
 /// Wanted maximum deviation of a corner's path from a chord, relative to the size of the box. The
-/// interval between two keys is cut into as many pieces as this needs, but at most kMaxPieces. The
-/// bounds are correct for any values of both.
+/// interval between two keys is cut into the number of pieces that keeps this maximum, but at most
+/// kMaxPieces pieces. The bounds are correct for any values of the two constants.
 constexpr double kBend = 0x1p-6;
 constexpr double kMaxPieces = 64;
-/// Factor on the rounding margin of placed_bounds(), because between the sampled times rounding
-/// errors may be larger than at them.
+/// Factor on the rounding margin of placed_bounds(). Rounding errors may be larger between the
+/// sampled times than at the sampled times.
 constexpr double kTrips = 8;
 
 /// Upper bounds for a point that moves: of its distance from the origin, and of the lengths of its
@@ -31,6 +31,7 @@ struct Course {
   double bend = 0;   ///< second derivative
 };
 
+/// Returns the Frobenius norm of the linear part.
 double norm(const Transform& t) {
   double sum = 0;
   for (const auto& row : t.m) {
@@ -44,14 +45,16 @@ double norm(const Transform& t) {
 /// Returns the length of the translation.
 double moved(const Transform& t) { return length(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]}); }
 
-/// Returns the bounds after a placement that does not change with time.
+/// Returns the bounds for the placed point. `c` holds the bounds for the point before the
+/// placement, which does not change with time.
 Course through(const Transform& placement, const Course& c) {
   const double n = norm(placement);
   return {n * c.distance + moved(placement), n * c.speed, n * c.bend};
 }
 
-/// Returns the bounds after the motion T + R S between two keys, where S and T change linearly and
-/// the rotation R has the angular speed w. With p = S q, |(R p)''| <= w^2 |p| + 2 w |p'| + |p''|.
+/// Returns the bounds for a point q after the motion T + R S q between two keys. `c` holds the
+/// bounds for q. S and T change linearly, and the rotation R has the angular speed w. With p = S q,
+/// |(R p)''| <= w^2 |p| + 2 w |p'| + |p''|.
 Course through(const Key& a, const Key& b, const Course& c) {
   const double duration = b.time - a.time;
   const double scale = std::max(max_abs(a.pose.scale), max_abs(b.pose.scale));
@@ -65,8 +68,9 @@ Course through(const Key& a, const Key& b, const Course& c) {
           turning * turning * p.distance + 2 * turning * p.speed + p.bend};
 }
 
-/// Returns the bounds after the motion of a frame, in an interval between keys that contains
-/// `time`.
+/// Returns the bounds for a point after the motion and the placement of a frame. `c` holds the
+/// bounds for the point before. The result holds for an interval that contains `time` and no key of
+/// the frame in its interior.
 Course through(const Frame& frame, double time, const Course& c) {
   const auto after = std::upper_bound(frame.keys.begin(), frame.keys.end(), time,
                                       [](double t, const Key& key) { return t < key.time; });
@@ -76,8 +80,9 @@ Course through(const Frame& frame, double time, const Course& c) {
   return through(frame.placement, within);
 }
 
-/// Returns the bounds, in the world, for the points of a box in the instance's own space, in an
-/// interval between keys that contains `time`.
+/// Returns upper bounds, in world space, of distance, speed and bend for every point of `box`. The
+/// box is in the instance's own space. The result holds for an interval that contains `time` and no
+/// key in its interior.
 Course course_of(const Geometry& geometry, const Instance& instance, const Box& box, double time) {
   const Vec3 far = {std::max(std::abs(box.lo.x), std::abs(box.hi.x)),
                     std::max(std::abs(box.lo.y), std::abs(box.hi.y)),
@@ -89,7 +94,7 @@ Course course_of(const Geometry& geometry, const Instance& instance, const Box& 
   return course;
 }
 
-/// Returns the interval's ends and the keys between them, in ascending order.
+/// Returns the times of the interval's ends and of the keys between them, in ascending order.
 std::vector<double> turning_points(const Geometry& geometry, const Instance& instance,
                                    const Interval& interval) {
   std::vector<double> times = {interval.open, interval.close};
@@ -111,7 +116,8 @@ class Stops {
   Stops(const Geometry& geometry, const Instance& instance, const Box& box)
       : geometry_(geometry), instance_(instance), box_(box) {}
 
-  /// Adds the box at a time. Returns false if the placement is singular.
+  /// Adds the box at `time`, enlarged by `margin` in world space. Returns false if the placement is
+  /// singular.
   bool add(double time, double margin) {
     const Transform to_world = to_world_at(geometry_, instance_, time);
     const std::optional<Transform> to_object = inverse(to_world);
@@ -126,9 +132,9 @@ class Stops {
     return true;
   }
 
-  /// Returns the boxes at both ends of the interval, enlarged until their linear interpolation
-  /// contains every sampled box. Between two samples the motion deviates from the chord by at most
-  /// the `margin` of their boxes, so the result bounds the whole motion.
+  /// Returns the first and the last box, enlarged so that their linear interpolation contains every
+  /// sampled box. Between two samples the motion deviates from the chord by at most the `margin` of
+  /// the two boxes, so the result bounds the whole motion.
   MovingBox around(const Interval& interval) const {
     MovingBox result = {boxes_.front(), boxes_.back()};
     Vec3 below;

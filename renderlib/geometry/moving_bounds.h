@@ -1,7 +1,7 @@
 #pragma once
 
-// Bounds of instances: a box for one at rest, a box with linearly moving sides for one that moves
-// during the shutter interval.
+// Bounds of instances. An instance at rest has a box. An instance that moves during the shutter
+// interval has a box with linearly moving sides.
 
 #include <optional>
 
@@ -11,9 +11,9 @@
 
 namespace bandsaw {
 
-/// Returns bounds, in world space, of `box`, which is in an instance's own space. They are enlarged
-/// by `trips` times the rounding error of a ray that is transformed to that space and back.
-/// `to_object` is the inverse of `to_world`.
+/// Returns the bounds of `box` in world space. `box` is in an instance's own space, and `to_object`
+/// is the inverse of `to_world`. The bounds are enlarged by `trips` times the rounding error of a
+/// ray that is transformed to the instance's space and back.
 Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to_object,
                   double trips = 1);
 
@@ -24,10 +24,10 @@ struct MovingBox {
   Box at_close;
 };
 
-/// Returns the bounds in the world, during Geometry::shutter, of `box`, which is in the instance's
-/// own space. They are enlarged for the rounding error of rays that are transformed to that space
-/// and back. The instance MUST have a frame. Returns std::nullopt if its placement is singular at
-/// one of the times that are examined.
+/// Returns the bounds of `box` in world space during Geometry::shutter. `box` is in the instance's
+/// own space. The bounds are enlarged for the rounding error of rays that are transformed to the
+/// instance's space and back. The instance MUST have a frame. Returns std::nullopt if its placement
+/// is singular at one of the times that are examined.
 std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance& instance,
                                        const Box& box);
 

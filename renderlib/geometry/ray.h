@@ -31,8 +31,8 @@ struct Ray {
   double time = 0;  ///< moving instances are placed at this time
 };
 
-/// The BVH stores the triangles of a leaf in packs of eight, interleaved: consecutive numbers of
-/// one triangle are this many floats apart (Hit::corners).
+/// The BVH stores the triangles of a leaf in packs of eight. The numbers of the eight triangles are
+/// interleaved, so consecutive numbers of one triangle are this many floats apart (Hit::corners).
 inline constexpr std::size_t kCornerStride = 8;
 
 /// The closest hit: the lexicographically lowest (t, instance, primitive), independent of the BVH.

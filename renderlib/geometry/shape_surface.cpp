@@ -16,8 +16,8 @@
 namespace bandsaw {
 namespace {
 
-/// Offset of ray origins, relative to the largest number from which the position was computed. This
-/// and the next two numbers are derived in README.md, "Squashed space".
+/// Offset of ray origins, relative to the largest number from which the position was computed.
+/// README.md, "Squashed space", derives this constant and the next two.
 constexpr double kOffset = 0x1p-40;
 /// Up to this condition number of a placement, kOffset is far above the rounding of rays that are
 /// transformed back to the primitive's own space.
@@ -110,9 +110,9 @@ Placement::Placement(const Transform& t) {
   moved = max_abs(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]});
 }
 
-// Rays are transformed back by the inverse, together with the rounding error of their origins: a
-// few 2^-53 of `scale`, the largest number from which the position was computed. README.md,
-// "Squashed space", derives the constants.
+// The inverse transforms rays back to the primitive's own space, together with the rounding error
+// of their origins. This error is a few 2^-53 of `scale`, the largest number from which the
+// position was computed. README.md, "Squashed space", derives the constants.
 void Placement::set_offset(const SurfacePoint& local, SurfacePoint& placed) const {
   const double largest_in_object = local.offset / kOffset;
   const double scale = std::max({max_abs(placed.position), largest_in_object * norm(rows), moved});

@@ -40,8 +40,8 @@ inline Vec3 same_side(const Vec3& n, const Vec3& reference) {
 /// Returns a vector perpendicular to two edges, of any length; zero or not finite if they are
 /// parallel.
 Vec3 across(const Vec3& e1, const Vec3& e2);
-/// Returns the unit normal of a triangle with these edges; that of a triangle without area faces
-/// the ray.
+/// Returns the unit normal of a triangle with these edges. The normal of a triangle without area
+/// faces the ray.
 inline Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray) {
   return unit_normal(across(e1, e2), ray);
 }
@@ -57,8 +57,8 @@ struct Placement {
     const Vec3 c = {dot(cofactors[0], n), dot(cofactors[1], n), dot(cofactors[2], n)};
     return determinant < 0 ? -c : c;
   }
-  /// Sets `squashed` and `offset` of `placed`, and `away` if it is squashed. Its position MUST
-  /// be set; `local` is the same surface before the placement.
+  /// Sets `squashed` and `offset` of `placed`, and also `away` if the placement squashes. The
+  /// position of `placed` MUST be set. `local` is the same surface before the placement.
   void set_offset(const SurfacePoint& local, SurfacePoint& placed) const;
 
   std::array<Vec3, 3> rows;       ///< of M
@@ -70,11 +70,11 @@ struct Placement {
   double moved;  ///< the largest component of the translation
 };
 
-/// Returns the surface of a shape in its own space; `ray` is in that space. `sphere_uv` is that of
-/// surface_at().
+/// Returns the surface of a shape in its own space; `ray` is in that space too. If `sphere_uv` is
+/// false, the uvs of spheres are zero, as in surface_at().
 SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit, bool sphere_uv);
 
-/// Returns the surface `local`, which is in its own space, in world space.
+/// Returns the surface `local`, which is in the primitive's own space, in world space.
 SurfacePoint placed(const SurfacePoint& local, const Transform& to_world, const Ray& world_ray);
 
 }  // namespace bandsaw

@@ -64,7 +64,7 @@ Rgb mesh_color(const Mesh& mesh, const std::array<std::uint32_t, 3>& index, cons
          color(2) * static_cast<float>(hit.v);
 }
 
-/// Returns the surface in the mesh's space.
+/// Returns the surface at a hit of a mesh's triangle, in the mesh's space.
 SurfacePoint on_triangle(const Mesh& mesh, const Interval& shutter, const Ray& ray,
                          const Hit& hit) {
   const Corners local = corners(mesh, shutter, ray.time, hit);

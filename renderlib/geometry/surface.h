@@ -66,20 +66,21 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
 /// of a mesh's triangle have no area.
 void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point);
 
-/// Does the same, but with the lengths of the derivatives dp/du and dp/dv in world space, for every
-/// kind of shape.
+/// Does the same as add_uv_directions(), but for every kind of shape the vectors have the lengths
+/// of the derivatives dp/du and dp/dv in world space.
 void add_uv_derivatives(const Geometry& geometry, bool second, SurfacePoint& point);
 
 /// Returns the distance along `ray`, whose direction is a unit vector, to the surface that it hit.
-/// In squashed space a rounded position is on its primitive, but it may be further off the ray than
-/// the primitive is thick; therefore t is used there and not the position.
+/// In squashed space a rounded position is on its primitive, but its distance from the ray may
+/// exceed the thickness of the primitive. Therefore t is used in squashed space and not the
+/// position.
 inline double distance_along(const Ray& ray, const SurfacePoint& hit) {
   return hit.squashed ? hit.t : length(hit.position - ray.origin);
 }
 
-/// Returns a ray that leaves the surface: it starts off the surface on the side of `direction`, and
-/// it cannot hit the same primitive again if that is flat. (Inline, so that the caller has the ray
-/// in registers.)
+/// Returns a ray that leaves the surface. The ray starts off the surface on the side of
+/// `direction`, and it cannot hit the same primitive again if the primitive is flat. (Inline, so
+/// that the caller has the ray in registers.)
 inline Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, double t_max = kInfinity) {
   const bool inwards = dot(direction, from.geometric_normal) < 0;
   return {inwards ? from.position - from.away : from.position + from.away, direction, t_max,

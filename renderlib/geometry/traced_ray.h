@@ -13,7 +13,7 @@ namespace bandsaw {
 struct TracedRay {
   std::array<double, 3> origin;
   std::array<double, 3> direction;
-  std::array<double, 3> inverse;  ///< 1 / direction; infinite where that is 0
+  std::array<double, 3> inverse;  ///< 1 / direction; infinite where the direction is 0
   double t_max;
   /// kz is the axis along which the direction is longest; (kx, ky, kz) is right-handed as seen
   /// along the ray.

@@ -1,6 +1,6 @@
-// Implements add_uv_directions() and add_uv_derivatives() of surface.h: the directions in which u
-// and v increase, for triangles from the map between uvs and corners, for other shapes in closed
-// form.
+// Implements add_uv_directions() and add_uv_derivatives() of surface.h, which compute the
+// directions in which u and v increase. For the triangles of meshes, the directions follow from the
+// map between uvs and corners. For other shapes, the directions have a closed form.
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +21,8 @@ struct Directions {
   Vec3 v;
 };
 
-/// Returns dp/du and dp/dv, in the world, of the affine map from the triangle's uvs to its corners;
-/// zero if the uvs have no area.
+/// Returns the derivatives dp/du and dp/dv, in world space, of the affine map from the triangle's
+/// uvs to its corners. They are zero if the uvs have no area.
 Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool second,
                       const SurfacePoint& point) {
   const Instance& instance = geometry.instances[point.id.instance - 1];
@@ -53,8 +53,8 @@ Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool 
   return is_finite(u) && is_finite(v) ? Directions{u, v} : Directions{};
 }
 
-/// Returns the directions, of any length, in the space of the shapes. If the shape is a sphere,
-/// `normal` is its normal there.
+/// Returns the directions, of any length, in the space of the shapes. `normal` is the normal at the
+/// point in this space; it is used only if the shape is a sphere.
 Directions along_shape(const Shapes& shapes, const Vec3& normal, const SurfacePoint& point) {
   const auto [kind, index] = shape_ref(shapes, point.id.primitive);
   switch (kind) {
@@ -96,6 +96,7 @@ Vec2 lengths_of(const Shapes& shapes, const SurfacePoint& point, const Direction
   return {1, 1};
 }
 
+/// Returns the directions at the point in world space, of any length.
 Directions uv_directions(const Geometry& geometry, bool second, const SurfacePoint& point) {
   if (point.id.instance == 0) {
     return along_shape(geometry, point.geometric_normal, point);
@@ -105,7 +106,8 @@ Directions uv_directions(const Geometry& geometry, bool second, const SurfacePoi
   if (instance.group == kNoGroup) {
     return along_mesh(geometry, to_world, second, point);
   }
-  // In its own space, a sphere's point is along the normal from its centre.
+  // In the group's space, the vector from a sphere's centre to the point has the normal's
+  // direction.
   const Directions along =
       along_shape(*group_of(geometry, instance), unit_or(point.object_position, {0, 0, 1}), point);
   return {to_world.direction(along.u), to_world.direction(along.v)};

@@ -1,7 +1,7 @@
 // Fits the balls of a cell (guiding_cell.h) to its records. The directions of the light, as seen
-// from the cell's middle, begin as one cluster; clusters are split as long as that explains the
-// records better. Each cluster becomes a ball. Then cross-validation finds the share of the
-// directions that should be sampled towards the balls.
+// from the cell's middle, begin as one cluster. Clusters are split as long as a split explains the
+// records better. Each cluster that is not too wide becomes a ball. Then cross-validation finds the
+// share of the directions that should be sampled towards the balls.
 
 #include <algorithm>
 #include <cmath>
@@ -21,16 +21,17 @@ constexpr std::size_t kMinRecordsOfBall = 6;
 /// Shares of guided directions to choose from.
 constexpr std::array<double, 4> kShares = {0.125, 0.25, 0.375, 0.5};
 
-/// 1 - cos of the half-angle of the widest cone. Wider cones are left to the BSDF, because much of
-/// them would lie below the surface.
+/// Largest 1 - cos of the half-angle of a cone that becomes a ball. Wider cones are left to BSDF
+/// sampling, because a large part of them would lie below the surface.
 constexpr double kWidest = 0.5;
 
-/// A single record has at most this share of a cell's light: a path that found a small lamp by
-/// chance does not decide alone.
+/// A single record has at most this share of a cell's light, so that a path that found a small lamp
+/// by chance does not determine the cell alone.
 constexpr double kMaxShareOfRecord = 0.1;
 
-/// A cluster is split only if that raises the mean logarithm of the pdf by this much divided by the
-/// effective number of records: otherwise few records would be followed too closely.
+/// A cluster is split only if the split raises the mean logarithm of the pdf by more than this
+/// number divided by the effective number of records. Without this limit, the clusters would fit
+/// the noise of few records.
 constexpr double kMinSplitGain = 3;
 
 /// Share of its weight that a cluster keeps when it is split.
@@ -53,9 +54,10 @@ struct Cluster {
   double one_minus_cos = 2;  ///< 1 - cos of the cone's half-angle
 };
 
-/// A split of a cluster into directions whose component `axis` is below `at`, and the others.
+/// A split of a cluster into two parts: the directions whose component `axis` is below `at`, and
+/// the other directions.
 struct Split {
-  double gain = 0;  ///< increase of the sum of the scores; 0: there is no split
+  double gain = 0;  ///< by how much it raises the sum of the scores; 0: there is no split
   int axis = 0;
   double at = 0;
 };
@@ -91,6 +93,7 @@ double area_of(absl::Span<const GuidingRecord> records, const Vec3& normal) {
   return area;
 }
 
+/// Returns the place of the records, which MUST NOT be empty.
 Place place_of(absl::Span<const GuidingRecord> records) {
   Place place;
   for (const GuidingRecord& record : records) {
@@ -104,7 +107,8 @@ Place place_of(absl::Span<const GuidingRecord> records) {
     place.extent2 += length_squared(vec3(record.position) - place.middle);
   }
   place.extent2 /= static_cast<double>(records.size());
-  // Photons add up over an area; the irradiances that paths found are averaged.
+  // The powers of photons are summed and divided by the area. The irradiances of paths are
+  // averaged.
   const double over = records[0].kind == GuidingRecord::Kind::kPhoton
                           ? area_of(records, place.normal)
                           : static_cast<double>(records.size());
@@ -127,10 +131,11 @@ void normalize_weights(absl::Span<Seen> seen) {
 struct Light {
   std::vector<Seen> seen;  ///< their weights sum to 1
   double irradiance = 0;
-  double effective = 0;  ///< number of equal records with as much information
+  double effective = 0;  ///< number of records of equal weight with as much information
 };
 
-/// Returns the light as seen from the place. Records without light or at the source are left out.
+/// Returns the light as seen from the place. Records without light are left out, and also records
+/// whose source is at the place.
 Light light_of(const Place& place, absl::Span<const GuidingRecord> records) {
   Light light;
   for (const GuidingRecord& record : records) {
@@ -231,9 +236,10 @@ Split best_split(const Place& place, absl::Span<Seen> seen, const Cluster& clust
   return best;
 }
 
-/// Splits clusters, each time the one whose split gains most, until no split gains or there are
-/// enough clusters. A cluster that is split keeps a part of its weight, because light is as likely
-/// between its parts as around them.
+/// Returns the clusters of all directions. The cluster whose split has the largest gain is split,
+/// repeatedly, until no gain is large enough or one more split would exceed kMaxBalls. A cluster
+/// that was split stays in the result beside its parts, with the share kKept of its weight, because
+/// light is as likely from directions between the parts as from directions around them.
 std::vector<Cluster> clusters_of(const Place& place, absl::Span<Seen> seen) {
   double squares = 0;  // the weights sum to 1
   for (const Seen& one : seen) {
@@ -306,8 +312,8 @@ std::vector<Densities> crossed_densities(const Place& place, absl::Span<const Se
 
 /// Returns the expected second moment of light over pdf, in units of the squared mean, where the
 /// clusters are sampled with probability `share`, otherwise the cosine. The density of the light is
-/// taken to be the greater of the densities of the clusters and of the cosine: so sampling the
-/// clusters costs something in directions that no cluster covers, which get fewer samples.
+/// assumed to be the greater of the densities of the clusters and of the cosine. So a larger
+/// `share` raises the result for directions that no cluster covers, because they get fewer samples.
 double second_moment(absl::Span<const Densities> densities, double share) {
   double sum = 0;
   for (const Densities& at : densities) {
@@ -331,6 +337,8 @@ double best_share(absl::Span<const Densities> densities) {
   return best;
 }
 
+/// Returns the ball that, as seen from the middle of the place, fills the cone of the cluster. The
+/// distance of the ball is the inverse of the mean inverse distance.
 GuidingBall ball_of(const Place& place, const Cluster& cluster) {
   const double h = cluster.one_minus_cos;
   const double distance = 1 / cluster.inverse;

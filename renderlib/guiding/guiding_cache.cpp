@@ -1,5 +1,5 @@
-// Keeps the newest fields and maps. While one thread makes a field or maps, other threads that call
-// the cache wait.
+// Keeps the newest fields and maps. While one thread makes a field or maps, it holds the mutex, and
+// all other callers wait.
 
 #include "renderlib/guiding/guiding_cache.h"
 

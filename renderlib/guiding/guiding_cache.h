@@ -24,8 +24,8 @@ struct GuidingKey {
   std::uint32_t width = 0;   ///< pixels
   std::uint32_t height = 0;  ///< pixels
   std::uint32_t max_depth = 0;
-  /// If true, the field stays empty, and no photon maps are used, where they do not repay their
-  /// cost.
+  /// If true, a field that does not repay its cost stays empty, and photon maps that do not repay
+  /// their cost are not used.
   bool only_if_it_pays = false;
   friend bool operator==(const GuidingKey&, const GuidingKey&) = default;
 };
@@ -56,16 +56,16 @@ struct PhotonMapKey {
 struct TracedMaps {
   PhotonMap caustics;  ///< empty if caustics are left to paths
   PhotonMap indirect;  ///< light that receivers scattered (integrate/indirect_photons.h)
-  /// A path takes indirect light from the map if its length since the last receiver is at least
-  /// this distance, in scene units. It is 0 and not used if the map is empty.
+  /// In scene units. A path takes indirect light from `indirect` if its length since the last
+  /// receiver is at least this distance. It is 0 if `indirect` is empty, which is then never used.
   double gather_distance = 0;
   /// Effective number of the points at which the photons of `indirect` start: the squared sum of
   /// their powers over the sum of the squares (Kish 1965, "Survey Sampling").
   double effective_origins = 0;
-  /// Mean solid angle in steradians of the lamps as seen from where photons of caustics start,
-  /// weighted by power.
+  /// Mean solid angle of the lamps in steradians, weighted by power, as seen from the points where
+  /// photons of caustics start.
   double lamp_angle = 0;
-  std::uint64_t rays = 0;
+  std::uint64_t rays = 0;  ///< rays that were traced to make the maps
 
   std::size_t bytes() const { return caustics.bytes() + indirect.bytes(); }
 };
@@ -76,12 +76,13 @@ class GuidingCache {
   using Trained = std::shared_ptr<const TrainedGuiding>;
   using Maps = std::shared_ptr<const TracedMaps>;
 
-  /// Returns the field of `key`. If it is not kept yet, calls `make`; other threads that call get()
-  /// wait meanwhile. If `make` returns nullptr (it was stopped), returns nullptr and keeps nothing.
+  /// Returns the field of `key`. If it is not kept yet, calls `make` and keeps its result. Other
+  /// threads that call a function of this object wait meanwhile. If `make` returns nullptr (it was
+  /// stopped), returns nullptr and keeps nothing.
   Trained get(const GuidingKey& key, absl::FunctionRef<Trained()> make) EXCLUDES(mutex_);
   /// Forgets all fields and maps, so that the next image makes its own. For measurements.
   void clear() EXCLUDES(mutex_);
-  /// The same as get() for the photon maps of `key`.
+  /// Does the same as get() for the photon maps of `key`.
   Maps get_maps(const PhotonMapKey& key, absl::FunctionRef<Maps()> make) EXCLUDES(mutex_);
 
  private:

@@ -31,8 +31,8 @@ struct GuidingBall {
 struct GuidingCell {
   std::uint32_t count = 0;  ///< number of balls
   float irradiance = 0;     ///< at the place, estimated from the cell's records
-  /// Probability, in [0, 1/2], with which a direction is best sampled towards the balls if there is
-  /// no other light. The other directions are sampled from the BSDF.
+  /// Best probability, in [0, 1/2], of sampling a direction towards the balls if the point receives
+  /// no other light. With the remaining probability the direction is sampled from the BSDF.
   float share = 0;
   /// Expected second moment of a sampled direction's contribution at a diffuse surface without
   /// guiding, in units of the squared mean. Estimated from light that was left out of the fit.
@@ -41,9 +41,9 @@ struct GuidingCell {
   std::array<GuidingBall, kMaxBalls> balls;
 };
 
-/// Returns the cell that fits the records. They are of one kind, and their normals are similar. If
-/// the records are too few or too unequal, the cell has no balls. The result depends on nothing but
-/// the records and their order.
+/// Returns the cell that fits the records. All records MUST be of one kind, and their normals
+/// similar. If the records are too few or their weights too unequal, the cell has no balls. The
+/// result depends only on the records and their order.
 GuidingCell fit_cell(absl::Span<const GuidingRecord> records);
 
 /// The cells that guide the directions at a point: one fitted to paths and one fitted to photons.
@@ -53,7 +53,8 @@ struct GuidingCells {
   const GuidingCell* photons = nullptr;
 };
 
-/// Probabilities with which a direction is sampled towards the balls of each of two cells.
+/// Probabilities with which a direction is sampled towards the balls of the cell of paths and of
+/// the cell of photons.
 struct GuidingShares {
   double paths = 0;
   double photons = 0;
@@ -69,7 +70,7 @@ class GuidingCones {
   /// Guides nothing. (The arrays are left uninitialised: they are large.)
   GuidingCones() : count_(0), share_(0) {}
   /// `normal`: unit, on the side of the surface that receives light. Balls below the surface or
-  /// around the point are left out; the share falls by their weights.
+  /// around the point are left out, and share() is reduced by their weights.
   GuidingCones(const GuidingCells& cells, const Vec3& position, const Vec3& normal);
 
   /// Returns the probability with which a direction is to be sampled from the cones; 0: never.

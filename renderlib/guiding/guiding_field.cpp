@@ -21,6 +21,7 @@ struct Extent {
   float high = 0;
 };
 
+/// Returns the longest side of the box around the records.
 Extent longest_extent(absl::Span<const GuidingRecord> records) {
   Extent longest;
   float most = -1;
@@ -40,7 +41,7 @@ Extent longest_extent(absl::Span<const GuidingRecord> records) {
 }
 
 /// Returns the effective number of the records, (sum of the weights)^2 / sum of the squared
-/// weights: their number if all weights are equal, otherwise fewer.
+/// weights. It is the number of the records if all weights are equal, otherwise it is smaller.
 double effective_count(absl::Span<const GuidingRecord> records) {
   double sum = 0;
   double squares = 0;

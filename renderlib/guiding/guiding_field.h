@@ -16,12 +16,12 @@
 namespace bandsaw {
 
 /// A binary tree over space. Each leaf has up to six cells (guiding_cell.h), one for each main
-/// direction of the surface's normal. All cells of a tree are fitted to one kind of records: paths
-/// or photons.
+/// direction of the surface's normal. All cells are fitted to one kind of records: paths or
+/// photons.
 class GuidingTree {
  public:
-  /// A node is divided further while its effective number of records is above this: the square of
-  /// the sum of their weights over the sum of the squares.
+  /// A node is divided further while its effective number of records is above this number. The
+  /// effective number is the square of the sum of the weights over the sum of the squared weights.
   static constexpr double kRecordsOfLeaf = 48;
 
   GuidingTree() = default;

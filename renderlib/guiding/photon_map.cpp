@@ -1,6 +1,6 @@
-// The constructor finds the radii of the photons' disks in a temporary tree of places
-// (with_disks()). Then it builds the tree of boxes in which visit() finds the disks that contain a
-// point.
+// Builds the photon map. A first tree divides space into places, and the radii of the disks follow
+// from the density of the photons in each place (with_disks). A second tree, with boxes around the
+// disks, finds the photons whose disks contain a point (PhotonMap::split).
 
 #include "renderlib/guiding/photon_map.h"
 
@@ -38,7 +38,8 @@ constexpr double kPartOfEven = 1.0 / 4;
 constexpr double kDeviations = 3.5;
 constexpr double kSlope = 0.1;
 constexpr double kFlat = 0.97;
-/// In an even place one photon replaces several, but a point still lies in about this many disks.
+/// In an even place one photon replaces a group of photons. The groups are so small that a point
+/// still lies in about this many disks.
 constexpr double kSeen = 10;
 /// The largest radius at a radius factor of 1, as a part of the diagonal of the box of all photons.
 constexpr double kLargestDisk = 1.0 / 16;
@@ -98,8 +99,9 @@ struct Place {
 };
 
 /// Divides the photons [first, last) at the part `part`, in (0, 1), of the longest side of their
-/// box, and sorts them accordingly. Returns the first photon of the second half; std::nullopt if
-/// there are at most kPhotonsOfLeaf photons, if they are all at one point, or at the maximum depth.
+/// box, and sorts them accordingly. Returns the number of the first photon of the second part.
+/// Returns std::nullopt if there are at most kPhotonsOfLeaf photons, if they are all at one point,
+/// or at the maximum depth.
 std::optional<std::uint32_t> divide(std::vector<StoredPhoton>& photons, std::uint32_t first,
                                     std::uint32_t last, int depth, const Box& box,
                                     float part = 0.5f) {
@@ -118,14 +120,15 @@ std::optional<std::uint32_t> divide(std::vector<StoredPhoton>& photons, std::uin
 }
 
 /// Adds the place of photons [first, last) and its descendants, in depth-first order, and sorts the
-/// photons accordingly. `area` is that of the parent. `seed` determines the random points at which
-/// places are divided. Radii jump there, and the jumps of several maps must not add up to a line.
+/// photons accordingly. `area` is the area that a photon occupies in the parent. `seed` determines
+/// the random points at which places are divided. Radii differ on the two sides of such a point.
+/// The points are random so that these steps do not add up to a visible line over several maps.
 void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::uint32_t last,
                 int depth, double area, std::uint64_t seed, std::vector<Place>& places) {
   const absl::Span<const StoredPhoton> own(photons.data() + first, last - first);
   const Box box = box_of(own);
   Place place{.first = first, .last = last, .area = area, .normal = {}};
-  // If all photons are at one point, they do not tell an area.
+  // Few photons, or photons at one point, do not show an area. Their place keeps the parent's area.
   if (own.size() >= kEnough && area_of(box) > 0) {
     // The outermost photons lie on the sides of the box, so it holds about one photon less.
     place.area = area_of(box) / static_cast<double>(own.size() - 1);
@@ -159,9 +162,9 @@ void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::ui
   places[number] = place;
 }
 
-/// Returns one of the photons, chosen with a probability in proportion to its power, and gives it
-/// the power of all. This photon can replace all of them where they are close together compared
-/// with their disks.
+/// Returns one of the photons with the power of all of them. It is chosen with a probability in
+/// proportion to its power. It can replace all of them where they are close together compared with
+/// their disks.
 StoredPhoton stand_in(absl::Span<const StoredPhoton> photons, std::uint64_t seed) {
   double total = 0;
   for (const StoredPhoton& photon : photons) {
@@ -178,8 +181,8 @@ StoredPhoton stand_in(absl::Span<const StoredPhoton> photons, std::uint64_t seed
   return one;
 }
 
-/// Sets the radii of the photons. Where photons are close together compared with their disks, one
-/// of them replaces the whole group.
+/// Returns the photons with their radii. Where photons are close together compared with their
+/// disks, one of them replaces the whole group.
 std::vector<StoredPhoton> with_disks(std::vector<StoredPhoton> photons, double radius_factor,
                                      std::uint64_t seed) {
   std::vector<Place> places;
