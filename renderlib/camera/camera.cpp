@@ -144,12 +144,12 @@ absl::Status validate_motion(const Camera& at_open, const Camera& at_close) {
   RETURN_IF_ERROR(validate(at_close));
   if (at_open.index() != at_close.index() || shutter_of(at_open) != shutter_of(at_close)) {
     return absl::InvalidArgumentError(
-        "camera: must be of one kind, with one shutter, while the shutter is open");
+        "camera: its kind and its shutter must not change while the shutter is open");
   }
   const auto* from = std::get_if<PerspectiveCamera>(&at_open);
   const auto* to = std::get_if<PerspectiveCamera>(&at_close);
   return from != nullptr && (from->aperture > 0) != (to->aperture > 0)
-             ? invalid("aperture", "must not become 0, or begin at 0, while the shutter is open")
+             ? invalid("aperture", "must be 0 at both ends of the shutter interval, or at neither")
              : absl::OkStatus();
 }
 
@@ -207,36 +207,36 @@ RayGenerator::Projection RayGenerator::project(const OrthographicCamera& camera,
 }
 
 RayGenerator::Projection RayGenerator::between(double share) const {
-  const auto at = [share](const auto& a, const auto& b) { return a + (b - a) * share; };
+  const auto mixed = [share](const auto& a, const auto& b) { return a + (b - a) * share; };
   const Projection& a = now_;
   const Projection& b = *at_close_;
   Projection out;
-  out.origin = at(a.origin, b.origin);
+  out.origin = mixed(a.origin, b.origin);
   if (kind_ == Kind::kParallel) {
     out.origin = normalize(out.origin);
-    out.corner = at(a.corner, b.corner);
-    out.dx = at(a.dx, b.dx);
-    out.dy = at(a.dy, b.dy);
+    out.corner = mixed(a.corner, b.corner);
+    out.dx = mixed(a.dx, b.dx);
+    out.dy = mixed(a.dy, b.dy);
     return out;
   }
   // The interpolated axes are made perpendicular again, so that image and lens belong to one view
   // direction. `aside` is the interpolated direction to the right.
-  out.forward = normalize(at(a.forward, b.forward));
-  const Vec3 aside = at(normalize(a.dx), normalize(b.dx));
+  out.forward = normalize(mixed(a.forward, b.forward));
+  const Vec3 aside = mixed(normalize(a.dx), normalize(b.dx));
   const Vec3 right = normalize(aside - out.forward * dot(aside, out.forward));
   const Vec3 across = cross(out.forward, right);
   // `across` points down, or up in a mirrored image. A mirrored image stays mirrored.
   const Vec3 down = dot(cross(a.forward, a.dx), a.dy) > 0 ? across : -across;
-  out.dx = right * at(length(a.dx), length(b.dx));
-  out.dy = down * at(length(a.dy), length(b.dy));
+  out.dx = right * mixed(length(a.dx), length(b.dx));
+  out.dy = down * mixed(length(a.dy), length(b.dy));
   // column() and row() return the corner's coordinates along the image's axes, in pixels.
   const auto column = [](const Projection& p) { return dot(p.corner, p.dx) / dot(p.dx, p.dx); };
   const auto row = [](const Projection& p) { return dot(p.corner, p.dy) / dot(p.dy, p.dy); };
-  out.corner = out.forward + out.dx * at(column(a), column(b)) + out.dy * at(row(a), row(b));
-  out.lens_radius = at(a.lens_radius, b.lens_radius);
+  out.corner = out.forward + out.dx * mixed(column(a), column(b)) + out.dy * mixed(row(a), row(b));
+  out.lens_radius = mixed(a.lens_radius, b.lens_radius);
   out.lens_x = right * (dot(a.lens_x, a.dx) < 0 ? -out.lens_radius : out.lens_radius);
   out.lens_y = down * (dot(a.lens_y, a.dy) > 0 ? out.lens_radius : -out.lens_radius);
-  out.focus_distance = at(a.focus_distance, b.focus_distance);
+  out.focus_distance = mixed(a.focus_distance, b.focus_distance);
   return out;
 }
 

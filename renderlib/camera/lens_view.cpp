@@ -40,8 +40,8 @@ std::optional<Vec3> LensView::on_lens(const Vec3& direction) const {
 
 double LensView::pdf(const Vec3& direction) const {
   const double along = dot(direction, forward_);
-  const double far = distance_ / radius_;
-  return far * far / (kPi * along * along * along);
+  const double distance_in_radii = distance_ / radius_;
+  return distance_in_radii * distance_in_radii / (kPi * along * along * along);
 }
 
 }  // namespace bandsaw

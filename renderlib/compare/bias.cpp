@@ -87,11 +87,11 @@ void add_group(const Image& image, const Image& reference, absl::Span<const Pixe
   Moments difference;
   for (const auto& [x, y] : group) {
     if (is_finite(image.at(x, y)) && is_finite(reference.at(x, y))) {
-      const double there = luminance(reference.at(x, y));
-      const double off = double{luminance(image.at(x, y))} - there;
-      difference.add(off);
-      totals.difference += off;
-      totals.light += there;
+      const double reference_light = luminance(reference.at(x, y));
+      const double error = double{luminance(image.at(x, y))} - reference_light;
+      difference.add(error);
+      totals.difference += error;
+      totals.light += reference_light;
     }
   }
   if (difference.count > 0) {

@@ -31,14 +31,14 @@ int kernel_radius(double pixels_per_degree) {
 }
 
 // Returns the weights exp(-pi^2 d^2 / b), with d in degrees.
-FilterWeights part(double b, double pixels_per_degree, int radius) {
+FilterWeights gaussian_of(double b, double pixels_per_degree, int radius) {
   return gaussian(std::sqrt(b / 2) / kPi * pixels_per_degree, radius);
 }
 
 // Filters by equation 3, with weights that sum to 1.
 Plane blurred(const Plane& plane, const Sensitivity& s, double pixels_per_degree) {
   const int radius = kernel_radius(pixels_per_degree);
-  const FilterWeights first = part(s.b1, pixels_per_degree, radius);
+  const FilterWeights first = gaussian_of(s.b1, pixels_per_degree, radius);
   const double w1 = s.a1 * std::sqrt(kPi / s.b1);
   Plane out = filtered(plane, first, first);
   if (s.a2 == 0) {
@@ -48,7 +48,7 @@ Plane blurred(const Plane& plane, const Sensitivity& s, double pixels_per_degree
     }
     return out;
   }
-  const FilterWeights second = part(s.b2, pixels_per_degree, radius);
+  const FilterWeights second = gaussian_of(s.b2, pixels_per_degree, radius);
   const double w2 = s.a2 * std::sqrt(kPi / s.b2);
   const double total = w1 * sum(first) * sum(first) + w2 * sum(second) * sum(second);
   const Plane other = filtered(plane, second, second);

@@ -12,7 +12,7 @@ namespace {
 
 /// Limit of radiance (per channel) and of depth, so that sums of squares stay within the range of
 /// float. A pixel with a larger radiance is not filtered. A larger depth counts as infinite.
-constexpr float kMaxDepthValue = 1e15f;
+constexpr float kMaxValue = 1e15f;
 constexpr int kAround = 2;  ///< radius, in pixels, of the neighbours that limit a bright pixel
 /// Minimum standard deviation of a half, as a share of the brightness around a pixel. The filters
 /// compare differences with the standard deviation, so they never treat smaller differences as
@@ -23,7 +23,7 @@ using Channels = std::array<float, 3>;
 
 Channels channels(const Rgb& color) { return {color.r, color.g, color.b}; }
 
-bool usable(float value) { return value >= 0 && value <= kMaxDepthValue; }
+bool usable(float value) { return value >= 0 && value <= kMaxValue; }
 
 /// Fills a plane from f(x, y), and mirrors it into the margin.
 template <class F>
@@ -109,7 +109,7 @@ std::vector<Channels> limited(const std::vector<Channels>& half, const std::vect
 std::array<float, kGuides> guides_of(const Rgb& albedo, const Rgb& shape, float typical) {
   const auto bounded = [](float v) { return v > 0 ? std::min(v, 1.0f) : 0.0f; };  // NaN: 0
   const float depth =
-      shape.b > 0 ? (shape.b < kMaxDepthValue ? shape.b / (shape.b + typical) : 1.0f) : 0.0f;
+      shape.b > 0 ? (shape.b < kMaxValue ? shape.b / (shape.b + typical) : 1.0f) : 0.0f;
   return {bounded(albedo.r), bounded(albedo.g), bounded(albedo.b),
           bounded(shape.r),  bounded(shape.g),  bounded(depth)};
 }
@@ -119,21 +119,22 @@ std::array<float, kGuides> guides_of(const Rgb& albedo, const Rgb& shape, float 
 ImageMeans means_of(const DenoiseInput& input) {
   double brightness_sum = 0;
   double depth_sum = 0;
-  double bright = 0;
-  double deep = 0;
+  double brightness_count = 0;
+  double depth_count = 0;
   for (std::size_t i = 0; i < input.mean.pixels.size(); ++i) {
     const Channels mean = channels(input.mean.pixels[i]);
     if (usable(mean[0]) && usable(mean[1]) && usable(mean[2])) {
       brightness_sum += brightness(mean);
-      bright += 3;
+      brightness_count += 3;
     }
-    if (const float depth = input.shape.pixels[i].b; depth > 0 && depth < kMaxDepthValue) {
+    if (const float depth = input.shape.pixels[i].b; depth > 0 && depth < kMaxValue) {
       depth_sum += depth;
-      deep += 1;
+      depth_count += 1;
     }
   }
-  return {.brightness = bright > 0 ? static_cast<float>(brightness_sum / bright) : 0.0f,
-          .depth = deep > 0 ? static_cast<float>(depth_sum / deep) : 1.0f};
+  return {.brightness =
+              brightness_count > 0 ? static_cast<float>(brightness_sum / brightness_count) : 0.0f,
+          .depth = depth_count > 0 ? static_cast<float>(depth_sum / depth_count) : 1.0f};
 }
 
 FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const RowSpan& rows,

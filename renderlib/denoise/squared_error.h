@@ -16,9 +16,9 @@ namespace bandsaw {
 /// squared errors of `a` and `b` with the same weights, minus share (1 - share) (a - b)^2.
 template <class T>
 T squared_error(T a, T b, T first, T second, T share) {
-  const T apart = (first - second) * (first - second);
-  const T of_a = (a - second) * (a - second) - share * apart;
-  const T of_b = (b - first) * (b - first) - (1 - share) * apart;
+  const T squared_difference = (first - second) * (first - second);
+  const T of_a = (a - second) * (a - second) - share * squared_difference;
+  const T of_b = (b - first) * (b - first) - (1 - share) * squared_difference;
   return share * of_a + (1 - share) * of_b - share * (1 - share) * ((a - b) * (a - b));
 }
 

@@ -90,7 +90,8 @@ void append_faces(std::string& out, int low, int high, bool low_on_axis, bool hi
 }  // namespace
 
 std::string lathe_obj(absl::Span<const Vec2> profile, int around) {
-  BANDSAW_CHECK(profile.size() >= 2 && around >= 3, "a profile is a line, a turn a polygon");
+  BANDSAW_CHECK(profile.size() >= 2 && around >= 3,
+                "lathe_obj() needs at least 2 points, and 3 faces for a ring");
   const Rings turned = rings_of(profile);
   std::string out = "# Turned by bandsaw-gallery.\n";
   for (const Ring& ring : turned.rings) {
@@ -105,7 +106,8 @@ std::string lathe_obj(absl::Span<const Vec2> profile, int around) {
 }
 
 std::vector<Vec2> smooth_profile(absl::Span<const Vec2> corners, int steps) {
-  BANDSAW_CHECK(corners.size() >= 2 && steps >= 1, "a curve has two ends");
+  BANDSAW_CHECK(corners.size() >= 2 && steps >= 1,
+                "smooth_profile() needs at least 2 corners, and 1 step");
   const auto at = [&](std::size_t i) { return corners[std::min(i, corners.size() - 1)]; };
   std::vector<Vec2> points;
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {

@@ -33,6 +33,7 @@
 namespace bandsaw::gallery {
 namespace {
 
+/// Creates a folder, with all permissions that the umask leaves, unless it exists.
 absl::Status make_open_folder(const std::string& path) {
   return mkdir(path.c_str(), 0777) == 0 || errno == EEXIST ? absl::OkStatus()
                                                            : errno_status(errno, path);

@@ -62,7 +62,8 @@ std::string block(Mesh mesh, const Vec3& centre, const Vec3& size) {
 /// Returns a node with the camera of number `camera` at `from`. The node's -z axis, along which a
 /// glTF camera looks (glTF 2.0, 5.12), points to `to`. The columns of the node's matrix are its
 /// axes and `from`.
-std::string stand(const char* name, int camera, const Vec3& from, const Vec3& to, const Vec3& up) {
+std::string camera_node(const char* name, int camera, const Vec3& from, const Vec3& to,
+                        const Vec3& up) {
   const Vec3 z = normalize(from - to);
   const Vec3 x = normalize(cross(up, z));
   const Vec3 y = cross(z, x);
@@ -87,9 +88,9 @@ std::vector<std::string> nodes() {
   for (int i = -9; i <= 9; ++i) {
     nodes.push_back(block(kWood, {0.5 * i, 3.35, 0}, {0.12, 0.22, 4.8}));
   }
-  nodes.push_back(stand("gate", 0, {7.2, 1.7, 0.9}, {-5, 1.25, -0.2}, {0, 1, 0}));
-  nodes.push_back(stand("corner", 0, {6.5, 3.4, 6.5}, {-0.6, 1.1, 0}, {0, 1, 0}));
-  nodes.push_back(stand("plan", 1, {0, 20, 0}, {0, 0, 0}, {0, 0, -1}));
+  nodes.push_back(camera_node("gate", 0, {7.2, 1.7, 0.9}, {-5, 1.25, -0.2}, {0, 1, 0}));
+  nodes.push_back(camera_node("corner", 0, {6.5, 3.4, 6.5}, {-0.6, 1.1, 0}, {0, 1, 0}));
+  nodes.push_back(camera_node("plan", 1, {0, 20, 0}, {0, 0, 0}, {0, 0, -1}));
   return nodes;
 }
 
@@ -107,7 +108,7 @@ constexpr char kCube[] = R"("meshes": [
 )";
 
 // Cameras, in the order of the numbers that nodes() uses, and the materials of kCube.
-constexpr char kLooks[] = R"("cameras": [
+constexpr char kCamerasAndMaterials[] = R"("cameras": [
   {"name": "walker", "type": "perspective", "perspective": {"yfov": 0.72, "znear": 0.1}},
   {"name": "map", "type": "orthographic", "orthographic": {"xmag": 7.8, "ymag": 5.2, "znear": 0.1, "zfar": 50}}],
 "materials": [
@@ -128,7 +129,8 @@ std::string pergola() {
   return absl::StrCat(
       R"({"asset": {"version": "2.0", "generator": "bandsaw-gallery"},)", "\n\"nodes\": [\n  ",
       absl::StrJoin(all, ",\n  "), "],\n\"scenes\": [{\"nodes\": [", absl::StrJoin(numbers, ", "),
-      "]}], \"scene\": 0,\n", kLooks, kCube, "\"buffers\": [{\"byteLength\": ", bytes.size(),
+      "]}], \"scene\": 0,\n", kCamerasAndMaterials, kCube,
+      "\"buffers\": [{\"byteLength\": ", bytes.size(),
       ", \"uri\": \"data:application/octet-stream;base64,", absl::Base64Escape(bytes), "\"}]}\n");
 }
 

@@ -26,12 +26,12 @@ std::vector<std::uint32_t> welded(const Mesh& mesh) {
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(place(a), a) < std::pair(place(b), b);
   });
-  std::vector<std::uint32_t> name(order.size());
+  std::vector<std::uint32_t> representative(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     const bool same = i > 0 && place(order[i]) == place(order[i - 1]);
-    name[order[i]] = same ? name[order[i - 1]] : order[i];
+    representative[order[i]] = same ? representative[order[i - 1]] : order[i];
   }
-  return name;
+  return representative;
 }
 
 struct Edge {
@@ -45,13 +45,13 @@ bool same_place(const Edge& a, const Edge& b) { return a.low == b.low && a.high 
 }  // namespace
 
 std::size_t open_edges(const Mesh& mesh) {
-  const std::vector<std::uint32_t> name = welded(mesh);
+  const std::vector<std::uint32_t> representative = welded(mesh);
   std::vector<Edge> edges;
   edges.reserve(mesh.triangles.size() * 3);
   for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t from = name[triangle[i]];
-      const std::uint32_t to = name[triangle[(i + 1) % 3]];
+      const std::uint32_t from = representative[triangle[i]];
+      const std::uint32_t to = representative[triangle[(i + 1) % 3]];
       if (from != to) {
         edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
       }

@@ -10,7 +10,7 @@ namespace bandsaw {
 namespace {
 
 /// Tolerance of decompose(), relative to the largest element of the linear part.
-constexpr double kDecomposed = 1e-9;
+constexpr double kDecomposeTolerance = 1e-9;
 
 /// Returns the largest magnitude of an element of the linear part.
 double largest(const Transform& t) {
@@ -61,7 +61,7 @@ std::optional<Pose> decompose(const Transform& t) {
   }
   pose.rotate = quaternion(turn);
   const Transform again = compose(pose);
-  const double most = kDecomposed * largest(t);
+  const double most = kDecomposeTolerance * largest(t);
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (!(std::abs(again.m[i][k] - t.m[i][k]) <= most)) {

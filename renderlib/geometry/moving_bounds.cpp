@@ -17,11 +17,11 @@ namespace {
 /// Wanted maximum deviation of a corner's path from a chord, relative to the size of the box. The
 /// interval between two keys is cut into the number of pieces that keeps this maximum, but at most
 /// kMaxPieces pieces. The bounds are correct for any values of the two constants.
-constexpr double kBend = 0x1p-6;
+constexpr double kWantedDeviation = 0x1p-6;
 constexpr double kMaxPieces = 64;
 /// Factor on the rounding margin of placed_bounds(). Rounding errors may be larger between the
 /// sampled times than at the sampled times.
-constexpr double kTrips = 8;
+constexpr double kRoundingFactor = 8;
 
 /// Upper bounds for a point that moves: of its distance from the origin, and of the lengths of its
 /// first and second derivative with respect to time.
@@ -43,13 +43,15 @@ double norm(const Transform& t) {
 }
 
 /// Returns the length of the translation.
-double moved(const Transform& t) { return length(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]}); }
+double translation_length(const Transform& t) {
+  return length(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]});
+}
 
 /// Returns the bounds for the placed point. `c` holds the bounds for the point before the
 /// placement, which does not change with time.
 Course through(const Transform& placement, const Course& c) {
   const double n = norm(placement);
-  return {n * c.distance + moved(placement), n * c.speed, n * c.bend};
+  return {n * c.distance + translation_length(placement), n * c.speed, n * c.bend};
 }
 
 /// Returns the bounds for a point q after the motion T + R S q between two keys. `c` holds the
@@ -95,8 +97,8 @@ Course course_of(const Geometry& geometry, const Instance& instance, const Box& 
 }
 
 /// Returns the times of the interval's ends and of the keys between them, in ascending order.
-std::vector<double> turning_points(const Geometry& geometry, const Instance& instance,
-                                   const Interval& interval) {
+std::vector<double> times_of_keys(const Geometry& geometry, const Instance& instance,
+                                  const Interval& interval) {
   std::vector<double> times = {interval.open, interval.close};
   for (FrameId id = instance.frame; id != kNoFrame; id = geometry.frames[index_of(id)].parent) {
     for (const Key& key : geometry.frames[index_of(id)].keys) {
@@ -111,9 +113,9 @@ std::vector<double> turning_points(const Geometry& geometry, const Instance& ins
 }
 
 /// Collects the boxes of an instance at sampled times, each enlarged by `margin`.
-class Stops {
+class SampledBoxes {
  public:
-  Stops(const Geometry& geometry, const Instance& instance, const Box& box)
+  SampledBoxes(const Geometry& geometry, const Instance& instance, const Box& box)
       : geometry_(geometry), instance_(instance), box_(box) {}
 
   /// Adds the box at `time`, enlarged by `margin` in world space. Returns false if the placement is
@@ -124,7 +126,7 @@ class Stops {
     if (!to_object) {
       return false;
     }
-    Box there = placed_bounds(box_, to_world, *to_object, kTrips);
+    Box there = placed_bounds(box_, to_world, *to_object, kRoundingFactor);
     const Vec3 around = {margin, margin, margin};
     there = {there.lo - around, there.hi + around};
     times_.push_back(time);
@@ -164,7 +166,7 @@ class Stops {
 }  // namespace
 
 Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to_object,
-                  double trips) {
+                  double rounding_factor) {
   double grown = 0;
   double shrunk = 0;
   double moved = 0;
@@ -178,7 +180,7 @@ Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to
   const double largest = std::max(max_abs(box.lo), max_abs(box.hi));
   // The rounding error grows with the condition number (grown * shrunk) and with the largest number
   // in the transforms (the last factor). 2^-46 is 128 units of rounding (2^-53).
-  const double slack = trips * 0x1p-46 * (grown * shrunk) * (3 * grown * largest + moved);
+  const double slack = rounding_factor * 0x1p-46 * (grown * shrunk) * (3 * grown * largest + moved);
   const Vec3 margin = {slack, slack, slack};
   Box result;
   for (int corner = 0; corner < 8; ++corner) {
@@ -194,28 +196,30 @@ Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to
 std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance& instance,
                                        const Box& box) {
   const Interval& interval = geometry.shutter;
-  const std::vector<double> times = turning_points(geometry, instance, interval);
+  const std::vector<double> times = times_of_keys(geometry, instance, interval);
   const double size = length(box.hi - box.lo);
-  Stops stops(geometry, instance, box);
-  if (!stops.add(times.front(), 0)) {
+  SampledBoxes sampled(geometry, instance, box);
+  if (!sampled.add(times.front(), 0)) {
     return std::nullopt;
   }
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {
     const double duration = times[i + 1] - times[i];
     const Course course = course_of(geometry, instance, box, times[i] + duration / 2);
     // A path with second derivative c deviates from its chord over h by at most c h^2 / 8.
-    const double bend = course.bend * duration * duration / 8;
-    const double wanted = std::ceil(std::sqrt(bend / (kBend * size)));
-    const double pieces = wanted >= 1 && wanted <= kMaxPieces ? wanted : bend > 0 ? kMaxPieces : 1;
-    const double margin = bend / (pieces * pieces) * (1 + 0x1p-20);
+    const double deviation = course.bend * duration * duration / 8;
+    const double wanted = std::ceil(std::sqrt(deviation / (kWantedDeviation * size)));
+    const double pieces = wanted >= 1 && wanted <= kMaxPieces ? wanted
+                          : deviation > 0                     ? kMaxPieces
+                                                              : 1;
+    const double margin = deviation / (pieces * pieces) * (1 + 0x1p-20);
     for (double k = 0; k <= pieces; ++k) {
       const double time = k == pieces ? times[i + 1] : times[i] + duration * (k / pieces);
-      if (!stops.add(time, margin)) {
+      if (!sampled.add(time, margin)) {
         return std::nullopt;
       }
     }
   }
-  return stops.around(interval);
+  return sampled.around(interval);
 }
 
 }  // namespace bandsaw

@@ -12,10 +12,10 @@
 namespace bandsaw {
 
 /// Returns the bounds of `box` in world space. `box` is in an instance's own space, and `to_object`
-/// is the inverse of `to_world`. The bounds are enlarged by `trips` times the rounding error of a
-/// ray that is transformed to the instance's space and back.
+/// is the inverse of `to_world`. The bounds are enlarged by `rounding_factor` times the rounding
+/// error of a ray that is transformed to the instance's space and back.
 Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to_object,
-                  double trips = 1);
+                  double rounding_factor = 1);
 
 /// Bounds of something that moves: at the share u of the interval, it lies within the box (1 - u)
 /// at_open + u at_close.

@@ -121,12 +121,12 @@ void Placement::set_offset(const SurfacePoint& local, SurfacePoint& placed) cons
     placed.offset = surface_offset({}, scale);
     return;
   }
-  const double across = length(normal(local.geometric_normal));
-  placed.offset = surface_offset({}, kSquashedShare * scale * norm(cofactors) / across);
+  const double normal_length = length(normal(local.geometric_normal));
+  placed.offset = surface_offset({}, kSquashedShare * scale * norm(cofactors) / normal_length);
   const Vec3 own_normal = {dot(rows[0], local.geometric_normal),
                            dot(rows[1], local.geometric_normal),
                            dot(rows[2], local.geometric_normal)};
-  placed.away = own_normal * (placed.offset * across / std::abs(determinant));
+  placed.away = own_normal * (placed.offset * normal_length / std::abs(determinant));
 }
 
 double surface_offset(const Vec3& position, double size) {

@@ -245,11 +245,11 @@ std::vector<Cluster> clusters_of(const Place& place, absl::Span<Seen> seen) {
   for (const Seen& one : seen) {
     squares += one.weight * one.weight;
   }
-  std::vector<Cluster> whole;
+  std::vector<Cluster> clusters;
   std::vector<Cluster> parts = {cluster_of(place, seen, 0, seen.size())};
   std::vector<Split> splits = {best_split(place, seen, parts[0])};
   std::vector<double> scales = {1};
-  while (whole.size() + parts.size() + 2 <= kMaxBalls) {
+  while (clusters.size() + parts.size() + 2 <= kMaxBalls) {
     const auto best =
         std::max_element(splits.begin(), splits.end(),
                          [](const Split& a, const Split& b) { return a.gain < b.gain; });
@@ -267,13 +267,13 @@ std::vector<Cluster> clusters_of(const Place& place, absl::Span<Seen> seen) {
     scales[which] = scale * (1 - kKept);
     scales.push_back(scale * (1 - kKept));
     split.weight *= scale * kKept;
-    whole.push_back(split);
+    clusters.push_back(split);
   }
   for (std::size_t i = 0; i < parts.size(); ++i) {
     parts[i].weight *= scales[i];
-    whole.push_back(parts[i]);
+    clusters.push_back(parts[i]);
   }
-  return whole;
+  return clusters;
 }
 
 /// The pdfs with which a direction that carries light would be sampled by two strategies.

@@ -95,10 +95,10 @@ void GuidingTree::split(std::vector<GuidingRecord>& records, std::size_t first, 
                         int depth, std::vector<std::size_t>& starts) {
   const absl::Span<const GuidingRecord> own{records.data() + first, last - first};
   const Extent extent = longest_extent(own);
-  const double telling = effective_count(own);
+  const double effective_records = effective_count(own);
   const float at = extent.low / 2 + extent.high / 2;
   const std::size_t number = nodes_.size();
-  if (telling <= kRecordsOfLeaf || depth >= kMaxTreeDepth || !(at > extent.low)) {
+  if (effective_records <= kRecordsOfLeaf || depth >= kMaxTreeDepth || !(at > extent.low)) {
     nodes_.push_back({.next = static_cast<std::uint32_t>(leaves_.size())});
     leaves_.emplace_back();
     starts.push_back(first);

@@ -21,26 +21,26 @@ namespace {
 // kPhotonsOfLeaf photons.
 constexpr std::uint32_t kPhotonsOfLeaf = 8;
 /// The area that a photon occupies is estimated from at least this many photons.
-constexpr std::uint32_t kEnough = 16;
+constexpr std::uint32_t kEnoughPhotons = 16;
 /// Bounds the recursion where many photons are at nearly the same point.
 constexpr int kMaxTreeDepth = 48;
 /// A place is divided at a random point of its longest side: between kFirstPart and 1 - kFirstPart
 /// of the length.
 constexpr double kFirstPart = 3.0 / 8;
-/// In even places (see below) of at most kMostOfEven photons, each disk has the part kPartOfEven of
-/// the area of its place, but at least the area that kPhotonsOfDisk photons occupy.
-constexpr std::uint32_t kMostOfEven = 1024;
-constexpr double kPartOfEven = 1.0 / 4;
+/// In even places (see below) of at most kMaxPhotonsOfEven photons, each disk has the part
+/// kDiskPartOfEven of the area of its place.
+constexpr std::uint32_t kMaxPhotonsOfEven = 1024;
+constexpr double kDiskPartOfEven = 1.0 / 4;
 // A place is even if its photons are as good as uniform on a flat surface. Two conditions hold in
 // the place and in all places below it. The difference between the powers of its two parts deviates
 // from the expected one by at most kDeviations standard deviations plus kSlope of their sum. The
-// sum of the normals is at least kFlat times as long as it would be for equal normals.
+// sum of the normals is at least kMinFlatness times as long as it would be for equal normals.
 constexpr double kDeviations = 3.5;
 constexpr double kSlope = 0.1;
-constexpr double kFlat = 0.97;
+constexpr double kMinFlatness = 0.97;
 /// In an even place one photon replaces a group of photons. The groups are so small that a point
 /// still lies in about this many disks.
-constexpr double kSeen = 10;
+constexpr double kDisksAtPoint = 10;
 /// The largest radius at a radius factor of 1, as a part of the diagonal of the box of all photons.
 constexpr double kLargestDisk = 1.0 / 16;
 
@@ -129,7 +129,7 @@ void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::ui
   const Box box = box_of(own);
   Place place{.first = first, .last = last, .area = area, .normal = {}};
   // Few photons, or photons at one point, do not show an area. Their place keeps the parent's area.
-  if (own.size() >= kEnough && area_of(box) > 0) {
+  if (own.size() >= kEnoughPhotons && area_of(box) > 0) {
     // The outermost photons lie on the sides of the box, so it holds about one photon less.
     place.area = area_of(box) / static_cast<double>(own.size() - 1);
   }
@@ -146,7 +146,7 @@ void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::ui
     place.power = a.power + b.power;
     place.squares = a.squares + b.squares;
     place.normal = a.normal + b.normal;
-    place.even = a.even && b.even && length(place.normal) >= kFlat * place.power &&
+    place.even = a.even && b.even && length(place.normal) >= kMinFlatness * place.power &&
                  2 * std::abs(a.power - part * place.power) <=
                      kDeviations * std::sqrt(place.squares) + kSlope * place.power;
   } else {
@@ -208,19 +208,20 @@ std::vector<StoredPhoton> with_disks(std::vector<StoredPhoton> photons, double r
     return std::max(std::min(wanted, largest), 1e-6 * largest);
   };
   double even_radius = 0;   // of the current even place
-  double together = 0;      // number of photons that one photon replaces there
+  double replaced = 0;      // number of photons that one photon may replace in this place
   std::uint32_t until = 0;  // end of the current even place
   for (std::uint32_t i = 0; i < places.size();) {
     const Place& place = places[i];
-    if (i >= until && place.even && place.count() >= kEnough && place.count() <= kMostOfEven) {
-      even_radius =
-          radius_of(std::max(PhotonMap::kPhotonsOfDisk, place.count() * kPartOfEven) * place.area);
-      together = kPi * even_radius * even_radius / (place.area * kSeen);
+    if (i >= until && place.even && place.count() >= kEnoughPhotons &&
+        place.count() <= kMaxPhotonsOfEven) {
+      even_radius = radius_of(std::max(PhotonMap::kPhotonsOfDisk, place.count() * kDiskPartOfEven) *
+                              place.area);
+      replaced = kPi * even_radius * even_radius / (place.area * kDisksAtPoint);
       until = place.next;
     }
     const bool even = i < until;
     const bool is_leaf = place.next == i + 1;
-    if (!is_leaf && !(even && place.count() <= together)) {
+    if (!is_leaf && !(even && place.count() <= replaced)) {
       ++i;
       continue;
     }
@@ -228,7 +229,7 @@ std::vector<StoredPhoton> with_disks(std::vector<StoredPhoton> photons, double r
         static_cast<float>(even ? even_radius : radius_of(PhotonMap::kPhotonsOfDisk * place.area));
     const absl::Span<const StoredPhoton> own(photons.data() + place.first, place.count());
     const std::size_t first = out.size();
-    if (even && place.count() <= together) {
+    if (even && place.count() <= replaced) {
       out.push_back(stand_in(own, seed + place.first));
     } else {
       out.insert(out.end(), own.begin(), own.end());
