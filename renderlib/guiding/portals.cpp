@@ -1,3 +1,7 @@
+// Portals are rectangular openings through which the background lights a room. This file tests
+// whether a ray passes through a portal, samples directions through the portals, and returns the
+// pdf of a direction.
+
 #include "renderlib/guiding/portals.h"
 
 #include <algorithm>
@@ -46,7 +50,8 @@ std::optional<Portals::Sample> Portals::sample(const Vec3& from, double choice, 
   double left = choice * view.solid_angle;
   for (std::size_t i = 0; i < portals_.size(); ++i) {
     if (view.rectangles[i]) {
-      chosen = i;  // the last one that is seen, if rounding leaves a rest
+      // If rounding keeps `left` >= 0 to the end, the last portal that is seen stays chosen.
+      chosen = i;
       left -= view.rectangles[i]->solid_angle();
       if (left < 0) {
         break;
@@ -56,7 +61,8 @@ std::optional<Portals::Sample> Portals::sample(const Vec3& from, double choice, 
   const Portal& portal = portals_[chosen];
   const Vec2 at = view.rectangles[chosen]->sample(u, v);
   const Vec3 direction = normalize(portal.corner + portal.u * at.x + portal.v * at.y - from);
-  // At its border, rounding may place the direction outside the portal that was chosen.
+  // The pdf counts each portal that the direction passes through. It counts at least one, because
+  // rounding may place a direction at the border of the chosen portal outside of that portal.
   const std::uint32_t count = std::max(passed(view, from, direction), 1u);
   return Sample{direction, count / view.solid_angle};
 }

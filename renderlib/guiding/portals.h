@@ -26,7 +26,7 @@ struct Portal {
   bool passes(const Vec3& from, const Vec3& direction) const;
 };
 
-/// The portals of a scene; immutable. If there are none, nothing is sampled.
+/// The portals of a scene; immutable. Without portals, sample() returns std::nullopt.
 class Portals {
  public:
   static constexpr std::size_t kMaxPortals = 8;
@@ -37,23 +37,24 @@ class Portals {
   };
 
   Portals() = default;
-  /// `portals` MUST have at most kMaxPortals elements.
+  /// `portals` MUST NOT have more than kMaxPortals elements.
   explicit Portals(std::vector<Portal> portals) : portals_(std::move(portals)) {}
 
   bool empty() const { return portals_.empty(); }
   const std::vector<Portal>& portals() const { return portals_; }
 
-  /// Returns a direction from `from` through one of the portals; std::nullopt if none is seen from
-  /// there, because the solid angle of each is too small. choice, u, v in [0, 1).
+  /// Returns a direction from `from` through one of the portals. Returns std::nullopt if the solid
+  /// angle of each portal, as seen from `from`, is too small. choice, u, v in [0, 1).
   std::optional<Sample> sample(const Vec3& from, double choice, double u, double v) const;
   /// Returns the pdf, by solid angle, with which sample() returns this unit direction.
   double pdf(const Vec3& from, const Vec3& direction) const;
 
  private:
-  /// The portals as seen from a point. `rectangles` has std::nullopt for a portal that is not seen.
+  /// The portals as seen from a point, in the order of portals_. An element is std::nullopt if the
+  /// solid angle of its portal is too small.
   struct View {
     std::array<std::optional<SphericalRectangle>, kMaxPortals> rectangles;
-    double solid_angle = 0;  ///< sum over the portals that are seen
+    double solid_angle = 0;  ///< sum over the rectangles
   };
   View view_from(const Vec3& from) const;
   /// Returns the number of portals of the view through which the ray passes.

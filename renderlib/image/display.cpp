@@ -11,12 +11,13 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the value of the curve Tone::kFilmic.
 float filmic(float light) {
   if (std::isnan(light)) {
     return light;
   }
-  // The curve exceeds 1 from 7.25 on. The clamp keeps infinity out of the quotient, which would
-  // be NaN.
+  // The curve exceeds 1 from 7.25 on. Without the clamp, the quotient would be NaN for infinite
+  // light.
   const double x = std::clamp(double{light}, 0.0, 1e6);
   return static_cast<float>(std::min(1.0, x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)));
 }

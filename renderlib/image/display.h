@@ -9,21 +9,21 @@
 
 namespace bandsaw {
 
-/// Tone mapping of radiance above 1 in 8-bit files. The values are those of package.proto.
+/// The tone curve of 8-bit files. The numbers of the values are those of package.proto.
 enum class Tone {
-  kNone = 0,  ///< clamped
+  kNone = 0,  ///< no curve: radiance above 1 is clamped
   /// x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for each channel: a fit of the ACES film curve
   /// (Narkowicz 2016, "ACES filmic tone mapping curve").
   kFilmic = 1,
 };
-inline constexpr int kLastTone = 1;
+inline constexpr int kLastTone = 1;  ///< largest value of Tone
 
 /// Returns "none" or "filmic".
 absl::string_view tone_name(Tone tone);
 /// Returns the tone with this name; std::nullopt if there is none.
 std::optional<Tone> tone_named(absl::string_view name);
 
-inline constexpr double kMaxExposure = 30;
+inline constexpr double kMaxExposure = 30;  ///< in stops
 
 /// How an image is written to a file.
 struct Display {

@@ -33,6 +33,8 @@ struct Channel {
   std::vector<float> values;
 };
 
+/// Returns the component `of` of all pixels as a channel. If `half` is true, the values are clamped
+/// to the range of halves.
 Channel channel(const std::string& name, const Image& image, float Rgb::*of, bool half) {
   Channel to{name, half, {}};
   to.values.reserve(image.pixels.size());
@@ -43,7 +45,7 @@ Channel channel(const std::string& name, const Image& image, float Rgb::*of, boo
   return to;
 }
 
-/// Returns the channels sorted by name, as the format requires.
+/// Returns the channels of the image and of its layers, sorted by name, as the format requires.
 std::vector<Channel> channels_of(const Image& image, bool half, const Layers& layers) {
   std::vector<Channel> channels;
   const auto add = [&](const std::string& prefix, const Image& from) {

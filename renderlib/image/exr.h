@@ -13,9 +13,10 @@
 namespace bandsaw {
 
 /// Encodes scan lines from the top, ZIP compressed; the channels are R, G, B and those of `layers`.
-/// Floats are exact; halves are rounded to nearest and clamped to +-65504. Returns INVALID_ARGUMENT
-/// if a layer has another size or a name of more than 200 bytes, RESOURCE_EXHAUSTED if the image is
-/// too large to encode. `half`: R, G and B are stored as halves.
+/// If `half` is true, all channels except those of layers with `is_number` are stored as halves,
+/// rounded to nearest and clamped to +-65504. All other channels are exact floats. Returns
+/// INVALID_ARGUMENT if a layer has another number of pixels than the image or a name of more than
+/// 200 bytes, and RESOURCE_EXHAUSTED if the image is too large to encode.
 absl::StatusOr<std::vector<std::byte>> encode_exr(const Image& image, bool half,
                                                   const Layers& layers = {});
 

@@ -18,8 +18,11 @@ using Rgbe = std::array<std::uint8_t, 4>;
 /// Above this value the shared exponent would overflow.
 constexpr float kMax = 0x1.fep126f;
 
+/// Returns the nearest value in [0, kMax]; 0 for NaN.
 float repaired(float v) { return v > 0 ? std::min(v, kMax) : 0; }
 
+/// Returns the mantissas of red, green and blue, and the exponent of the largest channel plus 128
+/// (Ward 1991). Pixels whose channels are all below 2^-127 become 0.
 Rgbe rgbe(const Rgb& pixel) {
   const Rgb p = {repaired(pixel.r), repaired(pixel.g), repaired(pixel.b)};
   const float largest = max_component(p);
@@ -42,6 +45,7 @@ class RowWriter {
  public:
   explicit RowWriter(std::vector<std::byte>& out) : out_(out) {}
 
+  /// Appends one byte.
   void put(std::size_t value) { out_.push_back(static_cast<std::byte>(value)); }
 
   /// Writes one channel of a row: runs of three and more as (128 + length, value), other values as
@@ -90,7 +94,8 @@ std::vector<std::byte> encode_hdr(const Image& image) {
     out.push_back(static_cast<std::byte>(c));
   }
   RowWriter writer(out);
-  // Readers expect runs only in rows of these widths. Other rows have the old form without runs.
+  // Readers expect runs only in rows of these widths. Rows of other widths are written without
+  // runs, in the older form of the format.
   const bool runs = image.width >= 8 && image.width < 32768;
   std::vector<Rgbe> row(image.width);
   for (std::uint32_t y = 0; y < image.height; ++y) {

@@ -11,8 +11,9 @@
 
 namespace bandsaw {
 
-/// Encodes the image, rows from the top. Each channel is rounded to nearest, within 1/256 of the
-/// pixel's largest channel. Values above 1.7e38 become 1.7e38; negative values and NaN become 0.
+/// Encodes the image, rows from the top. Each channel is rounded to nearest. The error is at most
+/// 1/256 of the pixel's largest channel. Values above 1.7e38 become 1.7e38; negative values and NaN
+/// become 0.
 std::vector<std::byte> encode_hdr(const Image& image);
 
 }  // namespace bandsaw

@@ -1,4 +1,5 @@
-// Encodes the image by the format of its suffix and writes it atomically (base/atomic_file.h).
+// Encodes an image in the format that the suffix of its path names, and writes the file atomically
+// (base/atomic_file.h).
 
 #include "renderlib/image/write_image.h"
 
@@ -30,6 +31,7 @@ std::vector<std::uint8_t> srgb_codes(const Image& image, const Display& display)
   return codes;
 }
 
+/// Returns the bytes of the header, followed by `payload` zeros for the pixels.
 std::vector<std::byte> with_header(const std::string& header, std::size_t payload) {
   std::vector<std::byte> bytes(header.size() + payload);
   std::memcpy(bytes.data(), header.data(), header.size());

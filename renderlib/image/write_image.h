@@ -17,14 +17,14 @@ namespace bandsaw {
 
 enum class ImageFormat {
   kPng,  ///< 8-bit, with the display settings applied, sRGB (IEC 61966-2-1), clamped, round(255 x)
-  kPpm,  ///< the same values as P6
+  kPpm,  ///< binary PPM (P6) with the values of kPng
   kPfm,  ///< exact: 32-bit little-endian float, linear, rows from the bottom
   kHdr,  ///< Radiance RGBE (image/hdr.h), linear
   kExr,  ///< OpenEXR (image/exr.h), linear: exact floats, or halves
 };
 
-/// Returns the format of a path's suffix, in upper or lower case. Returns INVALID_ARGUMENT, with
-/// the supported suffixes, for any other suffix.
+/// Returns the format that the suffix of a path names, in upper or lower case. For any other suffix
+/// returns INVALID_ARGUMENT with a message that lists the supported suffixes.
 absl::StatusOr<ImageFormat> image_format_of(const std::string& path);
 
 /// Encodes the image. Layers are stored in EXR files only; other formats contain the image alone.

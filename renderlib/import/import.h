@@ -39,11 +39,11 @@ struct ImportChoices {
   std::map<std::string, std::string> parameters = {};  ///< parameters of a Mitsuba scene
   bool strict = false;                                 ///< a warning is an error
   std::optional<FrameChoice> frame = {};               ///< absent: the scene is imported at time 0
-  /// Name of the animation of those models for which the scene file names none. Empty: if a frame
-  /// is chosen, each model has its first animation, otherwise none.
+  /// Name of the animation of those models for which the scene file names none. If it is empty,
+  /// each such model has its first animation if a frame is chosen, otherwise none.
   std::string animation = {};
-  /// A folder that contains the folder of a Mitsuba scene: files below it may be read. Empty: only
-  /// files below the scene's own folder.
+  /// A folder that contains the folder of a Mitsuba scene. Files anywhere below it may be read. If
+  /// it is empty, only files below the scene's own folder may be read.
   std::string folder = {};
 };
 

@@ -61,10 +61,10 @@ Camera framed(const ImportedScene& out, const Shutter& shutter) {
   return camera;
 }
 
-/// Returns the camera for a scene file without a camera of its own: the model's camera that the
-/// file names, otherwise the first camera of a model, otherwise one that frames the only model.
-/// Returns an error if none of these exists. If its animation hides the only model, the camera is
-/// the default one.
+/// Returns the camera for a scene file without a camera of its own. This is the model's camera that
+/// the file names, otherwise the first camera of a model, otherwise a camera that frames the only
+/// model. If the animation of the only model hides it, returns the default camera. Returns an error
+/// if none of these cameras exists.
 absl::StatusOr<MovingCamera> camera_of_a_model(const Field& root, const scene::Scene& from,
                                                const SceneDraft& draft) {
   if (from.has_camera()) {
@@ -137,8 +137,9 @@ absl::StatusOr<Shutter> shutter_of_frame(const Field& root, const scene::Scene& 
                         : read_shutter(root, from, time);
 }
 
-/// Reads a scene as written, at a frame: the values of its tracks are those in the middle of the
-/// exposure, and the camera moves during it. `locations` may be nullptr.
+/// Reads a scene file at a frame. The tracks of the scene have their values in the middle of the
+/// exposure, but tracks of the camera move it during the exposure. `written` is the scene before
+/// its tracks are evaluated. `locations` may be nullptr.
 absl::Status read_frame(const scene::Scene& written,
                         const google::protobuf::TextFormat::ParseInfoTree* locations,
                         const ImportChoices& choices, SceneDraft& draft) {
@@ -175,6 +176,7 @@ absl::Status read_scene_file(const std::string& path, bool json, const ImportCho
   return read_frame(parsed->scene, parsed->locations.get(), choices, draft);
 }
 
+/// Returns the gradient of a sky as the message of a scene file.
 scene::Background as_proto(const Background& sky) {
   scene::Background out;
   const auto set = [](const Rgb& color, scene::Color* to) {
@@ -274,6 +276,7 @@ absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
   return MovingCamera{framed(at_zero.out, draft.shutter)};
 }
 
+/// Reads a single model as a scene, with a camera and a light source of its own or default ones.
 absl::Status read_model_alone(const std::string& path, const ImportChoices& choices,
                               SceneDraft& draft) {
   ASSIGN_OR_RETURN(const auto real, draft.folder.resolve(name_of(path), draft.folder.path()));
@@ -296,6 +299,7 @@ absl::Status read_model_alone(const std::string& path, const ImportChoices& choi
   return absl::OkStatus();
 }
 
+/// Reads a file of any kind; its suffix tells the kind.
 absl::Status read_any(const std::string& path, const ImportChoices& choices, SceneDraft& draft) {
   if (is_foreign(path)) {
     ASSIGN_OR_RETURN(const auto converted, convert(path, choices, draft));
@@ -324,10 +328,11 @@ absl::Status check_whole(const ImportChoices& choices, const SceneDraft& draft) 
             : absl::StrCat("; ", warnings.size() - 1, " more, which are warnings without --strict");
     return absl::InvalidArgumentError(absl::StrCat(warnings.front(), others));
   }
-  // A scene that a worker would refuse is refused here, before anybody waits for it.
+  // The meshes of the last frame's package have been checked with that frame.
   const auto is_checked = [&](const Mesh& mesh) {
     return draft.memory != nullptr && draft.memory->encoded.knows(mesh);
   };
+  // A scene that a worker would refuse is refused here, before anybody waits for it.
   if (const absl::Status valid = validate(draft.out.scene, MeshVertices::kFinite, is_checked);
       !valid.ok()) {
     return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", valid.message()));
@@ -344,8 +349,8 @@ absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const Import
   if (!is_mitsuba(absl::AsciiStrToLower(path))) {
     return absl::InvalidArgumentError(
         absl::StrCat(name_of(path),
-                     ": --folder is for scenes of Mitsuba; others name no files "
-                     "outside of their own folder"));
+                     ": --folder is for scenes of Mitsuba; scenes of other kinds name no "
+                     "files outside of their own folder"));
   }
   return SceneFolder::around(path, choices.folder);
 }

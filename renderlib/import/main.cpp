@@ -1,41 +1,44 @@
-// bandsaw-import: reads one foreign file and writes it to a folder in a form that needs no parser.
-// If that fails, it writes one error to standard output. The client commands and the dashboard
-// start it (coordinator/cli/scene/import_process.h); it can also be run by hand. FOLDER must exist;
-// SECONDS and BYTES limit the CPU time and the memory.
+// bandsaw-import reads one foreign file and writes it to a folder in a form that needs no parser.
+// The client commands and the dashboard start it (coordinator/cli/scene/import_process.h); it can
+// also be run by hand. FOLDER must exist. SECONDS and BYTES limit the CPU time and the memory. Each
+// of the following modes is explained below its command line.
 //
 //   bandsaw-import scene FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
-// leaves FOLDER/manifest and FOLDER/<digest> for each blob. The choices (import.h, ImportChoices)
-// are environment=FILE, camera=NAME, strict, define:NAME=VALUE (a parameter of a Mitsuba scene),
-// folder=FOLDER (of a Mitsuba scene: read files anywhere below this folder, which contains that of
-// the scene), frame=N, fps=F, shutter=SHARE (fps and shutter only after frame) and animation=NAME;
+// This mode imports a scene. It writes FOLDER/manifest, and FOLDER/<digest> for each blob. The
+// choices (import.h, ImportChoices) are environment=FILE, camera=NAME, strict, define:NAME=VALUE (a
+// parameter of a Mitsuba scene), folder=FOLDER (of a Mitsuba scene: read files anywhere below this
+// folder, which contains that of the scene), frame=N, fps=F, shutter=SHARE (fps and shutter only
+// after frame) and animation=NAME.
 //
 //   bandsaw-import frames FILE FOLDER SECONDS BYTES frame=N [CHOICE ...]
 //
-// does the same for one frame after the other: it reads their numbers from standard input, one a
-// line, and answers each with the line "done" when FOLDER has the package of that frame alone.
-// Models, image textures and a foreign scene are kept for the next frame; other files of the scene
-// are read again. SECONDS is the CPU time for all frames together. The choice frame=N must be
-// given, but its N is not used;
+// This mode imports the frames of a scene, one after the other. It reads the numbers of the frames
+// from standard input, one a line. It answers each number with the line "done" when FOLDER has the
+// package of that frame, and of no other frame. Models, image textures and a foreign scene are kept
+// for the next frame; other files of the scene are read again. SECONDS is the CPU time for all
+// frames together. The choice frame=N must be given, but its N is not used.
 //
 //   bandsaw-import text FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
-// converts a foreign scene to a Bandsaw scene file: it leaves FOLDER/text, FOLDER/warnings (one a
-// line), and FOLDER/list with a line for each file that the scene names: "made NAME" for a file
-// that the converter made, or "found NAME" for a file below the folder of FILE. The bytes of the
-// made files are in FOLDER/0, FOLDER/1 and so on, in the order of the list;
+// This mode converts a foreign scene or a model to a Bandsaw scene file. It writes FOLDER/text,
+// FOLDER/warnings (one a line), and FOLDER/list with a line for each file that the scene names:
+// "made NAME" for a file that the converter made, or "found NAME" for a file below the folder of
+// FILE. The bytes of the made files are in FOLDER/0, FOLDER/1 and so on, in the order of the list.
 //
 //   bandsaw-import unzip FILE FOLDER SECONDS BYTES
 //
-// leaves FOLDER/list with a line "made NAME" for each file in the archive, and the bytes of these
-// files as above;
+// This mode unpacks a zip archive. It writes FOLDER/list with a line "made NAME" for each file in
+// the archive, and the bytes of these files to FOLDER/0, FOLDER/1 and so on, in the order of the
+// list.
 //
 //   bandsaw-import image FILE FOLDER SECONDS BYTES
 //
-// leaves FOLDER/image: width and height as uint32, then float RGB, rows from the top.
+// This mode decodes an image. It writes FOLDER/image: width and height as uint32, then float RGB,
+// rows from the top.
 //
-// It exits with 0 when all is done. Otherwise it exits with 1 after a line "CODE: message" on
-// standard output, with CODE as absl::StatusCodeToString writes it.
+// bandsaw-import exits with 0 when all is done. Otherwise it writes one line "CODE: message" to
+// standard output, with CODE as absl::StatusCodeToString writes it, and exits with 1.
 
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -296,6 +299,8 @@ absl::StatusOr<ImportChoices> read_choices(int argc, char** argv) {
   return choices;
 }
 
+// Reads the arguments, confines this process, and runs the mode. No file of unknown origin is
+// parsed before the process is confined.
 absl::Status run(int argc, char** argv) {
   Confinement limits;
   const std::string what = argc >= 6 ? argv[1] : "";

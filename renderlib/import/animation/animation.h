@@ -18,9 +18,9 @@ namespace bandsaw {
 
 /// Movement of one node. A property without a curve keeps its value of the rest pose.
 struct NodeMotion {
-  Vec3 translate;  ///< the rest pose: this and the next two
-  Quaternion rotate;
-  Vec3 scale{1, 1, 1};
+  Vec3 translate;                                   ///< translation in the rest pose
+  Quaternion rotate;                                ///< rotation in the rest pose
+  Vec3 scale{1, 1, 1};                              ///< scale in the rest pose
   std::optional<Curve> translation = std::nullopt;  ///< width 3
   std::optional<Curve> rotation = std::nullopt;     ///< width 4: x, y, z, w
   std::optional<Curve> scaling = std::nullopt;      ///< width 3
@@ -42,9 +42,9 @@ struct AnimationChoice {
   friend auto operator<=>(const AnimationChoice&, const AnimationChoice&) = default;
 };
 
-/// Returns the index of the chosen animation in `names`; std::nullopt if none is chosen: the model
-/// is in its rest pose. If there is no such name, the error is NOT_FOUND:
-/// "has no animation \"run\"; there are \"walk\", \"jump\"".
+/// Returns the index of the chosen animation in `names`. Returns std::nullopt if no animation is
+/// chosen; the model then is in its rest pose. If the chosen name is not in `names`, the error is
+/// NOT_FOUND: "has no animation \"run\"; there are \"walk\", \"jump\"".
 absl::StatusOr<std::optional<std::size_t>> choose(const AnimationChoice& choice,
                                                   const std::vector<std::string>& names);
 
@@ -53,7 +53,8 @@ struct Animation {
   /// Moving nodes, keyed by their number in Assimp's tree, parents first. Until Assimp has loaded a
   /// glTF file, the key is the node's index in that file.
   std::map<std::size_t, NodeMotion> nodes = {};
-  /// Weights of morph targets, keyed by the same numbers; the width is the number of targets.
+  /// Weights of morph targets, keyed by node as in `nodes`. The width of a curve is the number of
+  /// targets.
   std::map<std::size_t, Curve> weights = {};
 };
 

@@ -1,5 +1,5 @@
-// Evaluates a curve, numbers given by keys over time: finds the two keys around a time and
-// interpolates between them by the curve's rule.
+// A curve holds numbers that change over time and are given at keys. To evaluate it, this file
+// finds the two keys around a time and interpolates between them by the curve's rule.
 
 #include "renderlib/import/animation/curve.h"
 
@@ -12,6 +12,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the quaternion divided by its length; the identity if its length is 0 or not finite.
 Quaternion unit(absl::Span<const double> xyzw) {
   const double size =
       std::sqrt(xyzw[0] * xyzw[0] + xyzw[1] * xyzw[1] + xyzw[2] * xyzw[2] + xyzw[3] * xyzw[3]);
@@ -51,7 +52,8 @@ absl::Span<const double> Curve::value(std::size_t key) const {
   return absl::MakeConstSpan(values_).subspan(first, width_);
 }
 
-/// Returns the change per unit of time at a key, on the side before or after it.
+/// Returns the change of component `number` per unit of time at a key. For kCubic there are two
+/// tangents, one before the key and one after it.
 double Curve::tangent(std::size_t key, std::size_t number, bool before) const {
   if (interpolation_ == Interpolation::kCubic) {
     return values_[(3 * key + (before ? 0 : 2)) * width_ + number];
@@ -75,6 +77,7 @@ std::vector<double> Curve::at(double time) const {
       out[i] += u * (to[i] - from[i]);
       continue;
     }
+    // A cubic Hermite spline (glTF 2.0, appendix C.5).
     const double length = times_[place.next] - times_[place.key];
     const double leaving = length * tangent(place.key, i, false);
     const double arriving = length * tangent(place.next, i, true);

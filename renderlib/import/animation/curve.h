@@ -23,7 +23,8 @@ enum class Interpolation {
 class Curve {
  public:
   /// `times` strictly increase and are not empty. `values` holds `width` (>= 1) numbers for each
-  /// time; for kCubic three times as many: tangent before the key, value, tangent after it.
+  /// time. For kCubic it holds three groups of `width` numbers for each time: the tangent before
+  /// the key, the value, and the tangent after the key.
   Curve(std::vector<double> times, std::vector<double> values, std::size_t width,
         Interpolation interpolation);
 

@@ -9,8 +9,9 @@
 
 namespace bandsaw {
 
-/// A scene file of another renderer. A converter reads this file and the files below the folder
-/// that it names, each by SceneFolder::resolve. The result is a ConvertedScene (converted_scene.h).
+/// A scene file of another renderer. A converter reads this file and the files that it names, which
+/// must lie below `folder` (SceneFolder::resolve). The result is a ConvertedScene
+/// (converted_scene.h).
 struct ForeignScene {
   std::string path;  ///< real path of the file, in `folder`
   std::string name;  ///< its name in errors and warnings: "kitchen.pbrt"

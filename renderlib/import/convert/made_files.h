@@ -31,7 +31,7 @@ class MadeFiles {
   std::string folder_;
   std::map<std::string, std::string> files_;
   std::multimap<std::size_t, std::string> names_by_hash_;
-  std::map<std::string, int> counts_;
+  std::map<std::string, int> counts_;  ///< number of files so far, keyed by `what` of add()
 };
 
 }  // namespace bandsaw

@@ -1,5 +1,5 @@
-// Writes a mesh as a binary PLY file, in the form that Assimp reads without errors: the converters
-// of foreign scenes pass meshes on as such files.
+// Writes a mesh as a binary PLY file, in the form that Assimp reads without errors. The converters
+// of foreign scenes pass meshes to the importer as such files.
 
 #include "renderlib/import/convert/ply_mesh.h"
 
@@ -14,6 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
+/// Appends the numbers of vertex i, unless the list is empty.
 template <std::size_t n>
 void append(const std::vector<std::array<float, n>>& list, std::size_t i, std::string& to) {
   if (!list.empty()) {
@@ -46,8 +47,8 @@ bool begins_with_space(const PlyMesh& mesh) {
   return first <= ' ' && first != 0;
 }
 
-/// Returns the mesh with an unused vertex in front, which lies close to the first one and whose
-/// first byte is no white space.
+/// Returns the mesh with one more vertex in front, which no triangle uses. This vertex lies close
+/// to the first vertex of `mesh`, and its first byte is 0, which is no white space.
 PlyMesh with_plain_front(PlyMesh mesh) {
   const auto repeat_first = [](auto& list) {
     if (!list.empty()) {

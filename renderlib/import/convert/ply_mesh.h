@@ -1,6 +1,7 @@
 #pragma once
 
-// Triangle meshes as binary PLY, the form in which converters pass meshes on.
+// Triangle meshes as binary PLY, the form in which the converters of foreign scenes pass meshes to
+// the importer.
 
 #include <array>
 #include <cstddef>

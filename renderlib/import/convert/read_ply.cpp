@@ -30,7 +30,7 @@ enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDoub
 struct PlyProperty {
   std::string name;
   Type type = Type::kFloat;
-  std::optional<Type> count = std::nullopt;  ///< type of the length of a list
+  std::optional<Type> count = std::nullopt;  ///< of a list: type of its length
 };
 
 struct Element {
@@ -147,7 +147,7 @@ class Numbers {
 struct Header {
   Encoding encoding = Encoding::kText;
   std::vector<Element> elements;
-  absl::string_view body;
+  absl::string_view body;  ///< the bytes after the header
 };
 
 absl::Status add_property(const std::vector<absl::string_view>& words, Header& header) {
@@ -218,6 +218,7 @@ absl::StatusOr<Header> read_header(absl::string_view bytes) {
 }
 
 /// Groups the numbers of an element: "color_0", "color_1", "color_2" become one attribute "color".
+/// Returns the indices of the properties of each group, keyed by the name of the group.
 std::map<std::string, std::vector<std::size_t>> groups_of(const Element& element) {
   std::map<std::string, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < element.properties.size(); ++i) {
@@ -288,6 +289,7 @@ absl::Status add_numbers(const Columns<n>& columns, const std::vector<double>& r
   return absl::OkStatus();
 }
 
+/// Reads the elements that the header announces.
 class PlyReader {
  public:
   explicit PlyReader(const Header& header)
@@ -295,7 +297,8 @@ class PlyReader {
 
   absl::StatusOr<PlyFile> read() {
     for (const Element& element : header_.elements) {
-      std::uint64_t least = 0;  // bytes, or in text one digit and a space for each number
+      // The least size of a row in bytes. In text, each number takes a digit and a space.
+      std::uint64_t least = 0;
       for (const PlyProperty& property : element.properties) {
         least += numbers_.is_text() ? 2 : size_of(property.count.value_or(property.type));
       }
@@ -373,8 +376,8 @@ class PlyReader {
            std::find(names.begin(), names.end(), name) != names.end();
   }
 
-  /// Reads one vertex, face or other row: its numbers to `row`, in the order of the properties, and
-  /// the vertex indices of a face to `corners`.
+  /// Reads one vertex, face or row of another element. Stores its numbers in `row`, in the order of
+  /// the properties, and adds the vertex indices of a face to `corners`.
   absl::Status read_row(const Element& element, std::vector<double>& row,
                         std::vector<std::uint32_t>& corners) {
     constexpr double kMaxCorners = 1e6;
@@ -408,7 +411,7 @@ class PlyReader {
     return add_numbers(columns.uv, row, out_.mesh.uvs);
   }
 
-  /// Returns the number of triangles of the polygon.
+  /// Divides the polygon into a fan of triangles and adds them. Returns the number of triangles.
   std::size_t add_face(const std::vector<std::uint32_t>& corners) {
     for (std::size_t i = 2; i < corners.size(); ++i) {
       out_.mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});

@@ -17,6 +17,7 @@ using google::protobuf::Message;
 
 constexpr std::size_t kColumns = 100;
 
+/// Appends the fields of messages to `text`, with indentation.
 class Writer {
  public:
   std::string text;

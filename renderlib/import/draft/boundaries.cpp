@@ -1,5 +1,5 @@
-// Makes the boundary of a medium from a mesh: the mesh must be closed, and its triangles are
-// reversed if they face inwards. Each mesh is converted once.
+// Makes the boundary of a medium from a closed mesh. If the triangles of the mesh face inwards,
+// they are reversed. Each mesh is converted once.
 
 #include "renderlib/import/draft/boundaries.h"
 

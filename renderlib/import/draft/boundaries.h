@@ -10,8 +10,10 @@
 
 namespace bandsaw {
 
-/// Returns the placed mesh of the scene as an instance of Media::boundaries that contains `inside`,
-/// with its normals outwards; std::nullopt if the mesh is open.
+/// Makes a boundary, filled with the medium `inside`, from an instance of a mesh of the scene. Adds
+/// the mesh, with its normals outwards, to the meshes of Media::boundaries, unless it is already
+/// there. Returns the instance to add to Media::boundaries, which has the place of `placed`;
+/// std::nullopt if the mesh is not closed.
 std::optional<Instance> mesh_boundary(const Instance& placed, MediumId inside, SceneDraft& draft);
 
 }  // namespace bandsaw

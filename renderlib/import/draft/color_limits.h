@@ -1,7 +1,7 @@
 #pragma once
 
-// Maximum values of a channel of a reflectance, a radiance, and a texture of heights, for all
-// formats: beyond them, products of a few channels would overflow.
+// Maximum values of a channel of a reflectance, a radiance, and a texture of heights. They apply to
+// scenes of all formats. Products of a few channels above these values would overflow.
 
 namespace bandsaw {
 

@@ -10,14 +10,13 @@
 
 namespace bandsaw {
 
-/// Repairs the numbers of a float image that are not in [0, 1e30], because light must be finite:
-/// larger ones become the largest valid number of the image, all others 0. Returns the number of
-/// changed numbers.
+/// Repairs the numbers of a float image that are not in [0, 1e30], because light must be finite.
+/// Larger numbers become the largest valid number of the image; negative numbers and NaN become 0.
+/// Returns how many numbers were changed.
 std::size_t repair_light(ImageTexture& image);
 
 /// Adds the image of a file to the textures of the draft, the scene that is being read. Repaired
-/// texels cause a warning that begins with `name`. Errors as decode_image(); they begin with `name`
-/// too.
+/// numbers cause a warning. Errors as decode_image(). Warnings and errors begin with `name`.
 absl::StatusOr<TextureId> add_environment_image(const std::string& bytes, const std::string& name,
                                                 SceneDraft& draft);
 

@@ -1,4 +1,4 @@
-// Finds a file that a scene names: among those that a converter made, otherwise in the scene's
+// Finds a file that a scene names, first among the files that a converter made, then in the scene's
 // folder.
 
 #include "renderlib/import/draft/named_file.h"

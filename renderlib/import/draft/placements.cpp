@@ -1,6 +1,7 @@
-// place() copies frames and instances to another place. A frame without a parent gets the frame of
-// the place as its parent, and an instance without a frame gets that frame; both are transformed by
-// the place. Indices of frames are shifted, because the copied frames follow those of `to`.
+// place() copies frames and instances to another place. A copied frame without a parent gets the
+// frame of the place as its parent. A copied instance without a frame gets the frame of the place
+// as its frame. Both are transformed by the place. Indices of frames are shifted, because the
+// copied frames follow those of `to`.
 
 #include "renderlib/import/draft/placements.h"
 

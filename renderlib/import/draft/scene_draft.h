@@ -31,7 +31,8 @@ struct FoundCamera {
 };
 
 struct SceneDraft {
-  /// `memory_of_frames`: shared with the other frames of the scene; nullptr: there are none.
+  /// `memory_of_frames` is shared with the imports of the scene's other frames. It is nullptr if no
+  /// other frames are imported.
   SceneDraft(SceneFolder in, std::string scene_file, ImportMemory* memory_of_frames = nullptr)
       : folder(std::move(in)), file(std::move(scene_file)), memory(memory_of_frames) {}
   SceneDraft(const SceneDraft&) = delete;
@@ -43,14 +44,14 @@ struct SceneDraft {
   /// of the folder (named_file.h).
   std::shared_ptr<const std::map<std::string, std::string>> made_files =
       std::make_shared<const std::map<std::string, std::string>>();
-  ImportMemory* const memory;
-  ImportedScene out;  ///< the result, to which all parts are added
+  ImportMemory* const memory;  ///< may be nullptr
+  ImportedScene out;           ///< the result, to which all parts are added
   TextureStore textures{out.scene.textures, out.info.warnings,
                         memory == nullptr ? nullptr : &memory->images};
   std::map<std::string, MaterialId> materials;      ///< keyed by name in the scene file
-  std::map<std::string, TextureId> named_textures;  ///< the same
-  std::map<std::string, Contents> groups;           ///< the same
-  std::map<std::string, MediumId> media;            ///< the same
+  std::map<std::string, TextureId> named_textures;  ///< keyed by name in the scene file
+  std::map<std::string, Contents> groups;           ///< keyed by name in the scene file
+  std::map<std::string, MediumId> media;            ///< keyed by name in the scene file
   /// Grids of media, keyed by their description in the scene file.
   std::map<std::string, GridId> volumes;
   /// Meshes of the boundaries of media, keyed by the equal mesh of the scene.

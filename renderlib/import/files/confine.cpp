@@ -34,12 +34,11 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
 #elif defined(__aarch64__)
 constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 #else
-#error "say which system calls these numbers are of"
+#error "add the AUDIT_ARCH constant of this architecture"
 #endif
 
 // Forbidden system calls. There is no list of allowed calls, because allocators, the C library and
-// sanitizers may change the calls they use, while there are few calls for network and other
-// processes.
+// sanitizers may change the calls that they use. The calls for network and other processes are few.
 constexpr std::array kForbidden = {
     // network
     SYS_socket,
@@ -99,10 +98,12 @@ constexpr sock_filter jump(std::uint16_t code, std::uint32_t value, std::uint8_t
                            std::uint8_t no) {
   return {code, yes, no, value};
 }
+/// Ends the filter: the system call fails with this errno.
 constexpr sock_filter answer(int error) {
   return statement(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | static_cast<std::uint32_t>(error));
 }
 
+/// Returns the instructions of the seccomp filter.
 std::vector<sock_filter> program() {
   constexpr std::uint16_t kLoad = BPF_LD | BPF_W | BPF_ABS;
   constexpr std::uint16_t kEqual = BPF_JMP | BPF_JEQ | BPF_K;
@@ -151,6 +152,7 @@ absl::Status forbid_system_calls() {
   return absl::OkStatus();
 }
 
+// True if the program is built with a sanitizer that uses shadow memory.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kShadowMemory = true;
 #elif defined(__has_feature)
@@ -163,8 +165,8 @@ constexpr bool kShadowMemory = false;
 constexpr bool kShadowMemory = false;
 #endif
 
-// Limits the resource to `most`, or to the inherited hard limit if that is lower: only privileged
-// users may raise a hard limit. `what` begins the message of an error.
+// Limits the resource to `most`, or to the inherited hard limit if it is lower, because only
+// privileged users may raise a hard limit. `what` begins the message of an error.
 absl::Status limit(__rlimit_resource resource, std::uint64_t most, const char* what) {
   rlimit inherited{};
   if (getrlimit(resource, &inherited) != 0) {
@@ -186,7 +188,7 @@ absl::Status limit_resources(const Confinement& to) {
                        : limit(RLIMIT_AS, to.memory_bytes, "cannot limit memory");
 }
 
-// If the machine runs out of memory, the kernel ends this process first.
+// Makes the kernel end this process first if the machine runs out of memory. Errors are ignored.
 void volunteer_for_out_of_memory() {
   const int fd = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
   if (fd >= 0) {
@@ -199,11 +201,13 @@ void volunteer_for_out_of_memory() {
 constexpr std::uint64_t kRead = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
 constexpr std::uint64_t kWrite = kRead | LANDLOCK_ACCESS_FS_WRITE_FILE |
                                  LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_REMOVE_FILE;
+// The rights that are forbidden except where a rule allows them.
 constexpr std::uint64_t kHandled =
     kWrite | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_REMOVE_DIR |
     LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_DIR | LANDLOCK_ACCESS_FS_MAKE_SOCK |
     LANDLOCK_ACCESS_FS_MAKE_FIFO | LANDLOCK_ACCESS_FS_MAKE_BLOCK | LANDLOCK_ACCESS_FS_MAKE_SYM;
 
+/// Allows `rights` in the folder and below it. `rules` is the descriptor of the Landlock rule set.
 absl::Status allow_folder(int rules, const std::string& folder, std::uint64_t rights) {
   const int fd = open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) {

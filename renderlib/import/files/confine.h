@@ -18,11 +18,12 @@ struct Confinement {
   std::uint64_t file_bytes = 0;  ///< maximum size of a written file
 };
 
-/// Confines this process; cannot be undone. Sets resource limits and forbids core dumps and new
-/// privileges. With seccomp, calls for network, new programs, new processes, signals to other
-/// processes and access to them fail with EPERM. If the kernel has
-/// Landlock (5.13), only the two folders are accessible. A kernel without Landlock is not an error:
-/// then SceneFolder alone restricts which files are opened. Returns the system's error.
+/// Confines this process, which cannot be undone. Sets resource limits and forbids core dumps and
+/// new privileges. By a seccomp filter, system calls for network, new programs, new processes,
+/// signals to other processes and access to other processes fail with EPERM. If the kernel has
+/// Landlock (5.13), only the two folders are accessible. A kernel without Landlock is not an error;
+/// then SceneFolder alone restricts which files are opened. If a step fails, returns the system's
+/// error.
 absl::Status confine_this_process(const Confinement& to);
 
 }  // namespace bandsaw

@@ -16,8 +16,8 @@ namespace bandsaw {
 namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 18;
-// zlib's windowBits: 15 is the largest window; + 32 detects the kind of header, a negative number
-// means that there is no header.
+// Values of zlib's windowBits. 15 is the largest window. Adding 32 makes zlib detect the kind of
+// header, and a negative number means that there is no header.
 constexpr int kGzipOrZlib = 15 + 32;
 constexpr int kRaw = -15;
 

@@ -11,7 +11,7 @@
 namespace bandsaw {
 
 enum class DeflateKind {
-  kGzip,  ///< gzip or zlib, by their headers
+  kGzip,  ///< gzip or zlib; the header tells which
   kRaw,   ///< without a header, as in zip files
 };
 

@@ -1,5 +1,5 @@
-// Finds the files that a scene names, and none outside of its folder: resolves a name to its real
-// path and compares that with the real path of the folder, so that no symbolic link leads outside.
+// Finds the files that a scene names, but no files outside of its folder. A name is resolved to its
+// real path, which must lie below the real path of the folder, so no symbolic link leads outside.
 
 #include "renderlib/import/files/scene_folder.h"
 
@@ -73,7 +73,8 @@ absl::StatusOr<std::string> SceneFolder::resolve(const std::string& name,
   std::error_code error;
   const fs::path real = fs::canonical(whole, error);
   if (error == std::errc::permission_denied) {
-    return absl::PermissionDeniedError(absl::StrCat("\"", name, "\" must not be read"));
+    return absl::PermissionDeniedError(
+        absl::StrCat("\"", name, "\" cannot be read, because permission is denied"));
   }
   if (error) {
     return absl::NotFoundError(

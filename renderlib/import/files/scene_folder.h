@@ -30,22 +30,25 @@ class SceneFolder {
   /// INVALID_ARGUMENT if the name is empty, has a zero byte or is not that of a regular file.
   absl::StatusOr<std::string> resolve(const std::string& name, const std::string& folder) const;
 
-  /// As resolve(). If that fails and `name` has no slash, a file in `folder` itself is searched
-  /// whose name is `name` except for case. If there are several, the first in byte order is taken.
+  /// As resolve(). If resolve() fails and `name` has no slash, searches `folder`, without its
+  /// subfolders, for a file whose name differs from `name` only in upper and lower case. If there
+  /// are several, takes the first in byte order.
   absl::StatusOr<std::string> resolve_any_case(const std::string& name,
                                                const std::string& folder) const;
 
   const std::string& path() const { return path_; }
 
-  /// From now on, each file that resolve() finds is added to `files`: its name below the folder ->
-  /// its real path. nullptr ends this. `files` MUST outlive the calls of resolve().
+  /// From now on, resolve() adds each file that it finds to `files`, which maps the name below this
+  /// folder to the real path. After a call with nullptr, files are no longer added. `files` MUST
+  /// outlive the calls of resolve().
   void record_to(std::map<std::string, std::string>* files) { found_ = files; }
 
  private:
   explicit SceneFolder(std::string path) : path_(std::move(path)) {}
+  /// Returns true if the path lies below this folder.
   bool holds(const std::string& real_path) const;
   std::string path_;  ///< absolute, without links, without a slash at the end
-  std::map<std::string, std::string>* found_ = nullptr;
+  std::map<std::string, std::string>* found_ = nullptr;  ///< set by record_to()
 };
 
 /// Returns the folder of an absolute path.

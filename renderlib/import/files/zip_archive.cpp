@@ -18,6 +18,7 @@
 namespace bandsaw {
 namespace {
 
+// Signatures of the records, and their sizes without fields of variable length.
 constexpr std::uint32_t kLocalHeader = 0x04034b50;
 constexpr std::uint32_t kDirectoryEntry = 0x02014b50;
 constexpr std::uint32_t kDirectoryEnd = 0x06054b50;
@@ -86,6 +87,7 @@ std::optional<std::uint64_t> find_end(absl::string_view bytes) {
   return std::nullopt;
 }
 
+/// Reads the record at the end of the archive, and the zip64 record if there is one.
 absl::StatusOr<Directory> find_directory(absl::string_view bytes) {
   const auto end = find_end(bytes);
   if (!end) {
@@ -98,7 +100,7 @@ absl::StatusOr<Directory> find_directory(absl::string_view bytes) {
   in.u32();  // size of the directory
   directory.at = in.u32();
   if (disk != 0 && disk != 0xffff) {
-    return damaged("it is a part of several");
+    return damaged("it is one part of an archive that is split into several files");
   }
   if (*end < kLocator64Bytes || Reader(bytes, *end - kLocator64Bytes).u32() != kLocator64) {
     return directory;
@@ -134,6 +136,7 @@ void read_extra(absl::string_view extra, ZipArchive::Entry& entry) {
   }
 }
 
+/// Returns true if the entry was made on Unix and its file mode is that of a symbolic link.
 bool is_link(std::uint32_t made_by, std::uint32_t attributes) {
   constexpr std::uint32_t kUnix = 3;
   constexpr std::uint32_t kKind = 0xf000;
@@ -236,8 +239,8 @@ absl::StatusOr<ZipArchive> ZipArchive::open(absl::string_view bytes) {
 
 absl::StatusOr<std::string> ZipArchive::read(const Entry& entry) const {
   Reader in(bytes_, entry.header_at);
-  // Only the last two values of the local header are used: the lengths of the name and the extra
-  // field there may differ from those of the directory.
+  // Of the local header, only the lengths of the name and of the extra field are used. They may
+  // differ from the lengths in the directory.
   const bool has_header = in.u32() == kLocalHeader;
   in.text(kLocalHeaderBytes - 4 - 2 - 2);
   const std::uint32_t name_bytes = in.u16();

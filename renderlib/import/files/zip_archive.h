@@ -1,7 +1,7 @@
 #pragma once
 
 // Reads zip archives whose entries are stored or deflated (APPNOTE.TXT of PKWARE, with zip64).
-// By it bandsaw-import unpacks a scene that is sent as one file.
+// bandsaw-import uses it to unpack a scene that is sent as one file.
 
 #include <cstdint>
 #include <string>

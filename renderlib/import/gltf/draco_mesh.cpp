@@ -1,5 +1,5 @@
-// Decodes meshes of glTF's extension KHR_draco_mesh_compression: libdraco decodes the stream to
-// quantised integers, and Dequantizer converts these to floats.
+// Decodes meshes of glTF's extension KHR_draco_mesh_compression. libdraco decodes the stream to
+// quantised integers, and Dequantizer converts these integers to floats.
 
 #include "renderlib/import/gltf/draco_mesh.h"
 
@@ -31,6 +31,8 @@ bool load(const draco::PointAttribute& from, draco::AttributeValueIndex at, Raw&
 /// it was compiled (fused multiply-add on some architectures).
 class Dequantizer {
  public:
+  /// Reads the quantisation of the attribute `from`. Integers without quantisation are converted as
+  /// `shape` says. `place` begins the message of an error.
   static absl::StatusOr<Dequantizer> of(const draco::PointAttribute& from,
                                         const AccessorShape& shape, const std::string& place) {
     Dequantizer out(from, shape);
@@ -56,6 +58,7 @@ class Dequantizer {
     return out;
   }
 
+  /// Returns the number of floats of a value.
   std::size_t components() const {
     return largest_ > 0 ? 3 : static_cast<std::size_t>(from_.num_components());
   }
@@ -101,9 +104,9 @@ class Dequantizer {
 
   const draco::PointAttribute& from_;
   const AccessorShape& shape_;
-  std::vector<float> least_;  ///< minima of a quantised attribute
-  float step_ = 0;
-  int largest_ = 0;  ///< maximum of octahedral coordinates; 0 for other attributes
+  std::vector<float> least_;  ///< minima of a quantised attribute; empty for other attributes
+  float step_ = 0;            ///< size of one quantisation step
+  int largest_ = 0;           ///< maximum of octahedral coordinates; 0 for other attributes
 };
 
 }  // namespace
@@ -200,8 +203,9 @@ absl::StatusOr<std::vector<std::uint32_t>> DracoMesh::whole_numbers(
   ASSIGN_OR_RETURN(const draco::PointAttribute* from, attribute(id, shape));
   const auto components = static_cast<std::size_t>(from->num_components());
   if (components < shape.components || from->data_type() == draco::DT_FLOAT32) {
-    return damaged(shape.place, absl::StrCat("needs ", shape.components, " integers, attribute ",
-                                             id, " of its Draco stream has others"));
+    return damaged(shape.place,
+                   absl::StrCat("needs ", shape.components, " integers for each vertex, attribute ",
+                                id, " of its Draco stream has fewer, or has floats"));
   }
   std::vector<std::uint32_t> out(shape.values());
   Raw raw{};

@@ -36,18 +36,20 @@ class DracoMesh {
   /// attribute, if it has fewer components than `shape`, or if the count of `shape` is not
   /// vertices().
   absl::StatusOr<std::vector<float>> floats(std::size_t id, const AccessorShape& shape) const;
-  /// The same for non-negative integers. Others are clamped to [0, 2^32 - 1]; INVALID_ARGUMENT also
-  /// for an attribute of floats.
+  /// As floats(), for an attribute of integers, which are clamped to [0, 2^32 - 1]. Returns
+  /// INVALID_ARGUMENT also for an attribute of floats.
   absl::StatusOr<std::vector<std::uint32_t>> whole_numbers(std::size_t id,
                                                            const AccessorShape& shape) const;
 
  private:
   DracoMesh(std::unique_ptr<draco::Mesh> mesh, std::string place);
+  /// Returns the attribute with the number `id`. Returns INVALID_ARGUMENT if there is none, if it
+  /// has not 1 to 4 components, or if the count of `shape` is not vertices().
   absl::StatusOr<const draco::PointAttribute*> attribute(std::size_t id,
                                                          const AccessorShape& shape) const;
 
   std::unique_ptr<draco::Mesh> mesh_;
-  std::string place_;
+  std::string place_;  ///< begins messages
 };
 
 }  // namespace bandsaw::gltf

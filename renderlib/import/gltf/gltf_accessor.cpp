@@ -46,7 +46,7 @@ T load(const char* from) {
   return value;
 }
 
-/// Returns the component at `from`.
+/// Returns the component at `from`, which must be of an integer type.
 std::int64_t load_integer(const char* from, Component type) {
   switch (type) {
     case Component::kByte:
@@ -62,6 +62,7 @@ std::int64_t load_integer(const char* from, Component type) {
   }
 }
 
+// Both functions set `to` to the component at `from`.
 void convert(const char* from, const AccessorShape& shape, float& to) {
   to = shape.component == Component::kFloat
            ? load<float>(from)
@@ -78,8 +79,9 @@ struct Elements {
   const char* at(std::size_t i) const { return bytes.data() + i * stride; }
 };
 
-/// Returns the bytes of `count` elements of `element_bytes` in `in.bufferView`, beginning at
-/// `in.byteOffset`.
+/// Returns `count` elements of `element_bytes` bytes each. They lie in the buffer view number
+/// `in.bufferView` and begin at its byte `in.byteOffset`. Returns INVALID_ARGUMENT if the stride of
+/// the view is not valid or the elements do not lie within the view.
 absl::StatusOr<Elements> elements_of(const Json& root, const Json& in, const std::string& place,
                                      std::size_t count, std::size_t element_bytes,
                                      Buffers& buffers) {
@@ -137,6 +139,7 @@ absl::Status replace_sparse(const Json& root, const Json& sparse, const Accessor
   return absl::OkStatus();
 }
 
+/// Returns all components of accessor number `index`, which MUST exist, converted to T.
 template <class T>
 absl::StatusOr<std::vector<T>> read_as(const Json& root, std::size_t index,
                                        const AccessorShape& shape, Buffers& buffers) {

@@ -1,8 +1,8 @@
 #pragma once
 
-// Reads accessors of a glTF file as plain numbers: of any component type, normalised or not,
-// strided or sparse. An accessor without a buffer view holds zeros. The numbers serve to rewrite
-// the file (plain_gltf.h) and to read its animations.
+// Reads accessors of a glTF file as plain numbers. Accessors may be of any component type,
+// normalised or not, strided or sparse. An accessor without a buffer view holds zeros. The numbers
+// are used to rewrite the file (plain_gltf.h) and to read its animations.
 
 #include <array>
 #include <cstdint>
@@ -53,8 +53,8 @@ float value_of(std::int64_t component, Component type, bool normalized);
 absl::StatusOr<std::vector<float>> read_floats(const Json& root, std::size_t index,
                                                const AccessorShape& shape, Buffers& buffers);
 
-/// The same for non-negative integers: indices and joints. Returns INVALID_ARGUMENT also for floats
-/// and signed integers.
+/// As read_floats(), for accessors of unsigned integers, which are indices and joints. Returns
+/// INVALID_ARGUMENT also for floats and signed integers.
 absl::StatusOr<std::vector<std::uint32_t>> read_whole_numbers(const Json& root, std::size_t index,
                                                               const AccessorShape& shape,
                                                               Buffers& buffers);

@@ -49,8 +49,9 @@ absl::StatusOr<Interpolation> interpolation_of(const Json& sampler, const std::s
       place, absl::StrCat("its interpolation \"", name, "\" is not LINEAR, STEP or CUBICSPLINE"));
 }
 
-/// Reads a sampler. `components`: numbers of a key, 3 for vectors, 4 for rotations. For weights it
-/// is 1, although each key has one weight for each morph target.
+/// Reads a sampler. `components` is how many numbers an element of its output accessor must have: 3
+/// for vectors, 4 for rotations, 1 for weights. A key of a vector or rotation has one element as
+/// its value; a key of weights has one element for each morph target.
 absl::StatusOr<Curve> read_sampler(const Json& root, const Json& sampler, const std::string& place,
                                    std::size_t components, Buffers& buffers) {
   ASSIGN_OR_RETURN(const Interpolation interpolation, interpolation_of(sampler, place));
@@ -100,6 +101,8 @@ NodeMotion rest_of(const Json& node) {
   return motion;
 }
 
+/// Adds the curve of a channel to the animation `to`. A channel without a node or with an unknown
+/// path is skipped. `place` names the channel in messages.
 absl::Status add_channel(const Json& root, const Json& animation, const Json& channel,
                          const std::string& place, Buffers& buffers, Animation& to) {
   const Json* target = object(channel, "target");

@@ -1,5 +1,5 @@
-// Reads the buffers of a glTF file. A buffer is read when it is first used: the binary chunk, a
-// data URI or a file. A compressed buffer view is decoded when it is first used.
+// Reads the buffers of a glTF file. A buffer is the binary chunk, a data URI or a file, and is read
+// when it is first used. A compressed buffer view is decoded when it is first used.
 
 #include "renderlib/import/gltf/gltf_buffers.h"
 
@@ -43,6 +43,7 @@ absl::Status Buffers::take(std::uint64_t bytes, absl::string_view place) {
   return absl::OkStatus();
 }
 
+/// Returns the bytes of a data URI, or of the file that `uri` names.
 absl::StatusOr<std::string> Buffers::read_uri(const std::string& uri, const std::string& place) {
   if (absl::StartsWithIgnoreCase(uri, "data:")) {
     RETURN_IF_ERROR(take(uri.size(), place));
@@ -65,6 +66,7 @@ absl::StatusOr<std::string> Buffers::read_uri(const std::string& uri, const std:
   return bytes;
 }
 
+/// Returns the first `byteLength` bytes of buffers[index].
 absl::StatusOr<absl::string_view> Buffers::buffer(std::size_t index) {
   const std::string place = absl::StrCat("buffers[", index, "]");
   const Json* of = item(file_.root, "buffers", static_cast<double>(index));
@@ -87,7 +89,8 @@ absl::StatusOr<absl::string_view> Buffers::buffer(std::size_t index) {
     bytes = known->second;
   }
   if (size > bytes.size()) {
-    return damaged(place, absl::StrCat("byteLength is ", size, ", there are ", bytes.size()));
+    return damaged(place, absl::StrCat("byteLength is ", size, ", but the buffer has ",
+                                       bytes.size(), " bytes"));
   }
   return bytes.substr(0, size);
 }
@@ -105,6 +108,7 @@ absl::StatusOr<absl::string_view> Buffers::slice(const Json& of, const std::stri
   return bytes.substr(offset, size);
 }
 
+/// Returns the decoded bytes of the buffer view `of`, whose extension object is `compressed`.
 absl::StatusOr<std::string> Buffers::decode(const Json& of, const Json& compressed,
                                             const std::string& place) {
   ASSIGN_OR_RETURN(const std::size_t size, whole_of(of, "byteLength", place));

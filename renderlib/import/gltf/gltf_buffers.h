@@ -31,8 +31,8 @@ class Buffers {
   /// is not within its buffer, and NOT_FOUND or PERMISSION_DENIED for the buffer's file.
   absl::StatusOr<absl::string_view> view(std::size_t index, absl::string_view place);
 
-  /// Counts bytes that are about to be allocated. Returns RESOURCE_EXHAUSTED if they are more than
-  /// kMaxModelBytes in total.
+  /// Counts bytes that are about to be allocated. Returns RESOURCE_EXHAUSTED if the sum of all
+  /// calls would exceed kMaxModelBytes.
   absl::Status take(std::uint64_t bytes, absl::string_view place);
 
  private:
@@ -45,7 +45,7 @@ class Buffers {
   const GltfFile& file_;
   const SceneFolder& scene_;
   std::string folder_;
-  std::uint64_t taken_ = 0;
+  std::uint64_t taken_ = 0;                     ///< sum of the bytes that take() has counted
   std::map<std::size_t, std::string> buffers_;  ///< buffers other than the binary chunk
   std::map<std::size_t, std::string> decoded_;  ///< buffer views that were compressed
 };

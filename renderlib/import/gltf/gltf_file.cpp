@@ -35,7 +35,7 @@ absl::StatusOr<Chunk> take_chunk(absl::string_view& rest) {
   const std::size_t left = rest.size();
   const std::uint32_t size = left < kChunkHeaderBytes ? 0 : number_at(rest, 0);
   if (left < kChunkHeaderBytes || size > left - kChunkHeaderBytes) {
-    return damaged("its chunks", absl::StrCat("one of ", size, " bytes begins ", left,
+    return damaged("its chunks", absl::StrCat("a chunk of ", size, " bytes begins ", left,
                                               " bytes before the end of the file"));
   }
   const Chunk chunk{number_at(rest, 4), rest.substr(kChunkHeaderBytes, size)};
@@ -43,7 +43,8 @@ absl::StatusOr<Chunk> take_chunk(absl::string_view& rest) {
   return chunk;
 }
 
-/// Returns the JSON of a .glb and sets the binary chunk.
+/// Returns the JSON chunk of the .glb file in `file.bytes`, and sets `file.binary` to its binary
+/// chunk if there is one.
 absl::StatusOr<absl::string_view> take_apart(GltfFile& file) {
   absl::string_view rest = absl::string_view(file.bytes).substr(kHeaderBytes);
   ASSIGN_OR_RETURN(const Chunk json, take_chunk(rest));

@@ -25,9 +25,9 @@ struct GltfFile {
   GltfFile& operator=(const GltfFile&) = delete;
 };
 
-/// Reads the file into `to`. Returns false for glTF 1; if that file is binary, `to.root` is an
-/// empty object. Returns INVALID_ARGUMENT if the container or the JSON is broken, and the errors of
-/// read_whole_file().
+/// Reads the file into `to`. Returns true, or false if the file is glTF 1. For a binary file of
+/// glTF 1, `to.root` is an empty object. Returns INVALID_ARGUMENT if the container or the JSON is
+/// broken, and the errors of read_whole_file().
 absl::StatusOr<bool> read_gltf_file(const std::string& path, GltfFile& to);
 
 }  // namespace bandsaw::gltf

@@ -13,7 +13,8 @@ namespace {
 
 /// Maximum size of the JSON, which includes buffers in data URIs.
 constexpr std::size_t kMaxJsonBytes = std::size_t{256} << 20;
-/// Maximum nesting depth: functions that traverse the JSON, ours and the library's, are recursive.
+/// Maximum nesting depth. It is limited because the functions that traverse the JSON, in this
+/// folder and in the library, are recursive.
 constexpr int kMaxDepth = 100;
 
 /// Returns the nesting depth of brackets outside of strings.
@@ -112,7 +113,7 @@ void remove_extension(Json& in, absl::string_view name) {
 std::string name_in(const Json& in) { return text(in, "name"); }
 
 std::optional<std::size_t> whole(const Json& value) {
-  constexpr double kMax = 9007199254740992.0;
+  constexpr double kMax = 9007199254740992.0;  // 2^53
   if (!value.is_number()) {
     return std::nullopt;
   }

@@ -1,7 +1,7 @@
 #pragma once
 
-// JSON of a glTF file, and lookup functions, which treat a member that is missing or has another
-// type than requested as absent.
+// Parses the JSON of a glTF file and looks up its members. If a member has another type than the
+// lookup function requests, the function treats it as missing.
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
@@ -25,35 +25,37 @@ absl::Status damaged(absl::string_view place, absl::string_view what);
 
 /// Returns the member `name` of the object `in`; nullptr if there is none or `in` is no object.
 const Json* find(const Json& in, absl::string_view name);
-/// The same, but object() returns nullptr also if the member is not an object, and list() also if
-/// the member is not a list.
+/// As find(). But object() returns nullptr also if the member is not an object, and list() returns
+/// nullptr also if the member is not a list.
 const Json* object(const Json& in, absl::string_view name);
 const Json* list(const Json& in, absl::string_view name);
-/// Returns a list; an empty one if there is none.
+/// Returns the member `name` if it is a list; otherwise an empty list.
 const Json& items(const Json& in, absl::string_view name);
+/// Returns the member `name` if it is a number.
 std::optional<double> number(const Json& in, absl::string_view name);
-/// Returns a string; empty if there is none.
+/// Returns the member `name` if it is a string; otherwise an empty string.
 std::string text(const Json& in, absl::string_view name);
 /// Returns the object `in.extensions.name`; nullptr if there is none.
 const Json* extension(const Json& in, absl::string_view name);
 /// Removes `in.extensions.name`, and `in.extensions` if it becomes empty.
 void remove_extension(Json& in, absl::string_view name);
-/// Returns the object's name; may be empty.
+/// Returns the string member "name"; empty if there is none.
 std::string name_in(const Json& in);
 
 /// Returns a whole number in [0, 2^53], as used for counts, offsets and indices; std::nullopt if
 /// `value` is not one.
 std::optional<std::size_t> whole(const Json& value);
-/// Returns the member `name` as such a number, or `otherwise` if there is no such member; without
-/// `otherwise` it is required. Returns INVALID_ARGUMENT if it is missing or no whole number;
-/// `place` names the object `in`.
+/// Returns the member `name` as a whole number in [0, 2^53]; `otherwise` if the member is missing.
+/// Returns INVALID_ARGUMENT if the member is not a whole number, or if it is missing and there is
+/// no `otherwise`. `place` names the object `in` in messages.
 absl::StatusOr<std::size_t> whole_of(const Json& in, absl::string_view name,
                                      absl::string_view place,
                                      std::optional<std::size_t> otherwise = std::nullopt);
 
 /// Returns the object with number `index` of the root's list `name`; nullptr if there is none.
 const Json* item(const Json& root, absl::string_view name, double index);
-/// The same for the index in `in.member`.
+/// Returns the object of the root's list `name` whose index is `in.member`; nullptr if there is
+/// none.
 const Json* item_of(const Json& root, absl::string_view name, const Json& in,
                     absl::string_view member);
 

@@ -17,7 +17,7 @@
 namespace bandsaw::gltf {
 namespace {
 
-/// Maximum depth of nodes: Assimp's functions are recursive.
+/// Maximum depth of nodes. It is limited because Assimp's functions are recursive.
 constexpr std::size_t kMaxNodeDepth = 1000;
 constexpr char kLights[] = "KHR_lights_punctual";
 
@@ -44,6 +44,7 @@ constexpr Reference kReferences[] = {{"nodes", "camera", "cameras"},
                                      {"textures", "sampler", "samplers"},
                                      {"images", "bufferView", "bufferViews"}};
 
+/// Checks that each member of the root in kLists is a list of objects.
 absl::Status check_lists(const Json& root) {
   for (const char* name : kLists) {
     const Json* found = find(root, name);
@@ -75,6 +76,8 @@ absl::Status check_index(const Json& index, const Json& of, absl::string_view ta
                                            of.size()));
 }
 
+/// Checks the member `reference.member` of the object `in`, which is an index or a list of indices
+/// of objects in `reference.target`. The member may be missing. `place` names `in` in messages.
 absl::Status check_member(const Json& root, const Json& in, const Reference& reference,
                           const std::string& place) {
   const Json* value = find(in, reference.member);
@@ -109,6 +112,7 @@ absl::Status check_textures(const Json& root, const Json& in, const std::string&
   return absl::OkStatus();
 }
 
+/// Checks that the light of a node is in the list of lights, which is in the root's extension.
 absl::Status check_light(const Json& root, const Json& node, const std::string& place) {
   const Json* used = extension(node, kLights);
   const Json* given = extension(root, kLights);
@@ -131,8 +135,8 @@ absl::Status check_primitives(const Json& root) {
   return absl::OkStatus();
 }
 
-/// Checks that each node is the child of at most one node, and that all are reached from the nodes
-/// without a parent in at most kMaxNodeDepth steps.
+/// Checks that each node is the child of at most one node, that no nodes are children of each other
+/// in a circle, and that the trees have at most kMaxNodeDepth levels.
 absl::Status check_tree(const Json& root) {
   const Json& nodes = items(root, "nodes");
   std::vector<bool> is_child(nodes.size(), false);
@@ -170,6 +174,7 @@ absl::Status check_tree(const Json& root) {
                                  : damaged("nodes", "are children of each other in a circle");
 }
 
+/// Checks the index of the default scene, and that no scene names a node twice.
 absl::Status check_scenes(const Json& root) {
   RETURN_IF_ERROR(check_member(root, root, {"", "scene", "scenes"}, "the file"));
   const Json& scenes = items(root, "scenes");

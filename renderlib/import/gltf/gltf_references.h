@@ -9,10 +9,11 @@
 namespace bandsaw::gltf {
 
 /// Checks the indices by which nodes, scenes, skins, textures, images, materials and primitives of
-/// meshes refer to other objects. The indices of accessors in meshes, and those in accessors,
-/// buffer views and animations, are checked only when these are read. Also checks that the nodes
-/// form trees of at most 1,000 levels that contain each node at most once. Returns
-/// INVALID_ARGUMENT: "nodes[3].mesh: meshes[7] does not exist, …".
+/// meshes refer to other objects. The indices of accessors in meshes are checked only when the
+/// meshes are read. The indices in accessors, buffer views and animations are checked only when
+/// these objects are read. Also checks that the nodes form trees of at most 1,000 levels that
+/// contain each node at most once. Returns INVALID_ARGUMENT:
+/// "nodes[3].mesh: meshes[7] does not exist, …".
 absl::Status check_references(const Json& root);
 
 }  // namespace bandsaw::gltf

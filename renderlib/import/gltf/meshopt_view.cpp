@@ -20,6 +20,7 @@ using Filter = MeshoptView::Filter;
 constexpr std::size_t kMaxStride = 256;
 constexpr std::size_t kMaxElements = std::size_t{1} << 31;
 
+/// Checks that the mode and the stride permit the filter, whose name in the file is `name`.
 absl::Status check_filter(const MeshoptView& view, absl::string_view name) {
   const bool fits = view.filter == Filter::kNone ||
                     (view.mode == Mode::kAttributes &&
@@ -32,6 +33,7 @@ absl::Status check_filter(const MeshoptView& view, absl::string_view name) {
                                                 "a stride of ", view.stride));
 }
 
+/// Checks stride and count. `bytes` is the byteLength of the buffer view.
 absl::Status check_elements(const MeshoptView& view, std::size_t bytes) {
   const bool stride_fits =
       view.mode == Mode::kAttributes
@@ -50,9 +52,9 @@ absl::Status check_elements(const MeshoptView& view, std::size_t bytes) {
   return absl::OkStatus();
 }
 
-/// Returns the first byte that the extension requires of a stream. It is checked here because newer
-/// versions of the library decode other streams too, and the set of accepted streams must not
-/// depend on the version of the library.
+/// Returns the byte with which the extension requires a stream to begin. decode_meshopt() checks
+/// it, because newer versions of the library decode other streams too, and the set of accepted
+/// streams must not depend on the version of the library.
 unsigned char header_of(Mode mode) {
   return mode == Mode::kAttributes ? 0xa0 : mode == Mode::kTriangles ? 0xe1 : 0xd1;
 }

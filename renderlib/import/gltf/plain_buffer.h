@@ -14,8 +14,8 @@ namespace bandsaw::gltf {
 
 class PlainBuffer {
  public:
-  /// These functions append a copy of the values and return the number of a new accessor for it.
-  /// `components` is 1 to 4, or 16 for a matrix.
+  /// Each function add() appends a copy of the values and returns the number of a new accessor for
+  /// it. `components` is 1 to 4, or 16 for a matrix. For 32-bit integers it is 1.
   std::size_t add(absl::Span<const float> values, std::size_t components);
   std::size_t add(absl::Span<const std::uint16_t> values, std::size_t components);
   std::size_t add(absl::Span<const std::uint32_t> values);

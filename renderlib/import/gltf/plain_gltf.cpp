@@ -30,6 +30,7 @@ constexpr absl::string_view kUnreadable[] = {"KHR_meshopt_compression", "KHR_tex
                                              "EXT_texture_avif", "MSFT_texture_dds"};
 constexpr char kWebp[] = "EXT_texture_webp";
 
+/// Returns INVALID_ARGUMENT if the file requires one of kUnreadable.
 absl::Status check_required(const Json& root) {
   for (const Json& required : items(root, "extensionsRequired")) {
     const std::string name = required.is_string() ? required.get<std::string>() : "";
@@ -37,7 +38,7 @@ absl::Status check_required(const Json& root) {
       return absl::InvalidArgumentError(
           absl::StrCat("it requires the extension ", name,
                        ", which is not read; convert it to a file without that extension, with "
-                       "gltf-transform copy, ktxdecompress or webp"));
+                       "`gltf-transform copy`, `ktxdecompress` or `webp`"));
     }
   }
   return absl::OkStatus();
@@ -49,6 +50,7 @@ bool has_targets(const Json& mesh) {
                      [](const Json& primitive) { return !items(primitive, "targets").empty(); });
 }
 
+/// Makes the plain document of one file.
 class Rewriter {
  public:
   Rewriter(const GltfFile& file, Buffers& buffers)
@@ -79,7 +81,8 @@ class Rewriter {
   }
 
  private:
-  /// Adds identity matrices to a skin without matrices (glTF 2.0, 3.7.3.1).
+  /// Copies the inverse bind matrices of a skin to the buffer. A skin without matrices gets
+  /// identity matrices (glTF 2.0, 3.7.3.1).
   absl::Status rewrite_skin(std::size_t index) {
     const std::string place = absl::StrCat("skins[", index, "]");
     const Json& skin = from_["skins"][index];
@@ -137,8 +140,9 @@ class Rewriter {
 
   /// Gives each pose of a mesh a mesh of its own, which shares the accessors.
   void separate_poses() {
+    // Index of the mesh in the document, keyed by its index in the file and by the pose.
     std::map<std::pair<std::size_t, Json>, std::size_t> posed;
-    std::set<std::size_t> used;
+    std::set<std::size_t> used;  // meshes whose first pose is known
     for (std::size_t n = 0; n < items(from_, "nodes").size(); ++n) {
       const auto number_in_file = number(from_["nodes"][n], "mesh");
       if (!number_in_file) {
@@ -186,6 +190,7 @@ class Rewriter {
     return absl::OkStatus();
   }
 
+  /// Copies the bytes of a used image to the buffer, unless the image is a file of its own.
   absl::Status rewrite_image(std::size_t index, bool is_used) {
     const std::string place = absl::StrCat("images[", index, "]");
     const Json& from = from_["images"][index];

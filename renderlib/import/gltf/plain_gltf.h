@@ -28,9 +28,9 @@ struct PlainGltf {
 };
 inline constexpr char kPlainBuffer[] = "plain.bin";
 
-/// Reads the model at `path` (real, below `scene`) and the buffers to which it refers. Images in
-/// files stay there; all other images that textures use are moved to the buffer, and an image that
-/// no texture uses keeps only its number. Animations other than the chosen one, tangents and
+/// Reads the model at `path`, a real path below `scene`, and the buffers to which it refers. Images
+/// in files stay there; all other images that textures use are moved to the buffer, and an image
+/// that no texture uses keeps only its number. Animations other than the chosen one, tangents and
 /// attributes that glTF does not define are omitted. In the result each mesh has one pose: if
 /// several nodes pose a mesh differently, by skins or weights of morph targets, the mesh is copied
 /// to the end of the list for each pose after the first. The weights of a node become those of its

@@ -17,7 +17,7 @@ namespace {
 constexpr char kDraco[] = "KHR_draco_mesh_compression";
 constexpr int kTriangles = 4;  // glTF's mode of a primitive that is a list of triangles
 
-/// An attribute of glTF 2.0, 3.7.2.1; a name that ends in "_" is followed by a number.
+/// An attribute of glTF 2.0, 3.7.2.1. If `name` ends in "_", a number follows it in the file.
 struct Semantic {
   const char* name;
   std::size_t least_components;
@@ -26,6 +26,7 @@ struct Semantic {
 constexpr Semantic kSemantics[] = {{"POSITION", 3, 3}, {"NORMAL", 3, 3},   {"TEXCOORD_", 2, 2},
                                    {"COLOR_", 3, 4},   {"WEIGHTS_", 4, 4}, {"JOINTS_", 4, 4}};
 
+/// Returns nullptr for an attribute that is left out.
 const Semantic* semantic_of(absl::string_view attribute) {
   const auto found =
       std::find_if(std::begin(kSemantics), std::end(kSemantics), [&](const Semantic& semantic) {
@@ -57,6 +58,8 @@ std::vector<float> with_alpha(const std::vector<float>& rgb) {
 
 }  // namespace
 
+/// Returns the values of the attribute `name`, from the Draco stream if the attribute is in it,
+/// otherwise from the accessor.
 absl::StatusOr<std::vector<float>> PlainMeshes::float_values(const std::string& name,
                                                              std::size_t accessor,
                                                              const AccessorShape& shape,
@@ -69,6 +72,7 @@ absl::StatusOr<std::vector<float>> PlainMeshes::float_values(const std::string& 
   return stream.mesh->floats(id, shape);
 }
 
+/// Adds the attribute `name` to the buffer as floats. Colours get four components.
 absl::StatusOr<PlainMeshes::Added> PlainMeshes::floats(const std::string& name,
                                                        std::size_t accessor, const Stream& stream,
                                                        const std::string& place) {
@@ -93,7 +97,9 @@ absl::StatusOr<PlainMeshes::Added> PlainMeshes::floats(const std::string& name,
   return added;
 }
 
-/// Replaces joints of weight 0 by joint 0, because files may have any number there.
+/// Adds the attribute `name` ("JOINTS_0") to the buffer as 16-bit joints. A joint of weight 0
+/// becomes joint 0, because files may have any number there. Raises `joints` to 1 + the largest
+/// joint of a weight other than 0.
 absl::StatusOr<PlainMeshes::Added> PlainMeshes::joints_with_weight(const Json& attributes,
                                                                    const std::string& name,
                                                                    const Stream& stream,
@@ -136,6 +142,9 @@ absl::StatusOr<PlainMeshes::Added> PlainMeshes::joints_with_weight(const Json& a
   return Added{out_.add(narrow, shape.components), shape.count};
 }
 
+/// Adds the attributes of a primitive or morph target to the buffer and returns their new
+/// accessors. `vertices` is the number of vertices, which is set by the first attribute. Raises
+/// `joints` as joints_with_weight() does.
 absl::StatusOr<Json> PlainMeshes::attributes(const Json& from, const Stream& stream,
                                              const std::string& place,
                                              std::optional<std::size_t>& vertices,
@@ -162,6 +171,7 @@ absl::StatusOr<Json> PlainMeshes::attributes(const Json& from, const Stream& str
   return to;
 }
 
+/// Adds the vertex indices in an accessor to the buffer, once for all primitives that share them.
 absl::StatusOr<PlainMeshes::Added> PlainMeshes::indices(std::size_t accessor,
                                                         const std::string& place) {
   if (const auto known = indices_.find(accessor); known != indices_.end()) {
@@ -178,6 +188,7 @@ absl::StatusOr<PlainMeshes::Added> PlainMeshes::indices(std::size_t accessor,
   return added;
 }
 
+/// Decodes the Draco stream of a primitive. Returns an empty Stream if it has none.
 absl::StatusOr<PlainMeshes::Stream> PlainMeshes::stream_of(const Json& primitive,
                                                            const std::string& place) {
   const Json* compressed = extension(primitive, kDraco);
@@ -195,6 +206,8 @@ absl::StatusOr<PlainMeshes::Stream> PlainMeshes::stream_of(const Json& primitive
   return stream;
 }
 
+/// Returns the primitive `from` with accessors of `out`. Raises `joints` as joints_with_weight()
+/// does.
 absl::StatusOr<Json> PlainMeshes::primitive(const Json& from, const std::string& place,
                                             std::uint32_t& joints) {
   ASSIGN_OR_RETURN(const Stream stream, stream_of(from, place));

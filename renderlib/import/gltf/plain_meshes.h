@@ -36,10 +36,10 @@ class PlainMeshes {
     std::size_t count = 0;
     std::uint32_t largest = 0;  ///< largest index, if it holds indices
   };
-  /// A Draco stream and the numbers of its attributes; empty for other primitives.
+  /// The decoded Draco stream of a primitive; empty for a primitive that is not compressed.
   struct Stream {
     std::optional<DracoMesh> mesh;
-    const Json* attributes = nullptr;
+    const Json* attributes = nullptr;  ///< numbers of the stream's attributes, keyed by name
   };
 
   absl::StatusOr<Json> primitive(const Json& from, const std::string& place, std::uint32_t& joints);
@@ -58,10 +58,10 @@ class PlainMeshes {
   const Json& root_;
   Buffers& buffers_;
   PlainBuffer& out_;
-  /// Added accessors, keyed by the file's accessor and by whether it contains colours, because
-  /// primitives share accessors.
+  /// Added accessors, keyed by the file's accessor and by whether it contains colours. They are
+  /// kept because primitives share accessors.
   std::map<std::pair<std::size_t, bool>, Added> floats_;
-  std::map<std::size_t, Added> indices_;
+  std::map<std::size_t, Added> indices_;         ///< added indices, keyed by the file's accessor
   std::map<std::size_t, std::uint32_t> joints_;  ///< results of joints_of()
 };
 

@@ -26,8 +26,8 @@ struct Free {
   void operator()(float* values) const { std::free(values); }
 };
 
-/// Returns an error that contains the message `error` of tinyexr, and frees the message; nullptr:
-/// there is none.
+/// Returns an error that contains the message `error` of tinyexr, and frees the message. `error` is
+/// nullptr if there is no message.
 absl::Status failure(const char* error) {
   const absl::Status status = absl::InvalidArgumentError(
       absl::StrCat("is not an EXR file that can be read, or is damaged (",
@@ -40,7 +40,7 @@ absl::Status failure(const char* error) {
 struct Layout {
   EXRBox2i stored{};    ///< data window: the pixels that the file has
   EXRBox2i shown{};     ///< display window: the pixels that the image has
-  bool turned = false;  ///< the line order is another one than from the top
+  bool turned = false;  ///< the line order is not "from the top"
 };
 
 // The rows and columns at both limits of a box belong to the box.
@@ -68,7 +68,8 @@ absl::StatusOr<Layout> read_layout(const unsigned char* data, std::size_t size) 
     return failure(nullptr);
   }
   if (version.multipart != 0 || version.non_image != 0) {
-    return absl::InvalidArgumentError("is an EXR file of several parts or deep pixels: not read");
+    return absl::InvalidArgumentError(
+        "is an EXR file of several parts or with deep pixels, which is not supported");
   }
   EXRHeader header;
   InitEXRHeader(&header);
@@ -96,8 +97,8 @@ std::string with_rows_from_the_top(absl::string_view bytes) {
   return out;
 }
 
-/// Returns the pixels of the display window, three floats for each; those outside of the data
-/// window are black. `rgba`: the pixels of the data window, four floats for each.
+/// Returns the pixels of the display window, three floats for each. Pixels outside of the data
+/// window are black. `rgba` has the pixels of the data window, four floats for each.
 std::vector<std::byte> shown_texels(const float* rgba, const Layout& layout) {
   const EXRBox2i& from = layout.stored;
   const EXRBox2i& to = layout.shown;

@@ -8,6 +8,7 @@
 
 namespace bandsaw {
 
+/// Returns true if the bytes begin as an EXR file does.
 bool is_exr(absl::string_view bytes);
 
 /// Decodes an image with the channels R, G and B, or with one channel for all three. Its numbers

@@ -1,5 +1,5 @@
-// Decodes image files of a scene: detects the format from the first bytes and calls its decoder:
-// stb_image, libwebp, tinyexr, or the reader of PFM files below.
+// Decodes image files of a scene. The first bytes tell the format. The decoder is stb_image,
+// libwebp, tinyexr, or for PFM files the function decode_pfm() below.
 
 #include "renderlib/import/image/decode_image.h"
 
@@ -59,11 +59,11 @@ bool is_pfm(absl::string_view bytes) {
          absl::ascii_isspace(static_cast<unsigned char>(bytes[2]));
 }
 
-/// Decodes a portable float map, the exact format that renderlib/image writes and stb_image does
-/// not support: "PF" (or "Pf", which is expanded), width, height, scale (its sign is the byte
-/// order), then rows from the bottom. Values may be anything including NaN, because such an image
-/// is the result of a rendering and not an input of a scene. Returns INVALID_ARGUMENT if it is
-/// broken or truncated.
+/// Decodes a portable float map (PFM), which renderlib/image writes and stb_image does not support.
+/// The file has "PF" for three channels or "Pf" for one, width, height, and a scale whose sign is
+/// the byte order. Then the rows follow, from the bottom. A single channel becomes three equal
+/// ones. Values may be anything including NaN, because such an image is the result of a rendering
+/// and not an input of a scene. Returns INVALID_ARGUMENT if the file is broken or truncated.
 absl::StatusOr<Image> decode_pfm(absl::string_view bytes) {
   const std::size_t channels = take_word(bytes) == "PF" ? 3 : 1;
   Image image;
@@ -79,9 +79,9 @@ absl::StatusOr<Image> decode_pfm(absl::string_view bytes) {
                                                    " pixels, at most ", kMaxPixels, " are read"));
   }
   if (bytes.size() != pixels * channels * sizeof(float)) {
-    return absl::InvalidArgumentError(absl::StrCat("has ", bytes.size(), " bytes of pixels, ",
-                                                   pixels * channels * sizeof(float),
-                                                   " belong to its size"));
+    return absl::InvalidArgumentError(absl::StrCat("has ", bytes.size(),
+                                                   " bytes of pixels, but its size needs ",
+                                                   pixels * channels * sizeof(float)));
   }
   image.pixels.resize(pixels);
   for (std::size_t y = 0; y < image.height; ++y) {
@@ -141,6 +141,8 @@ bool is_png_with_trns(absl::string_view bytes) {
   return false;
 }
 
+/// Reads the size and the channels from the header of a file that libwebp or stb_image decodes.
+/// Returns INVALID_ARGUMENT if the header is broken or a side is too long.
 absl::StatusOr<Shape> shape_of(absl::string_view bytes) {
   Shape shape;
   if (is_webp(bytes)) {
@@ -187,7 +189,8 @@ int read_endless(void* user, char* to, int size) {
   return size;
 }
 
-// A skip past the end is no overrun: BMP files may end before the padding of their last row.
+// A skip past the end is no overrun, because BMP files may end before the padding of their last
+// row.
 void skip_endless(void* user, int size) {
   auto& source = *static_cast<Endless*>(user);
   const std::size_t wanted = static_cast<std::size_t>(std::max(size, 0));
@@ -204,8 +207,8 @@ absl::Status failure(const Endless& source) {
                         : failure();
 }
 
-// Returns true for the formats in which stb_image itself handles a file that is cut off: it refuses
-// a PNG file, and decodes the part of a JPEG file that is there.
+// Returns true for the formats in which stb_image itself handles a truncated file. It refuses a
+// truncated PNG file, and decodes the part of a truncated JPEG file that is present.
 bool is_png_or_jpeg(absl::string_view bytes) {
   return absl::StartsWith(bytes, "\x89PNG") || absl::StartsWith(bytes, "\xff\xd8");
 }

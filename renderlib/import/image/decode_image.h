@@ -19,7 +19,7 @@ inline constexpr std::uint64_t kMaxImageFileBytes = std::uint64_t{2} << 30;
 /// Warning about an image with an alpha channel.
 inline constexpr char kAlphaWarning[] = "its alpha channel is left out";
 
-/// Whether a grey image is expanded to three equal channels or keeps its single one.
+/// The channels of a decoded grey image: three equal ones, or a single one.
 enum class Gray { kExpanded, kKept };
 
 /// Decodes an image file. PNG, JPEG, TGA, BMP, PNM and WebP become 8-bit sRGB with three channels
@@ -37,7 +37,7 @@ absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
 /// INVALID_ARGUMENT for EXR.
 absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes);
 
-/// Returns true if the file has an alpha channel; false if it cannot be read.
+/// Returns true if the file has an alpha channel; false for EXR and if the file cannot be read.
 bool image_has_alpha(absl::string_view bytes);
 
 /// Decodes an image file, PFM included, to linear floats without alpha, for `bandsaw compare` and

@@ -31,7 +31,7 @@ absl::StatusOr<WebpHeader> webp_header(absl::string_view bytes) {
   }
   if (features.has_animation != 0) {
     return absl::InvalidArgumentError(
-        "is an animated WebP image, a texture is a single one; save one of its frames");
+        "is an animated WebP image, but a texture must be a single image; save one of its frames");
   }
   return WebpHeader{features.width, features.height, features.has_alpha != 0};
 }

@@ -10,6 +10,7 @@
 
 namespace bandsaw {
 
+/// Returns true if the bytes begin as a WebP file does.
 bool is_webp(absl::string_view bytes);
 
 struct WebpHeader {

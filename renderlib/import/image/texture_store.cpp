@@ -1,6 +1,6 @@
-// Adds images to the imported scene as textures: decodes an image, converts its texels as its use
-// requires (factor, normals from heights, index of refraction), and stores the texture under the
-// key of its image and use.
+// Adds images to the imported scene as textures. An image is decoded, its texels are converted as
+// its use requires (factor, normals from heights, index of refraction), and the texture is stored
+// under the key of its image and use.
 
 #include "renderlib/import/image/texture_store.h"
 
@@ -23,8 +23,9 @@ namespace {
 using Format = ImageTexture::Format;
 using Wrap = ImageTexture::Wrap;
 
-/// Returns one value of the image, `number` values after the first. A code is divided by 255, or
-/// decoded if `decoded` is set and the image is sRGB. A float that is not finite becomes 0.
+/// Returns value number `number` of the image, counted over all channels of all texels. An 8-bit
+/// code of an sRGB image is decoded to a linear value if `decoded` is true; all other codes are
+/// divided by 255. A float that is not finite becomes 0.
 double channel(const ImageTexture& image, std::size_t number, bool decoded) {
   if (image.format == Format::kFloat32) {
     float value = 0;
@@ -91,9 +92,9 @@ ImageTexture normals_of_heights(const ImageTexture& heights, double strength) {
   return with_texels(heights, Format::kFloat32, 3, std::move(texels));
 }
 
-/// Converts an image to an index_map. With it, F0, the reflectance along the normal, is the F0 of
-/// `index` (> 1) times the luminance of the image. The result has one channel of 8 bits, or of
-/// floats if the image has floats.
+/// Converts an image to an index_map. F0 is the reflectance along the normal. With the index_map,
+/// it is the F0 of `index` (> 1) times the luminance of the image. The result has one channel of 8
+/// bits, or of floats if the image has floats.
 ImageTexture index_map_of_reflectance(const ImageTexture& amounts, double index) {
   const double root = (index - 1) / (index + 1);  // square root of F0
   const std::size_t count = std::size_t{amounts.width} * amounts.height;
@@ -105,6 +106,8 @@ ImageTexture index_map_of_reflectance(const ImageTexture& amounts, double index)
     };
     const double amount = 0.2126 * value(0) + 0.7152 * value(1) + 0.0722 * value(2);
     const double f = root * std::sqrt(std::clamp(amount, 0.0, 1.0));
+    // F0 is f^2 for the index (1 + f) / (1 - f). The map holds that index minus 1, as a share of
+    // `index` minus 1.
     const double share = 2 * f / (1 - f) / (index - 1);
     if (floats) {
       const auto stored = static_cast<float>(share);
@@ -116,8 +119,8 @@ ImageTexture index_map_of_reflectance(const ImageTexture& amounts, double index)
   return with_texels(amounts, floats ? Format::kFloat32 : Format::kLinear8, 1, std::move(texels));
 }
 
-// Multiplies the texels by a factor. 8-bit texels are multiplied as linear values and rounded to a
-// code: the error is at most half a code.
+// Multiplies the texels by a factor. 8-bit texels are multiplied as linear values and rounded to
+// the nearest code, with an error of at most half a code.
 void scale(ImageTexture& image, const Rgb& factor) {
   if (factor == Rgb{1, 1, 1}) {
     return;
@@ -146,6 +149,7 @@ void scale(ImageTexture& image, const Rgb& factor) {
   image.texels = std::move(texels);
 }
 
+/// Decodes the image file `bytes` and converts its texels as `use` requires.
 absl::StatusOr<ImageTexture> converted_image(const std::string& bytes, const TextureStore::Use& use,
                                              std::vector<std::string>& warnings) {
   using Use = TextureStore::Use;

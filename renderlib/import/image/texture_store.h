@@ -30,8 +30,8 @@ class TextureStore {
  public:
   /// Images of earlier imports of the same files.
   using Memory = KeptValues<Key, Decoded>;
-  /// All arguments MUST outlive this object. `memory`: where images are kept for other stores;
-  /// nullptr: nowhere.
+  /// All arguments MUST outlive this object. Decoded images are kept in `memory` for the stores of
+  /// later imports. They are not kept if `memory` is nullptr.
   TextureStore(std::vector<Texture>& textures, std::vector<std::string>& warnings,
                Memory* memory = nullptr)
       : textures_(textures), warnings_(warnings), memory_(memory) {}
@@ -56,13 +56,15 @@ class TextureStore {
       kNormals,     ///< the texels are heights; `by` is the strength of the bumps
       kIndexMap,    ///< the texels scale the reflectance F0 of the index of refraction `by`
     } become = Become::kThemselves;
-    double by = 1;
-    /// An alpha that is not used causes no warning, because the material says what the alpha is.
+    double by = 1;  ///< parameter of the conversion (see Become)
+    /// True if the material says what the alpha channel is. Then no warning says that the channel
+    /// is left out.
     bool alpha_is_known = false;
   };
-  /// Adds an image unless it is already stored. `key` identifies the image, `name` is its name in
-  /// errors and warnings; `read` returns the bytes of its file, and is called only if the decoded
-  /// image is not known yet. Returns the error of `read` or of decode_image().
+  /// Adds an image unless it is already stored, and returns its texture. `key` identifies the
+  /// image, and `name` is its name in errors and warnings. `read` returns the bytes of its file,
+  /// and is called only if the decoded image is not known yet. Errors are those of `read` and of
+  /// decode_image().
   absl::StatusOr<TextureId> image(const std::string& key, const std::string& name, const Use& use,
                                   absl::FunctionRef<absl::StatusOr<std::string>()> read);
 
@@ -70,6 +72,7 @@ class TextureStore {
   float max_value(TextureId id) const { return bandsaw::max_value(textures_, id); }
 
  private:
+  /// Returns the image `whole` from the memory, or decodes it and adds it to the memory.
   absl::StatusOr<Decoded> decoded(const Key& whole, const std::string& name, const Use& use,
                                   absl::FunctionRef<absl::StatusOr<std::string>()> read);
 

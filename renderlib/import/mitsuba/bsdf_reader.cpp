@@ -1,6 +1,6 @@
-// Converts one bsdf of a Mitsuba scene: read_kind() calls one function for each type, which sets
-// the fields of a material of our scene file. Wrappers around a bsdf are in bsdf_wrappers.cpp,
-// principled materials in principled_bsdfs.cpp.
+// Converts one bsdf of a Mitsuba scene. read_kind() calls the function for the bsdf's type, which
+// sets the fields of a material of a Bandsaw scene file. Wrappers around a bsdf are in
+// bsdf_wrappers.cpp, principled materials in principled_bsdfs.cpp.
 
 #include "renderlib/import/mitsuba/bsdf_reader.h"
 
@@ -186,6 +186,7 @@ absl::Status BsdfReader::set_metal(const Parameters& from, scene::Conductor& to)
     return absl::OkStatus();
   }
   set_color(gray(1), to.mutable_k());
+  // eta is the real part of the index of refraction, k the imaginary part.
   for (const bool real : {true, false}) {
     const Property* property = from.find(real ? "eta" : "k");
     if (property == nullptr) {

@@ -13,13 +13,14 @@
 
 namespace bandsaw::mitsuba {
 
-/// Properties that wrappers around a bsdf give to it (twosided, mask, normalmap, bumpmap), and the
-/// result so far.
+/// The material while a bsdf and the wrappers around it (twosided, mask, normalmap, bumpmap) are
+/// read.
 struct Draft {
   scene::Material material;
   bool two_sided = false;
-  bool turned = false;     ///< as in SurfaceMaterial
-  bool transmits = false;  ///< light passes it, so that neither side is black
+  /// The geometry must be turned over, because its outside is denser than its inside.
+  bool turned = false;
+  bool transmits = false;  ///< light passes through the surface, so that neither side is black
 };
 
 class BsdfReader {
@@ -31,6 +32,7 @@ class BsdfReader {
   absl::Status read(const Object& bsdf, Draft& draft);
 
  private:
+  /// Calls the function for the bsdf's type. An unknown type becomes grey diffuse, with a warning.
   absl::Status read_kind(const Parameters& from, Draft& draft);
   /// Sets a colour, or a texture if it varies. If the parameter is absent, the field stays unset.
   absl::Status color_or_texture(const Parameters& from, const std::string& name,
@@ -43,10 +45,11 @@ class BsdfReader {
   /// Returns the ratio of the indices of refraction, inside over outside. If that is below 1,
   /// returns its inverse and sets Draft::turned.
   absl::StatusOr<double> relative_index(const Parameters& from, const char* inside, Draft& draft);
-  /// `otherwise` is the alpha if none is given.
+  /// Reads the distribution and the roughness of a rough bsdf. `otherwise` is the alpha if none is
+  /// given.
   absl::StatusOr<scene::Microfacets> microfacets(const Parameters& from, double otherwise);
   absl::Status dielectric(const Parameters& from, Draft& draft);
-  /// Warns of colours of glass, which our glass does not have.
+  /// Warns of colours of glass, because the glass of a Bandsaw scene file has none.
   absl::Status warn_of_tints(const Parameters& from);
   absl::Status thin_dielectric(const Parameters& from, Draft& draft);
   /// Sets eta and k by the name of a metal or by their colours. Without both, the conductor is a
@@ -65,6 +68,7 @@ class BsdfReader {
   /// the field stays unset.
   absl::Status parameter(const Parameters& from, const std::string& name, double most,
                          const std::function<scene::Parameter*()>& field);
+  /// Sets the fields that principled and principledthin share.
   template <class Message>
   absl::Status common_parameters(const Parameters& from, Message& to);
   absl::Status principled(const Parameters& from, Draft& draft);
