@@ -89,9 +89,9 @@ class Rewriter {
     const std::size_t joints = items(skin, "joints").size();
     std::vector<float> matrices;
     if (find(skin, "inverseBindMatrices") == nullptr) {
-      constexpr float kNothing[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+      constexpr float kIdentity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
       for (std::size_t j = 0; j < joints; ++j) {
-        matrices.insert(matrices.end(), std::begin(kNothing), std::end(kNothing));
+        matrices.insert(matrices.end(), std::begin(kIdentity), std::end(kIdentity));
       }
     } else {
       ASSIGN_OR_RETURN(const std::size_t accessor, whole_of(skin, "inverseBindMatrices", place));

@@ -114,18 +114,18 @@ absl::StatusOr<scene::Microfacets> BsdfReader::microfacets(const Parameters& fro
              absl::StrCat("distribution \"", distribution, "\" is shown as \"beckmann\""));
   }
   from.ignore({"sample_visible"});
-  const bool two = from.has("alpha_u") || from.has("alpha_v");
-  ASSIGN_OR_RETURN(Varying alpha,
-                   varying_of(from, two ? "alpha_u" : "alpha", otherwise, surface_, to_));
+  const bool is_anisotropic = from.has("alpha_u") || from.has("alpha_v");
+  ASSIGN_OR_RETURN(Varying alpha, varying_of(from, is_anisotropic ? "alpha_u" : "alpha", otherwise,
+                                             surface_, to_));
   to.set_alpha(std::clamp(alpha.value, 0.0, 1.0));
   if (alpha.texture) {
     *to.mutable_alpha_texture() = *std::move(alpha.texture);
   }
-  if (two) {
-    ASSIGN_OR_RETURN(Varying across, varying_of(from, "alpha_v", otherwise, surface_, to_));
-    to.set_alpha_v(std::clamp(across.value, 0.0, 1.0));
-    if (across.texture) {
-      *to.mutable_alpha_v_texture() = *std::move(across.texture);
+  if (is_anisotropic) {
+    ASSIGN_OR_RETURN(Varying alpha_v, varying_of(from, "alpha_v", otherwise, surface_, to_));
+    to.set_alpha_v(std::clamp(alpha_v.value, 0.0, 1.0));
+    if (alpha_v.texture) {
+      *to.mutable_alpha_v_texture() = *std::move(alpha_v.texture);
     }
   }
   return to;
