@@ -1,5 +1,6 @@
-// Converts bsdfs that contain another bsdf (twosided, mask, normalmap, bumpmap, coating): reads the
-// inner one, then adds its own property to the draft.
+// Converts bsdfs that contain another bsdf (twosided, mask, normalmap, bumpmap, coating). Each
+// function reads the inner bsdf into the draft and adds the property of its wrapper. The coat of a
+// coating is left out with a warning.
 
 #include <algorithm>
 #include <utility>
@@ -23,7 +24,8 @@ absl::Status BsdfReader::two_sided(const Parameters& from, Draft& draft) {
   ASSIGN_OR_RETURN(const Object* inside, inner(from));
   const auto both = from.objects("bsdf");
   if (both.size() > 1 && object_in(*both[1]) != inside) {
-    to_.warn(both[1]->place, "the back of \"twosided\" is shown as its front");
+    to_.warn(both[1]->place,
+             "the second bsdf of \"twosided\" is left out; both sides show the first one");
   }
   draft.two_sided = true;
   return read(*inside, draft);
@@ -34,7 +36,7 @@ absl::Status BsdfReader::mask(const Parameters& from, Draft& draft) {
   RETURN_IF_ERROR(read(*inside, draft));
   ASSIGN_OR_RETURN(Varying opacity, varying_of(from, "opacity", 0.5, surface_, to_));
   if (draft.material.has_opacity() || draft.material.has_opacity_texture()) {
-    to_.warn(from.place(), "a mask within a mask is left out");
+    to_.warn(from.place(), "a mask around another mask is left out");
     return absl::OkStatus();
   }
   if (opacity.texture) {

@@ -1,7 +1,7 @@
-// Converts the materials of a Mitsuba scene. Makes a material for each combination of bsdf, emitter
-// and uvs that occurs, and returns the same one when it occurs again. Glass of Bandsaw has the
+// Converts the materials of a Mitsuba scene. Makes one material for each combination of bsdf,
+// emitter and uvs. A combination that occurs again gets the same material. Glass of Bandsaw has the
 // larger index of refraction inside. If a bsdf has the larger index outside, its shapes must
-// exchange their sides: SurfaceMaterial::turned.
+// exchange their sides (SurfaceMaterial::turned).
 
 #include "renderlib/import/mitsuba/bsdfs.h"
 
@@ -16,7 +16,8 @@
 namespace bandsaw::mitsuba {
 namespace {
 
-/// Returns the bsdf inside wrappers that do not matter for whether it is "null" or a blend.
+/// Returns the bsdf inside all "twosided" wrappers around `bsdf`. Returns nullptr if `bsdf` is
+/// nullptr or the innermost wrapper is empty.
 const Object* unwrapped(const Object* bsdf) {
   while (bsdf != nullptr && bsdf->type == "twosided") {
     const auto inside = Parameters(*bsdf).objects("bsdf");
@@ -121,7 +122,7 @@ absl::StatusOr<SurfaceMaterial> Materials::blend(const Object& bsdf, const Objec
   ASSIGN_OR_RETURN(const SurfaceMaterial a, material_of(object_in(*parts[0]), emitter, surface));
   ASSIGN_OR_RETURN(const SurfaceMaterial b, material_of(object_in(*parts[1]), emitter, surface));
   if (a.name.empty() || b.name.empty()) {
-    return error_at(bsdf.place, "a blend with \"null\" is not read: write a mask");
+    return error_at(bsdf.place, "a blend with \"null\" cannot be read; use a mask instead");
   }
   scene::Material material;
   material.set_name(unique_name(&bsdf));
@@ -145,8 +146,7 @@ absl::StatusOr<SurfaceMaterial> Materials::make(const Object* bsdf, const Object
   if (inside != nullptr && (inside->type == "blendbsdf" || inside->type == "mixturebsdf")) {
     if (inside != bsdf) {
       to_.warn(bsdf->place,
-               "a \"twosided\" blend shows each part as it is: write \"twosided\" "
-               "inside the blend");
+               "\"twosided\" around a blend is left out; write \"twosided\" inside the blend");
     }
     return blend(*inside, emitter, surface);
   }

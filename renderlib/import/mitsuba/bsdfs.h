@@ -16,8 +16,9 @@ namespace bandsaw::mitsuba {
 
 /// The result of converting a surface of Mitsuba.
 struct SurfaceMaterial {
-  std::string name;     ///< name of our material; empty: there is no surface (null)
-  bool turned = false;  ///< the geometry must be turned over: its outside is denser than its inside
+  std::string name;  ///< name of our material; empty: there is no surface (null)
+  /// The geometry must be turned over, because the index of refraction is larger outside.
+  bool turned = false;
 };
 
 /// The materials that have been made so far.
@@ -31,30 +32,39 @@ class Materials {
   /// surface does not emit.
   absl::StatusOr<SurfaceMaterial> material_of(const Object* bsdf, const Object* emitter,
                                               const TexturedSurface& surface);
-  /// Returns a SurfaceMaterial of which only `turned` is set. Adds no material.
+  /// Finds out whether the material of `bsdf` turns its geometry over. Returns a SurfaceMaterial of
+  /// which only `turned` is set. Adds no material.
   absl::StatusOr<SurfaceMaterial> sides_of(const Object* bsdf) const;
 
  private:
   using Key = std::tuple<const Object*, const Object*, UvFrame, std::map<std::string, std::string>>;
+  /// Makes a material without a search for a known one. The name stays empty for a "null" bsdf
+  /// without an emitter.
   absl::StatusOr<SurfaceMaterial> make(const Object* bsdf, const Object* emitter,
                                        const TexturedSurface& surface);
+  /// Adds `material` to the scene, with a name and with the radiance of the emitter.
   absl::StatusOr<SurfaceMaterial> add(scene::Material material, bool turned, const Object* bsdf,
                                       const Object* emitter, const TexturedSurface& surface);
+  /// Makes a mixture of the materials of the two bsdfs inside `bsdf`.
   absl::StatusOr<SurfaceMaterial> blend(const Object& bsdf, const Object* emitter,
                                         const TexturedSurface& surface);
+  /// Returns the id of `bsdf`, its type if it has no id, or "default" for nullptr. Appends a number
+  /// if this name is taken.
   std::string unique_name(const Object* bsdf);
 
   scene::Scene& scene_;
   Conversion& to_;
   std::map<Key, SurfaceMaterial> known_;
   std::set<std::string> names_;
-  std::map<std::string, int> counts_;  ///< last number used in names of this form
+  /// How many numbers were tried for each name. The first number is 2.
+  std::map<std::string, int> counts_;
 };
 
-/// Returns true if the picture depends on the uv coordinates of the surface. The arguments of these
-/// functions may be nullptr, as in Materials::material_of.
+/// Returns true if the picture depends on the uv coordinates of the surface. The arguments of this
+/// function and of the next two may be nullptr, as in Materials::material_of.
 bool needs_uv(const Object* bsdf, const Object* emitter);
-/// Returns true if the sign of the surface's second tangent matters: it has a normal map.
+/// Returns true if the bsdf has a normal map. Then the sign of the surface's second tangent
+/// matters.
 bool needs_handedness(const Object* bsdf);
 /// Returns true if the bsdf is "null": light passes as if there were no surface.
 bool is_null(const Object* bsdf);

@@ -1,5 +1,5 @@
-// Converts a Mitsuba scene to a scene file of ours: its objects in the order sensor, integrator,
-// shapes, emitters. Materials, textures and media are converted where they are used.
+// Converts a Mitsuba scene to a scene file of ours. The objects are converted in the order sensor,
+// integrator, shapes, emitters. Materials, textures and media are converted where they are used.
 
 #include "renderlib/import/mitsuba/convert_mitsuba.h"
 

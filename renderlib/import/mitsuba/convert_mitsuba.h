@@ -1,7 +1,7 @@
 #pragma once
 
-// Converts scenes of Mitsuba: versions 2 and 3, and 0.x as far as its names differ only in
-// spelling.
+// Converts scenes of Mitsuba. Versions 2 and 3 are supported. Version 0.x is supported where its
+// names differ only in spelling.
 
 #include "absl/status/statusor.h"
 #include "renderlib/import/convert/converted_scene.h"

@@ -174,9 +174,9 @@ std::uint32_t rows_for_one(const Image& image) {
       std::clamp<std::size_t>(kTexels / (std::size_t{image.width} * image.height), 2, 8));
 }
 
-/// Returns the image as Mitsuba looks it up: its first and last row are the poles themselves, so
-/// that the rows between them are further apart than the image's height says. `mirrored` exchanges
-/// left and right.
+/// Resamples the rows of an environment map, which MUST have at least two rows. In Mitsuba, the
+/// centres of the first and last row are at the poles; in the result, the outer edges of these rows
+/// are. `mirrored` exchanges left and right.
 Image with_rows_between_poles(const Image& from, bool mirrored) {
   Image to{from.width, rows_for_one(from) * from.height, {}};
   to.pixels.resize(std::size_t{to.width} * to.height);
@@ -235,7 +235,8 @@ absl::Status environment(const Parameters& from, scene::Scene& scene, Conversion
   scene::Rotation& ours = *map.add_rotate();
   set({0, 1, 0}, ours.mutable_axis());
   ours.set_degrees(-90);
-  // A mirrored environment is the mirrored image, turned: x' = -x.
+  // If the transform mirrors, the image has been mirrored above, and the x axis below is opposite
+  // to the transform's x axis.
   const Vec3 z = frame.ahead;
   const Vec3 y = normalize(frame.up - z * dot(frame.up, z));
   const Vec3 x = cross(y, z);

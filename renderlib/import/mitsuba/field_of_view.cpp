@@ -1,5 +1,6 @@
-// Converts the field of view of a Mitsuba sensor or projector, given along an axis that the file
-// names or as a focal length, to half the height of the image plane at distance 1.
+// Converts the field of view of a Mitsuba sensor or projector to half the height of the image plane
+// at distance 1. The file gives the field of view as an angle along an axis that it names, or as a
+// focal length.
 
 #include "renderlib/import/mitsuba/field_of_view.h"
 
@@ -15,7 +16,8 @@
 namespace bandsaw::mitsuba {
 namespace {
 
-/// Returns half the height of an image plane whose half extent along `axis` is `half`.
+/// Returns half the height of an image plane whose half extent along `axis` is `half`. `aspect` is
+/// width / height. Returns INVALID_ARGUMENT for an unknown axis.
 absl::StatusOr<double> along_axis(const Parameters& from, double half, const std::string& axis,
                                   double aspect) {
   if (axis == "y" || (axis == "smaller" && aspect > 1) || (axis == "larger" && aspect <= 1)) {
@@ -47,8 +49,9 @@ absl::StatusOr<double> half_height_of_view(const Parameters& from, double aspect
   ASSIGN_OR_RETURN(const std::string text, from.text("focal_length", "50mm"));
   const auto millimetres = read_number(absl::StripSuffix(text, "mm"));
   if (!millimetres.ok() || !(*millimetres > 0)) {
-    return error_at(from.place(),
-                    absl::StrCat("focal_length must be as \"50mm\", is \"", text, "\""));
+    return error_at(
+        from.place(),
+        absl::StrCat("focal_length must be a length such as \"50mm\", is \"", text, "\""));
   }
   // The diagonal of a 35 mm film is that of 36 mm x 24 mm.
   return along_axis(from, std::sqrt(36.0 * 36 + 24 * 24) / 2 / *millimetres, "diagonal", aspect);

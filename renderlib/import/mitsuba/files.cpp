@@ -21,7 +21,8 @@ absl::Status Files::add_folder(const std::string& name, const std::string& refer
   const auto inside = [&](const std::string& path) {
     return path == top || absl::StartsWith(path, top + "/");
   };
-  // The name is checked as well: a folder elsewhere is refused, whether it exists or not.
+  // The path as written is checked too, so that a folder outside is refused whether it exists or
+  // not. parent_path() of whole / "x" is `whole` without a slash at its end.
   if (!inside((whole / "x").parent_path().string()) || (!error && !inside(real.string()))) {
     return absl::PermissionDeniedError(
         absl::StrCat("folder \"", name, "\" lies outside of the scene's folder ", top,

@@ -13,7 +13,7 @@
 namespace bandsaw::mitsuba {
 
 struct FoundFile {
-  std::string name;  ///< below the folder of the import, for a scene file of ours
+  std::string name;  ///< relative to the folder of the import, as a scene file of ours names it
   std::string path;  ///< real path
 };
 
@@ -23,14 +23,16 @@ class Files {
   explicit Files(const ForeignScene& scene) : scene_(scene) {}
 
   /// Adds a folder to search. `name` is relative to the folder of the real path `referring`.
-  /// PERMISSION_DENIED: it is outside of the import's folder; NOT_FOUND: there is no such folder.
+  /// Returns PERMISSION_DENIED if the folder is outside of the import's folder, and NOT_FOUND if it
+  /// does not exist.
   absl::Status add_folder(const std::string& name, const std::string& referring);
 
   /// Finds a file. Errors as SceneFolder::resolve.
   absl::StatusOr<FoundFile> find(const std::string& name) const;
   /// Finds a file by the name that find() gave it. Errors as SceneFolder::resolve.
   absl::StatusOr<FoundFile> known(const std::string& name) const;
-  /// Returns the bytes of a file. RESOURCE_EXHAUSTED or INVALID_ARGUMENT: more than `max_bytes`.
+  /// Returns the bytes of a file. Returns RESOURCE_EXHAUSTED or INVALID_ARGUMENT if the file has
+  /// more than `max_bytes` bytes.
   static absl::StatusOr<std::string> read(const FoundFile& file, std::uint64_t max_bytes);
 
  private:

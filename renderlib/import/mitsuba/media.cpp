@@ -54,6 +54,8 @@ class MediumReader {
     return absl::OkStatus();
   }
 
+  /// Sets the density and the albedo, of which at least one is a grid. Without a grid, the density
+  /// is one number, so a coloured extinction becomes its mean, with a warning.
   absl::Status set_grids(const Parameters& from, const Coefficient& extinction,
                          const Coefficient& albedo, double scale, scene::Medium& medium) {
     double density = scale;
@@ -62,7 +64,8 @@ class MediumReader {
     } else {
       const Rgb& c = extinction.color;
       if (c.r != c.g || c.g != c.b) {
-        to_.warn(from.place(), "the extinction beside a grid of albedo is shown as its mean");
+        to_.warn(from.place(),
+                 "the coloured extinction of a medium with an albedo grid is shown as its mean");
       }
       density *= (double{c.r} + c.g + c.b) / 3;
     }
@@ -92,6 +95,8 @@ class MediumReader {
     return absl::OkStatus();
   }
 
+  /// Reads the parameter `name`, a colour or a volume. An absent parameter is a grey of
+  /// `otherwise`.
   absl::StatusOr<Coefficient> coefficient(const Parameters& from, const std::string& name,
                                           float otherwise) {
     const Property* property = from.find(name);
@@ -122,14 +127,16 @@ class MediumReader {
     } else if (object.type == "gridvolume") {
       ASSIGN_OR_RETURN(out.grid, grid(from));
     } else {
-      to_.warn(object.place,
-               absl::StrCat("volume \"", object.type, "\" is not known; 1 stands in its place"));
+      to_.warn(object.place, absl::StrCat("volume \"", object.type,
+                                          "\" is not known; the constant 1 stands in its place"));
       return out;
     }
     to_.warn_of_unused(from);
     return out;
   }
 
+  /// Reads a gridvolume. Its matrix leads from the grid to the space of the shape around the
+  /// medium.
   absl::StatusOr<scene::VolumeGrid> grid(const Parameters& from) {
     scene::VolumeGrid to;
     ASSIGN_OR_RETURN(const std::string name, from.text("filename", ""));
@@ -180,14 +187,16 @@ bool has_grid(const Object& medium) {
 }  // namespace
 
 absl::StatusOr<std::string> Media::medium_of(const Object& medium, const Transform& to_world) {
+  // Only a medium with a grid depends on the placement of its shape.
   const std::pair key(&medium, has_grid(medium) ? to_world.m : Transform{}.m);
   const auto known = known_.find(key);
   if (known != known_.end()) {
     return known->second;
   }
   if (medium.type != "homogeneous" && medium.type != "heterogeneous") {
-    return error_at(medium.place, absl::StrCat("medium \"", medium.type,
-                                               "\" is not known: homogeneous or heterogeneous"));
+    return error_at(medium.place,
+                    absl::StrCat("medium \"", medium.type,
+                                 "\" is not known; it must be homogeneous or heterogeneous"));
   }
   const Parameters from(medium);
   scene::Medium out;

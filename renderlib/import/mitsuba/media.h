@@ -21,14 +21,15 @@ class Media {
 
   /// Returns the name of our medium, which is added if it is new. Mitsuba places grids in the
   /// world; Bandsaw places them in the space of the shape. `to_world` is the placement of the
-  /// shape.
+  /// shape. Fails for an unknown type of medium, for a wrong parameter and for a grid file that
+  /// cannot be found; the message names file and line.
   absl::StatusOr<std::string> medium_of(const Object& medium, const Transform& to_world);
 
  private:
   scene::Scene& scene_;
   Conversion& to_;
   std::map<std::pair<const Object*, std::array<std::array<double, 4>, 3>>, std::string> known_;
-  std::map<std::string, int> names_;  ///< number of media with each name or "medium"
+  std::map<std::string, int> names_;  ///< number of media made for each id; "medium": no id
 };
 
 }  // namespace bandsaw::mitsuba

@@ -1,6 +1,6 @@
-// Converts the mesh files of a Mitsuba scene: reads the mesh as Mitsuba would, and changes what our
-// importer would read differently: orientation, normals, uvs. Attributes of vertices or triangles
-// become an image with four texels for each triangle.
+// Converts the mesh files of a Mitsuba scene. Reads a mesh as Mitsuba would, and changes the
+// properties that our importer would read differently (orientation, normals, uvs). Attributes of
+// vertices or triangles become an image with four texels for each triangle.
 
 #include "renderlib/import/mitsuba/meshes.h"
 
@@ -26,7 +26,7 @@ bool is_oriented(const PlyMesh& mesh) {
   return other.triangles == mesh.triangles;
 }
 
-/// Gives each triangle vertices of its own.
+/// Gives each triangle vertices of its own, with positions and normals only.
 void split_vertices(PlyMesh& mesh) {
   PlyMesh out;
   for (const auto& triangle : mesh.triangles) {
@@ -50,6 +50,7 @@ struct Atlas {
   std::uint32_t columns;
   std::uint32_t rows;
 
+  /// x() and y() return the left column and the upper row of a triangle's texels.
   std::uint32_t x(std::size_t triangle) const {
     return 2 * static_cast<std::uint32_t>(triangle % columns);
   }
@@ -63,8 +64,9 @@ struct Atlas {
   }
 };
 
-/// Sets uvs so that the corners of a triangle are the centres of three of its four texels: between
-/// them, the bilinear interpolation of the image is the linear one of the triangle.
+/// Sets uvs so that the corners of a triangle are the centres of three of its four texels. Between
+/// these centres, the bilinear interpolation of the image equals the linear interpolation over the
+/// triangle, because image_of() chooses the fourth texel accordingly.
 void set_atlas_uvs(const Atlas& atlas, PlyMesh& split) {
   for (std::size_t i = 0; i < split.triangles.size(); ++i) {
     const std::uint32_t x = atlas.x(i);
@@ -90,8 +92,9 @@ Rgb bounded(const Rgb& c, const std::array<Rgb, 3>& corner) {
   return {channel(c.r), channel(c.g), channel(c.b)};
 }
 
-/// Returns the image of an attribute. The fourth texel is b + c - a, which makes the interpolation
-/// linear. Where bounded() clamps this texel, the colours near the longest edge are not linear.
+/// Returns the image of an attribute. Three texels of a triangle are the values a, b and c at its
+/// corners. The fourth texel is b + c - a, which makes the interpolation linear. Where bounded()
+/// clamps this texel, the colours near the edge from b to c are not linear.
 Image image_of(const MeshAttribute& attribute, const PlyMesh& mesh, const Atlas& atlas) {
   Image image{2 * atlas.columns, 2 * atlas.rows, {}};
   image.pixels.resize(std::size_t{image.width} * image.height);
@@ -140,10 +143,13 @@ absl::StatusOr<MeshFile> Meshes::file_of(const MeshRequest& request) {
   ASSIGN_OR_RETURN(const std::shared_ptr<const SourceMesh> mesh, read(request));
   const bool has_normals = !mesh->mesh.normals.empty();
   const bool faceted = request.face_normals || mesh->faceted;
-  // Without normals of its own, a mirrored mesh has its computed normals on the other side.
+  // A mirroring placement turns the normals that Mitsuba computes. It computes them for face
+  // normals and for a mesh without normals.
   const bool turned = request.turned != (request.mirrored && (faceted || !has_normals));
+  // The relation of the uvs if our importer reads the file itself.
   const UvFrame natural =
       request.type == "obj" && request.flip_v ? UvFrame::kFlipped : UvFrame::kSame;
+  // True if our importer reads the same normals, sides and uvs from the file as Mitsuba.
   const bool as_it_is = request.type != "serialized" && has_normals != faceted && !turned &&
                         !request.handed && !request.closed && request.attributes.empty() &&
                         (request.type == "obj" || !request.flip_v) && is_oriented(mesh->mesh);
@@ -190,6 +196,7 @@ absl::StatusOr<MeshFile> Meshes::made_of(SourceMesh source, const MeshRequest& r
     split_vertices(mesh);
     set_atlas_uvs(atlas, mesh);
   } else if (has_left_handed_uvs(mesh) != request.mirrored) {
+    // v is flipped, so that u, v and the normal are right-handed after the placement.
     file.surface.frame = UvFrame::kFlipped;
     for (auto& uv : mesh.uvs) {
       uv[1] = 1 - uv[1];

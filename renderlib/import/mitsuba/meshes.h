@@ -1,7 +1,7 @@
 #pragma once
 
-// Converts mesh files of Mitsuba scenes. A file that our importer reads as Mitsuba does is used as
-// it is; otherwise a new file is made.
+// Converts mesh files of Mitsuba scenes. A file that our importer reads as Mitsuba does is used
+// unchanged. For any other file, a new file is made.
 
 #include <map>
 #include <memory>
@@ -31,15 +31,16 @@ struct MeshRequest {
 };
 
 struct MeshFile {
-  std::string name;         ///< name of a file of the folder or of a made one
-  TexturedSurface surface;  ///< for its material
+  std::string name;         ///< name of a file in the import's folder, or of a made file
+  TexturedSurface surface;  ///< uvs and attributes, for the material of the mesh
 };
 
 class Meshes {
  public:
   explicit Meshes(Conversion& to) : to_(to) {}
 
-  /// Returns a file with the mesh. Returns INVALID_ARGUMENT with the file's name if it is damaged.
+  /// Returns a file with the requested mesh. Returns INVALID_ARGUMENT with the file's name if the
+  /// requested file is damaged.
   absl::StatusOr<MeshFile> file_of(const MeshRequest& request);
   /// Returns a made file with `mesh`, changed as `request` says. Of the request only face_normals,
   /// turned, mirrored and attributes are used.
@@ -49,7 +50,7 @@ class Meshes {
   using Key = std::tuple<std::string, std::int64_t, bool>;
   using MadeKey = std::tuple<std::string, std::int64_t, bool, bool, bool, bool, bool, bool,
                              std::set<std::string>>;
-  /// Reads the file, without applying the other requests.
+  /// Reads the mesh from the file. Of the request only file, type, index and flip_v are used.
   absl::StatusOr<std::shared_ptr<const SourceMesh>> read(const MeshRequest& request);
 
   Conversion& to_;

@@ -11,7 +11,8 @@
 
 namespace bandsaw::mitsuba {
 
-/// Reads the parameters of `object`, which MUST outlive it, and records which of them are read.
+/// Reads the parameters of `object`, which MUST outlive this object. Each function that takes a
+/// name or a tag also marks the parameters that it finds as read.
 class Parameters {
  public:
   explicit Parameters(const Object& object) : object_(object) {}
@@ -24,7 +25,7 @@ class Parameters {
   bool has(const std::string& name) const { return find(name) != nullptr; }
 
   /// These functions return the value of the parameter, or `otherwise` if there is none.
-  /// INVALID_ARGUMENT with the parameter's place: it is of another type.
+  /// They return INVALID_ARGUMENT with the parameter's place if it has another type.
   absl::StatusOr<double> number(const std::string& name, double otherwise) const;
   absl::StatusOr<std::int64_t> integer(const std::string& name, std::int64_t otherwise) const;
   absl::StatusOr<bool> boolean(const std::string& name, bool otherwise) const;

@@ -17,7 +17,8 @@ absl::Status BsdfReader::parameter(const Parameters& from, const std::string& na
   ASSIGN_OR_RETURN(Varying varying, varying_of(from, name, 0, surface_, to_));
   scene::Parameter& to = *field();
   if (varying.texture && most > 1) {
-    // Textures of a number are at most 1.
+    // The texels of a texture of numbers are at most 1. So the texture is divided by `most`, and
+    // the value `most` multiplies it.
     *to.mutable_texture()->mutable_product()->mutable_a() = *std::move(varying.texture);
     *to.mutable_texture()->mutable_product()->mutable_b() =
         constant_texture(gray(static_cast<float>(1 / most)));

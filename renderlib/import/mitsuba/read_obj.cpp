@@ -15,7 +15,8 @@ namespace bandsaw::mitsuba {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
-using Corner = std::array<std::uint32_t, 3>;  ///< position, uv, normal; kNone if it has none
+/// The indices of a position, a uv and a normal. A uv or normal that is missing is kNone.
+using Corner = std::array<std::uint32_t, 3>;
 
 class ObjReader {
  public:
@@ -37,6 +38,7 @@ class ObjReader {
   }
 
  private:
+  /// Reads a position, normal, uv or face. Ignores lines with other keywords.
   absl::Status read_line(absl::string_view line) {
     const std::vector<absl::string_view> parts =
         absl::StrSplit(line, absl::ByAnyChar(" \t\r"), absl::SkipEmpty());
@@ -90,6 +92,8 @@ class ObjReader {
     return static_cast<std::uint32_t>(from_zero);
   }
 
+  /// Reads a corner of a face, such as "1/2/3". Returns the number of its vertex, which is new if
+  /// no earlier corner has the same indices.
   absl::StatusOr<std::uint32_t> read_corner(absl::string_view text) {
     const std::vector<absl::string_view> indices = absl::StrSplit(text, '/');
     if (indices.size() > 3) {
@@ -111,6 +115,7 @@ class ObjReader {
     return known->second;
   }
 
+  /// Reads a polygon and splits it into a fan of triangles around its first corner.
   absl::Status read_face(const std::vector<absl::string_view>& parts) {
     if (parts.size() < 4) {
       return absl::InvalidArgumentError("a face needs three corners");
@@ -127,6 +132,7 @@ class ObjReader {
     return absl::OkStatus();
   }
 
+  /// Makes the vertices of the mesh. If a corner has no normal, the mesh gets no normals.
   void finish() {
     PlyMesh& mesh = out_.mesh;
     bool all_normals = true;

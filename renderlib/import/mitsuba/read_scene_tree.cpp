@@ -1,6 +1,6 @@
 // Reads the XML of a Mitsuba scene as a tree of objects. Reader parses each file with pugixml,
 // replaces parameters in attributes, makes an Object of each element, and resolves references at
-// the end. Bounds on size, nesting and number of objects are checked on the way.
+// the end. Bounds on size, nesting and number of objects are checked during reading.
 
 #include "renderlib/import/mitsuba/read_scene_tree.h"
 
@@ -161,12 +161,13 @@ class Reader {
     std::string id;
   };
 
+  /// Reads and parses an XML file, appends it to sources_ and returns its root element.
   absl::StatusOr<pugi::xml_node> open(const std::string& path, const std::string& name) {
     const auto text = Files::read({name, path}, kMaxXmlBytes - std::min(bytes_, kMaxXmlBytes));
     if (!text.ok()) {
       return absl::Status(text.status().code(),
                           absl::StrCat(name, ": ", text.status().message(),
-                                       " (scene files may have 64 MB together)"));
+                                       " (all XML files together may have at most 64 MB)"));
     }
     bytes_ += text->size();
     tree_.files.push_back(std::make_unique<std::string>(name));
@@ -235,6 +236,7 @@ class Reader {
     return &object;
   }
 
+  /// Reads an element inside of `in`: a directive, a reference, an object or a value.
   absl::Status read_child(const pugi::xml_node& node, const Source& source, Object& in) {
     if (node.type() != pugi::node_element) {
       return absl::OkStatus();
@@ -272,6 +274,7 @@ class Reader {
     return absl::OkStatus();
   }
 
+  /// Reads <default>, <path>, <alias> or <include>.
   absl::Status read_directive(const std::string& tag, const pugi::xml_node& node,
                               const Source& source, Object& in) {
     const Place place = source.at(node);
@@ -300,6 +303,7 @@ class Reader {
     return include(node, source, in);
   }
 
+  /// Reads another file into `in`: the children of its <scene>, or its only object.
   absl::Status include(const pugi::xml_node& node, const Source& source, Object& in) {
     const Place place = source.at(node);
     ASSIGN_OR_RETURN(const std::string name, attribute(node, "filename", source));
@@ -332,7 +336,8 @@ class Reader {
     return absl::OkStatus();
   }
 
-  /// NOT_FOUND: the element is not known.
+  /// Reads an element that is neither an object, a reference nor a directive. Returns NOT_FOUND if
+  /// its tag is not known.
   absl::StatusOr<Value> read_value(const std::string& tag, const pugi::xml_node& node,
                                    const Source& source) {
     if (tag == "transform") {
@@ -369,7 +374,7 @@ class Reader {
   absl::StatusOr<Value> read_spectrum_of(const std::string& text, const pugi::xml_node& node,
                                          const Source& source) {
     if (node.attribute("filename").empty()) {
-      // Version 0.x took three numbers for RGB.
+      // In version 0.x, three numbers are an RGB colour.
       if (parts_of(text).size() == 3 && !absl::StrContains(text, ':')) {
         ASSIGN_OR_RETURN(const Rgb rgb, read_rgb(text));
         return Value(rgb);
@@ -399,7 +404,8 @@ class Reader {
     return Value(body);
   }
 
-  /// Reads the attributes x, y and z, or `value` with one or three numbers.
+  /// Reads the attributes x, y and z, or `value` with one, two or three numbers. One number is used
+  /// for all components. A component that is absent is `otherwise`.
   absl::StatusOr<Vec3> read_components(const pugi::xml_node& node, const Source& source,
                                        double otherwise) {
     if (node.attribute("value")) {
@@ -481,6 +487,8 @@ class Reader {
                      "lookat or matrix"));
   }
 
+  /// Returns the transform whose origin is `origin`, whose z axis points to `target`, and whose x
+  /// axis is on the left.
   absl::StatusOr<Transform> read_look_at(const pugi::xml_node& node, const Source& source) {
     ASSIGN_OR_RETURN(const std::string origin_text, attribute(node, "origin", source));
     ASSIGN_OR_RETURN(const std::string target_text, attribute(node, "target", source));
@@ -570,8 +578,9 @@ class Reader {
   std::map<std::string, Object*> by_id_;
   std::map<std::string, std::string> aliases_;
   std::vector<Reference> references_;
-  std::set<const Object*> visiting_;              ///< objects that check_cycles() is in
-  std::map<const Object*, std::uint64_t> sizes_;  ///< objects in each, with those that it refers to
+  std::set<const Object*> visiting_;  ///< objects that check_cycles() is visiting
+  /// The number of objects in each object, itself and the objects that it refers to included.
+  std::map<const Object*, std::uint64_t> sizes_;
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #pragma once
 
+// Reads the XML files of a Mitsuba scene.
+
 #include <map>
 #include <string>
 

@@ -80,6 +80,8 @@ class Inflater {
   }
 
  private:
+  /// Decompresses up to `size` bytes to `to`. Returns their number, which is smaller than `size` if
+  /// the stream ends or is damaged.
   std::uint64_t fill(char* to, std::uint64_t size) {
     constexpr std::size_t kMaxPiece = std::size_t{1} << 30;
     stream_.next_out = reinterpret_cast<Bytef*>(to);
@@ -106,7 +108,8 @@ class Inflater {
   std::uint64_t taken_ = 0;
 };
 
-/// Returns the offset of a mesh in the file, from the table at its end.
+/// Returns the offset of a mesh in the file. The end of the file is a table with the offset of each
+/// mesh, followed by the number of meshes.
 absl::StatusOr<std::uint64_t> offset_of(absl::string_view bytes, std::int64_t index,
                                         std::uint16_t version) {
   if (index == 0) {
@@ -206,7 +209,7 @@ absl::StatusOr<SourceMesh> read_serialized(absl::string_view bytes, std::int64_t
   Inflater in(bytes.substr(offset + 4));
   ASSIGN_OR_RETURN(const std::uint32_t flags, in.number<std::uint32_t>());
   if (version == kVersion4) {
-    for (char name = 1; name != 0;) {
+    for (char name = 1; name != 0;) {  // skips the mesh's name, which ends with a zero byte
       ASSIGN_OR_RETURN(name, in.number<char>());
     }
   }

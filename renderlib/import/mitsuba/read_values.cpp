@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kMaxNumber = 1e30;
 
+/// Returns the error that `text` is not `what`. A long text is shortened.
 absl::Status not_a(const char* what, absl::string_view text) {
   constexpr std::size_t kShown = 60;
   return absl::InvalidArgumentError(absl::StrCat(
@@ -34,7 +35,7 @@ absl::StatusOr<std::vector<double>> read_list(absl::string_view text) {
   return numbers;
 }
 
-/// Reads "#rrggbb", decoded to linear.
+/// Reads "#rrggbb" and decodes it from sRGB to linear RGB.
 absl::StatusOr<Rgb> read_hex(absl::string_view text) {
   std::uint32_t bits = 0;
   if (text.size() != 7 || !absl::SimpleHexAtoi(text.substr(1), &bits)) {
@@ -63,6 +64,7 @@ absl::Status add_sample(Spectrum& spectrum, double nanometres, double value) {
   return absl::OkStatus();
 }
 
+/// Returns the spectrum, or INVALID_ARGUMENT if it has fewer than two samples.
 absl::StatusOr<Spectrum> whole(Spectrum spectrum) {
   if (spectrum.samples.size() < 2) {
     return absl::InvalidArgumentError("a sampled spectrum needs at least two wavelengths");
@@ -119,7 +121,7 @@ absl::StatusOr<Rgb> read_rgb(absl::string_view text) {
   }
   ASSIGN_OR_RETURN(const std::vector<double> numbers, read_list(text));
   if (numbers.size() != 1 && numbers.size() != 3) {
-    return not_a("a colour: one number or three", text);
+    return not_a("a colour of one number or three", text);
   }
   return rgb_of(numbers);
 }

@@ -24,12 +24,13 @@ absl::StatusOr<Vec3> read_three(absl::string_view text);
 absl::StatusOr<Rgb> read_rgb(absl::string_view text);
 /// Reads a colour in sRGB: one or three numbers, or "#rrggbb". Returns it as linear RGB.
 absl::StatusOr<Rgb> read_srgb(absl::string_view text);
-/// Reads a number, or "wavelength:value" pairs with increasing wavelengths.
+/// Reads a number, or "wavelength:value" pairs with increasing wavelengths in nanometres.
 absl::StatusOr<Spectrum> read_spectrum(absl::string_view text);
-/// Reads the lines of a spectrum file: wavelength and value; # begins a comment.
+/// Reads a spectrum file. Each line has a wavelength in nanometres and a value; the wavelengths
+/// increase. A line that begins with # is a comment.
 absl::StatusOr<Spectrum> read_spectrum_file(absl::string_view text);
-/// Reads the 16 numbers of a 4 x 4 matrix whose last row is 0 0 0 1, rows first, or the 9 of its
-/// linear part.
+/// Reads the 16 numbers of a 4 x 4 matrix, rows first; its last row must be 0 0 0 1. Also reads the
+/// 9 numbers of a 3 x 3 matrix, the linear part of a transform without translation.
 absl::StatusOr<Transform> read_matrix(absl::string_view text);
 
 }  // namespace bandsaw::mitsuba

@@ -1,7 +1,7 @@
 #pragma once
 
-// The objects of a Mitsuba scene file, as read_scene_tree() returns them: includes are read,
-// parameters replaced, references resolved. The meaning of the objects is not known here.
+// The objects of a Mitsuba scene file, as read_scene_tree() returns them. Includes have been read,
+// parameters replaced and references resolved. The meaning of the objects is not known here.
 
 #include <cstdint>
 #include <deque>
@@ -35,7 +35,7 @@ struct Object;
 
 /// A spectrum: values at increasing wavelengths, or the same value everywhere.
 struct Spectrum {
-  double constant = 0;  ///< if there are no samples
+  double constant = 0;  ///< the value at all wavelengths; used only if there are no samples
   struct Sample {
     double nanometres = 0;
     double value = 0;
@@ -65,7 +65,7 @@ inline const Object* object_in(const Property& property) {
 }
 
 /// A plugin of Mitsuba with its parameters, in the order of the file. Several objects may contain
-/// the same one, by references.
+/// the same object, by references.
 struct Object {
   std::string tag;   ///< "bsdf", "shape", …
   std::string type;  ///< "diffuse", "obj", …
@@ -78,7 +78,7 @@ struct SceneTree {
   const Object* root = nullptr;
   bool is_old = false;                              ///< its version is 0.x, not 2 or 3
   std::deque<Object> objects;                       ///< owns them
-  std::vector<std::unique_ptr<std::string>> files;  ///< names, for places
+  std::vector<std::unique_ptr<std::string>> files;  ///< names of the files, for Place::file
   std::vector<std::string> warnings;                ///< warnings about elements that are not known
 };
 

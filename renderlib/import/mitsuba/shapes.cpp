@@ -1,12 +1,13 @@
 // Converts the shapes of a Mitsuba scene to those of our scene files. add_kind() calls one function
-// for each type of shape. A shape becomes a mesh if our scene files have none of its type
-// (cylinders), or if ours cannot have its orientation (spheres turned inside out) or its uv
-// coordinates (textured disks).
+// for each type of shape. Some shapes become meshes: those whose type our scene files do not have
+// (cylinders), and those whose orientation or uv coordinates our shape cannot have (spheres turned
+// inside out, textured disks).
 //
-// A surface is turned if its outside is the other side than in our shape: either the shape has
-// flip_normals, or its material exchanges the two sides, but not both. A transform that mirrors
-// (determinant < 0) also exchanges them for a rectangle. `open` is a copy of the surface without
-// its interior: a shape that is not closed cannot contain a medium.
+// A surface is turned if Mitsuba's outside is the inside of our shape. It is turned if the shape
+// has flip_normals or if its material exchanges the two sides (SurfaceMaterial::turned), but not if
+// both hold. For a rectangle, a transform that mirrors (determinant < 0) also exchanges the sides.
+// `open` is a copy of the surface without its interior, because a shape that is not closed cannot
+// contain a medium.
 
 #include "renderlib/import/mitsuba/shapes.h"
 
@@ -79,8 +80,8 @@ SourceMesh cube_mesh() {
 constexpr int kSegments = 192;  ///< segments of round shapes that become meshes
 
 /// Adds a strip of triangles between two rows of kSegments + 1 vertices, which start at the indices
-/// `below` and `above`. The vertices of a triangle are counter-clockwise seen from the side from
-/// which the rows run from left to right and `above` is above.
+/// `below` and `above`. Consider the side from which the rows run from left to right, with the row
+/// `above` on top. Seen from this side, the vertices of each triangle are counter-clockwise.
 void add_strip(std::uint32_t below, std::uint32_t above, PlyMesh& mesh) {
   for (std::uint32_t i = 0; i < kSegments; ++i) {
     mesh.triangles.push_back({below + i, below + i + 1, above + i + 1});
@@ -122,7 +123,7 @@ SourceMesh cylinder_mesh() {
   return out;
 }
 
-/// Returns the unit sphere; u is the angle around z in turns, v that from +z in half turns.
+/// Returns the unit sphere; u is the angle around z in turns, v the angle from +z in half turns.
 SourceMesh sphere_mesh() {
   SourceMesh out;
   constexpr int kRows = kSegments / 2;
@@ -179,7 +180,9 @@ absl::StatusOr<ShapeReader::Surface> ShapeReader::surface_of(const Parameters& f
     surface.interior = object_in(*interior);
   }
   if (const Property* exterior = from.find("exterior")) {
-    to_.warn(exterior->place, "the medium outside of a shape is left out: it is what surrounds it");
+    to_.warn(exterior->place,
+             "the exterior medium of a shape is left out; the medium that surrounds the shape is "
+             "used instead");
   }
   return surface;
 }
@@ -213,7 +216,8 @@ absl::Status ShapeReader::add_to(const Object& shape, const Target& target) {
   return absl::OkStatus();
 }
 
-/// NOT_FOUND: a file is missing, or the kind is not known.
+/// Adds a shape that is not a group, a merge or an instance. Returns NOT_FOUND if a file is missing
+/// or the type is not known.
 absl::Status ShapeReader::add_kind(const Parameters& from, const Surface& surface,
                                    const Target& target) {
   const std::string& type = from.object().type;
@@ -328,6 +332,7 @@ absl::Status ShapeReader::add_rectangle(const Parameters& from, const Surface& s
                    materials_.material_of(surface.bsdf, surface.emitter, {}));
   scene::Shape& shape = *target.shapes->Add();
   shape.set_material(material.name);
+  // A turned rectangle starts at the corner (1, -1) and runs towards -x, so its normal is reversed.
   const double side = turned ? -1 : 1;
   add_numbers(open.to_world.point({-side, -1, 0}), shape.mutable_quad()->mutable_corner());
   add_numbers(open.to_world.direction({2 * side, 0, 0}), shape.mutable_quad()->mutable_u());

@@ -40,10 +40,13 @@ class ShapeReader {
     bool flip_normals = false;
   };
 
+  /// Adds a shape. Leaves it out with a warning if its type is not known or its file is missing.
+  /// Adds nothing for a shapegroup, which group_of() adds.
   absl::Status add_to(const Object& shape, const Target& target);
   absl::Status add_kind(const Parameters& from, const Surface& surface, const Target& target);
   absl::StatusOr<Surface> surface_of(const Parameters& from);
   absl::Status add_mesh(const Parameters& from, const Surface& surface, const Target& target);
+  /// Makes a file of a computed mesh, such as a cylinder, and adds it as a model.
   absl::Status add_made_mesh(const Parameters& from, const Surface& surface, SourceMesh mesh,
                              const Target& target);
   absl::Status add_rectangle(const Parameters& from, const Surface& surface, const Target& target);
@@ -59,8 +62,8 @@ class ShapeReader {
   /// material nor a medium.
   absl::Status add_model(const Parameters& from, const Surface& surface, const std::string& file,
                          const std::string& material, const Target& target);
-  /// Returns the name of the group that a shapegroup becomes, made when it is first used; empty if
-  /// all of its shapes are left out.
+  /// Returns the name of the group that a shapegroup becomes. The group is made when it is first
+  /// used. The name is empty if all shapes of the group are left out.
   absl::StatusOr<std::string> group_of(const Object& group);
   /// Warns of a medium in a shape that is not closed.
   void warn_of_interior(const Surface& surface, const Parameters& from);

@@ -14,7 +14,8 @@
 namespace bandsaw::mitsuba {
 namespace {
 
-/// Returns (b - a) x (c - a).
+/// Returns (b - a) x (c - a) for a triangle with the corners a, b and c. The length of the
+/// result is twice the area of the triangle.
 Vec3 across(const PlyMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
   const Vec3 a = vec3(mesh.positions[triangle[0]]);
   return cross(vec3(mesh.positions[triangle[1]]) - a, vec3(mesh.positions[triangle[2]]) - a);
@@ -85,6 +86,8 @@ bool has_left_handed_uvs(const PlyMesh& mesh) {
   if (mesh.uvs.empty()) {
     return false;
   }
+  // Above 0 if a larger part of the surface has right-handed uvs than left-handed uvs. `area` is
+  // twice the signed area of a triangle in uv space.
   double balance = 0;
   for (const auto& triangle : mesh.triangles) {
     const auto& a = mesh.uvs[triangle[0]];

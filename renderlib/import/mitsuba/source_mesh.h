@@ -27,15 +27,16 @@ inline constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 /// `flip_v`: in the file v = 0 is the bottom row, as is usual in OBJ files, so v becomes 1 - v. An
 /// error is INVALID_ARGUMENT and names the line.
 absl::StatusOr<SourceMesh> read_obj(absl::string_view bytes, bool flip_v);
-/// Reads a PLY (convert/read_ply.h). `flip_v` as above. Returns INVALID_ARGUMENT if it is damaged.
+/// Reads a PLY (convert/read_ply.h). `flip_v` as in read_obj(). Returns INVALID_ARGUMENT if the
+/// file is damaged.
 absl::StatusOr<SourceMesh> read_ply(absl::string_view bytes, bool flip_v);
-/// Reads the mesh number `index`, from 0, of Mitsuba's *.serialized. Returns INVALID_ARGUMENT if it
-/// is damaged or has no such mesh.
+/// Reads the mesh number `index`, counted from 0, of a *.serialized file of Mitsuba. `flip_v` as in
+/// read_obj(). Returns INVALID_ARGUMENT if the file is damaged or has no such mesh.
 absl::StatusOr<SourceMesh> read_serialized(absl::string_view bytes, std::int64_t index,
                                            bool flip_v);
 
-/// Sets normals of vertices: the mean of the triangles' normals, weighted by their angles there
-/// (Thürmer and Wüthrich 1998).
+/// Sets the normal of each vertex to the mean of the normals of its triangles, weighted by their
+/// angles at the vertex (Thürmer and Wüthrich 1998).
 void add_smooth_normals(PlyMesh& mesh);
 /// Turns each triangle whose geometric normal is opposite to the normals of its vertices.
 void orient_by_normals(PlyMesh& mesh);

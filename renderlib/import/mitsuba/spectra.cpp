@@ -1,4 +1,4 @@
-// Converts the spectra of Mitsuba scenes to RGB with renderlib/import/spectrum; holds the tables of
+// Converts the spectra of Mitsuba scenes to RGB with renderlib/import/spectrum. Holds the tables of
 // metals and of indices of refraction.
 
 #include "renderlib/import/mitsuba/spectra.h"
@@ -17,6 +17,7 @@
 namespace bandsaw::mitsuba {
 namespace {
 
+/// Rounds the channels to float. Channels below 0 become 0.
 Rgb rounded(const spectrum::Rgb3& c) {
   const auto channel = [](double v) { return static_cast<float>(std::max(v, 0.0)); };
   return {channel(c[0]), channel(c[1]), channel(c[2])};
@@ -108,12 +109,15 @@ Rgb rgb_of(const Spectrum& spectrum, ColorOf of) {
 }
 
 Rgb rgb_of(const BlackBody& body) {
-  // Planck's radiance in watts per square metre, steradian and nanometre, as Mitsuba takes it.
+  // Mitsuba's values are Planck's radiance in watts per square metre, steradian and nanometre.
+  // `relative` is the colour of the spectrum divided by its maximum. The maximum is `radiance`, at
+  // the wavelength `peak`.
   const double kelvin = std::clamp(body.kelvin, 100.0, 1e5);
   const spectrum::Rgb3 relative = spectrum::light_rgb(spectrum::blackbody(kelvin));
-  constexpr double kWien = 2.897771955e-3;          // m K
+  constexpr double kWien = 2.897771955e-3;          // Wien's displacement constant, m K
   constexpr double kFirst = 1.191042972397188e-16;  // 2 h c^2, W m^2
-  constexpr double kPeak = 142.32492;               // exp(x) - 1 at the peak, x = 4.965114
+  // exp(x) - 1 at the peak, where x = h c / (wavelength k T) = 4.965114
+  constexpr double kPeak = 142.32492;
   const double peak = kWien / kelvin;
   const double radiance = kFirst / (peak * peak * peak * peak * peak) / kPeak * 1e-9;
   const double scale = body.scale * radiance;
@@ -140,7 +144,9 @@ absl::StatusOr<Spectrum> sampled_spectrum(const Parameters& from) {
   ASSIGN_OR_RETURN(const double least, from.number("wavelength_min", 360));
   ASSIGN_OR_RETURN(const double most, from.number("wavelength_max", 830));
   if (numbers.size() < 2 || !(least < most)) {
-    return error_at(from.place(), "a spectrum needs two values and an interval of wavelengths");
+    return error_at(
+        from.place(),
+        "a spectrum needs at least two values, and wavelength_min below wavelength_max");
   }
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     ASSIGN_OR_RETURN(const double value, read_number(numbers[i]));
@@ -152,7 +158,7 @@ absl::StatusOr<Spectrum> sampled_spectrum(const Parameters& from) {
 
 absl::StatusOr<double> index_of_refraction(const Parameters& from, const std::string& name,
                                            const std::string& otherwise) {
-  // At 589 nm; Hecht, "Optics", 4th edition, as Mitsuba lists them.
+  // Indices at 589 nm from Hecht, "Optics", 4th edition, as Mitsuba lists them.
   static const std::map<std::string, double> indices = {
       {"vacuum", 1},        {"helium", 1.000036},        {"hydrogen", 1.000132},
       {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.333},

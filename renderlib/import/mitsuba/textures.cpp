@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 
-/// An affine map of the plane: rows of (a, b, c).
+/// An affine map of the plane. Each row (a, b, c) gives a coordinate a u + b v + c of the result.
 using Affine = std::array<std::array<double, 3>, 2>;
 
 const Object* object_in(const Value& value) {
@@ -30,7 +30,7 @@ const Object* object_in(const Value& value) {
 /// Returns the map from Mitsuba's uv to the coordinates of the texture.
 absl::StatusOr<Affine> to_uv_of(const Parameters& from) {
   ASSIGN_OR_RETURN(const Transform t, from.transform("to_uv"));
-  // Version 0.x has numbers instead.
+  // Version 0.x has these numbers instead of to_uv.
   ASSIGN_OR_RETURN(const double u_scale, from.number("uscale", 1));
   ASSIGN_OR_RETURN(const double v_scale, from.number("vscale", 1));
   ASSIGN_OR_RETURN(const double u_offset, from.number("uoffset", 0));
@@ -53,8 +53,9 @@ Affine in_our_frame(const Affine& m, UvFrame frame) {
   return to;
 }
 
-/// Writes the map as scale, rotation and offset. Returns false if the map shears; the shear is left
-/// out.
+/// Writes the map as scale, rotation and offset. Its linear part is R M, where R is the rotation
+/// and M has the rows (u_scale, shear) and (0, v_scale). Returns false if the map shears; the shear
+/// is left out.
 bool set_uv(const Affine& m, scene::ImageTexture& to) {
   const bool turned = m[1][0] != 0;
   const double angle = turned ? atan2(m[1][0], m[0][0]) : 0;
@@ -116,7 +117,8 @@ absl::StatusOr<scene::Texture> bitmap(const Parameters& from, const TexturedSurf
     image.set_filter(scene::ImageTexture::FILTER_NEAREST);
   }
   ASSIGN_OR_RETURN(bool raw, from.boolean("raw", false));
-  ASSIGN_OR_RETURN(const double gamma, from.number("gamma", 0));  // version 0.x; 0: of the file
+  // Version 0.x has a gamma. With 0, the file decides.
+  ASSIGN_OR_RETURN(const double gamma, from.number("gamma", 0));
   raw = raw || gamma == 1;
   if (raw) {
     image.set_encoding(scene::ImageTexture::ENCODING_LINEAR);
@@ -141,7 +143,7 @@ std::string checker_image() { return std::string("P5 2 2 255\n") + "\xff" + '\0'
 /// has color0.
 absl::StatusOr<scene::Texture> checkerboard(const Parameters& from, ColorOf of,
                                             const TexturedSurface& surface, Conversion& to) {
-  const bool number = of == ColorOf::kNumber;
+  const bool number = of == ColorOf::kNumber;  // exchanges the two values, as ColorOf describes
   ASSIGN_OR_RETURN(const scene::Texture color0,
                    number ? part_of(from, "color1", 0.2f, of, surface, to)
                           : part_of(from, "color0", 0.4f, of, surface, to));
@@ -155,8 +157,8 @@ absl::StatusOr<scene::Texture> checkerboard(const Parameters& from, ColorOf of,
   const bool whole = rows == std::floor(rows);
   scene::Texture out;
   if (upright && (surface.frame == UvFrame::kSame || whole)) {
-    // Our rows are counted from the other end. If their number is even, the first one has the other
-    // colour.
+    // If v is flipped, the rows of cells are counted from the other end. If their number is even,
+    // the first row then starts with the other colour.
     const bool swap = surface.frame == UvFrame::kFlipped && std::fmod(rows, 2) == 0;
     *out.mutable_checker()->mutable_even() = swap ? color1 : color0;
     *out.mutable_checker()->mutable_odd() = swap ? color0 : color1;

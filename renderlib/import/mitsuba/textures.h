@@ -29,11 +29,12 @@ struct TexturedSurface {
 };
 
 /// The use of a value. It decides how a spectrum becomes RGB: as the reflectance of a surface
-/// or as the radiance of a light. kNumber is a texture of numbers, such as roughness: for these
-/// Mitsuba exchanges the two values of a checkerboard, so they are exchanged here too.
+/// or as the radiance of a light. kNumber is used for numbers, such as a roughness. In a
+/// checkerboard of numbers, Mitsuba exchanges the two values, and so does this converter.
 enum class ColorOf { kSurface, kLight, kNumber };
 
-/// A number that may vary over a surface: the texture's luminance, if there is one.
+/// A number that may vary over a surface. It is the luminance of the texture if there is a texture,
+/// and `value` otherwise.
 struct Varying {
   double value = 0;
   std::optional<scene::Texture> texture = std::nullopt;
@@ -47,7 +48,8 @@ scene::Texture constant_texture(const Rgb& color);
 /// Returns the constant colour of a value; std::nullopt if it is a texture that varies.
 absl::StatusOr<std::optional<Rgb>> constant_color(const Property& property, ColorOf of);
 
-/// Converts a value to a texture. INVALID_ARGUMENT with the place: it is no colour.
+/// Converts a value to a texture. Returns INVALID_ARGUMENT with the place of the property if the
+/// value is neither a colour nor a texture.
 absl::StatusOr<scene::Texture> texture_of(const Property& property, ColorOf of,
                                           const TexturedSurface& surface, Conversion& to);
 

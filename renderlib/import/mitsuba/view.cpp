@@ -1,5 +1,5 @@
-// Converts the sensor and the integrator of a Mitsuba scene. Reads the film first, because the
-// camera's field of view depends on its aspect ratio; then the camera and the integrator.
+// Converts the sensor and the integrator of a Mitsuba scene. The film of the sensor is read first,
+// because the camera's field of view depends on the film's aspect ratio.
 
 #include "renderlib/import/mitsuba/view.h"
 
@@ -23,7 +23,8 @@ void set(const Vec3& v, google::protobuf::RepeatedField<double>* to) {
   to->Add(v.z);
 }
 
-/// The part of the film that is rendered, in pixels from the top left corner.
+/// The size of a film and the part of it that is rendered (crop), in pixels from the top left
+/// corner.
 struct Film {
   std::int64_t width = 768;
   std::int64_t height = 576;
@@ -65,6 +66,7 @@ absl::StatusOr<std::int64_t> side_of(const Parameters& from, const char* name,
   return side;
 }
 
+/// Reads the sensor's film. Sets the size and the filter of `image`.
 absl::StatusOr<Film> read_film(const Parameters& sensor, scene::Image& image, Conversion& to) {
   Film film;
   image.mutable_filter()->mutable_gaussian()->set_radius(1.5);  // Mitsuba's default
@@ -97,8 +99,9 @@ absl::StatusOr<Film> read_film(const Parameters& sensor, scene::Image& image, Co
   return film;
 }
 
-/// Sets the visible part of the image plane, if it is not the whole film around the axis. The
-/// shifts are to the right and down, as shares of the film's width and height.
+/// Sets the visible part of the image plane, in units of half the film's height. Sets nothing if
+/// the whole film is visible and not shifted. The shifts are to the right and down, as shares of
+/// the film's width and height.
 void set_window(const Film& film, double shift_x, double shift_y, scene::Camera& camera) {
   const bool whole = film.crop_width == film.width && film.crop_height == film.height;
   if (whole && shift_x == 0 && shift_y == 0) {
@@ -175,8 +178,8 @@ absl::Status set_sensor(const Object& sensor, scene::Scene& scene, Conversion& t
     }
   } else {
     return error_at(from.place(), absl::StrCat("sensor \"", sensor.type,
-                                               "\" is not read: perspective, thinlens or "
-                                               "orthographic"));
+                                               "\" is not supported; it must be perspective, "
+                                               "thinlens or orthographic"));
   }
   to.warn_of_unused(from);
   return absl::OkStatus();
@@ -212,8 +215,8 @@ absl::Status set_integrator(const Object& integrator, scene::Scene& scene, Conve
     }
     if (depth == 0 || depth == 1) {
       to.warn(from.place(), absl::StrCat("max_depth ", depth,
-                                         " shows light sources only; 2, "
-                                         "direct light, stands in its place"));
+                                         " shows only light sources; max_depth 2, which is "
+                                         "direct light, is used instead"));
     }
     to.passages_are_free = type == "volpath" || type == "volpathmis";
     // Mitsuba's limit counts the segments of a path; Bandsaw's counts the vertices between them.

@@ -57,8 +57,8 @@ NodeMotion motion_of_channel(const aiNodeAnim& channel, double ticks) {
 
 /// Returns the weights of the morph targets over time; std::nullopt if no key is usable.
 std::optional<Curve> weights_of_channel(const aiMeshMorphAnim& channel, double ticks) {
-  // The curve has a weight for every number up to the largest one in the file, so a damaged number
-  // could demand all the memory.
+  // The curve has a weight for each target number up to the largest in the file. Without a limit, a
+  // damaged number could demand all the memory.
   constexpr unsigned kMaxTargets = 10'000;
   unsigned targets = 0;
   for (unsigned i = 0; i < channel.mNumKeys; ++i) {

@@ -20,7 +20,7 @@ double number(const pugi::xml_node& in, const char* name) {
 }
 
 // Returns the vertical field of view in radians; std::nullopt if the file has no angle. The angles
-// in the file are in degrees; xfov counts only without yfov. `aspect`: width / height.
+// in the file are in degrees. xfov is used only if there is no yfov. `aspect` is width / height.
 std::optional<double> vertical_fov(const pugi::xml_node& perspective, double aspect) {
   const double vertical = number(perspective, "yfov");
   const double horizontal = number(perspective, "xfov");
@@ -32,15 +32,15 @@ std::optional<double> vertical_fov(const pugi::xml_node& perspective, double asp
 }
 
 // Returns the whole height; std::nullopt if the file has none. ymag and xmag are half of the height
-// and of the width; xmag counts only without ymag. `aspect`: width / height.
+// and half of the width. xmag is used only if there is no ymag. `aspect` is width / height.
 std::optional<double> height(const pugi::xml_node& orthographic, double aspect) {
   const double vertical = number(orthographic, "ymag");
   const double half = vertical > 0 ? vertical : number(orthographic, "xmag") / aspect;
   return half > 0 ? std::optional(2 * half) : std::nullopt;
 }
 
-// Returns the lens of a <camera>; an empty one if it has no valid size or angle. Without an aspect
-// ratio the image is taken as square.
+// Returns the lens of a <camera>. The lens is empty if the camera has no valid size or angle. If
+// the file has no aspect ratio, the ratio is 1.
 ColladaLens lens_of(const pugi::xml_node& camera) {
   const pugi::xml_node common = camera.child("optics").child("technique_common");
   const auto aspect = [](const pugi::xml_node& in) {

@@ -1,7 +1,8 @@
 #pragma once
 
-// Reads the lenses of the cameras of a COLLADA file from its XML, because Assimp 5.2 takes the size
-// of an orthographic camera for an angle, and computes wrong angles for some perspective cameras.
+// Reads the lenses of the cameras of a COLLADA file from its XML. Assimp's own lenses are not used:
+// Assimp 5.2 reads the size of an orthographic camera as an angle, and computes wrong angles for
+// some perspective cameras.
 
 #include <map>
 #include <optional>
@@ -24,7 +25,7 @@ bool is_collada(absl::string_view path);
 using ColladaLenses = std::map<std::string, ColladaLens>;
 
 /// Returns the lenses in the XML `text` of a file. A lens without a valid size or angle is left
-/// out, and so is each one that cannot be found because the XML is damaged.
+/// out. If the XML is damaged, the lenses that cannot be found are left out.
 ColladaLenses read_collada_lenses(absl::string_view text);
 
 }  // namespace bandsaw

@@ -1,5 +1,5 @@
-// Reads those parts of a glTF file's JSON that Assimp does not pass on, above all the extensions of
-// each material that Assimp loads, in Assimp's order (gltf_load_order.h).
+// Reads those parts of a glTF file's JSON that Assimp does not pass on. Most of them are extensions
+// of materials. The materials have the order in which Assimp loads them (gltf_load_order.h).
 
 #include "renderlib/import/model/gltf_extensions.h"
 
@@ -43,7 +43,8 @@ constexpr absl::string_view kKnown[] = {
     "KHR_materials_diffuse_transmission",
 };
 
-/// Returns the used extensions that have no effect.
+/// Returns the extensions that the file uses and that are not in kKnown, so that they have no
+/// effect.
 std::vector<std::string> ignored_extensions(const gltf::Json& root) {
   std::vector<std::string> names;
   for (const gltf::Json& used : gltf::items(root, "extensionsUsed")) {
@@ -75,9 +76,9 @@ void read_pair(const Json& in, const std::string& name, double& x, double& y) {
   }
 }
 
-// Converts the transform offset + rotation (scale uv) of KHR_texture_transform, for which v = 0 is
-// the top of the image, to uvs with v = 0 at the bottom: v becomes 1 - v before and after it. The
-// rotation is counter-clockwise in the image.
+// Converts the transform offset + rotation (scale uv) of KHR_texture_transform. In this transform
+// v = 0 is the top of the image; in the result v = 0 is the bottom. So v is replaced by 1 - v
+// before and after the transform. The rotation is counter-clockwise in the image.
 UvTransform transform_of(const Json& from) {
   double offset_u = 0;
   double offset_v = 0;
@@ -85,7 +86,7 @@ UvTransform transform_of(const Json& from) {
   double scale_v = 1;
   read_pair(from, "offset", offset_u, offset_v);
   read_pair(from, "scale", scale_u, scale_v);
-  constexpr double kTurn = 6.283185307179586;
+  constexpr double kTurn = 6.283185307179586;  // 2 pi
   const SinCos turn = sincos_turns(number(from, "rotation").value_or(0) / kTurn);
   return {{turn.cos * scale_u, -turn.sin * scale_v, offset_u + turn.sin * scale_v,
            turn.sin * scale_u, turn.cos * scale_v, 1 - offset_v - turn.cos * scale_v}};
@@ -114,7 +115,8 @@ void read_textures_of(const Json& from, GltfMaterial& to) {
   }
 }
 
-/// Reads an array of three numbers; a number that is missing is taken from `otherwise`.
+/// Reads an array of three numbers. Returns `otherwise` if there is no such array. An element that
+/// is not a number is replaced by that of `otherwise`.
 std::array<double, 3> triple_of(const Json& in, const std::string& name,
                                 std::array<double, 3> otherwise) {
   const Json* values = list(in, name);

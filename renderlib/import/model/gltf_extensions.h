@@ -59,16 +59,16 @@ struct GltfExtensions {
   /// Materials that the scene uses, in the order in which Assimp visits them: nodes depth first,
   /// each after its children. Empty for glTF 1.
   std::vector<GltfMaterial> materials;
-  std::vector<GltfAtNode> cameras;  ///< those of the default scene; empty for glTF 1
-  std::vector<GltfAtNode> lights;   ///< the same for lights
+  std::vector<GltfAtNode> cameras;  ///< cameras of the default scene; empty for glTF 1
+  std::vector<GltfAtNode> lights;   ///< lights of the default scene; empty for glTF 1
   std::map<std::size_t, std::vector<std::size_t>> bones;  ///< as in GltfLoadOrder
   std::size_t scenes = 1;
   std::map<std::size_t, std::size_t> nodes;  ///< as in GltfLoadOrder
   std::size_t lights_with_range = 0;  ///< lights with KHR_lights_punctual's range, which is ignored
 };
 
-/// `root` is PlainGltf::root (gltf/plain_gltf.h): the JSON of a plain glTF file, whose references
-/// have been checked, or of glTF 1, which is not checked.
+/// Reads the JSON of a file. `root` is PlainGltf::root (gltf/plain_gltf.h). It is the JSON of a
+/// plain glTF file, whose references have been checked, or of a glTF 1 file, which is not checked.
 GltfExtensions read_gltf_extensions(const gltf::Json& root);
 
 }  // namespace bandsaw

@@ -31,7 +31,7 @@ class Walk {
   void run() {
     const Json* scene = item(root_, "scenes", number(root_, "scene").value_or(0));
     const Json* roots = scene == nullptr ? nullptr : list(*scene, "nodes");
-    // Assimp adds a root above several root nodes.
+    // The number of nodes above the root nodes: Assimp adds a root if there are several root nodes.
     const std::size_t above = roots != nullptr && roots->size() == 1 ? 0 : 1;
     push_all(roots);
     while (!stack_.empty()) {
@@ -66,6 +66,7 @@ class Walk {
   GltfLoadOrder order;
 
  private:
+  /// Pushes the nodes of a JSON array of node indices, the first on top of the stack.
   void push_all(const Json* nodes) {
     for (std::size_t i = nodes == nullptr ? 0 : nodes->size(); i-- > 0;) {
       if (const Json* node = item(root_, "nodes", (*nodes)[i].get<double>())) {
@@ -73,6 +74,7 @@ class Walk {
       }
     }
   }
+  /// Numbers the primitives of the mesh, each of which is a mesh of Assimp, and adds its materials.
   void add_mesh(const Json* mesh) {
     const Json* primitives = mesh == nullptr ? nullptr : list(*mesh, "primitives");
     if (primitives != nullptr && first_meshes_.emplace(mesh, meshes_).second) {
@@ -105,6 +107,7 @@ class Walk {
   }
 
   using Loaded = std::map<const Json*, std::size_t>;
+  /// Adds a camera or light at Assimp's node number `node`. Several nodes may share one object.
   static void add(const Json* what, std::size_t node, Loaded& loaded, std::vector<GltfAtNode>& to) {
     if (what != nullptr) {
       const Json* perspective = object(*what, "perspective");
@@ -115,10 +118,11 @@ class Walk {
 
   const Json& root_;
   const Json* lights_in_ = extension(root_, kLights);
-  std::vector<std::pair<const Json*, bool>> stack_;  ///< with a flag: children have been visited
-  std::map<const Json*, std::size_t> numbers_;       ///< indices of the nodes, parents first
-  std::set<const Json*> seen_;                       ///< materials that were added
-  Loaded cameras_;  ///< cameras that were added, with their indices
+  /// Nodes to visit. The flag is true if the children of the node have been pushed.
+  std::vector<std::pair<const Json*, bool>> stack_;
+  std::map<const Json*, std::size_t> numbers_;  ///< indices of the nodes, parents first
+  std::set<const Json*> seen_;                  ///< materials that were added
+  Loaded cameras_;                              ///< cameras that were added, with their indices
   Loaded lights_;
   Loaded first_meshes_;     ///< meshes, with Assimp's number of their first primitive
   std::size_t meshes_ = 0;  ///< number of Assimp's meshes

@@ -14,13 +14,14 @@
 
 namespace bandsaw {
 
-/// A camera or light at a node: Assimp stores only one node for each.
+/// A camera or light at a node. Assimp stores only one node for each camera and each light, even if
+/// several nodes share it.
 struct GltfAtNode {
   std::size_t node = 0;    ///< index of the node in Assimp's tree, parents first
   std::size_t loaded = 0;  ///< index among the objects of its kind, in Assimp's order
   std::string name;        ///< its own name, not its node's; may be empty
-  /// The vertical field of view in radians, of a perspective camera. Assimp passes on a horizontal
-  /// one, which its versions compute in different ways.
+  /// The vertical field of view of a perspective camera, in radians. Assimp passes on a horizontal
+  /// field of view, which its versions compute in different ways.
   std::optional<double> vertical_fov;
 };
 
@@ -36,7 +37,8 @@ struct GltfLoadOrder {
   std::map<std::size_t, std::size_t> nodes;
 };
 
-/// Returns pointers into `root`.
+/// Returns the load order of the default scene of the JSON `root`. The result contains pointers
+/// into `root`.
 GltfLoadOrder load_order(const gltf::Json& root);
 
 }  // namespace bandsaw

@@ -26,7 +26,7 @@ namespace bandsaw {
 /// A mesh that no animation changes, converted for the scene.
 struct StillMesh {
   std::shared_ptr<const Mesh> mesh;
-  std::vector<std::string> warnings;  ///< of the conversion; repeated for each frame
+  std::vector<std::string> warnings;  ///< warnings of the conversion; repeated for each frame
 };
 
 /// Still meshes of one model, keyed by Assimp's number, by whether they have colours, and by the

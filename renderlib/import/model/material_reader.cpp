@@ -39,7 +39,7 @@ ImageTexture::Wrap wrap_of(aiTextureMapMode mode) {
 UvTransform uv_transform_of(const aiUVTransform& from) {
   const double su = from.mScaling.x;
   const double sv = from.mScaling.y;
-  constexpr double kTurn = 6.283185307179586;
+  constexpr double kTurn = 6.283185307179586;  // 2 pi
   const double turns = from.mRotation / kTurn;
   if (!std::isfinite(su) || !std::isfinite(sv) || !std::isfinite(turns) ||
       !std::isfinite(from.mTranslation.x) || !std::isfinite(from.mTranslation.y)) {
@@ -130,7 +130,7 @@ void MaterialReader::name_dead_files() {
       const absl::Status found = file.empty() ? absl::OkStatus() : textures_.locate(file);
       const bool dead = absl::IsNotFound(found) || absl::IsPermissionDenied(found);
       if (dead && dead_files_.insert(file).second) {
-        unsupported(absl::StrCat(found.message(), "; it is shown without"));
+        unsupported(absl::StrCat(found.message(), "; the material is shown without this texture"));
       }
     }
   }
@@ -278,7 +278,8 @@ absl::StatusOr<TextureId> MaterialReader::bump_map(Slot slot) {
   TextureStore::Use use = use_of(slot);
   use.linear = true;
   use.become = TextureStore::Use::Become::kNormals;
-  // Formats define no unit of heights. One texel keeps bumps visible and shallow.
+  // File formats define no unit of heights. The unit here is one texel, which keeps bumps visible
+  // and shallow.
   float strength = 1;
   material_.Get(AI_MATKEY_OBJ_BUMPMULT(slot.type, slot.index), strength);
   use.by = std::isfinite(strength) ? std::clamp(double{strength}, -1e6, 1e6) : 1;

@@ -35,7 +35,7 @@ class MaterialReader {
   /// Returns a colour of the material, each channel clamped to [0, most]; std::nullopt if it is
   /// absent.
   std::optional<Rgb> color(const char* key, float most) const;
-  /// Returns the fourth number of such a colour, in [0, 1]; 1 if there is none.
+  /// Returns the alpha of the colour under Assimp's key, clamped to [0, 1]; 1 if it is absent.
   double alpha_of(const char* key) const;
 
   /// Returns true if a mesh of this material has vertex colours.
@@ -58,10 +58,10 @@ class MaterialReader {
   /// `factor`; a white texture if has() is false. Errors name the material.
   absl::StatusOr<TextureId> map(Slot slot, As as, const Rgb& factor = {1, 1, 1});
   absl::StatusOr<TextureId> white() const { return file_.draft.textures.constant({1, 1, 1}); }
-  /// Returns an opacity map: the brightness of the image if its alpha is 1 everywhere and it is not
-  /// also the colour texture; otherwise its alpha.
+  /// Returns an opacity map. The opacity is the alpha of the image if the alpha is not 1 everywhere
+  /// or if the image is also the colour texture. Otherwise it is the brightness of the image.
   absl::StatusOr<TextureId> opacity_map(Slot slot);
-  /// Returns the normal map of a height map.
+  /// Returns a normal map that is computed from the height map in the slot.
   absl::StatusOr<TextureId> bump_map(Slot slot);
   /// Returns a texture for MetallicRoughness::index_map with which F0 is the texel of the slot
   /// times the F0 of `index` (> 1).
@@ -79,10 +79,14 @@ class MaterialReader {
  private:
   std::string name() const;  ///< as in the file
   std::string file_of(Slot slot) const;
+  /// Returns the wrap modes, filter, transform and uv set of a texture.
   TextureStore::Use use_of(Slot slot);
   absl::StatusOr<TextureId> find(Slot slot, const TextureStore::Use& use);
+  /// Returns the material's set for Assimp's number of a uv set. A third set is replaced by the
+  /// first, with a warning.
   UvSet uv_set_of(unsigned assimp_set);
   void name_dead_files();
+  /// Returns the error with the names of the model and the material before its message.
   absl::Status failed(const absl::Status& why) const;
 
   ModelFile& file_;

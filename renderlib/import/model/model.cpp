@@ -40,7 +40,7 @@ namespace bandsaw {
 namespace {
 
 // Returns the error of a model that Assimp could not read. If there are files that Assimp could not
-// open, the error names the first, because such a file is mostly the cause.
+// open, the error names the first, because such a file is usually the cause.
 absl::Status read_failure(const std::string& name, const RefusedFiles& refused,
                           absl::string_view reason) {
   if (!refused.outside.empty()) {
@@ -291,6 +291,8 @@ bool has_triangles(const ModelMeshes& meshes) {
                      [](const std::optional<ModelMesh>& mesh) { return mesh.has_value(); });
 }
 
+/// Loads a model and converts its materials, meshes and nodes. Implements read_model() and
+/// read_made_model().
 absl::StatusOr<Model> read_source(const ModelSource& source, const AnimationChoice& animation,
                                   bool with_materials, SceneDraft& draft) {
   const std::string& path = source.path;

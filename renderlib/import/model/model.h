@@ -44,16 +44,18 @@ bool is_model_file(const std::string& path);
 /// Reads a model. `path` is a real path below the draft's folder. Without `with_materials` no
 /// texture is read, and the materials of the placements are unspecified. Omitted and repaired parts
 /// are warnings of the draft. Messages begin with the file's name. Returns INVALID_ARGUMENT if the
-/// model is broken or has no triangles, NOT_FOUND for a file that it needs or for the animation,
-/// and PERMISSION_DENIED for a file outside of the scene's folder. `animation` chooses one of its
-/// animations, which is evaluated over the draft's shutter interval: nodes move during the
-/// interval, and vertices of skins and morph targets have one position at its beginning and one at
-/// its end. With an animation the model may have no placements: a scale of 0 hides a node.
+/// model is broken or has no triangles, NOT_FOUND if a file that it needs or the chosen animation
+/// is missing, and PERMISSION_DENIED for a file outside of the scene's folder. `animation` chooses
+/// one of the model's animations, which is evaluated over the draft's shutter interval. Nodes move
+/// during the interval. Vertices of skins and morph targets have one position at the beginning of
+/// the interval and one at its end. With an animation the model may have no placements, because a
+/// scale of 0 hides a node.
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft,
                                  const AnimationChoice& animation = {});
 
-/// Reads a model that a converter made, from its bytes. The model may name files of the scene's
-/// folder; it MUST NOT be glTF. Otherwise as read_model.
+/// Reads a model that a converter made, from its bytes. `name` is a file name, as if the model were
+/// in the scene's folder. The model may name files of this folder; it MUST NOT be glTF. In all
+/// other respects, the function works as read_model() without a chosen animation.
 absl::StatusOr<Model> read_made_model(const std::string& name, absl::string_view bytes,
                                       bool with_materials, SceneDraft& draft);
 

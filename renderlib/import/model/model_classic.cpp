@@ -21,10 +21,10 @@ constexpr float kMaxRadiance = 1e30f;
 /// The numbers of the material; implausible ones have been replaced.
 struct Classic {
   Rgb base;
-  bool textured = false;  ///< the base colour has a texture
-  Rgb specular;           ///< black if there is no highlight
-  double exponent = 0;    ///< exponent of Blinn's highlight
-  std::optional<double> index;
+  bool textured = false;        ///< the base colour has a texture
+  Rgb specular;                 ///< black if there is no highlight
+  double exponent = 0;          ///< exponent of Blinn's highlight
+  std::optional<double> index;  ///< index of refraction, if the file has one above 1
   Rgb glow;
   bool glow_map = false;
   double opacity = 1;
@@ -93,6 +93,8 @@ Classic read_numbers(MaterialReader& reader) {
 // section 5.1).
 double roughness_of(double exponent) { return std::sqrt(std::sqrt(2 / (exponent + 2))); }
 
+// Sets the metallic share, the roughness and the index of refraction. A black material with a
+// highlight and without a texture is a metal of the highlight's colour.
 void set_gloss(const Classic& from, MetallicRoughness& to) {
   to.metallic.factor = 0;
   to.roughness.factor = is_black(from.specular) ? 1 : roughness_of(from.exponent);
@@ -101,16 +103,17 @@ void set_gloss(const Classic& from, MetallicRoughness& to) {
     to.base_color.factor = from.specular;
     return;
   }
-  // A material that is not a metal reflects little, whatever Ks is: as much as its index gives, or
-  // without an index at most as much as glass, whose F0 is 0.04. From r = sqrt(F0) the index
-  // follows as (1 + r) / (1 - r).
+  // A material that is not a metal reflects little, whatever Ks is. If it has a highlight and an
+  // index, the index is used. Otherwise F0 is the luminance of the highlight's colour, but at most
+  // 0.04 as for glass. From r = sqrt(F0) the index follows as (1 + r) / (1 - r).
   constexpr double kGlass = 0.04;
   const double f0 = std::sqrt(std::min(kGlass, double{luminance(from.specular)}));
   to.index_of_refraction =
       !is_black(from.specular) && from.index ? *from.index : (1 + f0) / (1 - f0);
 }
 
-// A specular map without a highlight is ignored.
+// Reads the specular map as the base colour of a metal, or as the index map of another material. A
+// specular map without a highlight is ignored.
 absl::Status read_specular_map(MaterialReader& reader, const Classic& from, MetallicRoughness& to) {
   const Slot slot{aiTextureType_SPECULAR};
   if (!reader.has(slot) || is_black(from.specular)) {
@@ -124,6 +127,8 @@ absl::Status read_specular_map(MaterialReader& reader, const Classic& from, Meta
   return absl::OkStatus();
 }
 
+// Reads the normal map, or makes one from the height map. A height map that contains normals is
+// used as a normal map.
 absl::Status read_bump(MaterialReader& reader, Relief& to) {
   Slot slot{aiTextureType_NORMALS};
   if (!reader.has(slot)) {

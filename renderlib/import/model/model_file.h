@@ -1,6 +1,6 @@
 #pragma once
 
-// State that the functions which convert one model share: read_source() in model.cpp makes it.
+// The state that the functions which convert one model share. read_source() in model.cpp makes it.
 
 #include <optional>
 #include <string>

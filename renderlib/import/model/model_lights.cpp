@@ -1,5 +1,5 @@
 // Converts each kind of light that Assimp reads to a delta light (from a point or from one
-// direction), in the place of its node.
+// direction) at its node.
 
 #include "renderlib/import/model/model_lights.h"
 
@@ -33,8 +33,8 @@ Rgb brightness_of(const aiLight& from) {
 
 /// Returns the intensity of a light at distance 1. In Assimp, the falloff with the distance r is 1
 /// / (c + l r + q r^2). If c = l = 0 and q > 0, the light falls off with the square of the
-/// distance. Other falloffs, which few formats have and which are not physical, are replaced, with
-/// a warning, by the falloff with the square that has the same intensity at distance 1.
+/// distance. Other falloffs are not physical, and few formats have them. They are replaced, with a
+/// warning, by a falloff with the square of the distance that has the same intensity at distance 1.
 Rgb intensity_of(const aiLight& from, ModelFile& file) {
   const float square = from.mAttenuationQuadratic;
   // `square` is infinite for FBX lights whose decay starts at 0.
@@ -74,6 +74,8 @@ bool has_whole_angles(const ModelFile& file) {
   });
 }
 
+/// Makes a spot light. `direction` is a unit vector. The angle from the axis to the edge of each
+/// cone is clamped to [0, 90] degrees.
 SpotLight spot_of(const aiLight& from, const Vec3& position, const Vec3& direction,
                   const Rgb& intensity, const ModelFile& file) {
   const double share = has_whole_angles(file) ? 0.5 : 1;
@@ -100,14 +102,14 @@ void add_model_light(const aiLight& from, const Transform& node, ModelFile& file
         return leave_out("it has no direction");
       }
       if (directional_lights(model) == kMaxDirectionalLights) {
-        return leave_out("there are too many directional ones");
+        return leave_out("there are too many directional lights");
       }
       model.lights.emplace_back(DirectionalLight{*direction, brightness_of(from)});
       return;
     case aiLightSource_POINT:
     case aiLightSource_SPOT:
       if (!is_place(position)) {
-        return leave_out("it has no place");
+        return leave_out("its position is not valid");
       }
       if (from.mType == aiLightSource_POINT) {
         model.lights.emplace_back(PointLight{position, intensity_of(from, file)});

@@ -50,6 +50,8 @@ void add_vertices(const aiMesh& from, const Poses& poses, Mesh& mesh) {
   mesh.normals = std::move(open.normals);
 }
 
+/// Adds the faces of `from` that are triangles with finite vertices, and counts the others. Returns
+/// INVALID_ARGUMENT, with `title` before the message, if an index is out of range.
 absl::Status add_triangles(const aiMesh& from, const std::string& title, Mesh& mesh,
                            Counts& counts) {
   const auto finite = [&](std::uint32_t index) {

@@ -23,11 +23,11 @@ struct ModelMesh {
 /// rendered.
 using ModelMeshes = std::vector<std::optional<ModelMesh>>;
 
-/// Adds the meshes to the draft: triangles only. A mesh whose pose changes while the shutter is
-/// open gets the vertices at both ends of the shutter interval. Triangles with a vertex that is not
-/// finite are omitted (a warning counts them); normals, uvs and colours that are not finite are
-/// repaired. Vertex colours are only read together with the file's materials. Returns
-/// INVALID_ARGUMENT if an index is out of range.
+/// Adds the triangles of the meshes to the draft. `materials` have Assimp's order. A mesh whose
+/// pose changes while the shutter is open gets the vertices at both ends of the shutter interval.
+/// Triangles with a vertex that is not finite are omitted (a warning counts them); normals, uvs and
+/// colours that are not finite are repaired. Vertex colours are read only if `with_colors` is true.
+/// Returns INVALID_ARGUMENT if an index is out of range.
 absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelMaterial>& materials,
                                        bool with_colors);
 

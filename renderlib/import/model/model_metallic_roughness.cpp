@@ -21,6 +21,7 @@ using As = MaterialReader::As;
 using Slot = MaterialReader::Slot;
 constexpr float kMaxRadiance = 1e30f;
 
+/// Returns `first` if the material has that texture, and `second` otherwise.
 Slot either(const MaterialReader& reader, Slot first, Slot second) {
   return reader.has(first) ? first : second;
 }

@@ -82,13 +82,13 @@ bool has_usable_cameras(const ModelFile& file) {
          absl::EndsWithIgnoreCase(file.path, ".fbx");
 }
 
-/// Returns the keys of a node's motion during the shutter interval; empty if the motion has a key
-/// that cannot be interpolated: it flattens the node, or mirrors it only for a time.
+/// Returns the keys of a node's motion during the shutter interval. Returns no keys if the keys
+/// cannot be interpolated, because one flattens the node or because only some mirror it.
 std::vector<Key> keys_of(const NodeMotion& motion, const Shutter& shutter) {
   std::vector<double> times = motion.times_between(shutter.open, shutter.close);
   if (!motion.is_linear()) {
-    // Interpolation between keys only approximates curves that are not linear, so it gets more
-    // keys.
+    // Interpolation between keys only approximates a curve that is not linear, so such a motion
+    // gets more keys.
     constexpr int kParts = 16;
     for (int i = 1; i < kParts; ++i) {
       times.push_back(shutter.open + (shutter.close - shutter.open) * i / kParts);
@@ -113,8 +113,8 @@ std::vector<Key> keys_of(const NodeMotion& motion, const Shutter& shutter) {
 
 // Visits all nodes of the file's tree and collects instances, cameras and lights in `model`.
 // `flattened` counts the instances that are left out because their transform has no inverse and
-// would make them flat. The traversal uses an explicit stack, because the file can make the tree
-// deep.
+// would make them flat. The traversal uses an explicit stack, because a file can nest nodes so
+// deeply that recursion would exhaust the call stack.
 class Walk {
  public:
   Walk(ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
@@ -171,7 +171,7 @@ class Walk {
   /// The place of a node for its instances, and its transforms to the model's space at three times
   /// of the shutter interval.
   struct NodePlace {
-    Transform in_frame;  ///< transform to `frame`, or to the model's space if that is kNoFrame
+    Transform in_frame;  ///< transform to `frame`; to the model's space if `frame` is kNoFrame
     FrameId frame = kNoFrame;
     Transform at_open;
     Transform in_middle;
@@ -191,8 +191,8 @@ class Walk {
                     parent.at_open * local(shutter.open),
                     parent.in_middle * local(middle_of(shutter)),
                     parent.at_close * local(shutter.close)};
-    // A moving node becomes a frame. If keys_of() returns no keys, it rests where it is in the
-    // middle of the shutter interval.
+    // A moving node becomes a frame. If keys_of() returns no keys, the node rests at its place in
+    // the middle of the shutter interval.
     if (motion != nullptr && !motion->rests(shutter.open, shutter.close)) {
       if (std::vector<Key> keys = keys_of(*motion, shutter); !keys.empty()) {
         place.in_frame = Transform{};
@@ -270,13 +270,16 @@ class Walk {
   const ModelMeshes& meshes_;
   std::size_t visited_ = 0;  ///< number of visited nodes
   std::map<std::size_t, CameraAtNode>
-      standing_;  ///< cameras of glTF, keyed by the index of their node
+      standing_;  ///< cameras of glTF, keyed by the index of their node in Assimp's tree
   std::map<std::string, CameraAtNode> cameras_;  ///< other cameras, keyed by the name of their node
-  std::map<std::size_t, const aiLight*> shining_;  ///< lights of glTF, keyed in the same way
+  std::map<std::size_t, const aiLight*>
+      shining_;  ///< lights of glTF, keyed by the index of their node
+  /// Other lights, keyed by the name of their node.
   std::multimap<std::string, const aiLight*> lights_;
   std::vector<Entry> stack_;
-  std::set<unsigned>
-      skinned_;  ///< skinned meshes that have been placed, by their bones and not by their nodes
+  /// Skinned meshes that have been added. Their bones place them, so each is added only once, even
+  /// if several nodes have it.
+  std::set<unsigned> skinned_;
 };
 
 }  // namespace
