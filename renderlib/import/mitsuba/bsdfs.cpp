@@ -39,8 +39,9 @@ absl::Status add_emission(const Object& emitter, const TexturedSurface& surface,
   }
   ASSIGN_OR_RETURN(const std::optional<Rgb> color, constant_color(*radiance, ColorOf::kLight));
   if (color) {
-    const auto least = [](float c) { return std::max(c, 0.0f); };
-    set_color({least(color->r), least(color->g), least(color->b)}, material.mutable_emission());
+    const auto not_negative = [](float c) { return std::max(c, 0.0f); };
+    set_color({not_negative(color->r), not_negative(color->g), not_negative(color->b)},
+              material.mutable_emission());
   } else {
     ASSIGN_OR_RETURN(*material.mutable_emission_texture(),
                      texture_of(*radiance, ColorOf::kLight, surface, to));

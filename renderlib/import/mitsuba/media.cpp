@@ -47,8 +47,9 @@ class MediumReader {
  private:
   static absl::Status set_colors(const Rgb& absorbs, const Rgb& scatters, double scale,
                                  scene::Medium& medium) {
-    const auto least = [](float c) { return std::max(c, 0.0f); };
-    set_color({least(absorbs.r), least(absorbs.g), least(absorbs.b)}, medium.mutable_absorption());
+    const auto not_negative = [](float c) { return std::max(c, 0.0f); };
+    set_color({not_negative(absorbs.r), not_negative(absorbs.g), not_negative(absorbs.b)},
+              medium.mutable_absorption());
     set_color(scatters, medium.mutable_scattering());
     medium.set_density(scale);
     return absl::OkStatus();

@@ -157,10 +157,10 @@ absl::StatusOr<MeshFile> Meshes::file_of(const MeshRequest& request) {
   if (as_it_is) {
     file = {request.file.name, {natural, {}}};
   } else {
-    MeshRequest with = request;
-    with.turned = turned;
-    with.face_normals = faceted;
-    ASSIGN_OR_RETURN(file, made_of(*mesh, with));
+    MeshRequest adjusted = request;
+    adjusted.turned = turned;
+    adjusted.face_normals = faceted;
+    ASSIGN_OR_RETURN(file, made_of(*mesh, adjusted));
   }
   known_.emplace(key, file);
   return file;

@@ -65,7 +65,7 @@ absl::Status add_sample(Spectrum& spectrum, double nanometres, double value) {
 }
 
 /// Returns the spectrum, or INVALID_ARGUMENT if it has fewer than two samples.
-absl::StatusOr<Spectrum> whole(Spectrum spectrum) {
+absl::StatusOr<Spectrum> with_enough_samples(Spectrum spectrum) {
   if (spectrum.samples.size() < 2) {
     return absl::InvalidArgumentError("a sampled spectrum needs at least two wavelengths");
   }
@@ -151,7 +151,7 @@ absl::StatusOr<Spectrum> read_spectrum(absl::string_view text) {
     ASSIGN_OR_RETURN(const double value, read_number(pair.second));
     RETURN_IF_ERROR(add_sample(spectrum, nanometres, value));
   }
-  return whole(std::move(spectrum));
+  return with_enough_samples(std::move(spectrum));
 }
 
 absl::StatusOr<Spectrum> read_spectrum_file(absl::string_view text) {
@@ -167,7 +167,7 @@ absl::StatusOr<Spectrum> read_spectrum_file(absl::string_view text) {
     }
     RETURN_IF_ERROR(add_sample(spectrum, numbers[0], numbers[1]));
   }
-  return whole(std::move(spectrum));
+  return with_enough_samples(std::move(spectrum));
 }
 
 absl::StatusOr<Transform> read_matrix(absl::string_view text) {

@@ -30,17 +30,17 @@ void add_numbers(const Vec3& v, google::protobuf::RepeatedField<double>* to) {
 }
 
 /// Returns the factor of a transform that scales all directions alike; std::nullopt for others.
-std::optional<double> even_scale(const Transform& t) {
+std::optional<double> uniform_scale(const Transform& t) {
   const Vec3 x = t.direction({1, 0, 0});
   const Vec3 y = t.direction({0, 1, 0});
   const Vec3 z = t.direction({0, 0, 1});
   const double scale = length(x);
-  const double most = 1e-9 * scale * scale;
-  const bool even = std::abs(length_squared(y) - scale * scale) <= most &&
-                    std::abs(length_squared(z) - scale * scale) <= most &&
-                    std::abs(dot(x, y)) <= most && std::abs(dot(y, z)) <= most &&
-                    std::abs(dot(z, x)) <= most;
-  return even ? std::optional<double>(scale) : std::nullopt;
+  const double tolerance = 1e-9 * scale * scale;
+  const bool uniform = std::abs(length_squared(y) - scale * scale) <= tolerance &&
+                       std::abs(length_squared(z) - scale * scale) <= tolerance &&
+                       std::abs(dot(x, y)) <= tolerance && std::abs(dot(y, z)) <= tolerance &&
+                       std::abs(dot(z, x)) <= tolerance;
+  return uniform ? std::optional<double>(scale) : std::nullopt;
 }
 
 /// Returns the square [-1, 1]^2 in z = 0, as Mitsuba's rectangle.
@@ -416,7 +416,7 @@ absl::Status ShapeReader::add_sphere(const Parameters& from, const Surface& surf
   } else if (material.name.empty()) {
     return absl::OkStatus();
   }
-  const std::optional<double> scale = even_scale(placed.to_world);
+  const std::optional<double> scale = uniform_scale(placed.to_world);
   if (uv || !scale) {
     shape.mutable_sphere()->set_radius(1);
     const Transform axes{{{{-1, 0, 0, 0}, {0, 0, 1, 0}, {0, 1, 0, 0}}}};

@@ -17,7 +17,7 @@
 namespace bandsaw::mitsuba {
 namespace {
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr double kDegreesPerRadian = 180 / 3.14159265358979323846;
 
 /// An affine map of the plane. Each row (a, b, c) gives a coordinate a u + b v + c of the result.
 using Affine = std::array<std::array<double, 3>, 2>;
@@ -59,7 +59,7 @@ Affine in_our_frame(const Affine& m, UvFrame frame) {
 bool set_uv(const Affine& m, scene::ImageTexture& to) {
   const bool turned = m[1][0] != 0;
   const double angle = turned ? atan2(m[1][0], m[0][0]) : 0;
-  const SinCos turn = turned ? sincos_degrees(angle * kDegrees) : SinCos{0, 1};
+  const SinCos turn = turned ? sincos_degrees(angle * kDegreesPerRadian) : SinCos{0, 1};
   const double u_scale = turned ? std::sqrt(m[0][0] * m[0][0] + m[1][0] * m[1][0]) : m[0][0];
   const double v_scale = m[1][1] * turn.cos - m[0][1] * turn.sin;
   const double shear = m[0][1] * turn.cos + m[1][1] * turn.sin;
@@ -72,7 +72,7 @@ bool set_uv(const Affine& m, scene::ImageTexture& to) {
     to.add_uv_offset(m[1][2]);
   }
   if (turned) {
-    to.set_uv_rotate(angle * kDegrees);
+    to.set_uv_rotate(angle * kDegreesPerRadian);
   }
   return std::abs(shear) <= 1e-9 * (std::abs(u_scale) + std::abs(v_scale));
 }
@@ -318,11 +318,11 @@ absl::StatusOr<Varying> varying_of(const Parameters& from, const std::string& na
   }
   ASSIGN_OR_RETURN(const std::optional<Rgb> constant, constant_color(*property, ColorOf::kNumber));
   if (constant) {
-    const bool even = constant->r == constant->g && constant->g == constant->b;
+    const bool is_gray = constant->r == constant->g && constant->g == constant->b;
     if (const auto* number = std::get_if<double>(&property->value)) {
       return Varying{*number};  // not rounded to a float
     }
-    return Varying{even ? constant->r : luminance(*constant)};
+    return Varying{is_gray ? constant->r : luminance(*constant)};
   }
   ASSIGN_OR_RETURN(scene::Texture texture, texture_of(*property, ColorOf::kNumber, surface, to));
   return Varying{1, std::move(texture)};

@@ -117,13 +117,13 @@ MaterialReader::MaterialReader(ModelFile& file, unsigned index)
   material_.Get(AI_MATKEY_NAME, name);
   called_ = name.length == 0 ? absl::StrCat(index) : absl::StrCat("\"", name.C_Str(), "\"");
   if (kind() == ModelKind::kOther) {
-    name_dead_files();
+    find_dead_files();
   }
 }
 
 // Finds the textures whose files are missing or must not be read. Such a texture is left out with a
 // warning. This is called only for formats in which names of missing files are common.
-void MaterialReader::name_dead_files() {
+void MaterialReader::find_dead_files() {
   for (unsigned type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
     for (unsigned index = 0; index < material_.GetTextureCount(aiTextureType(type)); ++index) {
       const std::string file = file_of({aiTextureType(type), index});

@@ -85,7 +85,7 @@ class MaterialReader {
   /// Returns the material's set for Assimp's number of a uv set. A third set is replaced by the
   /// first, with a warning.
   UvSet uv_set_of(unsigned assimp_set);
-  void name_dead_files();
+  void find_dead_files();
   /// Returns the error with the names of the model and the material before its message.
   absl::Status failed(const absl::Status& why) const;
 

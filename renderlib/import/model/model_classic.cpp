@@ -107,9 +107,8 @@ void set_gloss(const Classic& from, MetallicRoughness& to) {
   // index, the index is used. Otherwise F0 is the luminance of the highlight's colour, but at most
   // 0.04 as for glass. From r = sqrt(F0) the index follows as (1 + r) / (1 - r).
   constexpr double kGlass = 0.04;
-  const double f0 = std::sqrt(std::min(kGlass, double{luminance(from.specular)}));
-  to.index_of_refraction =
-      !is_black(from.specular) && from.index ? *from.index : (1 + f0) / (1 - f0);
+  const double r = std::sqrt(std::min(kGlass, double{luminance(from.specular)}));
+  to.index_of_refraction = !is_black(from.specular) && from.index ? *from.index : (1 + r) / (1 - r);
 }
 
 // Reads the specular map as the base colour of a metal, or as the index map of another material. A

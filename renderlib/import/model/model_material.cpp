@@ -11,7 +11,7 @@ namespace bandsaw {
 namespace {
 
 // Adds a warning for each texture that is not rendered.
-void name_unused_textures(MaterialReader& reader) {
+void warn_of_unused_textures(MaterialReader& reader) {
   constexpr struct {
     aiTextureType type;
     const char* what;
@@ -53,7 +53,7 @@ absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
 
 absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned index) {
   MaterialReader reader(file, index);
-  name_unused_textures(reader);
+  warn_of_unused_textures(reader);
   if (reader.gltf() != nullptr) {
     for (const std::string& what : reader.gltf()->unsupported) {
       reader.unsupported(what);

@@ -45,9 +45,9 @@ absl::Status read_base(MaterialReader& reader, MetallicRoughness& to) {
   to.base_color.factor = base ? *base : reader.color("$clr.diffuse", 1).value_or(Rgb{1, 1, 1});
   // glTF stores metallic and roughness in one image; other formats have an image for each.
   const Slot both{aiTextureType_UNKNOWN};
-  const bool one = reader.kind() == ModelKind::kGltf && reader.has(both);
-  const Slot metal = one ? both : Slot{aiTextureType_METALNESS};
-  const Slot rough = one ? both : Slot{aiTextureType_DIFFUSE_ROUGHNESS};
+  const bool shared = reader.kind() == ModelKind::kGltf && reader.has(both);
+  const Slot metal = shared ? both : Slot{aiTextureType_METALNESS};
+  const Slot rough = shared ? both : Slot{aiTextureType_DIFFUSE_ROUGHNESS};
   ASSIGN_OR_RETURN(to.metallic.texture, reader.map(metal, As::kNumber));
   ASSIGN_OR_RETURN(to.roughness.texture, reader.map(rough, As::kNumber));
   const bool gltf = reader.kind() == ModelKind::kGltf;
@@ -66,11 +66,11 @@ absl::Status read_emission(MaterialReader& reader, Emission& to) {
           : reader.number("$mat.emissiveIntensity", 0, double{kMaxRadiance}).value_or(1);
   const Rgb color = reader.color("$clr.emissive", kMaxRadiance).value_or(Rgb{}) *
                     static_cast<float>(std::clamp(strength, 0.0, 1e8));  // 1e30 * 1e8 is finite
-  const auto least = [](float v) { return std::min(v, kMaxRadiance); };
-  to.radiance.factor = {least(color.r), least(color.g), least(color.b)};
-  int both = reader.kind() == ModelKind::kGltf ? 0 : 1;
-  reader.material().Get(AI_MATKEY_TWOSIDED, both);
-  to.one_sided = both == 0;
+  const auto bounded = [](float v) { return std::min(v, kMaxRadiance); };
+  to.radiance.factor = {bounded(color.r), bounded(color.g), bounded(color.b)};
+  int two_sided = reader.kind() == ModelKind::kGltf ? 0 : 1;
+  reader.material().Get(AI_MATKEY_TWOSIDED, two_sided);
+  to.one_sided = two_sided == 0;
   return absl::OkStatus();
 }
 

@@ -121,12 +121,13 @@ class Walk {
     const aiScene& scene = file.scene;
     for (const GltfAtNode& camera : file.gltf.cameras) {
       if (camera.loaded < scene.mNumCameras) {
-        standing_[camera.node] = {scene.mCameras[camera.loaded], camera.name, camera.vertical_fov};
+        gltf_cameras_[camera.node] = {scene.mCameras[camera.loaded], camera.name,
+                                      camera.vertical_fov};
       }
     }
     for (const GltfAtNode& light : file.gltf.lights) {
       if (light.loaded < scene.mNumLights) {
-        shining_[light.node] = scene.mLights[light.loaded];
+        gltf_lights_[light.node] = scene.mLights[light.loaded];
       }
     }
     const bool by_name = file.gltf.cameras.empty() && has_usable_cameras(file);
@@ -134,7 +135,7 @@ class Walk {
       add_by_name(*scene.mCameras[i]);
     }
     for (unsigned i = 0; file.gltf.lights.empty() && i < scene.mNumLights; ++i) {
-      lights_.emplace(scene.mLights[i]->mName.C_Str(), scene.mLights[i]);
+      named_lights_.emplace(scene.mLights[i]->mName.C_Str(), scene.mLights[i]);
     }
     stack_.push_back({scene.mRootNode, {}});
   }
@@ -165,7 +166,7 @@ class Walk {
       at.vertical_fov = lens->second.vertical_fov;
       at.height = lens->second.height;
     }
-    cameras_.emplace(camera.mName.C_Str(), at);
+    named_cameras_.emplace(camera.mName.C_Str(), at);
   }
 
   /// The place of a node for its instances, and its transforms to the model's space at three times
@@ -235,11 +236,11 @@ class Walk {
   }
 
   void add_camera(const aiNode& node, const NodePlace& place) {
-    const auto standing = standing_.find(visited_);
-    const auto named = cameras_.find(node.mName.C_Str());
-    const CameraAtNode found = standing != standing_.end() ? standing->second
-                               : named != cameras_.end()   ? named->second
-                                                           : CameraAtNode{};
+    const auto by_index = gltf_cameras_.find(visited_);
+    const auto named = named_cameras_.find(node.mName.C_Str());
+    const CameraAtNode found = by_index != gltf_cameras_.end() ? by_index->second
+                               : named != named_cameras_.end() ? named->second
+                                                               : CameraAtNode{};
     if (found.camera == nullptr) {
       return;
     }
@@ -257,10 +258,10 @@ class Walk {
   }
 
   void add_lights(const aiNode& node, const Transform& to_model) {
-    if (const auto shining = shining_.find(visited_); shining != shining_.end()) {
-      add_model_light(*shining->second, to_model, file_, model);
+    if (const auto by_index = gltf_lights_.find(visited_); by_index != gltf_lights_.end()) {
+      add_model_light(*by_index->second, to_model, file_, model);
     }
-    const auto [first, last] = lights_.equal_range(node.mName.C_Str());
+    const auto [first, last] = named_lights_.equal_range(node.mName.C_Str());
     for (auto light = first; light != last; ++light) {
       add_model_light(*light->second, to_model, file_, model);
     }
@@ -269,13 +270,14 @@ class Walk {
   ModelFile& file_;
   const ModelMeshes& meshes_;
   std::size_t visited_ = 0;  ///< number of visited nodes
-  std::map<std::size_t, CameraAtNode>
-      standing_;  ///< cameras of glTF, keyed by the index of their node in Assimp's tree
-  std::map<std::string, CameraAtNode> cameras_;  ///< other cameras, keyed by the name of their node
-  std::map<std::size_t, const aiLight*>
-      shining_;  ///< lights of glTF, keyed by the index of their node
+  /// Cameras of glTF, keyed by the index of their node in Assimp's tree.
+  std::map<std::size_t, CameraAtNode> gltf_cameras_;
+  /// Other cameras, keyed by the name of their node.
+  std::map<std::string, CameraAtNode> named_cameras_;
+  /// Lights of glTF, keyed by the index of their node in Assimp's tree.
+  std::map<std::size_t, const aiLight*> gltf_lights_;
   /// Other lights, keyed by the name of their node.
-  std::multimap<std::string, const aiLight*> lights_;
+  std::multimap<std::string, const aiLight*> named_lights_;
   std::vector<Entry> stack_;
   /// Skinned meshes that have been added. Their bones place them, so each is added only once, even
   /// if several nodes have it.
