@@ -9,6 +9,7 @@
 
 namespace bandsaw {
 
+/// Returns Assimp's matrix as a Transform. Its last row is not used.
 Transform transform_of(const aiMatrix4x4& m);
 
 /// Flattens the tree of nodes. Each mesh of each node becomes an instance; the transforms from the

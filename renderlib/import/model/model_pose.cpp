@@ -57,7 +57,8 @@ void add_morph_targets(const aiMesh& from, const std::vector<double>& weights, V
   }
 }
 
-/// Transforms vertices and normals to the model's space.
+/// Transforms vertices and normals to the model's space. `bones` are the transforms of the mesh's
+/// bones to the model's space. `place` is the transform of the vertices that have no bone.
 void add_skin(const aiMesh& from, const std::vector<Transform>& bones, const Transform& place,
               Vertices& to) {
   Transform nothing;

@@ -26,14 +26,16 @@ struct NodePlaces {
   std::map<std::string, std::size_t> by_name;  ///< if several share a name, the first
   std::map<unsigned, std::size_t> of_meshes;   ///< the first node of each mesh
 };
-/// `time` is in seconds. `animation` may be nullptr: the nodes rest.
+/// Returns the nodes at `time`, in seconds. If `animation` is nullptr, each node has the transform
+/// that the file gives it.
 NodePlaces node_places(const aiScene& scene, const Animation* animation, double time);
 
 /// The values on which a mesh's vertices depend.
 struct MeshPose {
   std::vector<double> weights =
       {};  ///< weights of the morph targets; empty: the weights in the file are used
-  /// Transforms of the mesh's bones to the model's space, in their order; std::nullopt: no skin.
+  /// Transforms of the mesh's bones to the model's space, in the order of the bones; std::nullopt:
+  /// no skin.
   std::optional<std::vector<Transform>> bones = std::nullopt;
   Transform place = {};  ///< transform of the skin's vertices that have no bone
   friend bool operator==(const MeshPose&, const MeshPose&) = default;

@@ -64,7 +64,7 @@ std::string last_part(const std::string& name) {
 }
 
 // Finds the file by increasingly tolerant interpretations of the name. If none succeeds, returns
-// the error for the unchanged name.
+// the error for the whole name.
 absl::StatusOr<std::string> find_file(const SceneFolder& in, const std::string& file,
                                       const std::string& model_folder) {
   const std::string name = absl::StrReplaceAll(file, {{"\\", "/"}});

@@ -36,7 +36,7 @@ class ModelTextures {
 
  private:
   struct Source {
-    std::string key;    ///< identifies the image
+    std::string key;    ///< identifies the image; for a file, its path
     std::string name;   ///< name for messages
     int embedded = -1;  ///< Assimp's number; -1 for a file
     absl::StatusOr<std::string> bytes(const aiScene& scene) const;

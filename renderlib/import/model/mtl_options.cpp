@@ -52,9 +52,10 @@ void read_texture(const std::string& material, absl::string_view line, MtlOption
     const absl::string_view option = take_word(line);
     const std::vector<double> numbers = take_numbers(line);
     if (numbers.empty()) {
-      take_word(line);  // "on", "sphere"
+      take_word(line);  // the argument is a word, such as "on" or "sphere"
     }
     if (option == "-s" || option == "-o") {
+      // The matrix has 2 rows of 3: the scale is at 0 and 4, the offset at 2 and 5.
       for (std::size_t i = 0; i < std::min<std::size_t>(numbers.size(), 2); ++i) {
         transform.m[option == "-s" ? 4 * i : 2 + 3 * i] = numbers[i];
       }

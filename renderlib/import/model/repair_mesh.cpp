@@ -17,7 +17,7 @@ bool is_good_normal(const std::array<float, 3>& n) {
   return std::isfinite(squared) && squared > 0;
 }
 
-/// Keeps only the values at the indices `kept`, which rise.
+/// Keeps only the values at the indices `kept`, which are in ascending order.
 template <class T>
 void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   if (values.empty()) {
@@ -29,7 +29,9 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   values.resize(kept.size());
 }
 
-/// Repairs the normals that belong to `positions`.
+/// Replaces each normal that is zero or not finite by the area-weighted mean of the normals of its
+/// triangles. The normals belong to the vertices `positions`. Returns the number of replaced
+/// normals.
 std::size_t repair(const std::vector<std::array<std::uint32_t, 3>>& triangles,
                    const std::vector<std::array<float, 3>>& positions,
                    std::vector<std::array<float, 3>>& normals) {

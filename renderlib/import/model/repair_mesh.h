@@ -8,8 +8,8 @@
 
 namespace bandsaw {
 
-/// If some vertex is not finite, removes all vertices that no triangle uses: a package holds finite
-/// vertices only.
+/// Removes all vertices that no triangle uses if any vertex of the mesh is not finite, because a
+/// package may contain only finite vertices.
 void drop_unused_vertices(Mesh& mesh);
 
 /// Replaces each normal that is zero or not finite by the area-weighted mean of the normals of its

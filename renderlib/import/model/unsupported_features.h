@@ -13,7 +13,8 @@ namespace bandsaw {
 
 class UnsupportedFeatures {
  public:
-  /// `what` is a sentence without a subject: "its specular map is left out".
+  /// Adds a feature of a material. `what` says what is done with the feature: "its specular map is
+  /// left out". `material` is the material's name in messages, with quotes.
   void add(const std::string& what, const std::string& material) {
     materials_[what].push_back(material);
   }

@@ -51,12 +51,13 @@ Rgb3 of_spectrum(const spectrum::Sampled& sampled, ColorUse use) {
                                  : spectrum::factor_rgb(sampled);
 }
 
-/// Returns the colour within its range; warns of a reflectance above 1.
+/// Clamps each channel to [0, 1] for a reflectance, and to [0, 1e12] for other uses. Warns if a
+/// channel is above this range.
 Rgb3 clamped(Rgb3 rgb, ColorUse use, const Parameter& parameter, Builder& builder) {
   const double most = use == ColorUse::kReflectance ? 1 : 1e12;
   if (*std::max_element(rgb.begin(), rgb.end()) > most + 1e-6) {
-    builder.warn(parameter.place,
-                 absl::StrCat("\"", parameter.name, "\" is above ", most, "; ", most, " is taken"));
+    builder.warn(parameter.place, absl::StrCat("\"", parameter.name, "\" is above ", most, "; ",
+                                               most, " is used instead"));
   }
   for (double& channel : rgb) {
     channel = std::clamp(channel, 0.0, most);
@@ -168,11 +169,12 @@ absl::StatusOr<std::optional<spectrum::Sampled>> spectrum_of(const Parameter& pa
   if (absl::StartsWith(name, "metal-") || absl::StartsWith(name, "glass-") ||
       absl::StartsWith(name, "stdillum-") || absl::StartsWith(name, "illum-")) {
     builder.warn(parameter.place,
-                 absl::StrCat("the spectrum \"", name, "\" is not known here; 1 stands for it"));
+                 absl::StrCat("the spectrum \"", name,
+                              "\" is not known here; a spectrum of 1 is used instead"));
     return flat;
   }
   ASSIGN_OR_RETURN(const auto bytes,
-                   read_or_warn(name, parameter.place, "a spectrum of 1 stands for it", builder));
+                   read_or_warn(name, parameter.place, "a spectrum of 1 is used instead", builder));
   return bytes ? checked(spectrum::parse_spd(*bytes)) : flat;
 }
 
@@ -205,6 +207,7 @@ absl::StatusOr<Rgb3> color_of(const Parameter& parameter, ColorUse use,
     return error_at(parameter.place, absl::StrCat("\"", parameter.type, " ", parameter.name,
                                                   "\" must be rgb, spectrum or blackbody"));
   }
+  // A spectrum that the scene itself defines is 0 outside of its wavelengths.
   const bool is_named = parameter.texts.size() == 1 && spectrum::named(parameter.texts[0]);
   return clamped(of_spectrum(is_named ? *sampled : spectrum::zero_outside(*sampled), use), use,
                  parameter, builder);

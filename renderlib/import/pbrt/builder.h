@@ -49,9 +49,9 @@ struct Builder {
 
   /// Factor of all light: exposure time x ISO / 100 of the film.
   double light_factor = 1;
-  double start_time = 0;  ///< seconds, when the motion starts (TransformTimes)
-  double end_time = 1;    ///< seconds, when it ends
-  bool has_motion = false;
+  double start_time = 0;    ///< seconds, when the motion starts (TransformTimes)
+  double end_time = 1;      ///< seconds, when it ends
+  bool has_motion = false;  ///< something in the scene moves
   Extent extent;
 
   /// Textures by name: those of colours and those of numbers.
@@ -64,15 +64,19 @@ struct Builder {
   std::map<std::string, Place> open_media;
   std::set<std::string> taken_media;  ///< names of media in use
   bool needs_vacuum = false;
-  std::map<std::string, std::string> material_names;       ///< serialised material -> name
-  std::set<std::string> taken_names;                       ///< names of materials in use
-  std::map<std::string, int> name_counts;                  ///< names made from a label
-  std::set<std::string> taken_textures;                    ///< names of textures in use
-  std::map<std::string, int> texture_counts;               ///< names made from a texture's name
-  std::map<std::string, double> largest_of_texture;        ///< by the texture's name in our scene
-  std::map<std::string, double> largest_of_image;          ///< by file, for images of floats
-  std::map<std::string, scene::Texture> limited_textures;  ///< by the name of the texture above 1
-  scene::Group* group = nullptr;                           ///< between ObjectBegin and ObjectEnd
+  std::map<std::string, std::string> material_names;  ///< serialised material -> name
+  std::set<std::string> taken_names;                  ///< names of materials in use
+  std::map<std::string, int> name_counts;             ///< label -> last number appended to it
+  std::set<std::string> taken_textures;               ///< names of textures in use
+  std::map<std::string, int> texture_counts;          ///< name -> last number appended to it
+  /// Name of a texture in our scene -> upper bound of its values.
+  std::map<std::string, double> largest_of_texture;
+  /// File of an image of floats -> its largest value.
+  std::map<std::string, double> largest_of_image;
+  /// Name of a texture with values above 1 -> the texture limited to 1 that limited() made of it.
+  std::map<std::string, scene::Texture> limited_textures;
+  /// Group of the object between ObjectBegin and ObjectEnd; otherwise nullptr.
+  scene::Group* group = nullptr;
   int helper_groups = 0;  ///< number of groups that add_helper_group() made
 
   void warn(const Place& place, absl::string_view what);
@@ -80,7 +84,8 @@ struct Builder {
   void warn_once(const Place& place, absl::string_view what);
   /// Warns of each parameter that was not used.
   void warn_of_unused(const Parameters& parameters);
-  std::set<std::string> warned;  ///< texts of warn_once()
+  /// Texts of warn_once(), and an entry for each medium whose unused parameters were named.
+  std::set<std::string> warned;
 };
 
 // Write values into messages of a scene file.
@@ -92,14 +97,14 @@ void set_vec3(const Vec3& v, google::protobuf::RepeatedField<double>* to);
 /// Meaning of a colour.
 enum class ColorUse {
   kReflectance,  ///< in [0, 1]
-  kLight,        ///< RGB is kept, other spectra are scaled to luminance 1
+  kLight,        ///< an RGB colour is kept, a spectrum is scaled to luminance 1
   kUnbounded,    ///< >= 0
 };
 
 /// Returns the colour of a parameter of type rgb, spectrum, blackbody or float.
 absl::StatusOr<Rgb3> color_of(const Parameter& parameter, ColorUse use,
                               const std::string& color_space, Builder& builder);
-/// Returns the colour of a parameter by its name; `otherwise` if there is none.
+/// Returns the colour of the parameter `name`, or `otherwise` if the parameter is absent.
 absl::StatusOr<Rgb3> color(const Parameters& parameters, const std::string& name, ColorUse use,
                            const Rgb3& otherwise, const State& state, Builder& builder);
 /// Returns the spectrum of a parameter of type spectrum; std::nullopt for another type.
@@ -113,10 +118,11 @@ absl::StatusOr<std::optional<std::string>> read_or_warn(const std::string& name,
                                                         absl::string_view instead,
                                                         Builder& builder);
 
-// Each of these converts a directive and adds the result to the builder; make_surface() returns the
-// result instead (textures.cpp, materials.cpp, shapes.cpp, lights.cpp). `type` is the type that the
-// directive names ("sphere"). For a texture, `type` is "spectrum" or "float", and `kind` is the
-// class of the texture ("imagemap"). `label` begins the name of the material.
+// Each of these functions converts a directive (textures.cpp, materials.cpp, shapes.cpp,
+// lights.cpp). They add the result to the builder, except make_surface(), which returns the result.
+// `type` is the type that the directive names ("sphere"). For a texture, `type` is "spectrum" or
+// "float", and `kind` is the class of the texture ("imagemap"). `label` begins the name of the
+// material.
 absl::Status add_texture(const std::string& name, const std::string& type, const std::string& kind,
                          Parameters parameters, const State& state, Builder& builder);
 absl::StatusOr<std::shared_ptr<const Surface>> make_surface(const std::string& type,
@@ -128,26 +134,29 @@ absl::Status add_shape(const std::string& type, const Parameters& parameters, co
 absl::Status add_light(const std::string& type, const Parameters& parameters, const State& state,
                        Builder& builder);
 
-/// Returns a texture of colours by a parameter that is a colour or names a texture.
+/// Returns the texture of colours of the parameter `name`, which is a colour or the name of a
+/// texture. Returns the constant `otherwise` if the parameter is absent.
 absl::StatusOr<scene::Texture> color_texture(const Parameters& parameters, const std::string& name,
                                              ColorUse use, const Rgb3& otherwise,
                                              const State& state, Builder& builder);
-/// Returns a texture of numbers, or std::nullopt if the parameter is absent.
+/// Returns the texture of numbers of the parameter `name`, which is a number or the name of a
+/// texture. Returns std::nullopt if the parameter is absent.
 absl::StatusOr<std::optional<scene::Texture>> float_texture(const Parameters& parameters,
                                                             const std::string& name,
                                                             Builder& builder);
 /// Adds the texture to our scene under a name that begins with `name`, and returns a reference to
 /// it. A constant texture is not added but returned as it is.
 scene::Texture named_texture(const std::string& name, scene::Texture texture, Builder& builder);
-/// Returns an upper bound of the values of a texture; `texture` and the textures in it are
-/// references to named ones, or have no name yet.
+/// Returns an upper bound of the values of a texture. The textures to which `texture` refers by
+/// name MUST have been added by named_texture().
 double largest_value(const scene::Texture& texture, const Builder& builder);
-/// Returns a texture with 1 in place of the values above 1 of `texture`, which color_texture() or
-/// float_texture() returned. Where the parts of a texture cannot be clamped, it is scaled to at
-/// most 1 after a warning at `place`. The error is INVALID_ARGUMENT if an image cannot be decoded.
+/// Returns `texture` with 1 in place of each value above 1. color_texture() or float_texture() MUST
+/// have returned `texture`. A part that cannot be clamped is scaled instead so that it is at most
+/// 1, with a warning at `place`. The error is INVALID_ARGUMENT if an image cannot be decoded.
 absl::StatusOr<scene::Texture> limited(scene::Texture texture, const Place& place,
                                        Builder& builder);
-/// Returns the number of a constant texture; std::nullopt for another.
+/// Returns the value of a constant texture, which is its luminance if its channels differ. Returns
+/// std::nullopt for a texture that is not constant.
 std::optional<double> constant_of(const scene::Texture& texture);
 
 /// Emission and opacity that a shape adds to its material.
@@ -157,7 +166,8 @@ struct ShapeLook {
   bool emits_on_both_sides = false;
   std::optional<scene::Texture> opacity = std::nullopt;
 };
-/// Returns the name, in our scene, of the surface's material with this look; adds it if it is new.
+/// Returns the name in our scene of the material that combines the surface and the look. Adds the
+/// material to our scene if it is new. `place` is the place of warnings.
 std::string material_name(const Surface& surface, const ShapeLook& look, const Place& place,
                           Builder& builder);
 

@@ -1,6 +1,6 @@
-// Converts a pbrt scene to a scene file of ours. Interpreter reads one directive after the other
-// and calls the function of its name. These functions change the graphics state, or add a material,
-// shape, light or medium to the scene (builder.h).
+// Converts a pbrt scene to a Bandsaw scene file. Interpreter reads one directive after the other
+// and calls the function of the directive. These functions change the graphics state, or add a
+// material, shape, light or medium to the scene (builder.h).
 
 #include "renderlib/import/pbrt/convert_pbrt.h"
 
@@ -176,7 +176,7 @@ class Interpreter {
   absl::Status transform_end(const Place& place) { return graphics_.restore_transforms(place); }
 
   absl::Status attribute(const Place& place) {
-    ASSIGN_OR_RETURN(const std::string target, read_quoted(tokens_, place, "what it is for"));
+    ASSIGN_OR_RETURN(const std::string target, read_quoted(tokens_, place, "a target"));
     ASSIGN_OR_RETURN(Parameters parameters, read_parameters(tokens_, place));
     if (target != "shape" && target != "light" && target != "material" && target != "medium" &&
         target != "texture") {
@@ -293,8 +293,8 @@ class Interpreter {
     if (read.first.empty() || type.empty()) {
       return error_at(place, "MakeNamedMedium needs a name and \"string type\"");
     }
-    // A second medium of the same name replaces the first, as old scenes need it. (pbrt-v4 refuses
-    // it.)
+    // A second medium of the same name replaces the first, because old scenes need it. pbrt-v4
+    // refuses the second medium.
     builder_.media[read.first] = {type, std::move(read.second), state().color_space,
                                   state().transforms[0]};
     return absl::OkStatus();
@@ -473,9 +473,9 @@ class Interpreter {
   Builder builder_;
   Tokens tokens_;
   GraphicsState graphics_;
-  std::vector<ImportedFile> imports_;   ///< those that are open, one within the other
-  std::map<std::string, int> objects_;  ///< number of shapes, models and instances in each
-  std::string object_;                  ///< between ObjectBegin and ObjectEnd
+  std::vector<ImportedFile> imports_;   ///< imported files that are open, the innermost last
+  std::map<std::string, int> objects_;  ///< name -> number of shapes, models and instances in it
+  std::string object_;                  ///< name of the object that ObjectBegin began last
   ViewSource view_;
   bool is_in_world_ = false;
 };
@@ -485,8 +485,8 @@ class Interpreter {
 
 absl::StatusOr<ConvertedScene> convert_pbrt(const ForeignScene& from) {
   if (!from.parameters.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(from.name, ": -D is for Mitsuba's scenes; those of pbrt have no parameters"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        from.name, ": -D is for scenes of Mitsuba; scenes of pbrt have no parameters"));
   }
   return pbrt::Interpreter(from).run();
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Converts scenes of pbrt-v4.
+// Converts scenes of pbrt-v4 to Bandsaw scene files.
 
 #include "absl/status/statusor.h"
 #include "renderlib/import/convert/converted_scene.h"
@@ -8,7 +8,7 @@
 
 namespace bandsaw {
 
-/// Returns the scene as a scene file of ours. Errors name file and line: "kitchen.pbrt:17: …".
+/// Returns the scene as a Bandsaw scene file. Errors name file and line: "kitchen.pbrt:17: …".
 /// INVALID_ARGUMENT: the scene is broken, or a bound is exceeded. NOT_FOUND, PERMISSION_DENIED: a
 /// file that the scene includes cannot be read.
 absl::StatusOr<ConvertedScene> convert_pbrt(const ForeignScene& from);

@@ -1,5 +1,6 @@
-// Holds the graphics state of a pbrt scene as a stack of states: AttributeBegin and TransformBegin
-// push a copy, their ends restore it. An imported file has a stack of its own.
+// Holds the graphics state of a pbrt scene as a stack of states. AttributeBegin and TransformBegin
+// push a copy of the state. AttributeEnd restores it, and TransformEnd restores its
+// transformations. An imported file has a stack of its own.
 
 #include "renderlib/import/pbrt/graphics_state.h"
 

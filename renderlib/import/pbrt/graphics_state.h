@@ -16,36 +16,43 @@ class GraphicsState {
  public:
   State& current() { return current_; }
 
-  /// Replaces the active transformations, or multiplies them from the right. The active ones are
-  /// those at the start or at the end of the motion, or both (ActiveTransform). The error is
-  /// INVALID_ARGUMENT if a number is not finite or beyond 1e30.
+  /// set() replaces the active transformations, concatenate() multiplies them from the right. The
+  /// active transformations are the one at the start of the motion, the one at its end, or both
+  /// (ActiveTransform). The error is INVALID_ARGUMENT if a number is not finite or beyond 1e30.
   absl::Status set(const Place& place, const Transform& to);
   absl::Status concatenate(const Place& place, const Transform& by);
 
   void define_system(const std::string& name, const Transforms& transforms);
-  /// Returns false if there is no system of this name.
+  /// Replaces the current transformations by those of a named coordinate system. Returns false if
+  /// no system has this name.
   bool use_system(const std::string& name);
 
-  /// Saves the state. The error is RESOURCE_EXHAUSTED if more than 1024 are nested.
+  /// Saves the state. The error is RESOURCE_EXHAUSTED if 1024 states are saved already.
   absl::Status save(const Place& place);
-  /// Restores all of the state that was saved last, or its transformations alone. The error is
-  /// INVALID_ARGUMENT if none is saved.
+  /// restore() restores the state that was saved last, restore_transforms() only its
+  /// transformations. Either removes it from the saved states. The error is INVALID_ARGUMENT if no
+  /// state is saved.
   absl::Status restore(const Place& place);
   absl::Status restore_transforms(const Place& place);
   /// Begins a file of the directive Import. The states that are saved outside of it cannot be
   /// restored inside of it.
   void begin_import();
-  /// Ends that file: the state is again that of begin_import(), which MUST have been called.
+  /// Ends the imported file that was begun last, which MUST exist. The state is again the one that
+  /// was current when begin_import() was called.
   void end_import();
-  /// Returns the number of states that are saved; inside of an imported file, by that file.
+  /// Returns the number of states that are saved. Inside of an imported file, only the states count
+  /// that this file saved.
   std::size_t depth() const { return saved_.size(); }
 
-  /// Adds parameters that Attribute sets for all following directives of a kind ("shape").
+  /// Adds the parameters that Attribute sets for all following directives of the kind `target`
+  /// ("shape").
   absl::Status add_defaults(const Place& place, const std::string& target, Parameters parameters);
-  /// Adds those parameters to the parameters of a directive of this kind.
+  /// Adds the parameters that add_defaults() stored for `target` to the parameters of a directive,
+  /// except those that the directive sets itself.
   void apply_defaults(const std::string& target, Parameters& parameters) const;
 
  private:
+  /// Replaces one transformation. `k` is 0 for the start of the motion, 1 for its end.
   absl::Status set(const Place& place, std::size_t k, const Transform& to);
 
   /// The state that end_import() restores.

@@ -54,6 +54,7 @@ struct LightSource {
   }
 };
 
+/// Returns the image as the bytes of an EXR file; "" if it cannot be encoded.
 std::string encoded(const Image& image) {
   const auto bytes = encode_image(image, ImageFormat::kExr);
   return bytes.ok() ? std::string(reinterpret_cast<const char*>(bytes->data()), bytes->size())
@@ -211,11 +212,13 @@ absl::Status projection(const LightSource& from) {
   return absl::OkStatus();
 }
 
-/// Adds light from everywhere to the background.
+/// Adds light from everywhere to the background. If the background is an image, leaves the light
+/// out, with a warning.
 void add_constant(const Rgb3& radiance, const LightSource& from) {
   scene::Background& background = *from.builder.out.mutable_background();
   if (background.has_environment()) {
-    from.builder.warn(from.place(), "only one infinite light can have an image; this is left out");
+    from.builder.warn(from.place(),
+                      "another infinite light has an image; this infinite light is left out");
     return;
   }
   Rgb3 sum = radiance;

@@ -1,5 +1,6 @@
 // Limits the values of textures to 1, because pbrt clamps a reflectance to 1 where it uses the
-// reflectance. An image with a factor becomes a made file, an image with the limited values.
+// reflectance. An image that exceeds 1, by itself or by its factor, becomes a made file: an image
+// with the limited values that the converter makes and adds to the scene.
 
 #include <algorithm>
 
@@ -13,10 +14,12 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Maximum number of textures within one texture that are limited one by one. The textures beyond
-/// it are scaled. A hostile scene can contain one texture in another very often.
+/// Maximum number of textures within one texture that are limited one by one. Further textures are
+/// scaled. The maximum bounds the time for a hostile scene, in which one texture can contain
+/// another very often.
 constexpr int kMaxSteps = 100;
 
+/// Return the largest channel.
 double most_of(const Rgb3& rgb) { return *std::max_element(rgb.begin(), rgb.end()); }
 double most_of(const scene::Color& color) {
   return *std::max_element(color.rgb().begin(), color.rgb().end());
@@ -38,10 +41,11 @@ scene::Texture limited_color(const scene::Color& color, Rgb3 factor) {
   return constant_texture(factor);
 }
 
+/// Limits one texture, with all textures in it.
 struct Limiter {
   const Place& place;
   Builder& builder;
-  int steps = kMaxSteps;
+  int steps = kMaxSteps;  ///< number of textures that may still be limited one by one
 
   /// Returns `from` times `factor`, with 1 in place of larger values.
   absl::StatusOr<scene::Texture> times(const scene::Texture& from, const Rgb3& factor) {

@@ -25,7 +25,7 @@ struct Edge {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   std::uint32_t opposite[2] = {};
-  int triangles = 0;
+  int triangles = 0;  ///< number of triangles with this edge
 };
 
 struct Topology {
@@ -72,6 +72,8 @@ bool walk_ring(const std::map<std::uint32_t, std::uint32_t>& next, std::vector<s
   return is_open || at == ring.front();
 }
 
+/// Returns the edges and rings of a mesh with `points` vertices. Returns INVALID_ARGUMENT if the
+/// mesh is not a manifold.
 absl::StatusOr<Topology> topology_of(std::size_t points, const std::vector<Triangle>& triangles) {
   Topology out;
   std::vector<std::map<std::uint32_t, std::uint32_t>> next(points);
@@ -101,12 +103,14 @@ absl::StatusOr<Topology> topology_of(std::size_t points, const std::vector<Trian
   return out;
 }
 
-/// Returns Loop's weight of each neighbour of an inner vertex with `valence` of them.
+/// Returns Loop's weight of each neighbour of an inner vertex with `valence` neighbours.
 double weight_of(std::size_t valence) {
   return valence == 3 ? 3.0 / 16 : 3.0 / (8.0 * static_cast<double>(valence));
 }
 
-/// Returns (1 - n w) p + w (sum of the ring) inside, (1 - 2 w) p + w (both ends) on the boundary.
+/// Returns the weighted mean of vertex `v` and its neighbours. For an inner vertex p with n
+/// neighbours it is (1 - n w) p + w (sum of the neighbours), where w is `inner_weight`. On the
+/// boundary it is (1 - 2 w) p + w (sum of both ends of the ring), where w is `boundary_weight`.
 Vec3 averaged(const std::vector<Vec3>& points, const Topology& topology, std::size_t v,
               double inner_weight, double boundary_weight) {
   const auto& ring = topology.rings[v];
@@ -124,6 +128,7 @@ Vec3 averaged(const std::vector<Vec3>& points, const Topology& topology, std::si
   return sum;
 }
 
+/// Replaces the mesh by the next level, in which each triangle is split into four.
 void subdivide(std::vector<Vec3>& points, std::vector<Triangle>& triangles,
                const Topology& topology) {
   std::vector<Vec3> finer;
@@ -151,7 +156,8 @@ void subdivide(std::vector<Vec3>& points, std::vector<Triangle>& triangles,
   triangles = std::move(split);
 }
 
-/// Returns the normal of the limit surface from its two tangents.
+/// Returns the normal of the limit surface at vertex `v`, not normalized: the cross product of its
+/// two tangents.
 Vec3 limit_normal(const std::vector<Vec3>& points, const Topology& topology, std::size_t v) {
   const auto& ring = topology.rings[v];
   Vec3 s;

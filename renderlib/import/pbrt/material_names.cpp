@@ -25,7 +25,7 @@ void add_emission(const ShapeLook& look, const Surface& surface, const Place& pl
     return;
   }
   if (to.has_mix()) {
-    builder.warn(place, "a mix of materials cannot emit; the shape is lit, but no light");
+    builder.warn(place, "a mix of materials cannot emit; the shape emits no light");
     return;
   }
   if (to.has_gltf()) {

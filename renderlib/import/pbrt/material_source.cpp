@@ -12,7 +12,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// pbrt treats smaller values of alpha as smooth.
+/// pbrt treats a surface with a smaller alpha as smooth.
 constexpr double kSmooth = 1e-3;
 
 }  // namespace

@@ -44,8 +44,9 @@ absl::StatusOr<Roughness> read_roughness(const MaterialSource& from, const std::
 /// Sets the microfacets of a surface that is not smooth.
 void set_microfacets(const Roughness& roughness, scene::Microfacets* to);
 
-/// Returns the index of refraction in [1, 5]: a number, or that of a spectrum at the d line (588
-/// nm). `otherwise` is returned if there is no parameter `name`.
+/// Returns the index of refraction that the parameter `name` gives, clamped to [1, 5]. It is a
+/// number, the luminance of a colour, or the value of a spectrum at the d line (588 nm). Returns
+/// `otherwise` if the parameter is absent.
 absl::StatusOr<double> read_index(const MaterialSource& from, const std::string& name,
                                   double otherwise);
 

@@ -12,7 +12,8 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Sets a texture, or a colour if it is constant.
+/// Writes `texture` to a field of `message`: to the field that `color` returns if the texture is a
+/// constant colour, otherwise to the field that `other` returns.
 void set_color_or_texture(scene::Texture texture, scene::Color* (*color)(void*),
                           scene::Texture* (*other)(void*), void* message) {
   if (texture.has_color()) {
@@ -103,7 +104,8 @@ absl::Status diffuse_transmission(const MaterialSource& from, Surface& to) {
   reflectance = scaled(std::move(reflectance));
   transmittance = scaled(std::move(transmittance));
   if (reflectance.has_color() && transmittance.has_color()) {
-    // pbrt lets the sum exceed 1. The factor below keeps it from exceeding 1 by rounding.
+    // In pbrt the sum may exceed 1. The factor 0.9999999 below is there so that the scaled sum does
+    // not exceed 1 by rounding.
     bool is_bright = false;
     for (int c = 0; c < 3; ++c) {
       const double sum = reflectance.color().rgb(c) + transmittance.color().rgb(c);
@@ -147,8 +149,9 @@ absl::Status mix(const MaterialSource& from, Surface& to) {
     }
     const Surface& surface = *part->second;
     if (surface.is_null || surface.material.has_mix()) {
-      from.builder.warn(from.place(), absl::StrCat("\"", names[i],
-                                                   "\" cannot be mixed; the other is shown alone"));
+      from.builder.warn(
+          from.place(),
+          absl::StrCat("\"", names[i], "\" cannot be mixed; the other material is shown alone"));
       const auto other = from.builder.materials.find(names[1 - i]);
       if (other != from.builder.materials.end()) {
         const std::string label = to.label;

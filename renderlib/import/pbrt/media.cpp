@@ -12,6 +12,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
+/// A medium and what is needed to convert it. Of `state`, only the colour space is used.
 struct MediumParts {
   const MediumSource& medium;
   State state;
@@ -76,8 +77,8 @@ std::string volume_file(const std::vector<double>& values, const int size[3], in
   return out;
 }
 
-/// Adds the grid `name` of nx x ny x nz numbers in the box from p0 to p1. `to_shape` as in
-/// medium_name().
+/// Adds the grid `name` of nx x ny x nz numbers in the box from p0 to p1. `to_shape` maps the world
+/// to the space of the shape that the medium fills.
 absl::Status read_grid(const MediumParts& from, const std::string& name, const Transform& to_shape,
                        scene::VolumeGrid* to) {
   const Parameters& in = from.parameters();
@@ -112,7 +113,7 @@ absl::Status read_uniform_grid(const MediumParts& from, const Transform& to_shap
   const Parameters& in = from.parameters();
   if (in.find("temperature") != nullptr) {
     RETURN_IF_ERROR(read_grid(from, "temperature", to_shape, to.mutable_temperature_grid()));
-    from.builder.warn(in.place, "the grid's emission by temperature is normalised in another way");
+    from.builder.warn(in.place, "the grid's emission by temperature is not normalised as in pbrt");
   }
   if (in.find("Lescale") != nullptr) {
     from.builder.warn(in.place, "the grid Lescale is left out");
@@ -153,6 +154,7 @@ absl::StatusOr<std::string> medium_name(const std::string& name, const Place& pl
     use_all(in);
     return std::string();
   }
+  // A medium is converted for each shape that it fills, but its unused parameters are named once.
   if (builder.warned.insert(absl::StrCat("medium ", name)).second) {
     builder.warn_of_unused(in);
   }

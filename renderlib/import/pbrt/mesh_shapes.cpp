@@ -41,8 +41,8 @@ absl::StatusOr<std::vector<std::array<float, n>>> tuples(const Parameters& in,
   return out;
 }
 
-/// Reads the indices of faces with `group` corners each, below `vertices`. Without indices, a mesh
-/// of `group` vertices is one face.
+/// Reads the indices of faces with `group` corners each. Each index must be below `vertices`, the
+/// number of vertices. If the indices are missing, a mesh of `group` vertices is one face.
 absl::StatusOr<std::vector<std::uint32_t>> indices(const Parameters& in, std::size_t group,
                                                    std::size_t vertices) {
   ASSIGN_OR_RETURN(const std::vector<double> numbers, in.numbers("indices", {"integer"}, group));
@@ -136,8 +136,8 @@ absl::StatusOr<PlyMesh> loop_mesh(const Parameters& in) {
                          absl::StrCat(text_of(in.place), ": ", mesh.status().message())));
 }
 
-/// Adds a grid of (columns + 1) x (rows + 1) vertices; `f(u, v, mesh)`, u and v in [0, 1], appends
-/// each. The triangles face along dP/du x dP/dv.
+/// Adds a grid of (columns + 1) x (rows + 1) vertices. `f(u, v, mesh)` appends the vertex at u and
+/// v, which are in [0, 1]. The triangles face along dP/du x dP/dv.
 template <class F>
 void add_grid(int columns, int rows, const F& f, PlyMesh& mesh) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -176,6 +176,7 @@ absl::StatusOr<PlyMesh> bilinear_mesh(const Parameters& in) {
       return (1 - u) * (1 - v) * list[c[0]][k] + u * (1 - v) * list[c[1]][k] +
              (1 - u) * v * list[c[2]][k] + u * v * list[c[3]][k];
     };
+    // The twist is 0 for a parallelogram, which is flat.
     const Vec3 twist = vec3(from.positions[c[0]]) - vec3(from.positions[c[1]]) -
                        vec3(from.positions[c[2]]) + vec3(from.positions[c[3]]);
     const double size = length(vec3(from.positions[c[3]]) - vec3(from.positions[c[0]]));
@@ -205,8 +206,8 @@ absl::StatusOr<PlyMesh> bilinear_mesh(const Parameters& in) {
 
 /// Part of a turn around z.
 struct Sweep {
-  double turns = 1;  ///< around the axis
-  int columns = kAround;
+  double turns = 1;       ///< share of a whole turn
+  int columns = kAround;  ///< number of segments
 };
 
 absl::StatusOr<Sweep> read_sweep(const Parameters& in) {
@@ -314,7 +315,8 @@ absl::StatusOr<std::optional<PlyMesh>> ply_mesh(const Parameters& in, Builder& b
   return std::move(read->mesh);
 }
 
-/// Removes triangles without area, which quadrics have at their poles.
+/// Removes triangles with two corners at the same position. Quadrics have such triangles at their
+/// poles.
 void remove_flat(PlyMesh& mesh) {
   std::erase_if(mesh.triangles, [&](const auto& t) {
     return mesh.positions[t[0]] == mesh.positions[t[1]] ||
@@ -353,7 +355,7 @@ bool is_closed(const PlyMesh& mesh) {
   const auto id_of = [&](std::uint32_t v) {
     std::array<float, 3> p = mesh.positions[v];
     for (float& x : p) {
-      x += 0.0F;  // -0 and 0 are one place
+      x += 0.0F;  // turns -0 into 0, which is the same position
     }
     return ids.emplace(p, static_cast<std::uint32_t>(ids.size())).first->second;
   };

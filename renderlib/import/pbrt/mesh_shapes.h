@@ -15,22 +15,22 @@ namespace bandsaw::pbrt {
 absl::StatusOr<std::optional<PlyMesh>> mesh_of(const std::string& type,
                                                const Parameters& parameters, Builder& builder);
 
-/// Returns Loop's subdivision of a closed or open manifold mesh, its vertices at their limits and
-/// with limit normals (Loop 1987; Hoppe et al. 1994, appendix A). `levels` in [0, 8].
-/// The error is INVALID_ARGUMENT for a mesh that is no manifold, and RESOURCE_EXHAUSTED for one
-/// that becomes too large.
+/// Returns Loop's subdivision of a closed or open manifold mesh after `levels` levels, in [0, 8].
+/// Its vertices are at their limits and have the normals of the limit surface (Loop 1987; Hoppe et
+/// al. 1994, appendix A). The error is INVALID_ARGUMENT for a mesh that is no manifold, and
+/// RESOURCE_EXHAUSTED for one that becomes too large.
 absl::StatusOr<PlyMesh> subdivided(const std::vector<Vec3>& points,
                                    const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                    int levels);
 
-/// Returns true if along each edge as many triangles run in one direction as in the other. Points
-/// at the same position count as one.
+/// Returns true if each edge has as many triangles that traverse it in one direction as triangles
+/// that traverse it in the opposite direction. Vertices at the same position count as one.
 bool is_closed(const PlyMesh& mesh);
 /// Returns six times the volume that a closed mesh encloses; negative if its triangles face
 /// inwards.
 double signed_volume(const PlyMesh& mesh);
 
-/// Makes all triangles face the other way.
+/// Reverses all triangles and normals, so that the mesh faces the opposite side.
 void reverse(PlyMesh& mesh);
 
 }  // namespace bandsaw::pbrt

@@ -12,8 +12,8 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Returns eta and k of a conductor by the parameters eta and k, whose names begin with `prefix`
-/// ("conductor.", or ""); copper's by default.
+/// Returns eta and k of a metal for each channel, from the parameters eta and k. Their names begin
+/// with `prefix`, which is "conductor." or "". An absent parameter has the value of copper.
 absl::StatusOr<spectrum::Metal> read_metal(const MaterialSource& from, const std::string& prefix) {
   const Parameter* eta = from.parameters.find(prefix + "eta");
   const Parameter* k = from.parameters.find(prefix + "k");

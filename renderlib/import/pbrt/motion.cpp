@@ -1,5 +1,5 @@
-// Places models and instances of a pbrt scene. A motion becomes two keys. A motion with shear is a
-// sheared group inside of a group that moves by the keys.
+// Places models and instances of a pbrt scene. A motion becomes two keys. If the moving object is
+// sheared, it is put into a group, and an instance of this group moves by the keys.
 
 #include "renderlib/import/pbrt/motion.h"
 
@@ -16,8 +16,9 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Sets axis and angle of the rotation with these columns, from the largest of the four terms of
-/// its quaternion.
+/// Sets axis and angle of `pose` to those of the rotation matrix with these columns. Divides by the
+/// term w of the rotation's quaternion if the trace is positive, otherwise by the largest of the
+/// terms x, y and z, so that the divisor is never close to 0.
 void set_rotation(const Vec3 columns[3], Pose& pose) {
   const auto m = [&](int row, int column) { return columns[column][row]; };
   const double trace = m(0, 0) + m(1, 1) + m(2, 2);
@@ -56,7 +57,8 @@ void add_key(double time, const Pose& pose, scene::Key& key) {
   }
 }
 
-/// Returns the list of the group that is open, or of the scene, to which things are added.
+/// models() and instances() return the list to which a model or an instance is added: that of the
+/// open group, or that of the scene if no group is open.
 auto& models(Builder& builder) {
   return builder.group != nullptr ? *builder.group->mutable_model() : *builder.out.mutable_model();
 }
@@ -84,8 +86,8 @@ Placed& add_to(scene::Group& group, Placed placed) {
   }
 }
 
-/// Adds an object that is sheared and moves without changing the shear: its second transformation
-/// is the product of a pose and the first. Returns false if it is not such a product.
+/// Adds a sheared object whose motion keeps the shear: the second transformation is the product of
+/// a pose and the first transformation. Returns false, and adds nothing, if there is no such pose.
 template <class Placed>
 bool add_sheared(const Transforms& transforms, Placed& placed, Builder& builder) {
   const auto back = inverse(transforms[0]);
@@ -110,6 +112,8 @@ bool add_sheared(const Transforms& transforms, Placed& placed, Builder& builder)
   return true;
 }
 
+/// Adds an object with keys for both transformations. If no keys can describe the motion, the
+/// object stays at the first transformation, with a warning.
 template <class Placed>
 void add_moving(const Place& place, const Transforms& transforms, Placed placed, Builder& builder) {
   builder.has_motion = true;

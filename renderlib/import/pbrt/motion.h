@@ -15,16 +15,18 @@ struct Pose {
   Vec3 translate;
 };
 
-/// Returns the pose whose transformation is `t`; std::nullopt if `t` shears.
+/// Returns the pose whose transformation is `t`. Returns std::nullopt if `t` shears or scales an
+/// axis to 0.
 std::optional<Pose> pose_of(const Transform& t);
 
 /// Adds an empty group to our scene and sets `name` to its name. It comes before the group that
 /// ObjectBegin has opened, if there is one, because instances refer only to earlier groups.
 scene::Group& add_helper_group(Builder& builder, std::string& name);
 
-/// Adds a model or an instance to the open group or to the scene, placed by a matrix, or by keys if
-/// the two transformations differ. If the motion changes the shear, mirrors, or has no duration,
-/// the model or instance stays at the first transformation, with a warning.
+/// Adds a model or an instance to the open group, or to the scene if no group is open. It is placed
+/// by a matrix, or by keys if the two transformations differ. If the motion changes the shear,
+/// mirrors, or has no duration, the model or instance stays at the first transformation, with a
+/// warning.
 void add_placed(const Place& place, const Transforms& transforms, scene::Model model,
                 Builder& builder);
 void add_placed(const Place& place, const Transforms& transforms, scene::Instance instance,

@@ -15,13 +15,14 @@ namespace {
 
 constexpr std::uint32_t kMaxWidth = 8192;
 
+/// Returns the position of `d` in an image of longitude and latitude around z, in [0, 1]^2.
 Vec2 longitude_latitude(const Vec3& d) {
   const double phi = atan2(d.y, d.x);
   return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi), acos(d.z) / kPi};
 }
 
-/// Returns the pixel at integer coordinates; beyond the edge of the octahedral square it continues
-/// at the mirrored place of the same edge.
+/// Returns the pixel at (x, y), which may lie outside of the image. Beyond an edge of the
+/// octahedral square, the image continues at the mirrored position on the same edge.
 const Rgb& pixel(const Sky& sky, std::int64_t x, std::int64_t y) {
   const auto w = static_cast<std::int64_t>(sky.image.width);
   const auto h = static_cast<std::int64_t>(sky.image.height);
@@ -46,6 +47,7 @@ void add(const Rgb& rgb, double weight, double sum[3]) {
   sum[2] += weight * rgb.b;
 }
 
+/// Adds the radiance in a direction (a unit vector) to `sum`, interpolated bilinearly.
 void add_lookup(const Sky& sky, const Vec3& direction, double sum[3]) {
   const Vec2 at = sky.is_octahedral ? octahedral_of(direction) : longitude_latitude(direction);
   const double x = at.x * sky.image.width - 0.5;
@@ -62,6 +64,8 @@ void add_lookup(const Sky& sky, const Vec3& direction, double sum[3]) {
 
 }  // namespace
 
+// The map of Clarberg 2008. In each quadrant, u + v is r = sqrt(1 - |z|), and v / r is `phi`, the
+// angle around z in quarter turns. For z < 0 the point is mirrored at the line u + v = 1.
 Vec2 octahedral_of(const Vec3& d) {
   const double x = std::abs(d.x);
   const double y = std::abs(d.y);
@@ -112,7 +116,7 @@ double illuminance_of(const Sky& sky) {
   constexpr int kPerRing = 512;
   double total = 0;
   for (int i = 0; i < kRings; ++i) {
-    // Directions distributed as the cosine: each stands for pi / count.
+    // The density of the directions is proportional to the cosine, so all have the same weight.
     const double cosine = std::sqrt((i + 0.5) / kRings);
     const double sine = std::sqrt(1 - cosine * cosine);
     for (int k = 0; k < kPerRing; ++k) {

@@ -15,12 +15,12 @@ struct Sky {
   bool is_octahedral = true;
 };
 
-/// Returns the position in the equal-area octahedral image of a direction (a unit vector), in
-/// [0, 1]^2, rows from the top.
+/// Returns the position of a direction (a unit vector) in the equal-area octahedral image. The
+/// position is in [0, 1]^2, rows from the top.
 Vec2 octahedral_of(const Vec3& direction);
 
-/// Returns the image as an environment map of ours, resampled with 2 x 2 bilinear samples a pixel;
-/// `to_light` maps directions of the world to those of the light.
+/// Returns the image as an environment map of Bandsaw, resampled with 2 x 2 bilinear samples per
+/// pixel. `to_light` maps directions from the world to the light's space.
 Image equirectangular(const Sky& sky, const Transform& to_light);
 
 /// Returns the illuminance of a surface that faces +z in the light's space, if the radiance is that

@@ -14,7 +14,7 @@ namespace bandsaw::pbrt {
 namespace {
 
 /// Fills the box around the scene with each medium that an open surface bounds, except the camera's
-/// medium. Returns the names of these media.
+/// medium. Returns the names that these media have in our scene.
 absl::StatusOr<std::set<std::string>> fill_open_media(const std::string& of_camera,
                                                       Builder& builder) {
   std::set<std::string> filled;
@@ -42,7 +42,8 @@ absl::StatusOr<std::set<std::string>> fill_open_media(const std::string& of_came
   return filled;
 }
 
-/// Orders the media: later ones replace earlier ones where they overlap.
+/// Orders the media, because a later medium replaces an earlier one where they overlap. The media
+/// in `filled`, which fill the box around the scene, come first, and the vacuum comes last.
 void order_media(const std::set<std::string>& filled, Builder& builder) {
   auto& media = *builder.out.mutable_medium();
   const auto rank = [&filled](const scene::Medium& medium) {

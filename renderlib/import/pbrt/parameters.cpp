@@ -20,7 +20,7 @@ namespace {
 struct Type {
   const char* name;
   const char* same_as;  ///< its name in Parameter::type
-  bool has_texts;
+  bool has_texts;       ///< the values may be strings in quotes
 };
 constexpr std::array kTypes = {
     Type{"float", "float", false},         Type{"integer", "integer", false},

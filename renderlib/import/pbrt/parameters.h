@@ -1,6 +1,6 @@
 #pragma once
 
-// The parameters of a directive: "float radius" [ 2 ].
+// Holds and reads the parameters of a pbrt directive, such as "float radius" [ 2 ].
 
 #include <optional>
 #include <string>
@@ -32,26 +32,27 @@ class Parameters {
   std::vector<Parameter> list;
   Place place;  ///< place of the directive
 
-  /// Adds `defaults` that are not in the list. They count as used.
+  /// Adds each of the `defaults` whose name is not in the list. The added parameters count as used.
   void add_defaults(const std::vector<Parameter>& defaults);
 
   /// Returns a parameter of any type, marked as used; nullptr: there is none.
   const Parameter* find(const std::string& name) const;
 
-  /// These functions return the value of a parameter; `otherwise`, or std::nullopt, if there is no
-  /// such parameter.
+  /// Each of these functions returns the value of the parameter `name`. If the parameter is absent,
+  /// they return `otherwise` or std::nullopt.
   absl::StatusOr<double> number(const std::string& name, double otherwise) const;
   absl::StatusOr<std::optional<double>> number(const std::string& name) const;
   absl::StatusOr<int> integer(const std::string& name, int otherwise) const;
   absl::StatusOr<bool> boolean(const std::string& name, bool otherwise) const;
   absl::StatusOr<std::string> text(const std::string& name, const std::string& otherwise) const;
   absl::StatusOr<Vec3> point(const std::string& name, const Vec3& otherwise) const;
-  /// Returns a list of numbers of one of the types in `types`, a multiple of `group` long; empty if
-  /// there is none.
+  /// Returns the numbers of the parameter `name`; an empty list if it is absent. The error is
+  /// INVALID_ARGUMENT if its type is not in `types`, or if the number of values is not a multiple
+  /// of `group`.
   absl::StatusOr<std::vector<double>> numbers(const std::string& name,
                                               std::initializer_list<const char*> types,
                                               std::size_t group = 1) const;
-  /// Returns a list of strings; empty if there is none.
+  /// Returns the strings of the parameter `name`; an empty list if it is absent.
   absl::StatusOr<std::vector<std::string>> texts(const std::string& name) const;
   /// Marks these parameters as used. They change nothing in Bandsaw's image.
   void ignore(std::initializer_list<const char*> names) const;

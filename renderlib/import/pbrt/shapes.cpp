@@ -1,6 +1,7 @@
-// Converts pbrt's shapes: whole spheres and disks whose uvs do not matter become shapes of our
-// scene, others become meshes in made files. Each is placed with its material, emission, opacity
-// and the medium inside.
+// Converts pbrt's shapes. Whole spheres and disks whose uvs do not matter become shapes of our
+// scene. A PLY file is used as it is if nothing about it must change. All other shapes become
+// meshes in made files: PLY files that the converter makes and adds to the scene. Each shape is
+// placed with its material, emission, opacity and the medium inside.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Returns the factor of a map that keeps angles; std::nullopt for another.
+/// Returns the factor by which `t` scales lengths; std::nullopt if `t` does not keep angles.
 std::optional<double> uniform_scale(const Transform& t) {
   const Vec3 x = t.direction({1, 0, 0});
   const Vec3 y = t.direction({0, 1, 0});
@@ -34,6 +35,7 @@ bool is_moving(const State& state) { return !(state.transforms[0] == state.trans
 
 /// Returns true if the material looks different with other uvs.
 bool depends_on_uvs(const scene::Material& material) {
+  // A material refers to a texture that is not constant by the field `use`.
   return material.ShortDebugString().find("use:") != std::string::npos || material.has_mix() ||
          material.has_normal_texture() || material.gltf().has_normal_texture() ||
          material.conductor().surface().has_alpha_v() ||
@@ -57,8 +59,9 @@ struct Sides {
   bool differ() const { return inside != outside; }
 };
 
-/// Returns the name of the medium inside a closed shape; empty: none of its own. `to_shape` maps
-/// the world to the space in which the shape is written.
+/// Returns the name of the medium inside a closed shape. The name is empty if the shape needs no
+/// medium of its own, or if the medium has no counterpart. `to_shape` maps the world to the space
+/// in which the shape is written.
 absl::StatusOr<std::string> interior_of(const Shape& shape, const Sides& sides,
                                         const Transform& to_shape) {
   if (!sides.differ() || !shape.state.surface->transmits) {
@@ -176,7 +179,8 @@ void note_open_medium(const Shape& shape, const Sides& sides) {
   }
 }
 
-/// Adds the mesh in `file`, which is a made file or a PLY file of the scene.
+/// Adds the mesh in `file`, which is a made file or a PLY file of the scene. Only a mesh that is
+/// `closed` can have a medium inside.
 absl::Status add_model(const Shape& shape, const std::string& file, bool closed,
                        const Sides& sides) {
   const Transform& to_world = shape.state.transforms[0];
@@ -210,7 +214,7 @@ double area_of(const PlyMesh& mesh, const Transform& to_world) {
   return area;
 }
 
-/// Reads the AreaLightSource. `area` is that of the shape in world space.
+/// Reads the AreaLightSource. `area` is the area of the shape in world space.
 absl::Status read_emission(Shape& shape, double area) {
   Builder& builder = shape.builder;
   const Parameters& in = shape.state.area_light->parameters;
@@ -223,6 +227,7 @@ absl::Status read_emission(Shape& shape, double area) {
   ASSIGN_OR_RETURN(const std::string own, shape.parameters.text("emissionfilename", ""));
   file = own.empty() ? file : own;
   if (power > 0 && area > 0) {
+    // A side that emits a radiance of luminance y in all directions has the power y * area * pi.
     const double y = std::max(spectrum::luminance(radiance), 1e-12);
     scale *= power / (y * area * kPi * (shape.look.emits_on_both_sides ? 2 : 1));
   }
@@ -251,6 +256,8 @@ bool is_plain_file(const Shape& shape, const std::string& file, const Sides& sid
          shape.state.area_light == nullptr && !shape.state.surface->transmits && !sides.differ();
 }
 
+/// Adds the shape as a mesh: as its own PLY file if this can be used as it is, otherwise as a made
+/// file.
 absl::Status add_mesh(Shape& shape, Sides sides) {
   ASSIGN_OR_RETURN(const std::string file, shape.parameters.text("filename", ""));
   if (shape.type == "plymesh") {
@@ -276,6 +283,7 @@ absl::Status add_mesh(Shape& shape, Sides sides) {
   }
   const bool needs_volume = sides.differ() && shape.state.surface->transmits;
   const bool closed = needs_volume && is_closed(*mesh);
+  // If the triangles face inwards, the enclosed side is the one that pbrt calls outside.
   if (closed && signed_volume(*mesh) < 0) {
     std::swap(sides.inside, sides.outside);
   }
@@ -299,7 +307,8 @@ absl::StatusOr<bool> depends_on_uvs(const Shape& shape) {
   return !image.empty() || !own.empty();
 }
 
-/// Adds a quadric as a shape of ours if it is whole; false: it must be a mesh.
+/// Adds a whole sphere or disk as a shape of our scene. Returns false, and adds nothing, if the
+/// shape must be a mesh.
 absl::StatusOr<bool> add_whole_quadric(Shape& shape, Sides sides) {
   const Parameters& in = shape.parameters;
   if (shape.type != "sphere" && shape.type != "disk") {
@@ -311,7 +320,7 @@ absl::StatusOr<bool> add_whole_quadric(Shape& shape, Sides sides) {
     return error_at(in.place, absl::StrCat("\"radius\" must be > 0, is ", r));
   }
   const double volume = std::abs(determinant(shape.state.transforms[0]));
-  const double scale = volume > 0 ? pow(volume, 1.0 / 3) : 0;
+  const double scale = volume > 0 ? pow(volume, 1.0 / 3) : 0;  // mean over the three axes
   const bool is_sphere = shape.type == "sphere";
   ASSIGN_OR_RETURN(const double zmin, in.number("zmin", -r));
   ASSIGN_OR_RETURN(const double zmax, in.number("zmax", r));

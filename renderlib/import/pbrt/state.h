@@ -1,6 +1,6 @@
 #pragma once
 
-// The graphics state of a pbrt scene: what AttributeBegin saves and AttributeEnd restores.
+// The graphics state of a pbrt scene, which AttributeBegin saves and AttributeEnd restores.
 
 #include <array>
 #include <memory>
@@ -33,7 +33,7 @@ struct AreaLight {
 
 struct State {
   Transforms transforms;
-  bool is_active[2] = {true, true};  ///< the transforms that directives change (ActiveTransform)
+  bool is_active[2] = {true, true};  ///< true: directives change this transform (ActiveTransform)
   bool reverse_orientation = false;
   std::shared_ptr<const Surface> surface;  ///< never nullptr
   std::shared_ptr<const AreaLight> area_light;

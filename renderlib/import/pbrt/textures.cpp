@@ -1,6 +1,6 @@
 // Converts each kind of pbrt texture to the nearest texture of our scene files, with a warning
-// where something is lost. Textures that are more than one colour get a name, and are referred to
-// by it.
+// where something is lost. A texture that is not a constant colour gets a name, by which materials
+// refer to it.
 
 #include <algorithm>
 #include <cmath>
@@ -78,15 +78,15 @@ absl::StatusOr<bool> is_linear(const TextureSource& from, const std::string& fil
   ASSIGN_OR_RETURN(const std::string encoding, from.parameters.text("encoding", ""));
   if (absl::StartsWith(encoding, "gamma")) {
     from.builder.warn(from.place(), absl::StrCat("the encoding \"", encoding, "\" of \"", file,
-                                                 "\" has no counterpart; sRGB is taken"));
+                                                 "\" has no counterpart; sRGB is used instead"));
   }
   return encoding == "linear";
 }
 
-/// Returns the file that a texture of numbers shows. `bytes` are the contents of `file`. If the
-/// image has colours, and an alpha below 1 somewhere, pbrt takes its alpha as the number. Then the
-/// result is a made file whose grey is that alpha; otherwise it is `file` itself. The encoding of
-/// the texture holds for alpha too.
+/// Returns the name of the image file for a texture of numbers. `bytes` are the contents of `file`.
+/// If the image has colours, and an alpha below 1 somewhere, pbrt uses its alpha as the number.
+/// Then the result is a made file, a grey image of that alpha that the converter adds to the scene.
+/// Otherwise the result is `file` itself. The encoding of the texture holds for alpha too.
 std::string file_of_numbers(const std::string& file, const std::string& bytes, Builder& builder) {
   if (!image_has_alpha(bytes)) {
     return file;
@@ -189,7 +189,8 @@ absl::StatusOr<scene::Texture> checkerboard(const TextureSource& from) {
     checker.set_mapping(scene::CheckerTexture::MAPPING_POSITION);
     checker.set_space(scene::SPACE_WORLD);
     if (!(from.state.transforms[0] == Transform{})) {
-      from.builder.warn(from.place(), "the cells lie along the world's axes, of size 1");
+      from.builder.warn(from.place(),
+                        "the cells of the checkerboard have size 1 and lie along the world's axes");
     }
     return out;
   }
@@ -203,6 +204,7 @@ absl::StatusOr<scene::Texture> checkerboard(const TextureSource& from) {
       from.builder.warn(from.place(), "the checkerboard is not shifted, and not mirrored");
     }
   }
+  // Offsets that add up to an odd number of cells exchange the two textures.
   if (std::abs(std::fmod(shift, 2)) == 1) {
     checker.mutable_even()->Swap(checker.mutable_odd());
   }
@@ -244,6 +246,9 @@ absl::StatusOr<scene::Texture> noise(const TextureSource& from, const std::strin
   return out;
 }
 
+/// Converts pbrt's bilerp, which interpolates bilinearly between four corners: v00, v01, v10 and
+/// v11. The first digit is the corner's u, the second its v. The result is a mix along v of two
+/// mixes along u.
 absl::StatusOr<scene::Texture> bilinear(const TextureSource& from) {
   scene::Texture rows[2];
   for (int v = 0; v < 2; ++v) {
@@ -252,6 +257,7 @@ absl::StatusOr<scene::Texture> bilinear(const TextureSource& from) {
     ASSIGN_OR_RETURN(*row.mutable_mix()->mutable_b(), from.part(absl::StrCat("v1", v), v));
   }
   ASSIGN_OR_RETURN(const Mapping mapping, read_mapping(from));
+  // Returns a ramp from 0 to 1 over one coordinate of the texture; `k` is 0 for u, 1 for v.
   const auto ramp = [&](scene::RampTexture::Coordinate coordinate, int k) {
     scene::Texture texture;
     texture.mutable_ramp()->set_coordinate(coordinate);
@@ -300,7 +306,8 @@ absl::StatusOr<scene::Texture> read_kind(const TextureSource& from, const std::s
     return noise(from, type);
   }
   if (type == "dots") {
-    from.builder.warn(from.place(), "dots have no counterpart; only what is outside is shown");
+    from.builder.warn(from.place(),
+                      "dots have no counterpart; only the texture outside of the dots is shown");
     from.parameters.ignore({"inside"});
     RETURN_IF_ERROR(read_mapping(from).status());
     return from.part("outside", 0);
@@ -319,7 +326,7 @@ absl::StatusOr<scene::Texture> read_kind(const TextureSource& from, const std::s
   return gray(0.5);
 }
 
-/// Returns a name for a texture that no other has.
+/// Returns a name that no other texture has. It begins with `name`.
 std::string unique_name(const std::string& name, Builder& builder) {
   std::string candidate = name;
   while (!builder.taken_textures.insert(candidate).second) {

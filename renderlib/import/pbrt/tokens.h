@@ -26,7 +26,7 @@ struct Token {
   Place place;
 };
 
-/// Reads files that are plain or compressed by gzip, one within the other.
+/// Reads the words of a scene file and of the files that it includes, plain or compressed by gzip.
 class Tokens {
  public:
   /// `folder` MUST outlive the object.
@@ -41,8 +41,8 @@ class Tokens {
   /// Returns the next word; std::nullopt after the last one. The error is INVALID_ARGUMENT for a
   /// string without end.
   absl::StatusOr<std::optional<Token>> next();
-  /// Returns the number of open files: that of the token that next() returned last, and those
-  /// around it. It is 0 after the last token.
+  /// Returns the number of open files: the file of the token that next() returned last, and the
+  /// files that include it, directly or not. Returns 0 after the last token.
   std::size_t depth() const { return open_.size(); }
   /// Makes next() return this token again.
   void put_back(Token token) { back_ = std::move(token); }
@@ -60,7 +60,7 @@ class Tokens {
 
   const SceneFolder& folder_;
   std::vector<Source> open_;
-  std::optional<Token> back_;
+  std::optional<Token> back_;  ///< token of put_back() that next() returns first
   std::uint64_t total_bytes_ = 0;
 };
 

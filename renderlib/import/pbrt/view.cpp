@@ -53,8 +53,9 @@ absl::StatusOr<Film> read_film(const ViewSource& view, double exposure_time, Bui
   ASSIGN_OR_RETURN(const double white, in.number("whitebalance", 0));
   builder.light_factor = std::clamp(exposure_time * iso / 100, 0.0, 1e12);
   if (sensor != "cie1931") {
-    builder.warn(in.place, absl::StrCat("the sensor \"", sensor,
-                                        "\" is not known here; that of CIE 1931 is taken"));
+    builder.warn(in.place,
+                 absl::StrCat("the sensor \"", sensor,
+                              "\" is not known here; the sensor cie1931 is used instead"));
   }
   if (white != 0 && white != 6500 && white != 6504) {
     builder.warn(in.place, "the white balance is left out: white is D65");
@@ -136,7 +137,8 @@ CameraPlace place_of(const Transform& to_world) {
   place.position = to_world.point({0, 0, 0});
   place.ahead = forward / place.unit;
   place.up = up / length(up);
-  // x, y and z of pbrt's camera are left-handed: right is y x z.
+  // The axes of pbrt's camera are left-handed: if pbrt does not mirror the image, right is
+  // cross(up, forward). Such a camera is mirrored in Bandsaw, whose axes are right-handed.
   place.is_mirrored = dot(cross(forward, up), right) < 0;
   const double limit = 1e-3 * place.unit;
   place.is_stretched = std::abs(length(up) - place.unit) > limit ||
@@ -174,7 +176,8 @@ absl::StatusOr<double> set_place(const ViewSource& view, Builder& builder) {
     builder.warn(written, "the camera's transformation stretches or shears; its direction is kept");
   }
   scene::Camera& camera = *builder.out.mutable_camera();
-  // The point is so far ahead that the sum keeps the precision of the direction.
+  // The point `look_at` is so far ahead that the sum of position and direction keeps the precision
+  // of the direction.
   const double ahead = std::max({1.0, max_abs(first.position), max_abs(second.position)});
   set_vec3(first.position, camera.mutable_position());
   set_vec3(first.position + first.ahead * ahead, camera.mutable_look_at());
@@ -210,6 +213,9 @@ absl::StatusOr<std::vector<double>> read_screen(const Parameters& in, double asp
   return screen;
 }
 
+/// Sets the camera, and the size of the rendered part of the image. If this is not the whole image,
+/// or if the screen window is off centre or its pixels are not square, the camera gets a window in
+/// screen space.
 absl::Status read_camera(const ViewSource& view, const Film& film, Builder& builder) {
   Parameters none;
   const Parameters& in = view.camera ? view.camera->second : none;
@@ -224,8 +230,8 @@ absl::Status read_camera(const ViewSource& view, const Film& film, Builder& buil
   ASSIGN_OR_RETURN(const double focus, in.number("focaldistance", 1e6));
   if (type != "perspective" && type != "orthographic") {
     builder.warn(in.place, absl::StrCat("the camera \"", type,
-                                        "\" has no counterpart; a perspective one of 60 degrees "
-                                        "stands for it"));
+                                        "\" has no counterpart; a perspective camera of 60 "
+                                        "degrees stands for it"));
     fov = 60;
     for (const Parameter& parameter : in.list) {
       parameter.is_used = true;
@@ -240,7 +246,7 @@ absl::Status read_camera(const ViewSource& view, const Film& film, Builder& buil
   const bool is_square =
       std::abs((screen[1] - screen[0]) / (screen[3] - screen[2]) - aspect) < 1e-9 * aspect &&
       screen[0] == -screen[1] && screen[2] == -screen[3];
-  const double half = is_square && is_whole ? screen[3] : 1;
+  const double half = is_square && is_whole ? screen[3] : 1;  // of the height, in screen space
   if (is_flat) {
     camera.mutable_orthographic()->set_height(2 * half * unit);
     in.ignore({"lensradius", "focaldistance"});

@@ -6,7 +6,8 @@
 
 namespace bandsaw::pbrt {
 
-/// The directives before WorldBegin that describe the image, as they were written.
+/// The directives before WorldBegin that describe the image: the type and the parameters of each;
+/// std::nullopt for a directive that is absent.
 struct ViewSource {
   std::optional<std::pair<std::string, Parameters>> camera;
   std::optional<std::pair<std::string, Parameters>> film;

@@ -15,13 +15,14 @@ namespace bandsaw {
 
 class Field {
  public:
-  /// The whole file. `locations` is nullptr if the format has none (JSON). All arguments MUST
-  /// outlive this object and its children.
+  /// Creates the Field of a whole file, whose name is `file`. `locations` is nullptr if the format
+  /// has none (JSON). All arguments MUST outlive this object and its children.
   Field(const std::string& file, const google::protobuf::Message& root,
         const google::protobuf::TextFormat::ParseInfoTree* locations)
       : file_(&file), message_(&root), tree_(locations) {}
 
-  /// Returns a message field of this one; `index` is -1 if the field is not repeated.
+  /// Returns the child message in the field `name` of this message. `index` is -1 if the field is
+  /// not repeated.
   Field child(const std::string& name, int index = -1) const;
   /// Returns true if a singular field is present.
   bool has(const std::string& name) const;
@@ -29,10 +30,10 @@ class Field {
   /// Returns INVALID_ARGUMENT: "cornell.textproto:12:3: shape[4].sphere.radius: <what>", with the
   /// position of the field or, if it is absent, of its message.
   absl::Status error(const std::string& name, absl::string_view what, int index = -1) const;
-  /// The same for this message itself.
+  /// Returns the same error for this message itself.
   absl::Status error(absl::string_view what) const;
 
-  /// Returns the path: "shape[4].sphere.radius".
+  /// Returns the path of the field `name` in the file: "shape[4].sphere.radius".
   std::string path(const std::string& name, int index = -1) const;
 
  private:

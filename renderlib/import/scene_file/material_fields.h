@@ -38,18 +38,18 @@ inline absl::StatusOr<std::optional<TextureId>> read_map(const Field& in, const 
   return std::optional(id);
 }
 
-/// A reflectance as a texture or as a colour, with the names of the fields; `otherwise` if both are
-/// absent.
+/// A reflectance that is written as a texture or as a colour, with the names of the two fields.
 struct ReflectanceFields {
   const char* texture_name;
-  bool textured;
+  bool textured;  ///< the field `texture` is present
   const scene::Texture& texture;
   const char* color_name;
-  bool colored;
+  bool colored;  ///< the field `color` is present
   const scene::Color& color;
-  float otherwise;
+  float otherwise;  ///< the reflectance if both fields are absent
 };
 
+/// Returns the reflectance as a texture. Returns INVALID_ARGUMENT if both fields are present.
 inline absl::StatusOr<TextureId> read_reflectance(const Field& in, const ReflectanceFields& from,
                                                   SceneDraft& draft) {
   if (from.textured && from.colored) {
@@ -67,7 +67,7 @@ inline absl::StatusOr<TextureId> read_reflectance(const Field& in, const Reflect
   return draft.textures.constant(gray(from.otherwise));
 }
 
-/// The same for a message with the fields `texture` and `color`.
+/// Returns the reflectance of a message with the fields `texture` and `color`.
 template <class From>
 absl::StatusOr<TextureId> read_reflectance(const Field& in, const From& from, float otherwise,
                                            SceneDraft& draft) {

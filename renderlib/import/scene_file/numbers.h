@@ -14,16 +14,16 @@ namespace bandsaw {
 
 using Numbers = google::protobuf::RepeatedField<double>;
 
-/// Reads three finite numbers of at most 1e30 in absolute value (so that products of a few of them
-/// do not overflow). The field is required.
+/// Reads three finite numbers of at most 1e30 in absolute value. The limit is there so that
+/// products of a few of them do not overflow. The field is required.
 absl::StatusOr<Vec3> read_vec3(const Field& in, const std::string& name, const Numbers& list);
-/// The same, or `otherwise` if the field is absent.
+/// Reads a vector like the first read_vec3(). Returns `otherwise` if the field is absent.
 absl::StatusOr<Vec3> read_vec3(const Field& in, const std::string& name, const Numbers& list,
                                const Vec3& otherwise);
-/// The same; the field is required, and the vector must not be zero.
+/// Reads a vector like the first read_vec3(). The vector must not be zero.
 absl::StatusOr<Vec3> read_direction(const Field& in, const std::string& name, const Numbers& list);
 
-/// Checks that a number is in [least, most].
+/// Returns INVALID_ARGUMENT for the field `name` unless `value` is in [least, most].
 absl::Status check_range(const Field& in, const std::string& name, double value, double least,
                          double most);
 

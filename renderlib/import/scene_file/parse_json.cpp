@@ -12,8 +12,9 @@ namespace bandsaw {
 namespace {
 
 // Returns ":LINE:COLUMN" of a JSON error; "" if it is unknown. For broken JSON, protobuf reports
-// the cause, up to 40 characters of the text, and a line with a caret below the position. If those
-// characters occur once in the file, they determine line and column.
+// the cause, up to 40 characters of the text (`excerpt`), and a line with a caret below the
+// position. `caret` is the number of characters before the caret. If the excerpt occurs once in the
+// file, its position determines line and column.
 std::string place_of(absl::string_view text, absl::string_view excerpt, std::size_t caret) {
   const std::size_t found = text.find(excerpt);
   if (excerpt.empty() || found == text.npos || text.find(excerpt, found + 1) != text.npos) {
@@ -27,6 +28,8 @@ std::string place_of(absl::string_view text, absl::string_view excerpt, std::siz
   return absl::StrCat(":", line, ":", column + 1);
 }
 
+// Returns the error for broken JSON: file, position if place_of() finds it, and cause. `message` is
+// protobuf's error. Its first line is the cause, and its last line has spaces and a caret.
 absl::Status syntax_error(const std::string& text, const std::string& file,
                           absl::string_view message) {
   const std::size_t first = message.find('\n');

@@ -28,7 +28,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns a number in [0, 1) that depends on seed, copy and use alone.
+/// Returns a number in [0, 1) that depends on seed, copy and use alone. `use` is the index of the
+/// number among the random numbers of the copy.
 double random_number(std::uint64_t seed, std::uint64_t copy, std::uint64_t use) {
   std::uint64_t x = seed;
   for (const std::uint64_t next : {copy, use}) {
@@ -37,7 +38,7 @@ double random_number(std::uint64_t seed, std::uint64_t copy, std::uint64_t use) 
   return static_cast<double>(x >> 11) * 0x1p-53;
 }
 
-/// Copies on a regular grid that are moved, turned and scaled at random.
+/// A regular grid of copies of a group, each of which is moved, turned and scaled at random.
 struct Grid {
   std::uint64_t count[3];  ///< copies along x, y, z
   Vec3 step;               ///< from copy to copy
@@ -161,7 +162,7 @@ absl::StatusOr<Contents> read_group(const Field& in, const scene::Group& from, S
   if (shapes.size() > 0) {
     Geometry& geometry = draft.out.scene.geometry;
     geometry.groups.push_back(std::move(shapes));
-    Instance loose;
+    Instance loose;  // places the shapes that the group itself contains
     loose.group = GroupId{static_cast<std::uint32_t>(geometry.groups.size() - 1)};
     loose.material = kOwnMaterial;
     placed.seen.instances.insert(placed.seen.instances.begin(), loose);
@@ -189,8 +190,9 @@ absl::StatusOr<const Contents*> find_group(const Field& in, const std::string& n
                                      "; within a group only earlier ones are known"));
 }
 
-/// Adds `what` to `to`, placed by `placement` or, if there are keys, moving according to `keys`;
-/// `copy` is applied after either. Returns false if a placement would be singular.
+/// Adds `what` to `to`, placed by `placement` or, if there are keys, moving according to `keys`.
+/// The transform `copy` is applied after the placement or the motion. Returns false if a placement
+/// would be singular.
 bool place_copy(const Placements& what, const Transform& placement, const Transform& copy,
                 const std::vector<Key>& keys, std::optional<MaterialId> material, Placements& to) {
   if (what.instances.empty()) {

@@ -15,7 +15,7 @@
 namespace bandsaw {
 namespace {
 
-/// Reads the required colour `name`; `given`: it is present.
+/// Reads the required colour `name`. `given` is true if the field is present.
 absl::StatusOr<Rgb> read_brightness(const Field& in, const std::string& name, bool given,
                                     const scene::Color& from) {
   if (!given) {
@@ -41,6 +41,7 @@ absl::StatusOr<DeltaLight> read_point(const Field& in, const scene::PointLight& 
   return DeltaLight(light);
 }
 
+/// Returns the unit vector of a spot light's axis, from `direction` or from `look_at`.
 absl::StatusOr<Vec3> read_axis(const Field& in, const scene::SpotLight& from,
                                const Vec3& position) {
   if (from.direction().empty() == from.look_at().empty()) {
@@ -76,7 +77,7 @@ absl::Status read_sides(const Field& in, const Numbers& from, bool mirrored, con
   return absl::OkStatus();
 }
 
-/// Returns width / height of an image texture; 1 for others.
+/// Returns width / height of an image texture; 1 for all other textures.
 double aspect_of(const Texture& texture) {
   const auto* image = std::get_if<ImageTexture>(&texture);
   return image != nullptr ? static_cast<double>(image->width) / image->height : 1;
@@ -115,6 +116,8 @@ absl::StatusOr<DeltaLight> read_projector(const Field& in, const scene::Projecto
   return DeltaLight(light);
 }
 
+/// Sets the image that a spot light projects, if there is one. `outer` is the spot's outer angle in
+/// degrees.
 absl::Status read_spot_image(const Field& in, const scene::SpotLight& from, double outer,
                              SceneDraft& draft, SpotLight& light) {
   if (!from.has_image()) {

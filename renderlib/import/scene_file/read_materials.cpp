@@ -1,6 +1,6 @@
 // Reads the materials of a scene file: read_kind() calls one function for each kind. Then the
-// properties are read that all kinds except emissive, gltf and mix can have: relief, opacity,
-// emission.
+// relief, the opacity and the emission are read, which all kinds except emissive, gltf and mix can
+// have.
 
 #include "renderlib/import/scene_file/read_materials.h"
 
@@ -252,7 +252,8 @@ absl::Status read_emission(const Field& in, const scene::Material& from, SceneDr
   return absl::OkStatus();
 }
 
-// Returns an error if a property of the surface is present that the kind does not take.
+// Returns INVALID_ARGUMENT if the material has a property of the surface, such as a normal map,
+// that its kind cannot have.
 absl::Status check_properties(const Field& in, const scene::Material& from) {
   constexpr const char* kOfSurface[] = {"normal_texture",   "normal_scale",    "bump_texture",
                                         "bump_scale",       "opacity_texture", "opacity",
@@ -288,7 +289,8 @@ absl::StatusOr<Material> read_material(const Field& in, const scene::Material& f
   RETURN_IF_ERROR(read_opacity(in, from, draft, to.alpha));
   RETURN_IF_ERROR(read_emission(in, from, draft, to.emission));
   if (nested_glass(to) != nullptr && to.alpha.mode != AlphaMode::kOpaque) {
-    return in.error("opacity", "a glass with a priority is opaque; leave one of them out");
+    return in.error("opacity",
+                    "a glass with a priority is opaque; leave out the priority or the opacity");
   }
   to.one_sided = from.one_sided();
   if (to.one_sided && transmits(to)) {

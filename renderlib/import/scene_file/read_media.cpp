@@ -18,7 +18,8 @@
 namespace bandsaw {
 namespace {
 
-/// Reads a coefficient per scene unit and multiplies it by `density`; 0 if it is not `given`.
+/// Reads a coefficient, which is per scene unit, and multiplies it by `density`. Returns 0 if the
+/// field is not `given`.
 absl::StatusOr<Rgb> read_rates(const Field& in, const std::string& name, bool given,
                                const scene::Color& color, double density) {
   if (!given) {
@@ -56,6 +57,7 @@ absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from, S
   if (medium.grids.albedo) {
     medium.scattering = gray(static_cast<float>(density));
   }
+  // With an albedo, the density is the extinction, and the albedo is the share that is scattered.
   if (from.has_albedo()) {
     ASSIGN_OR_RETURN(const Rgb albedo,
                      read_color(in.child("albedo"), from.albedo(), kMaxReflectance));

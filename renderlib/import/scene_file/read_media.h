@@ -12,8 +12,8 @@
 
 namespace bandsaw {
 
-/// Reads all media, and reads which of them is the fog, the medium that needs no boundary. Returns
-/// INVALID_ARGUMENT with the field's name.
+/// Reads all media, and the name of the fog. The fog is the medium outside of all boundaries.
+/// Returns INVALID_ARGUMENT with the field's name.
 absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
 /// Returns the medium with this name, which is the value of `in`'s field `field`. Returns
@@ -21,19 +21,21 @@ absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft&
 absl::StatusOr<MediumId> find_medium(const Field& in, const std::string& field,
                                      const std::string& name, const SceneDraft& draft);
 
-/// These functions return the boundary of the medium `inside` as an instance in Media::boundaries
-/// (scene/media.h), which the caller places: a sphere, a box from `low` to `high`, or an instance
-/// of a mesh of the scene. The last function returns INVALID_ARGUMENT for `in`'s field "interior"
-/// if the mesh is open.
+/// These functions return the boundary of the medium `inside`: an instance of a mesh or a group in
+/// Media::boundaries (scene/media.h). The caller adds this instance to a Placements. The boundary
+/// is a sphere, a box from `low` to `high`, or `mesh`, which is an instance of a mesh of the scene.
+/// The last function returns INVALID_ARGUMENT for `in`'s field "interior" if the mesh is open.
 Instance boundary_of(const Sphere& sphere, MediumId inside, SceneDraft& draft);
 Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft);
 absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& mesh, MediumId inside,
                                      SceneDraft& draft);
 
-/// Places `boundary` at `placement` in the space of `to`. boundary_of() MUST have returned the
-/// boundary, and it MUST have no frame. If its medium varies in space, the placement becomes a
-/// frame of `to`: the medium then varies in the space in which the boundary is given, before it is
-/// placed (scene/media.h).
+/// Places `boundary` at `placement` in the space of `to`, and gives the medium in it its space: the
+/// space in which the grids of a medium are defined. boundary_of() MUST have returned the boundary,
+/// and the boundary MUST have no frame. If the medium has grids, a frame with this placement is
+/// added to `to`, and the boundary is put into this frame. So the grids are defined in the
+/// boundary's space before the placement (scene/media.h). If the medium has no grids, only the
+/// boundary's transform is changed.
 void give_space(const Transform& placement, Instance& boundary, const SceneDraft& draft,
                 Placements& to);
 

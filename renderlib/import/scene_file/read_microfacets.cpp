@@ -10,7 +10,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr float kMaxMetalIndex = 100;  // of eta and k: far above any metal's
+constexpr float kMaxMetalIndex = 100;  // limit of eta and k, far above the values of any metal
 
 absl::StatusOr<ConductorIndex> read_index(const Field& in, const scene::Conductor& from) {
   ConductorIndex index;

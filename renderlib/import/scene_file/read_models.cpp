@@ -59,14 +59,15 @@ absl::StatusOr<std::shared_ptr<const Model>> find_file(const Field& in, const sc
   return model;
 }
 
-/// Adds the delta lights of a model, which do not move: `to_world` of a moving model is its
-/// placement when the shutter opens. The lights of a model in a group are left out, with a warning.
+/// Adds the delta lights of a model. They do not move: for a moving model, `to_world` is the
+/// model's placement when the shutter opens. The lights of a model in a group are left out, with a
+/// warning.
 void add_lights(const std::string& file, const Model& model, const Transform& to_world,
                 SceneDraft& draft) {
   if (draft.placed != &draft.world) {
     if (!model.lights.empty()) {
-      draft.out.info.warnings.push_back(
-          absl::StrCat(file, ": ", model.lights.size(), " lights are left out: a group has none"));
+      draft.out.info.warnings.push_back(absl::StrCat(
+          file, ": ", model.lights.size(), " lights are left out: a group cannot have lights"));
     }
     return;
   }

@@ -16,9 +16,10 @@
 namespace bandsaw {
 namespace {
 
-/// Maximum rotation about one axis between two keys. It is well below 180 degrees, because from
-/// there on the shortest rotation is another one.
+/// Maximum rotation about one axis between two keys. It is well below 180 degrees, because beyond
+/// 180 degrees the shortest rotation runs in the opposite direction.
 constexpr double kMaxTurn = 90;  // degrees
+/// Maximum number of keys that add_keys() appends for one key of the scene file.
 constexpr double kMaxKeys = 100'000;
 
 struct Turn {
@@ -26,7 +27,7 @@ struct Turn {
   double degrees = 0;
 };
 
-/// The fields of a placement.
+/// The fields of a placement as they are written. The turns are applied one after the other.
 struct Written {
   Vec3 scale{1, 1, 1};
   std::vector<Turn> turns;
@@ -118,8 +119,9 @@ bool same_sign(const Vec3& a, const Vec3& b) {
   return a.x * b.x > 0 && a.y * b.y > 0 && a.z * b.z > 0;
 }
 
-/// Returns the rotation of a pose about one axis; a pose without rotation has a rotation of 0 about
-/// the axis of the other pose.
+/// Returns the rotation of `pose` if it is one rotation about one axis. If `pose` has no rotation
+/// and `other` has one, returns a rotation by 0 about the axis of `other`. Returns std::nullopt in
+/// all other cases.
 std::optional<Turn> only_turn(const Written& pose, const Written& other) {
   if (pose.turns.size() == 1) {
     return pose.turns[0];
@@ -128,7 +130,7 @@ std::optional<Turn> only_turn(const Written& pose, const Written& other) {
   return rests ? std::optional(Turn{other.turns[0].axis, 0}) : std::nullopt;
 }
 
-/// Appends the keys after a, up to and including b. If both rotate about the same axis and the
+/// Appends the keys after `a`, up to and including `b`. If both rotate about the same axis and the
 /// rotation between them exceeds kMaxTurn, further keys are added in between.
 void add_keys(const WrittenKey& a, const WrittenKey& b, std::vector<Key>& keys) {
   const std::optional<Turn> from = only_turn(a.pose, b.pose);
