@@ -61,29 +61,29 @@ void add_morph_targets(const aiMesh& from, const std::vector<double>& weights, V
 /// bones to the model's space. `place` is the transform of the vertices that have no bone.
 void add_skin(const aiMesh& from, const std::vector<Transform>& bones, const Transform& place,
               Vertices& to) {
-  Transform nothing;
-  nothing.m = {};
-  std::vector<Transform> blended(to.positions.size(), nothing);
+  Transform zero;
+  zero.m = {};
+  std::vector<Transform> blended(to.positions.size(), zero);
   std::vector<double> weights(to.positions.size(), 0);
   for (unsigned i = 0; i < from.mNumBones; ++i) {
     const aiBone& bone = *from.mBones[i];
-    const Transform moves = bones[i] * transform_of(bone.mOffsetMatrix);
+    const Transform to_model = bones[i] * transform_of(bone.mOffsetMatrix);
     for (unsigned w = 0; w < bone.mNumWeights; ++w) {
       const aiVertexWeight& weight = bone.mWeights[w];
       if (weight.mVertexId < blended.size() && std::isfinite(weight.mWeight)) {
-        add_scaled(moves, weight.mWeight, blended[weight.mVertexId]);
+        add_scaled(to_model, weight.mWeight, blended[weight.mVertexId]);
         weights[weight.mVertexId] += weight.mWeight;
       }
     }
   }
   for (std::size_t i = 0; i < blended.size(); ++i) {
-    Transform moves = place;
+    Transform to_model = place;
     if (weights[i] > 0) {
-      moves = nothing;
-      add_scaled(blended[i], 1 / weights[i], moves);
+      to_model = zero;
+      add_scaled(blended[i], 1 / weights[i], to_model);
     }
-    to.positions[i] = float3(moves.point(vec3(to.positions[i])));
-    if (const auto back = inverse(moves); back && !to.normals.empty()) {
+    to.positions[i] = float3(to_model.point(vec3(to.positions[i])));
+    if (const auto back = inverse(to_model); back && !to.normals.empty()) {
       const Vec3 normal = normal_to_world(*back, vec3(to.normals[i]));
       const double size = length(normal);
       to.normals[i] = float3(size > 0 ? normal / size : normal);

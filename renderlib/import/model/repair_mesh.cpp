@@ -77,10 +77,10 @@ void drop_unused_vertices(Mesh& mesh) {
     }
   }
   std::vector<std::uint32_t> kept;
-  std::vector<std::uint32_t> renamed(used.size());
+  std::vector<std::uint32_t> new_index(used.size());
   for (std::uint32_t i = 0; i < used.size(); ++i) {
     if (used[i]) {
-      renamed[i] = static_cast<std::uint32_t>(kept.size());
+      new_index[i] = static_cast<std::uint32_t>(kept.size());
       kept.push_back(i);
     }
   }
@@ -93,7 +93,7 @@ void drop_unused_vertices(Mesh& mesh) {
   keep(mesh.normals_at_close, kept);
   for (auto& triangle : mesh.triangles) {
     for (std::uint32_t& corner : triangle) {
-      corner = renamed[corner];
+      corner = new_index[corner];
     }
   }
 }

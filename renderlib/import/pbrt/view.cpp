@@ -69,9 +69,12 @@ absl::Status read_filter(const ViewSource& view, Builder& builder) {
   Parameters none;
   const Parameters& in = view.filter ? view.filter->second : none;
   const std::string type = view.filter ? view.filter->first : "gaussian";
-  const double standard = type == "box" ? 0.5 : type == "gaussian" ? 1.5 : type == "sinc" ? 4 : 2;
-  ASSIGN_OR_RETURN(const double x, in.number("xradius", standard));
-  ASSIGN_OR_RETURN(const double y, in.number("yradius", standard));
+  const double default_radius = type == "box"        ? 0.5
+                                : type == "gaussian" ? 1.5
+                                : type == "sinc"     ? 4
+                                                     : 2;
+  ASSIGN_OR_RETURN(const double x, in.number("xradius", default_radius));
+  ASSIGN_OR_RETURN(const double y, in.number("yradius", default_radius));
   double radius = std::clamp((x + y) / 2, 0.0, 16.0);
   if (x != y) {
     builder.warn(in.place, "the filter has the mean of both radii");
