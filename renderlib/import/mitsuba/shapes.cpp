@@ -410,17 +410,18 @@ absl::Status ShapeReader::add_sphere(const Parameters& from, const Surface& surf
                    materials_.material_of(surface.bsdf, surface.emitter, textured));
   scene::Shape shape;
   shape.set_material(material.name);
+  const std::optional<double> scale = uniform_scale(placed.to_world);
+  const bool is_instance = uv || !scale;
+  const Transform axes{{{{-1, 0, 0, 0}, {0, 0, 1, 0}, {0, 1, 0, 0}}}};
+  const Transform to_world = is_instance ? placed.to_world * axes : Transform{};
   if (surface.interior != nullptr) {
-    ASSIGN_OR_RETURN(*shape.mutable_interior(),
-                     media_.medium_of(*surface.interior, uv ? placed.to_world : Transform{}));
+    ASSIGN_OR_RETURN(*shape.mutable_interior(), media_.medium_of(*surface.interior, to_world));
   } else if (material.name.empty()) {
     return absl::OkStatus();
   }
-  const std::optional<double> scale = uniform_scale(placed.to_world);
-  if (uv || !scale) {
+  if (is_instance) {
     shape.mutable_sphere()->set_radius(1);
-    const Transform axes{{{{-1, 0, 0, 0}, {0, 0, 1, 0}, {0, 1, 0, 0}}}};
-    return add_placed(shape, placed.to_world * axes, target);
+    return add_placed(shape, to_world, target);
   }
   add_numbers(placed.to_world.point({}), shape.mutable_sphere()->mutable_center());
   shape.mutable_sphere()->set_radius(*scale);

@@ -496,6 +496,41 @@ TEST_F(MitsubaScene, GridsReachTheirFaces) {
               ElementsAre(HasSubstr("wrap_mode \"repeat\" of a grid is shown as clamp")));
 }
 
+/// Mitsuba places grids in the world. A sphere that is scaled unequally, or has uvs, is an instance
+/// here, and its medium lies in the space of the instance. So the product of both matrices is the
+/// identity.
+TEST_F(MitsubaScene, GridsInSpheresThatAreInstancesStayInTheirPlace) {
+  write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
+  const auto grid_to_world = [&](const std::string& scale, const std::string& bsdf) {
+    const scene::Scene from = scene(
+        "<medium type=\"heterogeneous\" id=\"smoke\"><volume name=\"sigma_t\" "
+        "type=\"gridvolume\"><string name=\"filename\" value=\"smoke.vol\"/></volume>"
+        "</medium><shape type=\"sphere\">" +
+        bsdf + "<ref name=\"interior\" id=\"smoke\"/><transform name=\"to_world\"><scale " + scale +
+        "/><translate x=\"5\"/></transform></shape>");
+    const auto transform_of = [](const auto& numbers) {
+      Transform out;
+      for (int i = 0; i < numbers.size(); ++i) {
+        out.m[i / 4][i % 4] = numbers[i];
+      }
+      return out;
+    };
+    EXPECT_EQ(from.instance_size(), 1);
+    return transform_of(from.instance(0).matrix()) *
+           transform_of(from.medium(0).density_grid().matrix());
+  };
+  const std::string textured =
+      "<bsdf type=\"diffuse\"><texture type=\"checkerboard\" name=\"reflectance\"/></bsdf>";
+  for (const Transform& found : {grid_to_world("x=\"2\"", "<bsdf type=\"null\"/>"),
+                                 grid_to_world("value=\"2\"", textured)}) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        EXPECT_NEAR(found.m[row][column], row == column ? 1 : 0, 1e-12) << row << " " << column;
+      }
+    }
+  }
+}
+
 /// import_scene reads a Mitsuba file too, also in strict mode.
 TEST_F(MitsubaScene, IsImportedAsASceneFile) {
   write_text(folder_, "s.xml",
