@@ -14,11 +14,14 @@ namespace {
 /// Maximum number of primitives that are listed.
 constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 18;
 
-/// Metals rougher than this are no casters, because they cast no sharp light. A material that
-/// blends several kinds of surface is a caster if its roughness is at most this and its factor of
-/// metal is above this. A Principled material may have a factor of transmission above this instead.
+/// Metals with a roughness above kRoughest are no casters, because they cast no sharp light. A
+/// material that blends several kinds of surface is a caster if its roughness is at most kRoughest
+/// and its factor of metal is above the same number. For a Principled material, its factor of
+/// transmission may be above the number instead.
 constexpr double kRoughest = 0.5;
 
+/// Returns true if surfaces of the material cast caustics. Alpha of a Conductor is the square of
+/// the roughness.
 bool is_caster(const Material& material) {
   if (const auto* metal = std::get_if<Metal>(&material.kind)) {
     return metal->fuzz <= kRoughest;

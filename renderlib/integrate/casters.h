@@ -15,8 +15,8 @@ namespace bandsaw {
 /// The casters of a scene, at which the photons of caustics start (photon_start.h).
 class Casters {
  public:
-  /// Collects the casters of the scene, which MUST outlive this object. If there are more than 2^18
-  /// primitives, takes only every second, third, … of them.
+  /// Collects the casters of the scene, which MUST outlive this object. If the casters have more
+  /// than 2^18 primitives, takes only every n-th of them, with the smallest sufficient n.
   explicit Casters(const Scene& scene);
   /// Returns an object without casters, for a scene whose caustics are left to paths.
   static Casters none(const Scene& scene);
@@ -27,9 +27,10 @@ class Casters {
   /// Returns true if surfaces of this material are casters; false for mixtures.
   bool casts(MaterialId id) const { return casting_[index_of(id)]; }
 
-  /// Returns a point at this time: first a material is chosen, each with the same probability, then
-  /// a point of its surfaces. `material` is in [0, 1); the other numbers and the result are those
-  /// of SurfaceSampler::sample(). There MUST be casters.
+  /// Returns a random point of a caster at this time. First a material is chosen, each with the
+  /// same probability, then a point of the surfaces of this material. `material` is a random number
+  /// in [0, 1). The other numbers and the result are those of SurfaceSampler::sample(). There MUST
+  /// be casters.
   std::optional<SurfaceSample> sample(double material, double primitive, double u, double v,
                                       double time) const;
 

@@ -1,3 +1,6 @@
+// Decides which surfaces receive caustics, finds the photon maps of a sample, and estimates the
+// light that a receiver scatters from the photons around it.
+
 #include "renderlib/integrate/caustics.h"
 
 #include <algorithm>

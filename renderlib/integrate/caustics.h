@@ -1,18 +1,19 @@
 #pragma once
 
-// Caustics from photon maps. The light that travels from an emissive surface over one or more
-// casters (casters.h) to a receiver, and no other light, is estimated from photons
-// (trace_photons.h); path tracing leaves out just this light. Every surface has one of three roles:
+// Caustics from photon maps. Photons (trace_photons.h) estimate only the light that travels from an
+// emissive surface over one or more casters (casters.h) to a receiver. Path tracing leaves out just
+// this light. Every surface has one of three roles:
 //
 // - a caster scatters the photon or the path further,
-// - a receiver is a surface of which every sampled lobe is wide: the light of the photons is
-//   scattered there towards the camera,
-// - any other surface, a scattering in a medium, and a delta direction at a receiver end the chain.
+// - a receiver is a surface whose sampled lobes are all wide, so that it scatters the light of the
+//   photons towards the camera,
+// - any other surface ends the chain of casters.
 //
-// A chain is counted from the receiver towards the light. At the casters of a chain, path tracing
-// samples no emissive surface. Emission that a path hits after a caster is left out where light
-// sampling at that caster could have produced it, because there the photons start. Delta lights,
-// environments and backgrounds are sampled as without photon maps.
+// A scattering in a medium and a delta direction at a receiver also end the chain. A chain is
+// counted from the receiver towards the light. At the casters of a chain, path tracing samples no
+// emissive surface. If a path hits emission after a caster, and light sampling at this caster could
+// have produced the emission, it is left out, because photons start at casters by light sampling.
+// Delta lights, environments and backgrounds are sampled as without photon maps.
 
 #include <cstdint>
 #include <utility>
@@ -27,9 +28,10 @@ namespace bandsaw {
 /// The role of a surface for caustics, as described above.
 enum class CausticRole { kOther, kCaster, kReceiver };
 
-/// Returns true if all lobes of the BSDF that have a pdf are wide, so that the light that it
-/// scatters can be estimated from the photons around a point: diffuse surfaces, plastic and glTF's
-/// material unless they are polished. A smooth coat is a delta direction and does not matter.
+/// Returns true if all lobes of the BSDF that have a pdf are wide and on one side of the surface.
+/// Then the light that it scatters can be estimated from the photons around a point. Such surfaces
+/// are diffuse, or of plastic or glTF's material unless they are polished. A smooth coat is a delta
+/// direction and does not matter.
 bool receives_caustics(const Bsdf& bsdf);
 
 /// Returns the role of a surface of this material with this BSDF.
@@ -47,15 +49,17 @@ class PhotonMaps {
   /// halves of an image's samples share no map, and the noise of the maps is part of the difference
   /// from which the error is estimated (render/error_estimate.h).
   static constexpr std::uint64_t kMinSamplesOfMap = 8;
-  /// Returns the number of the map of a sample. The first four maps have 8 samples each; in
-  /// general, samples [8 * 4^k, 32 * 4^k) have maps of 8 * 2^k samples each. So the number of
-  /// maps grows with the root of the number of samples: a map costs as much as 10^5 to 10^6
-  /// samples, and a band of many samples must not need more maps than a worker can keep.
+  /// Returns the number of the map of a sample. The first four maps have 8 samples each. In
+  /// general, samples [8 * 4^k, 32 * 4^k) have maps of 8 * 2^k samples each. So the number of maps
+  /// grows only with the root of the number of samples. It must not grow faster, because a map
+  /// costs as much as 10^5 to 10^6 samples, and because a band of many samples must not need more
+  /// maps than a worker can keep.
   static std::uint32_t number_of(std::uint64_t sample);
 
   /// `casters` MUST outlive this object.
   explicit PhotonMaps(const Casters& casters) : casters_(&casters) {}
-  /// Adds the maps `number`, larger than that of all maps so far. They MUST outlive this object.
+  /// Adds the maps with this number, which MUST be larger than the numbers of all maps so far. The
+  /// maps MUST outlive this object.
   void add(std::uint32_t number, const TracedMaps& maps) { maps_.push_back({number, &maps}); }
   /// Uses these maps for all samples. They MUST outlive this object.
   void use_for_all(const TracedMaps& maps) { for_all_ = &maps; }

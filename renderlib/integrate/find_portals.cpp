@@ -11,8 +11,9 @@
 namespace bandsaw {
 namespace {
 
-/// Number of chunks, and number of the chunks that are traced first.
+/// Number of chunks.
 constexpr std::uint32_t kChunks = 64;
+/// Number of the chunks that are traced first, to find out whether the scene needs portals.
 constexpr std::uint32_t kFirstChunks = 8;
 constexpr std::uint64_t kPathsOfChunk = 128;
 /// Maximum number of scatterings of a path. Later scatterings would find the same openings.
@@ -21,7 +22,7 @@ constexpr std::uint32_t kMaxScatterings = 6;
 /// Traces one path and appends the rays that leave its surfaces.
 void add_rays(const PathContext& context, PathState path, std::vector<ScatteredRay>& to) {
   const Scene& scene = context.scene;
-  std::optional<ScatteredRay> open;  // a ray that has not met anything yet
+  std::optional<ScatteredRay> open;  // a ray of which it is not yet known whether it escapes
   for (std::uint32_t depth = 0; depth < kMaxScatterings; ++depth) {
     const std::optional<SurfacePoint> hit = next_surface(context, depth, path);
     if (open) {
@@ -50,7 +51,8 @@ void add_rays(const PathContext& context, PathState path, std::vector<ScatteredR
 /// Returns the rays of a chunk of paths.
 Traced<ScatteredRay> rays_of_chunk(const Scene& scene, const GuidingKey& key,
                                    std::uint32_t number) {
-  constexpr std::uint32_t kRound = 3;  // after the rounds of the training
+  // Selects the random numbers. The training of path guiding has the lower rounds.
+  constexpr std::uint32_t kRound = 3;
   const RayGenerator camera(scene.camera(), static_cast<int>(key.width),
                             static_cast<int>(key.height), scene.camera_at_close());
   const PathOptions options{.technique = Technique::kScatteringOnly, .russian_roulette = false};

@@ -25,19 +25,20 @@ constexpr double kMinLift = 3;
 /// A portal has at least this part of the escaping rays.
 constexpr double kMinPart = 0.04;
 
-/// Normals of planes are searched among the axes and the most frequent normals of the surfaces.
+/// Maximum number of normals of planes: the axes and the most frequent normals of the surfaces.
 constexpr std::size_t kMaxNormals = 9;
+/// Normals whose cosine is above this number count as equal or opposite.
 constexpr double kSameDirection = 0.9995;
 /// In each direction, the kMaxWalls largest walls are considered, if more than the part
-/// kMinPartOfWall of the rays start there. From one surface of a wall to the next, the offset
-/// differs by at most the part kThickness of the scene's size.
+/// kMinPartOfWall of the rays start at the wall. Surfaces belong to one wall if their offsets, in
+/// sorted order, differ from one to the next by at most the part kThickness of the scene's size.
 constexpr std::size_t kMaxWalls = 8;
 constexpr double kMinPartOfWall = 0.005;
 constexpr double kThickness = 1e-4;
 /// Openings may lie outside the box of the places from which rays start, by at most this part of
 /// the scene's size.
 constexpr double kMarginOfBox = 0.01;
-/// Rays at a smaller cosine to the normal do not decide where the plane is.
+/// Rays whose cosine to the normal is not above this number are not used to fit a rectangle.
 constexpr double kMinCosine = 0.1;
 
 /// This part of the crossings may lie outside the rectangle on each of its four sides, because it
@@ -160,6 +161,7 @@ Rectangle smallest_rectangle(const Rays& rays, const Planes& planes) {
 /// with at least kMinRays rays.
 std::vector<Rays> divided(const Rays& rays, const Planes& planes, double offset) {
   std::vector<Rays> done;
+  // Parts that may have to be divided, each with the number of axes along which it has no gap.
   std::vector<std::pair<Rays, int>> open = {{rays, 0}};
   while (!open.empty()) {
     auto [part, undivided] = std::move(open.back());
@@ -196,7 +198,8 @@ std::vector<Rays> divided(const Rays& rays, const Planes& planes, double offset)
   return done;
 }
 
-/// Returns the normals of planes in which openings may lie.
+/// Returns the normals of planes in which openings may lie: the axes, and the normals that more
+/// than 1/32 of the considered surfaces have.
 std::vector<Vec3> candidate_normals(absl::Span<const ScatteredRay> rays) {
   std::vector<Vec3> normals = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   constexpr std::size_t kConsidered = 1024;
@@ -227,8 +230,8 @@ std::vector<Vec3> candidate_normals(absl::Span<const ScatteredRay> rays) {
   return normals;
 }
 
-/// Returns planes with this normal, whose axis u is the most perpendicular one of the other
-/// normals.
+/// Returns planes with this normal. Their axis u comes from that one of `normals` which is most
+/// perpendicular to `normal`, made exactly perpendicular to it.
 Planes planes_of(const Vec3& normal, const std::vector<Vec3>& normals) {
   Vec3 best = normals[0];
   for (const Vec3& other : normals) {
@@ -267,8 +270,8 @@ Portal portal_of(const Rays& rays, const Rectangle& rectangle, const Planes& pla
           planes.u * u.size(), planes.v * v.size()};
 }
 
-/// Returns the offsets of the planes of walls: the most frequent ones of surfaces with this normal
-/// or its opposite.
+/// Returns the offsets of the planes of walls. They are the most frequent offsets of surfaces that
+/// have this normal or its opposite. `size` is the size of the scene.
 std::vector<double> offsets_of_walls(absl::Span<const ScatteredRay> rays, const Vec3& normal,
                                      double size) {
   std::vector<double> offsets;
@@ -301,10 +304,11 @@ std::vector<double> offsets_of_walls(absl::Span<const ScatteredRay> rays, const 
 struct Found {
   Portal portal;
   std::size_t escaping = 0;
-  double precision = 0;  ///< part of the rays towards it that escape
+  double precision = 0;  ///< part of the rays through the portal that escape
   double score() const { return static_cast<double>(escaping) * precision; }
 };
 
+/// Counts the rays that pass through the portal, and those of them that escape.
 Found judge(const Portal& portal, absl::Span<const ScatteredRay> rays) {
   Found found{.portal = portal};
   std::size_t all = 0;
@@ -367,8 +371,8 @@ Rays crossing_in_box(const Rays& rays, const Planes& planes, double offset, cons
 std::optional<Found> best_portal(const Rays& escaping, const Search& search) {
   std::optional<Found> best;
   const auto consider = [&](const Rays& rays, const Rectangle& rectangle, const Planes& planes) {
-    // Hardly more escaping rays than these pass through their portal, so their number limits its
-    // score.
+    // Hardly any escaping ray besides `rays` passes through the portal that is fitted to `rays`. So
+    // the number of `rays` limits the score of this portal.
     const bool may_be_best = !best || static_cast<double>(rays.size()) > 0.9 * best->score();
     if (!may_be_best || !(rectangle.area() > 0)) {
       return;

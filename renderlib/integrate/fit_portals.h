@@ -17,16 +17,16 @@ struct ScatteredRay {
   bool escapes = false;  ///< leaves the scene, to where the background is not black
 };
 
-/// There are no portals where more of the rays than this escape: BSDF sampling finds the background
-/// often enough.
+/// If more than this part of the rays escape, the scene gets no portals, because BSDF sampling
+/// finds the background often enough.
 inline constexpr double kMaxEscaping = 0.25;
 
 /// Returns the part of the rays that escape; 0 without rays.
 double escaping_part(absl::Span<const ScatteredRay> rays);
 
-/// Returns the portals through which most of the escaping rays pass and most of the others do not;
-/// none if more than kMaxEscaping of the rays escape, or if too few do to know. Depends on the rays
-/// and their order only.
+/// Returns the portals through which most of the escaping rays pass and most other rays do not.
+/// Returns no portals if more than the part kMaxEscaping of the rays escape, or if too few rays
+/// escape to tell where an opening is. The result depends only on the rays and their order.
 Portals portals_of(absl::Span<const ScatteredRay> rays);
 
 }  // namespace bandsaw

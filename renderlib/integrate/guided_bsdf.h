@@ -30,6 +30,7 @@ inline GuidingCones cones_at(const PathContext& context, const SurfacePoint& poi
   return GuidingCones(field->find(point.position, normal), point.position, normal);
 }
 
+/// A direction that was sampled from the mixture.
 struct GuidedSample {
   BsdfSample next;
   /// The factor by which guiding changed the weight: the pdf of the BSDF over that of the mixture.
@@ -43,7 +44,7 @@ std::optional<GuidedSample> sample_mixture(const Bsdf& bsdf, const GuidingCones&
                                            double v, double lobe);
 
 /// Samples a direction from the mixture. `u`, `v` and `lobe` are those of sample() in
-/// material/bsdf.h. Returns std::nullopt in the same cases, and if a cone gives a direction from
+/// material/bsdf.h. Returns std::nullopt if that function does, or if a cone gives a direction from
 /// which the BSDF scatters no light. `lobe` first chooses between BSDF and cones, and is then
 /// stretched to [0, 1) again.
 inline std::optional<GuidedSample> sample(const Bsdf& bsdf, const GuidingCones& cones, double u,

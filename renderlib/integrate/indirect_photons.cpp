@@ -19,7 +19,8 @@
 namespace bandsaw {
 namespace {
 
-/// The random numbers of origins and of photons. Photons of caustics use column kBeyondImages.
+/// Return the random numbers of origins and of photons: those of pixels outside of all images, in
+/// columns of their own. Photons of caustics use column kBeyondImages.
 PixelSampler sampler_of_origins(const PhotonChunk& chunk) {
   return {chunk.seed, kBeyondImages + 1, kBeyondImages + chunk.map};
 }
@@ -43,7 +44,8 @@ std::optional<Vec3> direction_from(const Vec3& normal, double u, double v) {
   return dot(direction, normal) > 0 ? std::optional(direction) : std::nullopt;
 }
 
-/// Returns the place of this number; std::nullopt if its primitive has no area there.
+/// Returns the place with this number. Returns std::nullopt if no point or no direction can be
+/// sampled.
 std::optional<Place> place_of(const Scene& scene, const PhotonSources& sources,
                               const PixelSampler& sampler, std::uint64_t number) {
   const Sample4 where = sampler.group(number, kGroupCamera);
@@ -67,8 +69,8 @@ std::optional<Place> place_of(const Scene& scene, const PhotonSources& sources,
 constexpr std::uint32_t kLongChain = 8;
 constexpr double kSurvival = 0.75;
 
-/// Follows the photon, which has left an origin, and adds it to `out` at each receiver: at the
-/// first one with `share` times its power, or not at all if that is 0.
+/// Follows a photon that has left an origin, and adds it to `out` at each receiver that it meets.
+/// At the first receiver, it is added with `share` times its power, and not added if `share` is 0.
 void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler& sampler,
             std::uint64_t number, Ray ray, Rgb power, float share, TracedPhotons& out) {
   NestedDielectrics nesting;
@@ -153,6 +155,7 @@ TracedPhotons trace_indirect_photons(const Scene& scene, const PhotonSources& so
                                      const PhotonChunk& chunk) {
   const PixelSampler of_origins = sampler_of_origins(chunk);
   const PixelSampler sampler = sampler_of_photons(chunk);
+  // The luminance of each photon.
   const double each = luminance_up_to.back() / static_cast<double>(chunk.photons);
   const double shift = sampler.group(0, kGroupTime)[0];
   const auto origin_of = [&](std::uint64_t number) {
@@ -170,9 +173,9 @@ TracedPhotons trace_indirect_photons(const Scene& scene, const PhotonSources& so
     const PhotonOrigin& origin = origins[chosen];
     const std::optional<Place> place = place_of(scene, sources, of_origins, origin.number);
     const Rgb power = origin.power * static_cast<float>(each / luminance(origin.power));
-    // Photons that start in the same direction arrive at the same point. There, the first one is
-    // stored with the power of all. Otherwise the density of the photons would be infinite, and
-    // their disks would be points.
+    // Photons that start in the same direction arrive at the same point. At this point, only the
+    // first photon is stored, with the power of all. Otherwise the density of the photons would be
+    // infinite, and their disks would be points.
     float share = origin.diffuse ? 1 : static_cast<float>(next - first);
     for (std::uint64_t number = first; number < next; ++number) {
       const Sample4 toward = sampler.group(number, kGroupCamera);

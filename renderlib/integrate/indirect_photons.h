@@ -41,10 +41,10 @@ struct PhotonOrigins {
   std::uint64_t rays = 0;  ///< rays that were traced
 };
 
-/// Finds origins of photons; here `chunk.photons` is the number of points that are tried, and
-/// [first, last) are numbers of points. Each origin is a pure function of the scene, the sources,
-/// the seed, the number of the map and the number of the point. `sources.surfaces` MUST be set and
-/// not empty; `maps` has the photon map of caustics that is used for all samples.
+/// Finds origins of photons. In this function `chunk.photons` is the number of points that are
+/// tried, and [first, last) are numbers of points. Each origin is a pure function of the scene, the
+/// sources, the seed, the number of the map and the number of the point. `sources.surfaces` MUST be
+/// set and not empty. `maps` has the photon map of caustics that is used for all samples.
 PhotonOrigins find_origins(const Scene& scene, const PhotonSources& sources, const PhotonMaps& maps,
                            const PhotonChunk& chunk);
 

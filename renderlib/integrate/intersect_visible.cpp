@@ -43,8 +43,8 @@ std::optional<SurfacePoint> touching(const Scene& scene, const Ray& ray, double 
 std::optional<SurfacePoint> nested_surface(const Scene& scene, const Ray& ray,
                                            const SurfacePoint& first, Hit& hit,
                                            NestedDielectrics& nesting, std::uint64_t& rays) {
-  // The slope is bounded below: a grazing ray would otherwise count boundaries further along the
-  // surface that do not touch it.
+  // The slope has a lower bound. Otherwise a grazing ray would count boundaries that are farther
+  // along the ray and do not touch `first`.
   const double slope = std::max(0.01, std::abs(dot(ray.direction, first.geometric_normal)));
   const double max_t = hit.t + 0.5 * first.offset / slope;
   const MaterialId before = nesting.here.there();

@@ -22,13 +22,14 @@ struct NestedDielectrics {
   Interiors before;             ///< glasses at the start of the ray; set if `skipped_hidden`
 };
 
-/// Returns the first surface along the ray that exists for this sample; among hits that exist, the
-/// order (t, instance, primitive) decides. Updates `nesting` for all hidden boundaries that are
-/// skipped. Boundaries of nested glasses that touch, within the offset of ray origins, are treated
-/// as one: the result belongs to the glass that is present on exactly one side of all of them. uv
-/// directions are set if the material needs them. `bounce` is the number of scatterings before the
-/// ray (0: a camera ray), which selects the random numbers. Returns std::nullopt if nothing is hit.
-/// Adds the number of rays traced to `rays`.
+/// Returns the first surface along the ray that exists for this sample; std::nullopt if nothing is
+/// hit. Among hits that exist, the order (t, instance, primitive) decides. Updates `nesting` for
+/// all hidden boundaries that are skipped. Two boundaries of nested glasses touch if a ray that
+/// leaves the first one starts beyond both, because rays start at an offset from their surface.
+/// Boundaries that touch are treated as a single boundary, and the result is the surface of the
+/// glass that is present on exactly one side of it. uv directions are set if the material needs
+/// them. `bounce` is the number of scatterings before the ray (0: a camera ray), which selects the
+/// random numbers. Adds the number of rays traced to `rays`.
 std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray,
                                               const PixelSampler& sampler, std::uint64_t sample,
                                               std::uint32_t bounce, NestedDielectrics& nesting,

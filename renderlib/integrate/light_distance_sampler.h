@@ -79,6 +79,7 @@ class LightDistanceSampler {
   }
 
  private:
+  /// Minimum share of free-flight sampling within the weight of a pivot.
   static constexpr double kMinFreeFlightShare = 0.0625;
 
   const FreeFlight& flight_;

@@ -61,9 +61,10 @@ PhotonChunk chunk_of(const PhotonMapKey& key, std::uint64_t photons, std::uint64
 
 /// Builds the map of the photons. Each photon spreads its power over a disk. Knaus and Zwicker
 /// multiply the area of the disks of map n = 0, 1, … by about (n + 1)^(alpha - 1), here with alpha
-/// = 2/3. So the factor of the area is (n + 1)^(-1/3), and that of the radius is its root,
-/// (n + 1)^(-1/6). `kind` makes the division of space differ between maps of one number;
-/// `max_halvings`: see kMaxHalvings.
+/// = 2/3. So the factor of the area is (n + 1)^(-1/3), and the factor of the radius is the root of
+/// it, (n + 1)^(-1/6). `kind` is 0 for the map of caustics and 1 for the map of indirect light, so
+/// that PhotonMap divides space differently for two maps with one number. `max_halvings`: see
+/// kMaxHalvings.
 PhotonMap map_of(const Scene& scene, std::vector<StoredPhoton> photons, const PhotonMapKey& key,
                  std::uint64_t kind, int max_halvings, const Preparation& preparation) {
   const double factor = pow(key.number + 1.0, -1.0 / 6);

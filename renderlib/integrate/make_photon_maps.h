@@ -39,15 +39,17 @@ bool can_have_caustic_maps(const Scene& scene, const Casters& casters);
 /// small as seen from the casters, so that paths hardly find them.
 bool caustics_pay(const TracedMaps& maps);
 
-/// Returns true if enough places light the maps of indirect light. Otherwise, as in a lit room that
-/// is a small part of the scene, the brightness of all indirect light would be that of the few
-/// places that each map happens to choose. The pilot cannot measure this, because it sees one map.
+/// Returns true if the photons of indirect light start at enough different points. In a scene of
+/// which only a small room is lit, they may start at few points. Then the brightness of all
+/// indirect light would depend on the few points that each map happens to choose. The pilot (a
+/// short trial, see guiding_training.cpp) cannot measure this error, because it sees only one map.
 bool has_enough_origins(const TracedMaps& maps);
 
 /// Returns the surfaces at which indirect photons start (PhotonSources::surfaces). Returns
-/// std::nullopt if indirect light cannot come from maps: the scene has no such surface or more than
-/// 2^21 primitives of them, or it has motion, media, mixtures, glass with priorities or hidden
-/// lamps, with which photons would not travel exactly as paths do.
+/// std::nullopt if indirect light cannot come from maps. This is so if the scene has no such
+/// surface, or if such surfaces have more than 2^21 primitives or an area that is not finite. It is
+/// also so if the scene has motion, media, mixtures, glass with priorities or hidden lamps, because
+/// with any of these, photons would not travel exactly as paths do.
 std::optional<SurfaceSampler> surfaces_of_indirect_light(const Scene& scene,
                                                          const Casters& casters);
 

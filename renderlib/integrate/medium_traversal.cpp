@@ -1,6 +1,7 @@
 // Finds the crossings of the ray with boundaries one after the other and keeps the first ones. For
 // each medium it counts how many shapes contain the origin: each exit ahead adds one, each entry
-// takes one away. Walking along the ray then changes the counts the other way round.
+// takes one away. On the walk along the ray, each exit then takes one away, and each entry adds
+// one.
 
 #include "renderlib/integrate/medium_traversal.h"
 

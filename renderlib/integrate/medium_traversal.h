@@ -29,8 +29,9 @@ struct MediumSegment {
   std::uint32_t boundary = 0;  ///< if it varies: the boundary, as in Scene::to_medium()
 };
 
-/// Returns the segment's part of the ray, beginning at the segment's begin, in the medium's space.
-/// The medium MUST vary in space; `ray` is the one that was split.
+/// Returns the part of `ray` that lies in the segment, in the space of the medium. The result
+/// starts at the begin of the segment. `ray` is the ray that was split, and the medium MUST vary in
+/// space.
 GridRay in_medium_space(const Scene& scene, const Ray& ray, const MediumSegment& segment);
 
 /// Iterates over the segments of a ray that lie in a medium.
@@ -80,7 +81,8 @@ class MediumTraversal {
     std::optional<Region> top() const;
 
    private:
-    /// Returns nullptr if there are too many regions.
+    /// Returns the count of the region, which is 0 if the region is new. Returns nullptr if there
+    /// are too many regions.
     int* count_of(const Region& region);
     struct Entry {
       Region region;
@@ -124,7 +126,7 @@ class MediumTraversal {
   std::size_t kept_size_ = 0;
   std::size_t taken_ = 0;  ///< number of stored crossings that take_crossing() has returned
   Search beyond_kept_;     ///< continues after the last stored crossing
-  bool all_kept_ = true;   ///< there are no further crossings than the stored ones
+  bool all_kept_ = true;   ///< no crossing is left that is not stored
 };
 
 /// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel; an

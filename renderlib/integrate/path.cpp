@@ -153,9 +153,9 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
          static_cast<float>(power_heuristic(light->pdf, other_pdf) / light->pdf) * passing;
 }
 
-/// Returns the estimate of the background's light that arrives through the portals on the
-/// receiver's side and is scattered at the point, with its MIS weight. The arguments are those of
-/// sample_light().
+/// Samples the background through a portal. Returns the estimate of the light that arrives through
+/// the portals on the receiver's side and is scattered at the point, with its MIS weight. `point`,
+/// `receiver`, `bsdf` and `cones` are those of sample_light().
 Rgb sample_portals(const PathContext& context, const SurfacePoint& point, const Receiver& receiver,
                    const Bsdf& bsdf, const GuidingCones& cones, std::uint32_t depth) {
   const Scene& scene = context.scene;
@@ -289,16 +289,16 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
   return bsdf_at(material, scene.textures(), point, wo, outside_index);
 }
 
-/// Returns the light of caustics that a receiver scatters along the path. Beyond an earlier
-/// receiver, the map is looked up in every second sample of a pixel only, and its light counts
-/// twice: caustics are a small part of the light there, and a look-up takes longer than the rest of
-/// the scattering.
+/// Returns the light of caustics that a receiver scatters along the path. If the path has met
+/// another receiver before, only every second sample of a pixel looks up the map, and the light of
+/// the map counts twice. The reason is that caustics are a small part of the light beyond the first
+/// receiver, and a look-up takes longer than the rest of the scattering.
 Rgb caustics_at(const PathContext& context, const PhotonMap& map, const SurfacePoint& point,
                 const Bsdf& bsdf, std::uint32_t depth, const PathState& path) {
   constexpr std::uint64_t kOneOf = 2;
   std::uint64_t counts = 1;
   if (path.after_receiver) {
-    // Which samples have the look-up is random for each pixel and depth.
+    // For each pixel and depth, a random number selects the samples that look up the map.
     const double first = context.sampler.stream(0, group_bsdf(depth)).next() * kOneOf;
     if ((context.sample + static_cast<std::uint64_t>(first)) % kOneOf != 0) {
       return {};
@@ -335,7 +335,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   const Material& material = scene.material(point.material);
   const Receiver receiver = receiver_of(point, -path.ray.direction);
   const Receiver behind{point.position, -*receiver.normal, point.time};
-  // Where much light arrives from behind, lights are sampled on both sides alike.
+  // Where much light arrives from behind, lights are sampled in the same way on both sides.
   const bool both_sides = is_diffuse_behind(bsdf);
   // Local shading ends here; the sampled direction only collects the environment.
   const bool is_last = options.local && has_pdf(bsdf) && !is_metal(material);
@@ -353,8 +353,9 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
 
   const Portals* const portals =
       has_pdf(bsdf) && options.technique != Technique::kScatteringOnly ? options.portals : nullptr;
-  // Light sampling, on the side from which the path came and, where only light sampling reaches
-  // some lights, on the far side.
+  // Sample a light on the side from which the path came. If the surface passes light, also sample
+  // one on the far side where both sides are treated alike or only light sampling reaches some
+  // lights.
   if (context.samples_lights() && has_pdf(bsdf)) {
     const Sample4 numbers = context.numbers(group_light(depth));
     CompetingStrategies competing = is_last ? CompetingStrategies{Technique::kLightsOnly, true}

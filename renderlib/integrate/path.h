@@ -45,8 +45,8 @@ struct PathOptions {
   /// (integrate/guided_bsdf.h), which changes no expected value. MUST outlive the paths.
   const GuidingField* guiding = nullptr;
   /// If not null, caustics (integrate/caustics.h) and the indirect light beyond the first receiver
-  /// (integrate/indirect_photons.h) come from these photon maps where they are not empty,
-  /// and `branches` MUST be 1. MUST outlive the paths.
+  /// (integrate/indirect_photons.h) come from these photon maps where they are not empty. Then
+  /// `branches` MUST be 1. MUST outlive the paths.
   const PhotonMaps* maps = nullptr;
   /// If not null, the background is also sampled through these portals at surfaces, which changes
   /// no expected value. MUST outlive the paths.

@@ -91,9 +91,10 @@ void trace_own_path(const PathContext& context, PathState& path, GuidingCones& c
 using PrimaryVertices = std::array<std::optional<PrimaryVertex>, kMaxReusePixels>;
 
 /// The connection of a primary vertex to a shared vertex: BSDF value and pdf by solid angle, and
-/// the factor to area measure. All zero if one vertex is behind the other one's surface, or if the
-/// BSDF scatters no light there: a path ends where its throughput is black, so the primary vertex
-/// never produces this shared vertex, whatever its pdf.
+/// the factor to area measure. All numbers are zero if one vertex is behind the surface of the
+/// other vertex. They are also zero if the BSDF scatters no light from the shared vertex, even if
+/// its pdf is above 0. In this case the primary vertex never produces the shared vertex, because a
+/// path ends where its throughput is black.
 struct Connection {
   BsdfValue scattered;
   double solid_angle_per_area = 0;

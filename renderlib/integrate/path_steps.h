@@ -26,10 +26,10 @@ inline std::optional<SurfacePoint> next_surface(const PathContext& context, std:
   return hit;
 }
 
-/// Adds the emission of the surface at `point`, which the path's ray hits, with its MIS weight and
-/// attenuated by all media on the ray. It is added deterministically, before the media decide
-/// whether the path passes them: a light is usually brighter than the light scattered in front of
-/// it, and the transmittance costs no extra path.
+/// Adds the emission of the surface at `point`, which the path's ray hits. The emission is
+/// multiplied by its MIS weight and by the transmittance of all media on the ray. It is added
+/// before the media decide at random whether the path passes them, because a light is usually
+/// brighter than the light scattered in front of it, and the transmittance costs no extra path.
 void add_emission(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                   PathState& path);
 
@@ -37,8 +37,8 @@ void add_emission(const PathContext& context, const SurfacePoint& point, std::ui
 void add_background(const PathContext& context, PathState& path);
 
 /// Returns the BSDF of the surface at `point`, where scattering number `depth` may happen. Returns
-/// std::nullopt if the surface does not scatter or if `max_depth` is reached; the latter marks the
-/// path as truncated.
+/// std::nullopt if the surface does not scatter. Marks the path as truncated and returns
+/// std::nullopt if `max_depth` is reached.
 std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& point,
                               std::uint32_t depth, PathState& path);
 

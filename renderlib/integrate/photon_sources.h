@@ -11,7 +11,7 @@
 namespace bandsaw {
 
 /// The surfaces at which photons start. They determine which light comes from photon maps. The
-/// training (integrate/guiding_training.h) decides on them.
+/// training of path guiding (integrate/guiding_training.h) chooses them.
 struct PhotonSources {
   /// Surfaces that cast caustics. If there are any, caustics come from maps (caustics.h), otherwise
   /// caustics are left to paths.

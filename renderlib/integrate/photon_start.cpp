@@ -1,3 +1,6 @@
+// Samples a point of a caster, chooses one side of the surface at random, and samples a light for
+// this side.
+
 #include "renderlib/integrate/photon_start.h"
 
 namespace bandsaw {

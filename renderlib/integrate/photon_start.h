@@ -2,7 +2,7 @@
 
 // Chooses where the photons of caustics start: those of a photon map (trace_photons.h) and those
 // that train path guiding (training_photons.h). They start at casters, which are surfaces that cast
-// caustics (casters.h), and not at lights: so no photon misses the casters.
+// caustics (casters.h), and not at lights. So no photon misses the casters.
 
 #include <cstdint>
 #include <optional>
@@ -26,9 +26,9 @@ struct PhotonStart {
   double pdf = 0;  ///< pdf of the point by area, > 0
 };
 
-/// Chooses a point of a caster at random, and samples a light from there at this time. `sampler`
-/// and `sample` give the random numbers. Returns std::nullopt if the point's primitive has no area
-/// or no light can be sampled from the point.
+/// Chooses a point of a caster at random, and samples a light as seen from this point at this time.
+/// `sampler` and `sample` give the random numbers. Returns std::nullopt if the point's primitive
+/// has no area or no light can be sampled from the point.
 std::optional<PhotonStart> start_photon(const Scene& scene, const Casters& casters,
                                         const PixelSampler& sampler, std::uint64_t sample,
                                         double time);

@@ -1,3 +1,7 @@
+// Scatters a photon at a surface. At mirrors and smooth glass, both the shading normal and the
+// geometric normal are tried. At other surfaces, a direction is sampled from the BSDF seen from the
+// photon, and the power changes by the BSDF of the path that travels in the opposite direction.
+
 #include "renderlib/integrate/scatter_photon.h"
 
 #include <algorithm>
@@ -13,9 +17,9 @@ namespace {
 /// Part of the directions that rough surfaces sample about the geometric normal, where it differs
 /// from the shading normal.
 constexpr double kGeometricPart = 0.125;
-/// Squared distances between unit vectors: normals that differ by less are treated as equal, and
-/// directions that differ by less agree up to rounding.
+/// Normals with a smaller squared distance are treated as equal.
 constexpr double kSameNormal = 1e-16;
+/// Unit vectors with a smaller squared distance agree up to rounding.
 constexpr double kSameDirection = 1e-20;
 
 /// The two normals about which mirrors, fuzzy metal and smooth glass can scatter, unit vectors on
@@ -29,6 +33,7 @@ struct PhotonNormals {
   bool same;  ///< the two normals are equal
 };
 
+/// Returns the normals for a photon that comes from `in`.
 PhotonNormals normals_at(const Scene& scene, const SurfacePoint& point, const Vec3& in) {
   const Vec3 shading = bent_normal(scene.material(point.material).relief, scene.textures(), point);
   const bool same = length_squared(shading - point.geometric_normal) < kSameNormal;
@@ -37,8 +42,8 @@ PhotonNormals normals_at(const Scene& scene, const SurfacePoint& point, const Ve
              : PhotonNormals{point.geometric_normal, shading, same};
 }
 
-/// Returns true if `bsdf` scatters a path to `in` about the normal. The path comes from the
-/// direction in which the photon leaves, and `bsdf` is seen from there.
+/// Returns true if a path is scattered to `in` about `normal`. The path comes from the direction in
+/// which the photon leaves, and `bsdf` is the BSDF seen from that direction.
 bool is_path(const Bsdf& bsdf, const Vec3& in, const Vec3& normal) {
   if (const auto* mirror = std::get_if<MirrorBsdf>(&bsdf)) {
     return length_squared(mirror->mirror - in) < kSameDirection;
@@ -122,10 +127,10 @@ std::optional<PhotonScattering> scatter_specular(const Scene& scene, const Surfa
   return numbers[3] < 0.5 ? by_shading : by_geometric;
 }
 
-/// Returns the scattering into a delta direction at a surface with a smooth coat or at a pane. Such
-/// ways are the same in both directions, except for the cosines at the shading normal. (Where the
-/// shading normal sends light to the wrong side of the surface, a path would take another way; this
-/// is ignored.)
+/// Returns the scattering into a delta direction at a surface with a smooth coat or at a pane. A
+/// photon and a path take the same way in opposite directions there, and the factor differs only by
+/// the cosines. Where the shading normal sends light to the wrong side of the surface, a path would
+/// take another way. This difference is ignored.
 PhotonScattering scatter_by_delta(const SurfacePoint& point, const Vec3& in,
                                   const BsdfSample& next) {
   const double cosines = dot(next.wi, point.geometric_normal) / dot(in, point.geometric_normal);
@@ -134,9 +139,9 @@ PhotonScattering scatter_by_delta(const SurfacePoint& point, const Vec3& in,
 }
 
 /// Samples a direction from one of two BSDFs seen from `in`, with the pdf of their mixture. Both
-/// are needed where the two normals differ: a BSDF bends or replaces its shading normal depending
-/// on the direction from which it is seen, so one BSDF alone would not reach all directions of
-/// paths.
+/// BSDFs are needed where the two normals differ, because a BSDF bends or replaces its shading
+/// normal depending on the direction from which it is seen. One BSDF alone would not reach all
+/// directions of paths.
 std::optional<PhotonScattering> scatter_by_both(const Scene& scene, const SurfacePoint& point,
                                                 const Bsdf& about_shading,
                                                 const Bsdf& about_geometric, const Vec3& in,

@@ -13,9 +13,10 @@
 
 namespace bandsaw {
 
+/// The scattering of a photon at a surface.
 struct PhotonScattering {
   Vec3 out;            ///< unit; the direction in which the photon leaves
-  Rgb factor;          ///< by which its power changes
+  Rgb factor;          ///< by which the power of the photon changes
   bool counts = true;  ///< counts towards `max_depth` (BsdfSample::counts)
 };
 

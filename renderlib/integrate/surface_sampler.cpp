@@ -19,6 +19,7 @@ struct Place {
   Vec2 on_shape;  ///< Hit::u and Hit::v of the place
 };
 
+/// Returns the place on the shape that the random numbers `u` and `v`, in [0, 1), select.
 Place place_on(const ShapeView& shape, double u, double v) {
   using Kind = ShapeView::Kind;
   if (shape.kind == Kind::kSphere) {

@@ -29,9 +29,10 @@ class SurfaceSampler {
 
   bool empty() const { return primitives_.empty(); }
 
-  /// Returns a point of one of the primitives at this time: first a primitive is chosen by its
-  /// area, then a place on it. All numbers are in [0, 1). There MUST be primitives, and all of them
-  /// MUST be of this scene. Returns std::nullopt if the point or its pdf is not finite.
+  /// Returns a random point of one of the primitives at this time. `primitive` chooses a primitive
+  /// in proportion to its area, then `u` and `v` choose a place on it. These numbers are all in
+  /// [0, 1). There MUST be primitives, and all of them MUST be of this scene. Returns std::nullopt
+  /// if the point or its pdf is not finite.
   std::optional<SurfaceSample> sample(const Scene& scene, double primitive, double u, double v,
                                       double time) const;
 

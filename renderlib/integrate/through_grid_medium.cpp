@@ -1,6 +1,7 @@
-// The path crosses the segment by delta tracking (medium/tracking.h). At the collision where it is
-// scattered, a light and a direction are sampled. At the maximum depth, in local shading and in
-// media that do not scatter, its throughput is multiplied by the estimated transmittance instead.
+// The path crosses the segment by delta tracking (medium/tracking.h). At the collision that
+// scatters the path, a light and a direction are sampled. At the maximum depth, in local shading
+// and in media that do not scatter, the throughput of the path is multiplied by the estimated
+// transmittance instead.
 
 #include "renderlib/integrate/through_grid_medium.h"
 
@@ -27,6 +28,7 @@ struct Segment {
   double length() const { return part.end - part.begin; }
   /// Returns the point at a distance from the begin of the segment.
   Vec3 at(double distance) const { return ray.origin + ray.direction * (part.begin + distance); }
+  /// Returns random numbers of the segment; group_medium() lists their uses.
   Sample4 numbers(std::uint32_t which) const {
     return context.numbers(group_medium(depth, number, which));
   }

@@ -38,10 +38,10 @@ struct Segment {
   }
 };
 
-/// Builds the distance pdf for light sampling: chooses up to four lights as pivots, by their
-/// contribution along the whole segment and stratified over the light-selection number, so that
-/// bright lights are not missed. The pivots MUST NOT depend on how the path continues, nor on the
-/// light that is sampled afterwards.
+/// Builds the distance pdf for light sampling. Chooses up to four lights as pivots, in proportion
+/// to their contribution along the whole segment. The random numbers that select the lights are
+/// stratified, so that bright lights are not missed. The pivots MUST NOT depend on how the path
+/// continues, nor on the light that is sampled afterwards.
 LightDistanceSampler light_distance_sampler(const Segment& segment, double length) {
   LightDistanceSampler sampler(segment.free_flight, segment.medium);
   const Lights& lights = segment.context.scene.lights();
@@ -173,9 +173,9 @@ MediumEvent through_homogeneous_medium(const PathContext& context, const Ray& ra
   return through_segment(segment, length, path);
 }
 
-/// Recomputes the nested dielectrics of a path that scattered at the end of `ray`, before the
+/// Recomputes the nested dielectrics of a path that was scattered at the end of `ray`, before the
 /// surface that intersect_visible() found. The path has passed only the boundaries of nested glass
-/// up to there.
+/// that lie before the end of `ray`.
 void recompute_nesting(const PathContext& context, const Ray& ray, std::uint32_t depth,
                        NestedDielectrics& nesting) {
   nesting.here = nesting.before;

@@ -26,6 +26,7 @@
 namespace bandsaw {
 namespace {
 
+/// A photon that has left a caster.
 struct Photon {
   Ray ray;
   Rgb power;
@@ -42,8 +43,8 @@ struct Numbers {
   }
 };
 
-/// Scatters the photon, which comes from direction `in`, at the caster. Returns false if it is
-/// absorbed.
+/// Scatters the photon, which comes from direction `in`, at the point of a caster. Returns false if
+/// the photon is absorbed.
 bool scatter(const Scene& scene, const SurfacePoint& point, const Vec3& in, const Sample4& numbers,
              Photon& photon) {
   const std::optional<PhotonScattering> next = scatter_photon(scene, point, in, numbers);
@@ -55,8 +56,10 @@ bool scatter(const Scene& scene, const SurfacePoint& point, const Vec3& in, cons
   return max_component(photon.power) > 0 && is_finite(photon.power);
 }
 
-/// Returns the probability that a hit at the point of a surface of material `id` counts as one at a
-/// receiver of caustics: its opacity, and for a mixture the sum over the parts that receive.
+/// Returns the probability that a hit of a surface of material `id` is a hit of a receiver of
+/// caustics. `from` is the direction from which the photon comes. For a receiver the probability is
+/// the opacity at the point, and for other materials 0. For a mixture it is the mean over both
+/// parts, weighted by their amounts.
 double receiving_part(const Scene& scene, const Casters& casters, MaterialId id,
                       const SurfacePoint& point, const Vec3& from) {
   const Material& material = scene.material(id);
@@ -102,7 +105,7 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Nu
   return photon;
 }
 
-/// Follows the photon until it arrives at a surface that receives caustics, and adds it there.
+/// Follows the photon until it arrives at a receiver of caustics, and adds it to `out`.
 void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, Photon photon,
             TracedPhotons& out) {
   NestedDielectrics nesting;
@@ -192,8 +195,10 @@ double share_on_surface(const Scene& scene, const StoredPhoton& photon) {
   constexpr int kAtRim = 4;      // points at the rim of the disk
   constexpr double kRim = 0.97;  // their distance, as a part of the radius
   constexpr int kAllOver = 16;   // points all over the disk
-  // Obstacles such as blades of grass hide points that get the photon's light nevertheless
-  // (density_at() in guiding/photon_map.h). At a corner of two edges a quarter of the disk is left.
+  // Minimum number of points that count as found. Obstacles such as blades of grass hide points
+  // that get the photon's light nevertheless (density_at() in guiding/photon_map.h), so too few
+  // points may be found. The minimum is a quarter, because at a corner of two edges a quarter of
+  // the disk is left.
   constexpr int kFewest = kAllOver / 4;
   constexpr double kGoldenTurn = 0.381966011250105;  // the golden angle, as a part of a turn
   const Basis basis = orthonormal_basis(vec3(photon.normal));
@@ -213,8 +218,8 @@ double share_on_surface(const Scene& scene, const StoredPhoton& photon) {
   if (found == kAtRim) {
     return 1;
   }
-  // Points on a spiral, with the density of Epanechnikov's kernel, by which the photon spreads its
-  // power: `inside` is the part of the power within `distance`.
+  // The points lie on a spiral. Their density is Epanechnikov's kernel, by which the photon spreads
+  // its power. `inside` is the part of the power that falls within `distance`.
   found = 0;
   for (int i = 0; i < kAllOver; ++i) {
     const double inside = (i + 0.5) / kAllOver;

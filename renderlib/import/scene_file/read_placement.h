@@ -11,13 +11,14 @@
 
 namespace bandsaw {
 
-/// Reads the placement of `in`: a Model, an Instance, a Copy or a Key.
+/// Reads the placement of `in`, which is a Model, an Instance or a Copy. All functions in this file
+/// return INVALID_ARGUMENT, with the name of the field, if a field is invalid.
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Model& from);
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Instance& from);
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Copy& from);
 
-/// Reads the keys of a Model or an Instance, its placements at increasing times; empty if it has
-/// none. All functions return INVALID_ARGUMENT with the field's name.
+/// Reads the keys of a Model or an Instance, which are its placements at increasing times. Returns
+/// an empty list if it has no keys.
 absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Model& from);
 absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Instance& from);
 

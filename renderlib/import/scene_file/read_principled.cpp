@@ -13,8 +13,9 @@
 namespace bandsaw {
 namespace {
 
-/// Reads the number `name`, in [0, most], and returns it divided by `most`. Returns `otherwise` as
-/// it is if the number is not given.
+/// Reads the number `name`, which has a constant in [0, most], a texture or both, and divides the
+/// constant by `most`. The constant is 1 if there is only a texture. If the number is not `given`,
+/// returns `otherwise` without dividing it.
 absl::StatusOr<Number> read_number(const Field& in, const char* name, bool given,
                                    const scene::Parameter& from, double otherwise,
                                    SceneDraft& draft, double most = 1) {
@@ -25,7 +26,7 @@ absl::StatusOr<Number> read_number(const Field& in, const char* name, bool given
   Number to;
   ASSIGN_OR_RETURN(to.map, read_map(field, "texture", from.has_texture(), from.texture(), draft));
   if (!from.has_value() && !from.has_texture()) {
-    return field.error("value", "is required, or a texture");
+    return field.error("value", "is required if there is no texture");
   }
   to.value = from.has_value() ? from.value() : 1;
   RETURN_IF_ERROR(check_range(field, "value", to.value, 0, most));
@@ -65,7 +66,8 @@ absl::Status read_common_numbers(const Field& in, const From& from, SceneDraft& 
   return absl::OkStatus();
 }
 
-/// Returns the index of refraction of a principled material: as given, or by `specular`.
+/// Returns the index of refraction of a principled material, as given or computed from
+/// `specular`.
 absl::StatusOr<double> read_index(const Field& in, const scene::Principled& from) {
   if (from.has_specular() && from.has_index_of_refraction()) {
     return in.error("specular", "write index_of_refraction or specular, not both");

@@ -10,7 +10,7 @@
 namespace bandsaw {
 
 /// These functions read a material of kind `principled` or `thin_principled`, whose message is
-/// `in`. They return INVALID_ARGUMENT with the field's name.
+/// `in`. They return INVALID_ARGUMENT, with the name of the field, if a field is invalid.
 absl::StatusOr<Material> read_principled(const Field& in, const scene::Principled& from,
                                          SceneDraft& draft);
 absl::StatusOr<Material> read_thin_principled(const Field& in, const scene::ThinPrincipled& from,

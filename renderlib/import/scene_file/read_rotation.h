@@ -9,8 +9,9 @@
 
 namespace bandsaw {
 
-/// Reads the rotations of the field `rotate` of `in`, a camera or a background, applied in the
-/// order written; the identity if there are none. Returns INVALID_ARGUMENT with the field's name.
+/// Returns the product of the rotations `list`, which are the field `rotate` of `in` (a camera, an
+/// environment map or a cube map). They are applied in the order written. An empty list gives the
+/// identity. Returns INVALID_ARGUMENT, with the name of the field, if a rotation is invalid.
 absl::StatusOr<Transform> read_rotation(
     const Field& in, const google::protobuf::RepeatedPtrField<scene::Rotation>& list);
 

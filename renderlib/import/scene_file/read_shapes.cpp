@@ -177,8 +177,8 @@ absl::StatusOr<Instance> read_boundary(const Field& in, const scene::Shape& from
   return boundary_of(low, high, medium, draft);
 }
 
-/// Adds the medium inside a sphere that rests in the scene: such a boundary is stored as a sphere,
-/// not as an instance.
+/// Adds the medium inside a sphere that rests in the scene. The boundary of this medium is stored
+/// as a sphere, not as an instance.
 absl::Status read_filled_sphere(const Field& in, const scene::Shape& from, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
   return read_shape(in, from, filled_with(medium), draft.out.scene.media.boundaries);

@@ -1,5 +1,6 @@
-// Reads the textures of a scene file: read_kind() calls one function for each kind. A texture that
-// is given by name is looked up, others are added to the draft, the scene that is being read.
+// Reads the textures of a scene file. read_kind() calls one function for each kind of texture. A
+// texture that is referred to by name is looked up. Any other texture is added to the draft, which
+// is the scene that is being read.
 
 #include "renderlib/import/scene_file/read_textures.h"
 
@@ -34,8 +35,8 @@ absl::StatusOr<Ours> read_enum(const Field& in, const std::string& name, int val
   return static_cast<Ours>(value);
 }
 
-// Reads two finite numbers, or one that counts for both if `one_for_both`; `otherwise` twice if the
-// list is empty.
+// Reads two finite numbers. If `one_for_both`, the list may also have a single number, which is
+// returned twice. Returns `otherwise` twice if the list is empty.
 absl::StatusOr<Vec2> read_vec2(const Field& in, const std::string& name, const Numbers& list,
                                bool one_for_both, double otherwise) {
   if (list.empty()) {
@@ -53,6 +54,7 @@ absl::StatusOr<Vec2> read_vec2(const Field& in, const std::string& name, const N
   return Vec2{list[0], list[list.size() - 1]};
 }
 
+/// Reads the transform of texture coordinates, which first scales, then rotates, then translates.
 absl::StatusOr<UvTransform> read_uv_transform(const Field& in, const scene::ImageTexture& from) {
   ASSIGN_OR_RETURN(const Vec2 scale, read_vec2(in, "uv_scale", from.uv_scale(), true, 1));
   ASSIGN_OR_RETURN(const Vec2 offset, read_vec2(in, "uv_offset", from.uv_offset(), false, 0));
@@ -70,7 +72,8 @@ absl::StatusOr<TextureStore::Use> read_use(const Field& in, const scene::ImageTe
   ASSIGN_OR_RETURN(const auto wrap, read_enum<int>(in, "wrap", from.wrap(), Proto::Wrap_MAX));
   ASSIGN_OR_RETURN(const auto filter,
                    read_enum<int>(in, "filter", from.filter(), Proto::Filter_MAX));
-  // Our values count from 0 in the same order; the file's have an additional 0 for "unspecified".
+  // The enums of ImageTexture count from 0. Those of the file have the same order, but their 0
+  // means "unspecified".
   if (wrap != Proto::WRAP_UNSPECIFIED) {
     use.wrap = static_cast<ImageTexture::Wrap>(wrap - 1);
   }
@@ -89,7 +92,8 @@ absl::StatusOr<TextureStore::Use> read_use(const Field& in, const scene::ImageTe
   return use;
 }
 
-/// Reads the image of `in`. Returns INVALID_ARGUMENT for its file or for a field.
+/// Reads the image texture `in`. Returns INVALID_ARGUMENT, with the name of the field, if a field
+/// is invalid or the image file cannot be read.
 absl::StatusOr<TextureId> read_image_texture(const Field& in, const scene::ImageTexture& from,
                                              SceneDraft& draft) {
   ASSIGN_OR_RETURN(const TextureStore::Use use, read_use(in, from));
@@ -110,8 +114,9 @@ absl::StatusOr<TextureId> read_image_texture(const Field& in, const scene::Image
 
 using MaybeId = absl::StatusOr<TextureId>;
 
-// Reads a texture that another texture contains. If it is absent, returns a constant grey of
-// `otherwise`, or INVALID_ARGUMENT if `otherwise` is below 0: then the texture is required.
+// Reads the texture `name` that the texture `in` contains. If it is absent, returns a constant grey
+// of `otherwise`. A negative `otherwise` means that the texture is required, so its absence is
+// INVALID_ARGUMENT.
 MaybeId read_part(const Field& in, const std::string& name, const scene::Texture& from, float most,
                   float otherwise, SceneDraft& draft) {
   if (in.has(name)) {
@@ -123,7 +128,9 @@ MaybeId read_part(const Field& in, const std::string& name, const scene::Texture
   return draft.textures.constant(gray(otherwise));
 }
 
-// Reads the size of a checker's cells: one number, or `most` (2 or 3) numbers; 1 if it is absent.
+// Reads the size of a checker's cells along each axis. The checker has `most` axes, 2 or 3. The
+// file gives a number for each axis, or one number for all axes. The size is 1 where it is absent,
+// and along z if there are 2 axes.
 absl::StatusOr<Vec3> read_size(const Field& in, const scene::CheckerTexture& from, int most) {
   const Numbers& list = from.size();
   if (list.size() > 1 && list.size() != most) {
@@ -285,8 +292,8 @@ MaybeId read_kind(const Field& in, const scene::Texture& from, float most, Scene
   return in.error("is empty: write color, image, checker, noise, ramp, mix, product or use");
 }
 
-// Returns true for the kinds that read_kind() does not compare with `most`: their colours are
-// defined elsewhere or are products.
+// Returns true for the kinds whose colours read_kind() does not compare with `most`. These colours
+// are in an image file or in another texture, or are products.
 bool may_pass(const scene::Texture& from) {
   return from.has_image() || from.has_product() || from.kind_case() == scene::Texture::kUse;
 }

@@ -7,12 +7,14 @@
 
 namespace bandsaw {
 
-/// Reads the named textures of the scene file into SceneDraft::named_textures; MUST be called
-/// before materials are read.
+/// Reads the named textures of the scene file into SceneDraft::named_textures. MUST be called
+/// before materials are read. Returns INVALID_ARGUMENT, with the name of the field, if a field is
+/// invalid.
 absl::Status read_textures(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// Reads the texture of `in`, which is defined there or referred to by name. Returns
-/// INVALID_ARGUMENT, with the field's name, if a channel is above `most` anywhere.
+/// Reads the texture that the message `in` defines or refers to by name. Returns INVALID_ARGUMENT,
+/// with the name of the field, if a field is invalid or if a channel of the texture is above `most`
+/// anywhere.
 absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& from, float most,
                                        SceneDraft& draft);
 

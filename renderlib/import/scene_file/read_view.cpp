@@ -25,7 +25,8 @@ namespace bandsaw {
 
 namespace {
 
-/// Reads the image file that the field `name` of `in` names, for an environment map.
+/// Reads the image file `file`, which the field `name` of `in` gives, as an image of an environment
+/// map.
 absl::StatusOr<TextureId> read_image(const Field& in, const std::string& name,
                                      const std::string& file, SceneDraft& draft) {
   if (file.empty()) {
@@ -55,8 +56,8 @@ absl::Status read_placement(const Field& in, const Message& from, Environment& t
   return absl::OkStatus();
 }
 
-/// Reads the image of `in`, an environment map, and adds its texels to the draft. Returns
-/// INVALID_ARGUMENT for a field or a file.
+/// Reads the environment map `in`, and adds the texels of its image to the draft. Returns
+/// INVALID_ARGUMENT if a field or the file is invalid.
 absl::StatusOr<Environment> read_environment(const Field& in, const scene::EnvironmentMap& from,
                                              SceneDraft& draft) {
   Environment to;
@@ -66,6 +67,8 @@ absl::StatusOr<Environment> read_environment(const Field& in, const scene::Envir
   return to;
 }
 
+/// Reads the cube map `in`, and adds the texels of its six images to the draft. A left-handed cube
+/// map has its x axis reversed. Returns INVALID_ARGUMENT if a field or a file is invalid.
 absl::StatusOr<Environment> read_cube_map(const Field& in, const scene::CubeMap& from,
                                           SceneDraft& draft) {
   Environment to;
@@ -88,13 +91,15 @@ absl::StatusOr<Environment> read_cube_map(const Field& in, const scene::CubeMap&
   return to;
 }
 
-/// Returns the view of a camera that is rotated from the view along -z.
+/// Returns `view`, whose position is set, with the direction of a camera that the field `rotate`
+/// gives. Without rotation such a camera looks along -z, and y is up.
 absl::StatusOr<View> read_turned(const Field& in, const scene::Camera& from, View view) {
   if (!from.look_at().empty() || !from.up().empty()) {
     return in.error("rotate", "stands instead of look_at and up: write one or the other");
   }
   ASSIGN_OR_RETURN(const Transform turn, read_rotation(in, from.rotate()));
-  // The point is so far ahead that the sum keeps the precision of the direction.
+  // The distance of the point look_at is at least the largest coordinate of the position. So the
+  // sum keeps the precision of the direction.
   const double ahead = std::max(1.0, max_abs(view.position));
   view.look_at = view.position + turn.direction({0, 0, -1}) * ahead;
   view.up = turn.direction({0, 1, 0});
@@ -158,7 +163,8 @@ absl::StatusOr<Camera> read_orthographic(const Field& in, const scene::Camera& f
   const Field orthographic = in.child("orthographic");
   const double height = from.orthographic().height();
   if (!from.orthographic().has_height()) {
-    return orthographic.error("height", "is required: how high the image is, in scene units");
+    return orthographic.error("height",
+                              "is required; it is the height of the image in scene units");
   }
   if (!(height > 0 && height <= kMaxLens)) {
     return orthographic.error("height", absl::StrCat("must be > 0, at most 1e30, is ", height));
@@ -265,7 +271,8 @@ absl::Status read_settings(const Field& root, const scene::Scene& from, PackageI
                                       " pixels, at most ", kMaxPixels, " are allowed"));
     }
   }
-  // Our values count from 0 in the same order; the file's 0 means "unspecified".
+  // The enums of PackageInfo count from 0. Those of the file have the same order, but their 0 means
+  // "unspecified".
   if (from.integrator().kind() != scene::Integrator::KIND_UNSPECIFIED) {
     info.integrator = static_cast<Integrator>(static_cast<int>(from.integrator().kind()) - 1);
   }

@@ -19,7 +19,8 @@
 namespace bandsaw {
 namespace {
 
-/// Reads the map from the file's space to that of the medium's shape.
+/// Reads the map from the space of the volume file to the space of the medium's shape. An empty
+/// list gives the identity.
 absl::StatusOr<Transform> read_matrix(const Field& in, const Numbers& list) {
   if (list.empty()) {
     return Transform{};
@@ -38,7 +39,8 @@ absl::StatusOr<Transform> read_matrix(const Field& in, const Numbers& list) {
                          : in.error("matrix", "must not be singular");
 }
 
-/// Reads the file of a grid; `otherwise` is the name of the grid for files with several.
+/// Reads a grid from its file. `otherwise` names the grid that is read if the scene file names none
+/// and the file has several grids.
 absl::StatusOr<FileGrid> read_file(const Field& in, const scene::VolumeGrid& from,
                                    const std::string& otherwise, SceneDraft& draft) {
   if (from.file().empty()) {
@@ -87,7 +89,9 @@ absl::StatusOr<VolumeGrid> read_grid(const Field& in, const scene::VolumeGrid& f
   return grid;
 }
 
-/// Returns the grid's index among those of the scene, and its factor.
+/// Returns the index of a grid among the grids of the scene, and the factor of its numbers. The
+/// grid is read from its file if no grid of the scene has the same settings. `otherwise`: see
+/// read_file().
 absl::StatusOr<GridUse> read_use(const Field& in, const scene::VolumeGrid& from,
                                  const std::string& otherwise, SceneDraft& draft) {
   constexpr double kMaxScale = std::numeric_limits<float>::max();

@@ -1,5 +1,5 @@
-// did_you_mean() returns the known name with the smallest edit distance from a name, ignoring case,
-// as the end of an error message.
+// did_you_mean() finds the known name with the smallest edit distance from a name, ignoring case.
+// It returns the end of an error message that suggests this name.
 
 #include "renderlib/import/scene_file/suggest.h"
 
@@ -12,7 +12,7 @@
 namespace bandsaw {
 namespace {
 
-// Returns the Levenshtein distance, computed row by row.
+// Returns the Levenshtein distance of two words, computed row by row.
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -35,6 +35,7 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
   if (name.size() > kMaxLength) {
     return "";
   }
+  // Only a name at a smaller distance than `best` is suggested.
   std::size_t best = std::max<std::size_t>(1, name.size() / 3) + 1;
   const std::string* nearest = nullptr;
   for (const std::string& candidate : known) {

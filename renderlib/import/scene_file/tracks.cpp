@@ -1,6 +1,6 @@
-// Evaluates the tracks of a scene file, which change its numbers over time: follows a track's path
-// from message to message by protobuf reflection, evaluates its curve at the time, and sets the
-// field.
+// Evaluates the tracks of a scene file. A track changes a number of the scene over time.
+// find_target() follows the path of a track from message to message by protobuf reflection. Then
+// scene_at() evaluates the curve of the track at the given time and sets the field.
 
 #include "renderlib/import/scene_file/tracks.h"
 
@@ -34,13 +34,13 @@ struct Target {
   const FieldDescriptor* field = nullptr;
 };
 
-/// One step of a path: a name, and a number or a name in brackets.
+/// One step of a path, such as `light[0]` or `material["lamp"]`.
 struct PathStep {
-  std::string name;
-  std::optional<std::string> entry;
+  std::string name;                  ///< of a field
+  std::optional<std::string> entry;  ///< text in brackets: a number, or a name with its quotes
 };
 
-/// Splits at dots outside of quotes.
+/// Splits a path at the dots that are outside of quotes.
 std::vector<std::string> split_path(const std::string& path) {
   std::vector<std::string> steps(1);
   bool quoted = false;
@@ -71,7 +71,8 @@ std::string name_of_entry(const Message& entry) {
              : "";
 }
 
-/// Returns the entry of a list that `entry` names: "3" or "\"lamp\"". nullptr: there is none.
+/// Returns an entry of the repeated field `list` of `in`. `entry` is the number of the entry, such
+/// as `3`, or its name in quotes, such as `"lamp"`. Returns nullptr if there is no such entry.
 Message* entry_of(Message& in, const FieldDescriptor& list, const std::string& entry) {
   const Reflection& reflection = *in.GetReflection();
   const int size = reflection.FieldSize(in, &list);
@@ -97,7 +98,8 @@ bool is_number(const FieldDescriptor& field) {
          field.cpp_type() == FieldDescriptor::CPPTYPE_FLOAT;
 }
 
-/// Returns the message that a step leads to; nullptr: the file has none.
+/// Returns the message to which `step` leads from `in`. `field` is the field that the step names.
+/// Returns nullptr if the scene has no such message.
 Message* follow(Message& in, const PathStep& step, const FieldDescriptor& field) {
   if (field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) {
     return nullptr;
@@ -110,6 +112,8 @@ Message* follow(Message& in, const PathStep& step, const FieldDescriptor& field)
                                                         : nullptr;
 }
 
+/// Returns the field to which the path of a track leads. Returns INVALID_ARGUMENT at `track` if
+/// there is no such field or if it cannot change over time.
 absl::StatusOr<Target> find_target(const Field& track, const std::string& path,
                                    scene::Scene& scene) {
   Target at{&scene, nullptr};
@@ -150,7 +154,8 @@ absl::StatusOr<Interpolation> interpolation_of(const Field& in, const scene::Tra
     case scene::Track::INTERPOLATION_SMOOTH:
       return Interpolation::kSmooth;
     default:
-      return in.error("interpolation", absl::StrCat("is none: ", track.interpolation()));
+      return in.error("interpolation",
+                      absl::StrCat("has the unknown value ", track.interpolation()));
   }
 }
 
@@ -161,7 +166,7 @@ absl::StatusOr<Curve> read_curve(const Field& in, const scene::Track& track) {
   }
   std::vector<double> times;
   std::vector<double> values;
-  const int width = track.key(0).value_size();
+  const int width = track.key(0).value_size();  // numbers of each key
   for (int i = 0; i < track.key_size(); ++i) {
     const scene::TrackKey& key = track.key(i);
     const Field at = in.child("key", i);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Evaluates the tracks of a scene file: numbers that change over time.
+// Evaluates the tracks of a scene file. A track changes a number of the scene over time.
 
 #include "absl/status/statusor.h"
 #include "proto/scene.pb.h"
@@ -8,9 +8,9 @@
 
 namespace bandsaw {
 
-/// Returns the scene as it is at a time: a copy in which each track has set its field. `root` is
-/// the field of `from`. Returns INVALID_ARGUMENT at a track whose field does not exist, whose keys
-/// do not increase in time, or whose numbers do not fit.
+/// Returns the scene at `time`, which is a copy of `from` in which each track has set its field.
+/// `root` is the field of `from`. Returns INVALID_ARGUMENT if a track has a field that does not
+/// exist or cannot change, keys that do not increase in time, or a wrong number of values.
 absl::StatusOr<scene::Scene> scene_at(const Field& root, const scene::Scene& from, double time);
 
 /// Returns true if a track changes the camera.

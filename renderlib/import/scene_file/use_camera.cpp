@@ -16,12 +16,13 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the name "FILE/NODE".
 std::string with_file(const FoundCamera& camera) {
   return absl::StrCat(camera.model, "/", camera.name);
 }
 
 /// Returns the cameras whose node has this name. If there are none, returns the cameras whose own
-/// name it is. If there are none of these either, returns the cameras whose "FILE/NODE" it is.
+/// name is this name. If these are missing too, returns the cameras whose "FILE/NODE" is this name.
 std::vector<const FoundCamera*> called(const std::string& name,
                                        const std::vector<FoundCamera>& cameras) {
   const auto all = [&](auto name_of) {
@@ -40,6 +41,7 @@ std::vector<const FoundCamera*> called(const std::string& name,
   return found.empty() ? all(with_file) : found;
 }
 
+/// Returns the end of an error message, which lists the names of the cameras.
 std::string known(const std::vector<FoundCamera>& cameras) {
   const auto quoted = [](std::string* out, const std::string& name) {
     absl::StrAppend(out, "\"", name, "\"");
@@ -49,6 +51,8 @@ std::string known(const std::vector<FoundCamera>& cameras) {
              : absl::StrCat("there are ", absl::StrJoin(names_of(cameras), ", ", quoted));
 }
 
+/// Returns the only camera called `name`, with the shutter of the draft. Returns INVALID_ARGUMENT,
+/// with the names of all cameras, if no camera has this name or several cameras have it.
 absl::StatusOr<MovingCamera> find_camera(const std::string& name, const SceneDraft& draft) {
   const auto found = called(name, draft.cameras);
   if (found.size() == 1) {
@@ -59,6 +63,7 @@ absl::StatusOr<MovingCamera> find_camera(const std::string& name, const SceneDra
                    name, "\"; ", known(draft.cameras)));
 }
 
+/// Sets aperture and focus distance of `camera` as the scene file gives them.
 absl::Status set_lens(const Field& in, const scene::Camera& from, PerspectiveCamera& camera) {
   camera.aperture = from.aperture();
   RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMaxLens));

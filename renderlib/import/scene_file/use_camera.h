@@ -1,7 +1,8 @@
 #pragma once
 
-// Selects cameras of models by name. A camera is called by the name of its node, by its own name if
-// no node has the name, or by "FILE/NODE", for example if several models have such a node.
+// Selects cameras of models by name. A name is compared first with the names of the cameras' nodes.
+// If no node has this name, it is compared with the cameras' own names, and then with "FILE/NODE".
+// "FILE/NODE" is useful if several models have a node of the same name.
 
 #include <string>
 #include <vector>
@@ -15,15 +16,16 @@
 
 namespace bandsaw {
 
-/// Adds a model's cameras to the draft. `at_open`, `at_close`: the transforms from the model to the
-/// world when the shutter opens and when it closes. Does nothing if cameras of the same file have
-/// been added, or if the model is in a group, which has no place of its own.
+/// Adds a model's cameras to the draft. `at_open` and `at_close` are the transforms from the model
+/// to the world when the shutter opens and when it closes. Does nothing if cameras of this file
+/// have been added before. Does nothing if the model is in a group, because a group has no place in
+/// the world.
 void add_cameras(const std::string& file, const Model& model, const Transform& at_open,
                  const Transform& at_close, SceneDraft& draft);
 
-/// Returns one name for each camera: the first of its names, in the order above, by which only this
-/// camera is found. Leaves out cameras without such a name, and all further cameras if there are
-/// more than a package can list.
+/// Returns one name for each camera. It is the first of the camera's names, in the order above, by
+/// which only this camera is found. Leaves out cameras without such a name, and all further cameras
+/// if there are more than a package can list.
 std::vector<std::string> names_of(const std::vector<FoundCamera>& cameras);
 
 /// Returns the camera that the scene file names, with the lens and shutter of the scene file. The
@@ -35,8 +37,9 @@ absl::StatusOr<MovingCamera> use_camera(const Field& root, const scene::Scene& f
 /// Returns a camera of a model with the shutter of the scene.
 MovingCamera with_shutter(const FoundCamera& camera, const Shutter& shutter);
 
-/// Returns the camera that the user named, with the lens of its model's file. Errors as
-/// use_camera(), with the name of the scene file.
+/// Returns the camera called `name`, which the user chose, with the lens of its model's file and
+/// the shutter of the draft. The errors are those of use_camera() for the name; they begin with the
+/// name of the scene file.
 absl::StatusOr<MovingCamera> chosen_camera(const std::string& name, const SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -48,7 +48,7 @@ constexpr std::array kAluminium = {
     Index{495.9, 0.755, 6.030}, Index{539.1, 0.912, 6.550}, Index{590.4, 1.150, 7.150},
     Index{619.9, 1.300, 7.480}, Index{652.6, 1.490, 7.820}, Index{688.8, 1.740, 8.210},
     Index{729.3, 2.140, 8.570}, Index{751.4, 2.410, 8.620}, Index{774.9, 2.630, 8.600}};
-// Brass of 70 % copper: Querry, report CRDC-CR-85034 (1985), by way of refractiveindex.info.
+// Brass of 70 % copper: Querry, report CRDC-CR-85034 (1985), taken from refractiveindex.info.
 constexpr std::array kBrass = {
     Index{380, 1.487, 1.818}, Index{400, 1.445, 1.805}, Index{410, 1.405, 1.794},
     Index{420, 1.350, 1.786}, Index{430, 1.278, 1.784}, Index{440, 1.191, 1.797},
@@ -72,6 +72,7 @@ constexpr std::array kTitania = {Index{400, 3.404, 0}, Index{410, 3.341, 0}, Ind
                                  Index{600, 2.899, 0}, Index{640, 2.867, 0}, Index{680, 2.842, 0},
                                  Index{720, 2.822, 0}, Index{780, 2.798, 0}};
 
+/// Returns the column eta or k of a table as a spectrum.
 template <class Table>
 Sampled column(const Table& table, bool is_eta) {
   Sampled out;
@@ -82,6 +83,7 @@ Sampled column(const Table& table, bool is_eta) {
   return out;
 }
 
+/// Returns eta or k of the material `name`; std::nullopt if there is no such table.
 std::optional<Sampled> metal(absl::string_view name, bool is_eta) {
   return name == "Cu"     ? std::optional(column(kCopper, is_eta))
          : name == "Au"   ? std::optional(column(kGold, is_eta))
@@ -93,7 +95,8 @@ std::optional<Sampled> metal(absl::string_view name, bool is_eta) {
                           : std::nullopt;
 }
 
-/// Coefficients of Sellmeier's formula, for wavelengths in micrometres (catalogue of Schott).
+/// Coefficients of Sellmeier's formula, n^2 = 1 + sum of b L^2 / (L^2 - c), for wavelengths L in
+/// micrometres (catalogue of Schott).
 struct Glass {
   const char* name;
   double b[3];
@@ -115,7 +118,7 @@ std::optional<Sampled> glass(absl::string_view name) {
     }
     Sampled out;
     for (int nm = kFirstNm; nm <= kLastNm; nm += 10) {
-      const double square = nm * nm * 1e-6;
+      const double square = nm * nm * 1e-6;  // of the wavelength in micrometres
       double sum = 1;
       for (std::size_t i = 0; i < 3; ++i) {
         sum += glass.b[i] * square / (square - glass.c[i]);

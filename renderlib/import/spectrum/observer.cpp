@@ -6,7 +6,7 @@
 namespace bandsaw::spectrum {
 namespace {
 
-constexpr int kStep = 10;
+constexpr int kStep = 10;  // nanometres between the values of a table
 constexpr std::size_t kCount = (kLastNm - kFirstNm) / kStep + 1;
 
 constexpr double kObserver[kCount][3] = {
@@ -31,6 +31,8 @@ constexpr double kDaylight[kCount] = {
     90.01,  89.60,  87.70,  83.29,  83.70,  80.03,  80.21,  82.28,  78.28,  69.72,  71.61,
     74.35,  61.60,  69.89,  75.09,  63.59,  46.42,  66.81,  63.38};
 
+/// Returns the value of a table at a wavelength in [kFirstNm, kLastNm], by linear interpolation.
+/// get(i) is the value at kFirstNm + i * kStep.
 template <class Get>
 double between(int nm, const Get& get) {
   const auto i = static_cast<std::size_t>((nm - kFirstNm) / kStep);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Tables of the CIE: the standard observer of 1931 (2 degrees) and the illuminant D65, in steps of
-// 10 nm (CIE 15:2004, tables T.4 and T.1), linear between them.
+// Tables of the CIE in steps of 10 nm: the standard observer of 1931 (2 degrees) and the illuminant
+// D65 (CIE 15:2004, tables T.4 and T.1). Values between the steps are interpolated linearly.
 
 #include <cstddef>
 

@@ -17,9 +17,10 @@
 namespace bandsaw::spectrum {
 namespace {
 
+/// Maximum count of numbers of a spectrum: 100,000 pairs.
 constexpr std::size_t kMaxNumbers = 200'000;
 
-/// XYZ to linear RGB with sRGB primaries and the white point D65 (IEC 61966-2-1).
+/// Converts XYZ to linear RGB with sRGB primaries and the white point D65 (IEC 61966-2-1).
 Rgb3 rgb_of_xyz(const Rgb3& xyz) {
   constexpr double kMatrix[3][3] = {{3.2404542, -1.5371385, -0.4985314},
                                     {-0.9692660, 1.8760108, 0.0415560},
@@ -64,9 +65,9 @@ double Sampled::at(double nm) const {
 
 absl::StatusOr<Sampled> from_pairs(const std::vector<double>& numbers) {
   if (numbers.empty() || numbers.size() % 2 != 0 || numbers.size() > kMaxNumbers) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("a spectrum is pairs of a wavelength and a value, at most 100,000; there are ",
-                     numbers.size(), " numbers"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "a spectrum must be 1 to 100,000 pairs of a wavelength and a value; there are ",
+        numbers.size(), " numbers"));
   }
   Sampled out;
   for (std::size_t i = 0; i < numbers.size(); i += 2) {
@@ -114,7 +115,8 @@ Sampled zero_outside(const Sampled& from) {
 }
 
 Sampled blackbody(double kelvin) {
-  // Planck's law, with hc / k_B in nm K; relative to Wien's peak.
+  // Planck's law, relative to the peak by Wien's displacement law. kSecond is the second radiation
+  // constant hc / k_B, and kWien is Wien's displacement constant, both in nm K.
   constexpr double kSecond = 1.438776877e7;
   constexpr double kWien = 2.897771955e6;
   const auto planck = [kelvin](double nm) {

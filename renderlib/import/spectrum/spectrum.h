@@ -21,8 +21,8 @@ struct Sampled {
   std::vector<double> wavelengths;
   std::vector<double> values;
 
-  /// Returns the value at a wavelength in nanometres. Below the first and above the last wavelength
-  /// it is the value of the nearest one.
+  /// Returns the value at a wavelength in nanometres. Below the first wavelength it is the first
+  /// value, and above the last wavelength it is the last value.
   double at(double nm) const;
 };
 
@@ -39,8 +39,8 @@ absl::StatusOr<Sampled> parse_spd(absl::string_view text);
 /// the spectra that a scene defines.
 Sampled zero_outside(const Sampled& from);
 
-/// Returns the visible radiation of a black body, relative to its maximum over all wavelengths,
-/// which may be invisible. `kelvin` > 0.
+/// Returns the visible radiation of a black body, relative to its maximum over all wavelengths. The
+/// maximum may be at an invisible wavelength. `kelvin` > 0.
 Sampled blackbody(double kelvin);
 
 /// Returns the colour of a light: the integral with the colour matching functions, scaled so that
@@ -60,9 +60,10 @@ struct Metal {
   Rgb3 eta;
   Rgb3 k;
 };
-/// Returns an index for each channel whose reflectance at normal incidence is the colour that a
-/// spectral renderer shows: factor_rgb() of the spectral reflectance. eta of a channel is
-/// factor_rgb() of the spectrum `eta`, and k is computed from eta and the reflectance.
+/// Returns an index of refraction for each channel. The reflectance of the channels at normal
+/// incidence is factor_rgb() of the spectral reflectance, which is the colour that a spectral
+/// renderer shows. eta of a channel is factor_rgb() of the spectrum `eta`, and k is computed from
+/// eta and the reflectance.
 Metal metal_rgb(const Sampled& eta, const Sampled& k);
 
 /// Returns a spectrum by the name that it has in pbrt: "metal-Cu-eta", "metal-Cu-k" (Ag, Al, Au,
@@ -70,7 +71,7 @@ Metal metal_rgb(const Sampled& eta, const Sampled& k);
 /// "stdillum-A". Returns std::nullopt for other names.
 std::optional<Sampled> named(absl::string_view name);
 
-/// Wavelength of the d line, at which indices of refraction are stated.
+/// Wavelength of the d line in nanometres, at which indices of refraction are stated.
 inline constexpr double kLineD = 587.56;
 
 }  // namespace bandsaw::spectrum

@@ -1,7 +1,7 @@
-// Reads *.vdb files by the library OpenVDB: fog volumes of floats, halves or doubles, and vectors
-// of three floats, which become bricks: cubes of 8 x 8 x 8 cells. Everything happens on the calling
-// thread, because the library starts no thread for reading. Cross-compiled programs are built
-// without OpenVDB.
+// Reads *.vdb files by the library OpenVDB. It reads fog volumes of floats, halves, doubles or
+// vectors of three floats, and stores them in bricks, which are cubes of 8 x 8 x 8 cells.
+// Everything happens on the calling thread, because the library starts no thread for reading.
+// Cross-compiled programs are built without OpenVDB.
 
 #ifndef BANDSAW_NO_OPENVDB
 
@@ -41,9 +41,9 @@ struct VoxelBox {
   std::array<std::int64_t, 3> high;
 };
 
-/// Returns the box of whole bricks around all active voxels and one more voxel on each side,
-/// because the values between voxels reach that far; std::nullopt if there are none. Tiles count
-/// with the bricks that they fill.
+/// Returns the box of whole bricks around all active voxels, including those of tiles. The box has
+/// at least one more voxel on each side, because interpolated values reach that far beyond the
+/// active voxels. Returns std::nullopt if there are no active voxels.
 template <class Tree>
 std::optional<VoxelBox> box_of(const Tree& tree) {
   openvdb::CoordBBox active;
@@ -61,6 +61,7 @@ std::optional<VoxelBox> box_of(const Tree& tree) {
   return box;
 }
 
+/// Returns RESOURCE_EXHAUSTED if a box is too long along an axis or has too many bricks.
 absl::Status check_box(const VoxelBox& box) {
   std::uint64_t bricks = 1;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -109,6 +110,8 @@ class Copy {
   std::uint64_t negative() const { return negative_; }
 
  private:
+  /// Writes the numbers of the voxel `at` into a cell of `brick_`. Numbers below 0 become 0.
+  /// Returns INVALID_ARGUMENT if a number is not finite.
   absl::Status put(std::uint32_t cell, const Value& value, const openvdb::Coord& at) {
     const auto numbers = numbers_of(value);
     for (std::uint32_t c = 0; c < kChannels; ++c) {
@@ -122,6 +125,7 @@ class Copy {
     return absl::OkStatus();
   }
 
+  /// Stores `brick_` as the brick whose first voxel is `first`.
   void set(const openvdb::Coord& first) {
     const auto brick = [&](int k) {
       const std::int64_t from = first[k] - box_.low[static_cast<std::size_t>(k)];
@@ -163,7 +167,9 @@ class Copy {
   std::uint64_t negative_ = 0;
 };
 
-/// Returns the map from cells, whose first is voxel `first`, to the space of the grid's transform.
+/// Returns the map from the cells of a VolumeGrid to the space of the file's transform `map`. The
+/// first cell is voxel `first` of the file. Returns INVALID_ARGUMENT if `map` is not affine or is
+/// singular.
 absl::StatusOr<Transform> to_file_space(const openvdb::math::Transform& map,
                                         const std::array<std::int64_t, 3>& first) {
   if (!map.isLinear()) {
@@ -186,6 +192,8 @@ absl::StatusOr<Transform> to_file_space(const openvdb::math::Transform& map,
                            : invalid("has a transform that is singular");
 }
 
+/// Converts a grid of the library. Returns INVALID_ARGUMENT if it is a level set or holds an
+/// invalid number or transform, and RESOURCE_EXHAUSTED if it is too large.
 template <class Grid>
 absl::StatusOr<FileGrid> convert(const Grid& grid) {
   using Tree = typename Grid::TreeType;
@@ -214,9 +222,9 @@ absl::StatusOr<FileGrid> convert(const Grid& grid) {
   return result;
 }
 
-/// Returns the name of the grid to read: `grid`; if that is empty, `otherwise`, or the only grid of
-/// the file. `names`: the grids of the file. INVALID_ARGUMENT: there is no such grid. (See
-/// read_volume().)
+/// Returns the name of the grid to read. `names` are the names of all grids of the file. The result
+/// is `grid`, unless `grid` is empty. In that case it is `otherwise` if the file has such a grid,
+/// or else the only grid of the file. Returns INVALID_ARGUMENT if there is no grid to read.
 absl::StatusOr<std::string> choose(const std::vector<std::string>& names, const std::string& grid,
                                    const std::string& otherwise) {
   const std::string& wanted = grid.empty() ? otherwise : grid;
@@ -233,6 +241,7 @@ absl::StatusOr<std::string> choose(const std::vector<std::string>& names, const 
                               absl::StrJoin(names, "\", \""), "\""));
 }
 
+/// Does what read_vdb() does, but may throw exceptions of the library.
 absl::StatusOr<FileGrid> read(const std::string& path, const std::string& grid,
                               const std::string& otherwise) {
   openvdb::initialize();
@@ -255,7 +264,7 @@ absl::StatusOr<FileGrid> read(const std::string& path, const std::string& grid,
     return convert(*vectors);
   }
   return invalid(absl::StrCat("grid \"", wanted, "\" is of type ", found->type(),
-                              "; read are float, double and vec3s"));
+                              "; only float, double and vec3s can be read"));
 }
 
 }  // namespace

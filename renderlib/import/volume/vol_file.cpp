@@ -44,7 +44,7 @@ Header read_header(const std::byte* bytes) {
   return header;
 }
 
-/// Returns the size of a number in bytes; 0 if the encoding is not read.
+/// Returns the size of a number in bytes; 0 if the encoding is unknown.
 std::uint64_t number_bytes(std::int32_t encoding) {
   return encoding == 1 ? 4 : encoding == 2 ? 2 : encoding == 3 ? 1 : 0;
 }

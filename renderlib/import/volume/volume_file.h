@@ -22,23 +22,24 @@ struct FileGrid {
   std::uint64_t negative = 0;  ///< numbers below 0 that became 0
 };
 
-/// Returns true if the file is of a kind that read_volume() reads, by its name.
+/// Returns true if the name ends in .vol or .vdb, so that read_volume() can read the file.
 bool is_volume_file(const std::string& name);
 
-/// Reads the grid called `grid` of a file. If `grid` is empty, reads the one called `otherwise`,
-/// or else the only one. A *.vol file has one grid without a name. Errors do not name the file:
-/// INVALID_ARGUMENT if it is damaged, of another kind, or if a number is not finite;
-/// RESOURCE_EXHAUSTED if it is too large.
+/// Reads the grid called `grid` of a file. If `grid` is empty, reads the grid called `otherwise`,
+/// or else the only grid of the file. A *.vol file has one grid without a name, so `grid` must be
+/// empty. Returns INVALID_ARGUMENT if the file is damaged or of another kind, if it has no such
+/// grid, or if a number is not finite. Returns RESOURCE_EXHAUSTED if the grid is too large.
+/// Messages of errors do not name the file.
 absl::StatusOr<FileGrid> read_volume(const std::string& path, const std::string& grid,
                                      const std::string& otherwise);
 
-/// The same for the bytes of a *.vol file in memory.
+/// Does the same for the bytes of a *.vol file in memory.
 absl::StatusOr<FileGrid> read_made_volume(const std::string& bytes, const std::string& grid);
 
 /// Reads the bytes of a *.vol file (vol_file.cpp says how they are laid out).
 absl::StatusOr<FileGrid> read_vol(absl::Span<const std::byte> bytes);
 
-/// Reads a *.vdb file.
+/// Reads a *.vdb file. Arguments and errors are those of read_volume().
 absl::StatusOr<FileGrid> read_vdb(const std::string& path, const std::string& grid,
                                   const std::string& otherwise);
 
