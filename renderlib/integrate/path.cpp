@@ -295,15 +295,15 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
 /// receiver, and a look-up takes longer than the rest of the scattering.
 Rgb caustics_at(const PathContext& context, const PhotonMap& map, const SurfacePoint& point,
                 const Bsdf& bsdf, std::uint32_t depth, const PathState& path) {
-  constexpr std::uint64_t kOneOf = 2;
+  constexpr std::uint64_t kSamplesPerLookUp = 2;
   std::uint64_t counts = 1;
   if (path.after_receiver) {
     // For each pixel and depth, a random number selects the samples that look up the map.
-    const double first = context.sampler.stream(0, group_bsdf(depth)).next() * kOneOf;
-    if ((context.sample + static_cast<std::uint64_t>(first)) % kOneOf != 0) {
+    const double first = context.sampler.stream(0, group_bsdf(depth)).next() * kSamplesPerLookUp;
+    if ((context.sample + static_cast<std::uint64_t>(first)) % kSamplesPerLookUp != 0) {
       return {};
     }
-    counts = kOneOf;
+    counts = kSamplesPerLookUp;
   }
   return photon_radiance(map, point, bsdf, -path.ray.direction,
                          context.scatterings_left(path, depth)) *

@@ -44,7 +44,7 @@ PhotonNormals normals_at(const Scene& scene, const SurfacePoint& point, const Ve
 
 /// Returns true if a path is scattered to `in` about `normal`. The path comes from the direction in
 /// which the photon leaves, and `bsdf` is the BSDF seen from that direction.
-bool is_path(const Bsdf& bsdf, const Vec3& in, const Vec3& normal) {
+bool path_uses_normal(const Bsdf& bsdf, const Vec3& in, const Vec3& normal) {
   if (const auto* mirror = std::get_if<MirrorBsdf>(&bsdf)) {
     return length_squared(mirror->mirror - in) < kSameDirection;
   }
@@ -92,7 +92,7 @@ std::optional<PhotonScattering> scatter_about(const Scene& scene, const SurfaceP
   Bsdf of_path = bsdf;
   if (!normals.same) {
     of_path = bsdf_at(scene.material(point.material), scene.textures(), point, out);
-    if (!is_path(of_path, in, normal)) {
+    if (!path_uses_normal(of_path, in, normal)) {
       return std::nullopt;
     }
   }
@@ -153,9 +153,9 @@ std::optional<PhotonScattering> scatter_by_both(const Scene& scene, const Surfac
     return std::nullopt;
   }
   if (next->delta) {
-    PhotonScattering way = scatter_by_delta(point, in, *next);
-    way.factor = way.factor * static_cast<float>(1 / (1 - kGeometricPart));
-    return way;
+    PhotonScattering scattering = scatter_by_delta(point, in, *next);
+    scattering.factor = scattering.factor * static_cast<float>(1 / (1 - kGeometricPart));
+    return scattering;
   }
   const double pdf = kGeometricPart * evaluate(about_geometric, next->wi).pdf +
                      (1 - kGeometricPart) * evaluate(about_shading, next->wi).pdf;

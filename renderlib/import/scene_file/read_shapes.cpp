@@ -186,8 +186,8 @@ absl::Status read_filled_sphere(const Field& in, const scene::Shape& from, Scene
 
 /// Adds the medium inside a sphere or a box.
 absl::Status read_interior(const Field& in, const scene::Shape& from, SceneDraft& draft) {
-  const bool loose = draft.placed == &draft.world && from.velocity().empty();
-  if (loose && from.kind_case() == scene::Shape::kSphere) {
+  const bool rests_in_scene = draft.placed == &draft.world && from.velocity().empty();
+  if (rests_in_scene && from.kind_case() == scene::Shape::kSphere) {
     return read_filled_sphere(in, from, draft);
   }
   ASSIGN_OR_RETURN(Instance boundary, read_boundary(in, from, draft));

@@ -128,13 +128,13 @@ MaybeId read_part(const Field& in, const std::string& name, const scene::Texture
   return draft.textures.constant(gray(otherwise));
 }
 
-// Reads the size of a checker's cells along each axis. The checker has `most` axes, 2 or 3. The
+// Reads the size of a checker's cells along each axis. The checker has `axes` axes, 2 or 3. The
 // file gives a number for each axis, or one number for all axes. The size is 1 where it is absent,
 // and along z if there are 2 axes.
-absl::StatusOr<Vec3> read_size(const Field& in, const scene::CheckerTexture& from, int most) {
+absl::StatusOr<Vec3> read_size(const Field& in, const scene::CheckerTexture& from, int axes) {
   const Numbers& list = from.size();
-  if (list.size() > 1 && list.size() != most) {
-    return in.error("size", absl::StrCat("must be 1 or ", most, " numbers, has ", list.size()));
+  if (list.size() > 1 && list.size() != axes) {
+    return in.error("size", absl::StrCat("must be 1 or ", axes, " numbers, has ", list.size()));
   }
   for (int i = 0; i < list.size(); ++i) {
     if (!(std::isfinite(list[i]) && list[i] > 0)) {
@@ -142,7 +142,7 @@ absl::StatusOr<Vec3> read_size(const Field& in, const scene::CheckerTexture& fro
     }
   }
   const auto at = [&](int i) { return list.empty() ? 1 : list.size() == 1 ? list[0] : list[i]; };
-  return Vec3{at(0), at(1), most == 3 ? at(2) : 1};
+  return Vec3{at(0), at(1), axes == 3 ? at(2) : 1};
 }
 
 MaybeId read_checker(const Field& in, const scene::CheckerTexture& from, float most,
@@ -294,7 +294,7 @@ MaybeId read_kind(const Field& in, const scene::Texture& from, float most, Scene
 
 // Returns true for the kinds whose colours read_kind() does not compare with `most`. These colours
 // are in an image file or in another texture, or are products.
-bool may_pass(const scene::Texture& from) {
+bool colors_need_check(const scene::Texture& from) {
   return from.has_image() || from.has_product() || from.kind_case() == scene::Texture::kUse;
 }
 
@@ -306,7 +306,7 @@ absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& fr
     return in.error("name", "is for the textures of the scene; write it there and use it here");
   }
   ASSIGN_OR_RETURN(const TextureId id, read_kind(in, from, most, draft));
-  if (may_pass(from)) {
+  if (colors_need_check(from)) {
     if (const float found = draft.textures.max_value(id); found > most) {
       const std::string place = from.has_image() ? "image" : from.has_product() ? "product" : "use";
       const std::string what =

@@ -192,16 +192,16 @@ absl::StatusOr<Curve> read_curve(const Field& in, const scene::Track& track) {
 
 void set(const Target& to, const std::vector<double>& values) {
   const Reflection& reflection = *to.message->GetReflection();
-  const bool wide = to.field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;
+  const bool is_double = to.field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;
   if (!to.field->is_repeated()) {
-    wide ? reflection.SetDouble(to.message, to.field, values[0])
-         : reflection.SetFloat(to.message, to.field, static_cast<float>(values[0]));
+    is_double ? reflection.SetDouble(to.message, to.field, values[0])
+              : reflection.SetFloat(to.message, to.field, static_cast<float>(values[0]));
     return;
   }
   reflection.ClearField(to.message, to.field);
   for (const double value : values) {
-    wide ? reflection.AddDouble(to.message, to.field, value)
-         : reflection.AddFloat(to.message, to.field, static_cast<float>(value));
+    is_double ? reflection.AddDouble(to.message, to.field, value)
+              : reflection.AddFloat(to.message, to.field, static_cast<float>(value));
   }
 }
 

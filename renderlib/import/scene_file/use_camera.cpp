@@ -42,7 +42,7 @@ std::vector<const FoundCamera*> called(const std::string& name,
 }
 
 /// Returns the end of an error message, which lists the names of the cameras.
-std::string known(const std::vector<FoundCamera>& cameras) {
+std::string known_names(const std::vector<FoundCamera>& cameras) {
   const auto quoted = [](std::string* out, const std::string& name) {
     absl::StrAppend(out, "\"", name, "\"");
   };
@@ -60,7 +60,7 @@ absl::StatusOr<MovingCamera> find_camera(const std::string& name, const SceneDra
   }
   return absl::InvalidArgumentError(
       absl::StrCat(found.empty() ? "no model brings a camera" : "several cameras are", " called \"",
-                   name, "\"; ", known(draft.cameras)));
+                   name, "\"; ", known_names(draft.cameras)));
 }
 
 /// Sets aperture and focus distance of `camera` as the scene file gives them.
