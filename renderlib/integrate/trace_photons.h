@@ -26,15 +26,17 @@ struct PhotonChunk {
 struct TracedPhotons {
   std::vector<StoredPhoton> photons;  ///< those that arrived at a receiver, in order
   std::uint64_t rays = 0;             ///< rays that were traced
-  double power = 0;                   ///< sum of the luminance of their power
-  /// Sum of luminance times solid angle. The angle is that of the lamp as seen from the caster
-  /// where the photon started, taken as 1 / the pdf of light sampling there.
+  double power = 0;  ///< sum over `photons` of the luminance of StoredPhoton::power
+  /// Sum over `photons` of the same luminance times a solid angle. It is the solid angle of the
+  /// lamp, seen from the point of a caster at which the photon started. It is estimated as 1 / pdf,
+  /// where pdf is the pdf of light sampling at that point.
   double power_by_angle = 0;
 };
 
-/// Traces the photons. Each is a pure function of the scene, the seed, the number of the map and
-/// the number of the photon. A photon starts at a random point of a caster, from which a light is
-/// sampled as for a surface. `casters` MUST be complete (Casters::complete).
+/// Traces the photons. A photon starts at a random point of a caster with the light that light
+/// sampling at this point finds. Its path is a pure function of the scene, the seed, the number of
+/// the map and the number of the photon; its power is divided by PhotonChunk::photons. `casters`
+/// MUST be complete (Casters::complete).
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk);
 
 /// Returns the photon as a map holds it. It arrived with the power `power` at the receiver `hit`,

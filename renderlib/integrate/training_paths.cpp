@@ -16,7 +16,7 @@ namespace bandsaw {
 namespace {
 
 /// The source of background light is placed at this many times the length of the longest ray of the
-/// path: so far away that its direction is the same for all points of a cell.
+/// path. This is so far away that its direction is the same for all points of a cell.
 constexpr double kFar = 1e6;
 
 /// Maximum number of vertices of a path that are recorded. It bounds the memory of the training.
@@ -52,7 +52,8 @@ struct TrainingPath {
   }
 };
 
-/// Scatters at the surface and remembers the vertex. Returns false if the path ends.
+/// Scatters the path at the surface. Remembers the vertex if its direction can be guided, up to
+/// kMaxVertices vertices. Returns false if the path ends.
 bool scatter_and_remember(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
                           std::uint32_t depth, TrainingPath& path) {
   PathState& state = path.state;
@@ -119,8 +120,9 @@ void trace_and_remember(const PathContext& context, TrainingPath& path) {
 }
 
 /// Appends the records of the vertices. The light that the path found after a vertex, divided by
-/// the throughput of the ray, is the radiance that arrives along the ray; times cosine / pdf it
-/// estimates the irradiance of the vertex. `camera_distance`: length of the camera ray.
+/// the throughput of the ray, is the radiance that arrives along the ray. This radiance times
+/// cosine / pdf estimates the irradiance of the vertex. `camera_distance` is the length of the
+/// camera ray.
 void add_records(const TrainingPath& path, double camera_distance, std::vector<GuidingRecord>& to) {
   double longest = camera_distance;
   for (const Vertex& vertex : path.vertices) {

@@ -32,8 +32,9 @@ struct Traced {
 };
 using TrainingRecords = Traced<GuidingRecord>;
 
-/// Calls `of_chunk` with the number of each chunk in [first, last) and appends the results in their
-/// order. Returns false if stopped.
+/// Calls `of_chunk` with the number of each chunk in [first, last), on the threads of
+/// `preparation`. Appends the results to `to`, in the order of the numbers. If the preparation is
+/// stopped, returns false and appends nothing.
 template <class Item, class OfChunk>
 bool append_chunks(std::uint32_t first, std::uint32_t last, const Preparation& preparation,
                    Traced<Item>& to, const OfChunk& of_chunk) {
@@ -60,8 +61,8 @@ TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
 Ray training_ray(const Scene& scene, const RayGenerator& camera, const GuidingKey& key,
                  const PixelSampler& sampler, std::uint64_t sample);
 
-/// Returns the sampler of a chunk. It is that of a pixel outside of the largest image, so no image
-/// uses the same random numbers.
+/// Returns the sampler of a chunk. It is the sampler of a pixel outside of the largest image, so no
+/// image uses the same random numbers.
 PixelSampler training_sampler(const TrainingChunk& chunk);
 
 }  // namespace bandsaw

@@ -67,9 +67,9 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Pi
   return photon;
 }
 
-/// Follows the photon until it arrives at a surface that can be guided, and adds a record there.
-/// `longest`: maximum number of scatterings up to there; `photons`, `mapped`: as for
-/// training_photons().
+/// Follows the photon until it arrives at a surface whose directions can be guided, and adds a
+/// record for this arrival, if the photon was scattered fewer than `longest` times before.
+/// `photons` and `mapped` are those of training_photons().
 void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sample,
             std::uint32_t longest, double photons, bool mapped, Photon photon,
             TrainingRecords& out) {

@@ -9,13 +9,14 @@
 
 namespace bandsaw {
 
-/// Returns the visibility between surfaces along the ray, in [0, 1]: 0 or 1 except for
-/// alpha-blended surfaces. Media are ignored. Adds the number of rays traced to `rays`.
+/// Returns the share of light, in [0, 1], that the surfaces along the ray let through. Only partly
+/// transparent surfaces give other values than 0 and 1. Media are ignored. Adds the number of rays
+/// traced to `rays`.
 float visibility(const Scene& scene, const Ray& ray, std::uint64_t& rays);
 
-/// Returns the transmittance along the ray: visibility between surfaces times the transmittance of
-/// media, which is an estimate from `numbers` where they vary in space. Adds the number of rays
-/// traced to `rays`.
+/// Returns visibility() along the ray times the transmittance of the media. The transmittance of a
+/// medium that varies in space is an estimate; `numbers` are its random numbers. Adds the number of
+/// rays traced to `rays`.
 Rgb transmittance(const Scene& scene, const Ray& ray, NumberStream numbers, std::uint64_t& rays);
 
 }  // namespace bandsaw

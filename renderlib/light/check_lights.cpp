@@ -58,6 +58,7 @@ absl::Status check_position(const std::string& field, const Vec3& p) {
 struct Check {
   absl::Span<const Texture> textures;
 
+  /// Checks the image that a light projects. `axis` and `intensity` are those of the light.
   absl::Status image(const std::string& field, const ProjectedImage& image, const Vec3& axis,
                      const Rgb& intensity) const {
     const std::size_t index = index_of(image.texture);
@@ -78,7 +79,7 @@ struct Check {
     const float most =
         max_value(textures, image.texture) * std::max({intensity.r, intensity.g, intensity.b});
     if (!std::isfinite(most)) {
-      return invalid(field + ".texture", "must be finite, times the intensity");
+      return invalid(field + ".texture", "its largest value times the intensity must be finite");
     }
     return absl::OkStatus();
   }

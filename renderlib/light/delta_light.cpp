@@ -21,13 +21,15 @@ float over_distance2(const Vec3& to_light) {
   return distance2 > 0 ? static_cast<float>(std::min(1 / distance2, kMaxShare)) : 0.0f;
 }
 
-/// Returns the coordinates of the direction `way` on the plane of the image, as multiples of its
-/// half sides. `depth` MUST be > 0.
+/// Returns the coordinates at which the direction `way` meets the plane of the image, as
+/// multiples of the image's half sides. `depth`, the component of `way` along the axis, MUST
+/// be > 0.
 Vec2 on_image(const ProjectedImage& image, const Vec3& way, double depth) {
   return {dot(way, image.right) / (depth * image.half_width),
           dot(way, image.up) / (depth * image.half_height)};
 }
 
+/// Returns the image's value at the coordinates `place` that on_image() returns.
 Rgb value_at(const ProjectedImage& image, const std::vector<Texture>& textures, const Vec2& place) {
   const Vec2 uv{0.5 + 0.5 * place.x, 0.5 + 0.5 * place.y};
   return evaluate(textures, image.texture, {.uv = uv, .uv2 = uv});
@@ -61,6 +63,7 @@ void place(const Transform& to, Vec3& axis, ProjectedImage& image) {
   image.up = dot(up, to.direction(image.up)) < 0 ? -up : up;
 }
 
+/// Computes placed() for each kind of light.
 struct Placed {
   const Transform& to;
 

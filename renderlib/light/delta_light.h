@@ -39,7 +39,7 @@ struct ProjectedImage {
   Vec3 right{1, 0, 0};     ///< unit, perpendicular to the axis
   Vec3 up{0, 1, 0};        ///< unit, perpendicular to the axis and to `right`
   double half_width = 1;   ///< in [kMinHalfImage, kMaxHalfImage]
-  double half_height = 1;  ///< the same
+  double half_height = 1;  ///< in the same range
 };
 inline constexpr double kMinHalfImage = 1e-9;
 inline constexpr double kMaxHalfImage = 1e9;
@@ -58,8 +58,8 @@ struct SpotLight {
   double cos_inner = 1;      ///< cosines of the angles to the axis; cos_inner >= cos_outer >= 0
   double cos_outer = 0.70710678118654752440;  ///< by default of 45 degrees, as in glTF
   Falloff falloff = Falloff::kSquare;
-  /// An image that multiplies the intensity. Beyond the edges of its rectangle, the texture's value
-  /// there (repeated or clamped) is used.
+  /// An image that multiplies the intensity. Beyond the edges of its rectangle the texture is
+  /// repeated or clamped, as its wrap mode says.
   std::optional<ProjectedImage> image = std::nullopt;
 };
 

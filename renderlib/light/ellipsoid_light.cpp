@@ -1,5 +1,6 @@
-// A sphere that an affine map has stretched is sampled uniformly on the unit sphere; the pdf by
-// area is divided by the local area scale of the map.
+// An ellipsoid is a unit sphere that an affine map has stretched. A uniform point of the sphere is
+// mapped to the ellipsoid. The pdf by area is that of the sphere divided by the local area scale of
+// the map.
 
 #include "renderlib/light/ellipsoid_light.h"
 
@@ -11,8 +12,9 @@
 namespace bandsaw {
 namespace {
 
-/// Cofactors of the affine map from the unit sphere to the ellipsoid. They transform normals; the
-/// length of a transformed unit normal is the factor by which the map scales areas there.
+/// Cofactors of the affine map from the unit sphere to the ellipsoid. They transform normals. The
+/// length of a transformed unit normal is the factor by which the map scales areas perpendicular to
+/// this normal.
 struct Cofactors {
   explicit Cofactors(const ShapeView& shape)
       : x(exact_cross(shape.v, shape.w)),
@@ -20,6 +22,7 @@ struct Cofactors {
         z(exact_cross(shape.u, shape.v)),
         determinant(dot(shape.u, x)) {}
 
+  /// Transforms the unit normal `s` of the sphere; the result is not normalised.
   Vec3 times(const Vec3& s) const { return x * s.x + y * s.y + z * s.z; }
   /// Applies the inverse of the map to a vector in world space.
   Vec3 back(const Vec3& p) const { return Vec3{dot(x, p), dot(y, p), dot(z, p)} / determinant; }

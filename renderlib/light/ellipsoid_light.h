@@ -1,8 +1,8 @@
 #pragma once
 
 // Sampling of ellipsoids as area lights. An ellipsoid is the image of the unit sphere under an
-// affine map. A uniform point of the sphere is mapped, so the area pdf is that of the sphere
-// divided by the factor by which the map scales areas there.
+// affine map. A sample is the image of a uniform point of the sphere. Its area pdf is that of the
+// sphere divided by the factor by which the map scales areas at this point.
 
 #include <optional>
 

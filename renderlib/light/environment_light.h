@@ -20,7 +20,7 @@ class EnvironmentLight {
  public:
   struct Sample {
     Vec3 direction;  ///< unit, world space
-    double pdf = 0;  ///< by solid angle; > 0, finite
+    double pdf = 0;  ///< by solid angle; >= 0, finite
   };
 
   /// Makes an empty light, like that of a uniform environment. An empty light is never sampled.
@@ -29,8 +29,8 @@ class EnvironmentLight {
   EnvironmentLight(Environment environment, absl::Span<const Texture> textures);
 
   bool empty() const { return !(excess_ > 0); }
-  /// Returns the integral over all directions of the luminance above the mean: the irradiance of a
-  /// surface that would face all directions.
+  /// Returns the integral over all directions of the luminance above the mean. This is the
+  /// irradiance that a surface would have if it faced all directions at once.
   double excess() const { return excess_; }
 
   /// Samples a direction; u, v in [0, 1). The light MUST NOT be empty. At the border of the sampled
@@ -42,7 +42,7 @@ class EnvironmentLight {
  private:
   /// Returns the luminance of a texel above the mean; 0 if it is below.
   double weight(const ImageTexture& image, std::uint32_t x, std::uint32_t y) const;
-  /// Returns the unnormalised pdf by solid angle at a position whose direction is known.
+  /// Returns the unnormalised pdf, by solid angle, of the direction at a position in the images.
   double weight_at(const EnvironmentPlace& place) const;
 
   Environment environment_;

@@ -12,8 +12,8 @@
 namespace bandsaw {
 namespace {
 
-/// LightBound::cos_reach of a spot light and a projector: nothing is emitted beyond the cone,
-/// except for rounding at its rim.
+/// LightBound::cos_reach of a spot light and a projector, which emit nothing beyond the cone. The
+/// value is a little less than 1, so that rounding does not exclude directions at the cone's rim.
 constexpr double kJustFacing = 1 - 0x1p-40;
 
 /// Minimum distance of a light from a ray, relative to the distance to the light; the same as in
@@ -68,7 +68,8 @@ LightBound bound_of(const PointLight& light) {
 LightBound bound_of(const SpotLight& light, const std::vector<Texture>& textures) {
   const Rgb image = light.image ? mean(textures, light.image->texture) : gray(1);
   // The intensity of a spot light is not a cosine. The bound is that of a surface whose normals
-  // cover all directions up to the outer angle, each of which is seen with full intensity.
+  // cover all directions up to the outer angle. Such a surface has the full intensity in each of
+  // these directions.
   return {.ball = {light.position, 0},
           .intensity = brightness(light.intensity * image),
           .axis = light.direction,

@@ -26,7 +26,7 @@ struct LightBound {
   double cos_spread = -1;  ///< cosine of the cone's half-angle (theta_o in the paper)
   /// Cosine of the angle to each normal beyond which nothing is emitted (theta_e in the paper).
   double cos_reach = 0;
-  bool two_sided = false;  ///< the cone around -axis emits the same
+  bool two_sided = false;  ///< the cone around -axis emits in the same way
   bool flat = false;       ///< all emitters lie in one plane perpendicular to the axis
 };
 
@@ -41,9 +41,9 @@ LightBound bound_of(const ProjectorLight& light, const std::vector<Texture>& tex
 /// only if no light can arrive.
 double importance(const LightBound& bound, const Receiver& receiver);
 /// Returns the approximate integral of intensity / distance^2 along the segment, as if the segment
-/// were centred on its point closest to the light. The light is attenuated by the medium along the
-/// path from the segment's origin over that point to the light. Orientation is ignored, because the
-/// segment may cross a spot light's cone anywhere.
+/// were centred on its point closest to the light. The medium attenuates the light along the path
+/// from the segment's origin through this closest point to the light. The orientation of the light
+/// is ignored, because the segment may cross a spot light's cone anywhere.
 double importance(const LightBound& bound, const ReceiverSegment& segment);
 
 /// Returns the mean of the channels.

@@ -28,7 +28,8 @@ struct LightCone {
   bool two_sided = false;
 };
 
-/// Larger than the rounding error of the angles in one merge.
+/// Added to the spread of a merged cone. It is larger than the rounding error of the angles in one
+/// merge.
 constexpr double kSlack = 1e-9;
 
 SinCos sincos(double radians) { return sincos_turns(radians * (0.5 * kInvPi)); }
@@ -64,7 +65,8 @@ LightCone merged(const LightCone& a, const LightCone& b) {
     wide.spread = kPi;
     return wide;
   }
-  // The axis is rotated until the wide cone touches the new one from inside.
+  // The axis is rotated towards `narrow` until the wide cone touches the rim of the new cone from
+  // inside.
   const SinCos turn = sincos(spread - wide.spread);
   wide.axis = normalize(wide.axis * turn.cos + normalize(across) * turn.sin);
   wide.spread = spread;
@@ -175,6 +177,7 @@ class LightTreeBuilder {
     tasks.push_back({first, task.begin, middle, task.depth + 1});
   }
 
+  /// Returns a bound that contains the bounds of these lights.
   LightBound bound_around(absl::Span<const std::uint32_t> range) const {
     Group group;
     for (const std::uint32_t light : range) {
@@ -197,7 +200,8 @@ class LightTreeBuilder {
 
   /// Partitions the lights into two non-empty halves; returns the size of the first.
   std::size_t divide(absl::Span<std::uint32_t> range, std::uint32_t depth) const {
-    // If only 32 levels are left, lights are halved: that is enough for the at most 2^31 lights.
+    // If only 32 levels are left, the lights are divided into equal halves. So 32 levels are enough
+    // for the at most 2^31 lights.
     constexpr std::uint32_t kHalvings = 32;
     const bool deep = depth + kHalvings >= LightTree::kMaxDepth;
     const Split split = deep || range.size() == 2 ? Split{} : best_split(range);
@@ -211,6 +215,7 @@ class LightTreeBuilder {
     return static_cast<std::size_t>(end - range.begin());
   }
 
+  /// Returns the bounding box of the lights' centres.
   Box centers(absl::Span<const std::uint32_t> range) const {
     Box box;
     for (const std::uint32_t light : range) {
@@ -219,11 +224,13 @@ class LightTreeBuilder {
     return box;
   }
 
+  /// Returns the bin that contains the light's centre. The bins divide `box` evenly along the axis.
   std::size_t bin_of(std::uint32_t light, int axis, const Box& box) const {
     const double share = (center(light)[axis] - box.lo[axis]) / (box.hi[axis] - box.lo[axis]);
     return std::min(kBins - 1, static_cast<std::size_t>(share * kBins));
   }
 
+  /// Returns the cheapest split. Its axis is -1 if all centres coincide.
   Split best_split(absl::Span<const std::uint32_t> range) const {
     const Box box = centers(range);
     const double longest = max_abs(box.hi - box.lo);

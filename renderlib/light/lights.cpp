@@ -1,6 +1,6 @@
 // The constructor numbers all lights and computes their bounds. sample() chooses a light
-// (light_choice.h), then a point on it by its kind; pdf() does the reverse for a point that was
-// hit.
+// (light_choice.h), then a point on it by its kind. pdf() returns the pdf of this choice for a
+// point that a ray has hit.
 
 #include "renderlib/light/lights.h"
 
@@ -71,6 +71,7 @@ std::vector<LightBound> Lights::add_surfaces() {
   const Geometry& geometry = *geometry_;
   std::map<GroupId, bool> emitting_groups;
   std::vector<LightBound> bounds;
+  // Instance 0 stands for the shapes that are in no instance.
   for (std::uint32_t instance = 0; instance <= geometry.instances.size(); ++instance) {
     std::size_t primitives = geometry.size();
     if (instance > 0) {
@@ -89,8 +90,8 @@ std::vector<LightBound> Lights::add_surfaces() {
   return bounds;
 }
 
-// A group is examined once and not for each instance, because a group may have as many instances as
-// primitives.
+// A group may have many instances and many primitives, so examining it again for each instance
+// would take too long.
 bool Lights::group_emits(std::uint32_t instance, const std::vector<double>& radiance,
                          std::map<GroupId, bool>& known) const {
   const Instance& placed = geometry_->instances[instance - 1];

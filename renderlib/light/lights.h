@@ -69,14 +69,14 @@ class Lights {
   std::optional<LightSample> sample(const Receiver& receiver, double choice, double u,
                                     double v) const;
 
-  /// Samples a point on a light that is selected by its contribution along a segment of a medium,
-  /// at the given time. `choice`, u and v are as in sample(). Returns std::nullopt if no light
-  /// contributes.
+  /// Selects a light by its contribution along a segment of a medium, and samples a point on the
+  /// light. The light is where it is at the given time. `choice`, u and v are as in sample().
+  /// Returns std::nullopt if no light contributes.
   std::optional<LightPivot> sample_pivot(const ReceiverSegment& segment, double time, double choice,
                                          double u, double v) const;
 
   /// Returns the pdf with which `sample()` samples the direction from the receiver to `hit`, a
-  /// point on an emissive primitive; 0 if it never does.
+  /// point on an emissive primitive; 0 if `sample()` never chooses the primitive.
   double pdf(const Receiver& receiver, const SurfacePoint& hit) const;
 
   /// Returns the pdf with which `sample()` samples the unit direction towards the environment.
@@ -101,7 +101,7 @@ class Lights {
   /// returns the bounds of directional lights.
   std::vector<DistantBound> add_delta_lights(const std::vector<DeltaLight>& delta_lights,
                                              std::vector<LightBound>& local);
-  /// Returns the number of the light; kNoLight if the primitive is none.
+  /// Returns the number of the primitive among the lights; kNoLight if it is not a light.
   std::uint32_t index_of_light(PrimitiveId id) const;
 
   std::optional<LightSample> sample_surface(PrimitiveId id, const Receiver& receiver, double u,

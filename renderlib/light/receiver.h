@@ -26,17 +26,17 @@ struct ReceiverSegment {
 };
 
 /// A point that receives light. With a normal, it is on a surface and receives light on one side.
-/// Without a normal, it is in a medium and receives light from all directions; or, if `within` is
-/// set, it is the point on which the camera's lens is focused, and the light beyond it passes
-/// through it to the lens (integrate/through_lens.h).
+/// Without a normal, it is in a medium and receives light from all directions. If `within` is set,
+/// it is instead the point on which the camera's lens is focused. Light from beyond this point
+/// passes through the point to the lens (integrate/through_lens.h).
 struct Receiver {
   Vec3 position;
   /// Unit; light arrives only from directions with a positive cosine to it.
   std::optional<Vec3> normal = std::nullopt;
   double time = 0;  ///< lights are evaluated at this time
 
-  /// If set, only lights that may be visible within the cone are sampled, and no distant ones. The
-  /// cone MUST outlive the receiver.
+  /// If set, only lights that may be visible within the cone are sampled, and no distant lights.
+  /// The cone MUST outlive the receiver.
   const Cone* within = nullptr;
 
   /// Returns true if light can arrive from `direction`, which may have any length.

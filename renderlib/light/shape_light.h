@@ -18,10 +18,11 @@ struct ShapeView {
   enum class Kind { kSphere, kQuad, kTriangle, kDisk, kEllipsoid };
   Kind kind = Kind::kTriangle;
   Vec3 a;  ///< sphere, disk, ellipsoid: center; quad: corner; triangle: first vertex
-  /// Quad, triangle: edges from `a`; disk, ellipsoid: images of the unit circle's or sphere's axes.
+  /// Quad, triangle: edges from `a`. Disk, ellipsoid: images of the axes of the unit circle or
+  /// sphere.
   Vec3 u{};
   Vec3 v{};
-  Vec3 w{};               ///< ellipsoid
+  Vec3 w{};               ///< ellipsoid: image of the third axis
   double radius = 0;      ///< sphere
   bool mirrored = false;  ///< true if the placement mirrors; then the outward normal is v x u
 };

@@ -59,9 +59,9 @@ std::optional<BsdfSample> sample_diffuse(const DiffuseBsdf& bsdf, double u, doub
   return sample;
 }
 
-/// Returns the pdf of the direction of mirror + fuzz * (uniform point of the unit ball). A ray
-/// along wi is inside the ball around `mirror` from t0 to t1; the ball's density, integrated with
-/// t^2 along this chord, is (t1^3 - t0^3) / (4 pi fuzz^3).
+/// Returns the pdf of wi, if wi is the direction of mirror + fuzz * (uniform point of the unit
+/// ball). A ray along wi is inside the ball around `mirror` from t0 to t1. The ball's density,
+/// integrated with t^2 along this chord, is (t1^3 - t0^3) / (4 pi fuzz^3).
 double fuzz_pdf(const Vec3& mirror, double fuzz, const Vec3& wi) {
   const double c = dot(mirror, wi);
   const double half_chord2 = fuzz * fuzz - length_squared(cross(mirror, wi));
@@ -131,8 +131,9 @@ std::optional<Facets> facets_of(const Dielectric& glass, absl::Span<const Textur
                                                   Microfacets::Masking::kCorrelated});
 }
 
-/// `index` and `facets` are those at the point. `outside` is true if wo is on the side of the
-/// geometric normal; `outside_index` is the index of refraction there.
+/// Returns the BSDF of glass. `index` and `facets` are those at the point. `outside` is true if wo
+/// is on the side of the geometric normal. `outside_index` is the index of refraction on the side
+/// of the geometric normal.
 Bsdf glass_at(double index, const std::optional<Facets>& facets, const SurfacePoint& point,
               const SidedNormals& normal, bool outside, const Vec3& wo, double outside_index) {
   const double relative = outside_index == 1 ? index : index / outside_index;
@@ -209,8 +210,8 @@ Bsdf bsdf_at(const Material& material, absl::Span<const Texture> textures,
           [&](const ThinPrincipled& m) -> Bsdf {
             return thin_principled_at(m, textures, point, normal, wo);
           },
-          [](const Mix&) -> Bsdf { return BlackBsdf{}; },  // resolved when the ray hits it
-          [](const MetallicRoughness&) -> Bsdf { return BlackBsdf{}; },  // see above
+          [](const Mix&) -> Bsdf { return BlackBsdf{}; },                // not allowed here
+          [](const MetallicRoughness&) -> Bsdf { return BlackBsdf{}; },  // handled above
           [](const Emissive&) -> Bsdf { return BlackBsdf{}; }},
       material.kind);
 }
@@ -247,7 +248,7 @@ BsdfValue evaluate(const Bsdf& bsdf, const Vec3& wi) {
     return {metal->reflectance * static_cast<float>(pdf), pdf};
   }
   return std::visit(Overloaded{[](const BlackBsdf&) { return BsdfValue{}; },
-                               [](const DiffuseBsdf&) { return BsdfValue{}; },  // see above
+                               [](const DiffuseBsdf&) { return BsdfValue{}; },  // handled above
                                [](const FuzzyMetalBsdf&) { return BsdfValue{}; },
                                [](const MirrorBsdf&) { return BsdfValue{}; },
                                [](const DielectricBsdf&) { return BsdfValue{}; },

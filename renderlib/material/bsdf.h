@@ -63,7 +63,8 @@ using Bsdf =
                  RoughDielectricBsdf, MetallicRoughnessBsdf, RoughConductorBsdf, PlasticBsdf,
                  ThinDielectricBsdf, DiffuseTransmissionBsdf, PrincipledBsdf, ThinPrincipledBsdf>;
 
-/// Smaller fuzz is treated as a mirror: it would spread light by less than a thousandth of a pixel.
+/// Metal with a smaller fuzz is treated as a mirror. Its fuzz would spread light by less than a
+/// thousandth of a pixel.
 inline constexpr double kMinFuzz = 1e-6;
 
 /// Returns the BSDF of `material`, which MUST NOT be a mixture, at `point`, seen along `wo`.
@@ -85,8 +86,8 @@ bool has_pdf(const Bsdf& bsdf);
 /// Returns true if evaluate() can be non-zero for light from behind the surface.
 bool has_pdf_behind(const Bsdf& bsdf);
 
-/// Returns true if the surface transmits light from behind diffusely, so that sampling lights there
-/// is worthwhile.
+/// Returns true if the surface transmits light from behind diffusely, so that sampling the lights
+/// behind it is worthwhile.
 bool is_diffuse_behind(const Bsdf& bsdf);
 
 }  // namespace bandsaw

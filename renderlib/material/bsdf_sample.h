@@ -23,7 +23,7 @@ struct BsdfSample {
   /// `weight`; otherwise 1. Refraction compresses radiance in the denser medium: L / index^2 is
   /// invariant along a ray.
   double compression = 1;
-  /// Whether the scattering counts towards max_depth (ThinDielectric::free_passage).
+  /// The scattering counts towards max_depth (ThinDielectric::free_passage).
   bool counts = true;
 };
 

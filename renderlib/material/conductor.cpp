@@ -1,5 +1,6 @@
 // A metal with microfacets: a facet visible from wo is sampled and reflects the direction. The
-// Fresnel term is computed from eta and k.
+// Fresnel term is computed from eta and k. In the frame, o is wo, i is wi, and h is the normal of
+// the facet.
 
 #include "renderlib/material/conductor.h"
 

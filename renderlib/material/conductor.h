@@ -15,7 +15,9 @@ namespace bandsaw {
 
 struct RoughConductorBsdf {
   Vec3 geometric;  ///< geometric normal on the side of wo
-  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along the uv coordinate u
+  /// z is the shading normal, dot(wo, z) > 0. If the facets are anisotropic, x lies along the uv
+  /// coordinate u (facet_frame() in shading_normal.h).
+  Basis frame;
   Vec3 wo;
   Facets facets;
   std::optional<ConductorIndex> index;  ///< as Conductor::index

@@ -16,10 +16,11 @@ GgxAlbedo mixed(const GgxAlbedo& a, const GgxAlbedo& b, double t) {
   return {a.white + (b.white - a.white) * t, a.rim + (b.rim - a.rim) * t};
 }
 
-/// Integrates by the midpoint rule over the unit square from which visible normals are sampled: the
-/// integrand is the shadowing term, which is at most 1. The tail of the distribution lies at the
-/// upper end of the second number, so points are denser there. With these numbers of points the
-/// table is within 2e-3 of the integral (tests).
+/// Returns the albedo for a direction with this cosine to the normal. It is integrated by the
+/// midpoint rule over the unit square from which visible normals are sampled. The integrand is the
+/// shadowing term, which is at most 1. The tail of the distribution lies at the upper end of the
+/// second number, so points are denser at this end. With these numbers of points the table is
+/// within 2e-3 of the integral (tests).
 GgxAlbedo integrated(double cos_theta, double alpha) {
   constexpr int kTurns = 16;
   constexpr int kHeights = 48;
@@ -50,7 +51,7 @@ GgxAlbedoTable::GgxAlbedoTable() {
     const double alpha = std::max(kMinAlpha, roughness * roughness);
     auto& row = values_[static_cast<std::size_t>(r)];
     for (int c = 0; c <= kCosines; ++c) {
-      // Denser at grazing angles, where the albedo changes most.
+      // The cosines are denser at grazing angles, where the albedo changes most.
       const double root = static_cast<double>(c) / kCosines;
       row[static_cast<std::size_t>(c)] = integrated(std::max(1e-4, root * root), alpha);
     }

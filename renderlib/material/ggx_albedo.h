@@ -1,7 +1,7 @@
 #pragma once
 
-// Directional albedo of GGX reflection, for glTF's metallic-roughness material: layers below a
-// reflection receive the light that it leaves, so that energy is conserved.
+// Directional albedo of GGX reflection, for glTF's metallic-roughness material. Layers below a
+// reflection receive the light that is not reflected, so that energy is conserved.
 
 #include <array>
 
@@ -19,8 +19,8 @@ struct GgxAlbedo {
 class GgxAlbedoTable {
  public:
   GgxAlbedoTable();
-  /// Returns the albedo for a direction with this cosine to the normal. Both are in [0, 1];
-  /// roughness is the square root of alpha.
+  /// Returns the albedo for a direction with this cosine to the normal. Cosine and roughness are in
+  /// [0, 1]; roughness is the square root of alpha.
   GgxAlbedo at(double cos_theta, double roughness) const;
   /// Returns the cosine-weighted mean over all directions.
   GgxAlbedo mean(double roughness) const;

@@ -13,7 +13,7 @@
 
 namespace bandsaw {
 
-/// Returns the dielectric if it takes part; null for other materials.
+/// Returns the dielectric of a material that has a priority; null for other materials.
 inline const Dielectric* nested_glass(const Material& material) {
   const auto* glass = std::get_if<Dielectric>(&material.kind);
   return glass != nullptr && glass->priority > 0 ? glass : nullptr;
@@ -38,6 +38,7 @@ class Interiors {
 
   /// Returns true if crossing a boundary of `glass`, whose material is `id`, changes nothing: a
   /// glass of higher priority is present, or the path is in another body of the same material.
+  /// `inwards` is true if the path enters `glass`.
   bool hides(MaterialId id, const Dielectric& glass, bool inwards) const {
     const auto bodies = std::count_if(entries_.begin(), entries_.begin() + size_,
                                       [id](const Entry& entry) { return entry.id == id; });

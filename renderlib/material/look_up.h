@@ -23,7 +23,7 @@ inline Rgb look_up(absl::Span<const Texture> textures, TextureId id, const Surfa
   return evaluate(textures, id, texture_coordinates(point));
 }
 
-/// Returns a reflectance times the vertex colour, each channel clamped to 1.
+/// Returns a reflectance times `vertices`, the vertex colour, each channel clamped to 1.
 inline Rgb tinted(const Rgb& reflectance, const Rgb& vertices) {
   const Rgb c = reflectance * vertices;
   return {std::min(c.r, 1.0f), std::min(c.g, 1.0f), std::min(c.b, 1.0f)};
@@ -37,7 +37,8 @@ inline double mapped_number(absl::Span<const Texture> textures, double number,
              : number;
 }
 
-/// Returns an index of refraction: 1 where its map is black, `index` where it is white.
+/// Returns an index of refraction: 1 where its map is black, `index` where its map is white, and
+/// `index` everywhere if there is no map.
 inline double mapped_index(absl::Span<const Texture> textures, double index,
                            const std::optional<TextureId>& map, const SurfacePoint& point) {
   return map ? 1 + mapped_number(textures, 1, map, point) * (index - 1) : index;

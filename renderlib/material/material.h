@@ -113,7 +113,7 @@ struct Plastic {
   /// True: each reflection inside the coat is tinted, so colours become more saturated. False:
   /// these reflections change the brightness only.
   bool nonlinear = false;
-  /// Set by prepare_materials(), without which the material has no BSDF.
+  /// Set by prepare_materials(). It MUST be set before bsdf_at() is called.
   std::shared_ptr<const PlasticCoat> coat = nullptr;
 };
 

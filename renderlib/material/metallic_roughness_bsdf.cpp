@@ -20,7 +20,7 @@ namespace {
 
 enum Lobe : std::size_t { kCoat, kReflection, kDiffuse, kTransmission };
 
-/// Both directions in the frame of one normal.
+/// The directions wo (o) and wi (i) in the frame of one normal.
 struct Local {
   Vec3 o;
   Vec3 i;
@@ -38,7 +38,8 @@ struct Reflection {
   double rim = 0;
 };
 
-/// o and i are in the frame of the normal.
+/// Returns the reflection from o, which is wo, to i, which is wi; all zero if there is none. o and
+/// i are in the frame of the normal.
 Reflection reflection(const Vec3& o, const Vec3& i, double alpha) {
   const Vec3 sum = o + i;
   const double size = length(sum);
@@ -92,8 +93,8 @@ void add_above(const MetallicRoughnessBsdf& bsdf, const Local& directions, doubl
   sum.pdf += bsdf.chances[kDiffuse] * pdf;
 }
 
-/// Adds transmission, for wi on the other side: it is computed as a reflection of wi mirrored to
-/// the side of wo.
+/// Adds transmission, for wi on the side opposite to wo. Transmission is computed as a reflection
+/// to the direction wi mirrored to the side of wo.
 void add_below(const MetallicRoughnessBsdf& bsdf, const Local& directions, double through,
                BsdfValue& sum) {
   const Reflection straight = reflection(
@@ -182,7 +183,7 @@ std::optional<BsdfSample> sample(const MetallicRoughnessBsdf& bsdf, double u, do
     left -= bsdf.chances[chosen];
   }
   if (bsdf.chances[chosen] == 0) {
-    return std::nullopt;  // all lobes are black, or rounding went past the last one
+    return std::nullopt;  // all lobes are black, or rounding went past the last lobe
   }
   const Basis frame = orthonormal_basis(chosen == kCoat ? bsdf.coat_normal : bsdf.normal.shading);
   Vec3 i;

@@ -1,11 +1,11 @@
 #pragma once
 
-// BSDF of glTF's metallic-roughness material: a diffuse or thin transmissive layer below a rough
-// dielectric reflection, mixed with a rough metal, below a clear coat. Each GGX lobe has single
-// scattering, as in glTF 2.0, appendix B.
+// BSDF of glTF's metallic-roughness material. Its dielectric part is a diffuse or thin transmissive
+// layer below a rough reflection. This part is mixed with a rough metal, and both are below a clear
+// coat. Each GGX lobe has single scattering, as in glTF 2.0, appendix B.
 //
-// Where glTF's mixing would not conserve energy, less is reflected: the layer below gets what the
-// reflection leaves, according to the reflection's albedo in both directions (Kelemen and
+// Where glTF's mixing would not conserve energy, less is reflected. The layer below gets the light
+// that is not reflected, according to the reflection's albedo in both directions (Kelemen and
 // Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model", eq. 5). So no
 // direction sends out more than comes in, and the BSDF is reciprocal. Fresnel reflectance is
 // Schlick's.
@@ -29,7 +29,8 @@ struct GgxLobe {
 
 struct MetallicRoughnessBsdf {
   SidedNormals normal;
-  /// Shading normal of the coat: with its own normal map, without that of the layer below.
+  /// Shading normal of the coat. The coat's own normal map bends it; the normal map of the layer
+  /// below does not.
   Vec3 coat_normal;
   Vec3 wo;
   Rgb base;                 ///< base colour
@@ -40,7 +41,8 @@ struct MetallicRoughnessBsdf {
   double coat = 0;          ///< weight of the coat, [0, 1]
   GgxLobe coating;          ///< of the coat
   double coat_albedo = 0;   ///< albedo of the coat seen along wo, times `coat`
-  /// Share that the reflection leaves along wo, divided by its mean over all directions.
+  /// Share of light along wo that is not reflected, divided by the mean of this share over all
+  /// directions.
   double matte_share = 1;
   /// Selection probabilities of the lobes: coat, reflection, diffuse, transmission. They sum to 1,
   /// or to 0 if the BSDF is black.

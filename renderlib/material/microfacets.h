@@ -1,11 +1,11 @@
 #pragma once
 
 // Microfacet distributions at a point: GGX (Walter et al. 2007) and Beckmann (Beckmann and
-// Spizzichino 1963), isotropic or not, in the local frame of the surface: z is the normal, x lies
-// along the uv coordinate u, directions are unit vectors with z > 0. For both distributions, facet
-// normals are sampled from the visible normals of GGX. With x = tan^2 / alpha^2, Beckmann's density
-// over GGX's is exp(-x) (1 + x)^2, which is at most 4 / e. So the weights of samples stay bounded,
-// and no error function is needed.
+// Spizzichino 1963), isotropic or not. Directions are unit vectors in the local frame of the
+// surface, with z > 0. In this frame, z is the normal, and x lies along the uv coordinate u. For
+// both distributions, facet normals are sampled from the visible normals of GGX. With
+// x = tan^2 / alpha^2, Beckmann's density over GGX's is exp(-x) (1 + x)^2, which is at most 4 / e.
+// So the weights of samples stay bounded, and no error function is needed.
 
 #include <algorithm>
 #include <cmath>

@@ -16,7 +16,8 @@
 
 namespace bandsaw {
 
-/// Boundaries whose relative index of refraction differs from 1 by less than this do not refract.
+/// A boundary does not refract if its relative index of refraction differs from 1 by less than this
+/// number.
 inline constexpr double kMinRefraction = 1e-6;
 
 /// Returns true for glass with the same index as its surroundings and for panes that reflect
@@ -69,8 +70,8 @@ inline double opacity(const Material& material, absl::Span<const Texture> textur
   return value(alpha.luminance ? luminance(texel) : texel.r);
 }
 
-/// Returns the opacity of material `id`; that of a mixture is the mean over its parts, weighted by
-/// the amount.
+/// Returns the opacity of material `id`. The opacity of a mixture is the mean over its parts,
+/// weighted by the amount.
 inline double opacity(absl::Span<const Material> materials, MaterialId id,
                       absl::Span<const Texture> textures, const SurfacePoint& point) {
   const Material& material = materials[index_of(id)];

@@ -26,7 +26,7 @@ Rgb with_internal(const Rgb& reflectance, double internal, bool nonlinear, doubl
   return {channel(reflectance.r), channel(reflectance.g), channel(reflectance.b)};
 }
 
-/// Returns false for directions that do not leave on the side of wo.
+/// Returns true if wi is on the side of wo, by the geometric and by the shading normal.
 bool leaves(const PlasticBsdf& bsdf, const Vec3& wi) {
   return dot(wi, bsdf.normal.geometric) > 0 && dot(wi, bsdf.normal.shading) > 0;
 }

@@ -2,9 +2,10 @@
 
 // A diffuse surface below a smooth or rough dielectric coat: `plastic` and `roughplastic` of
 // Mitsuba 3. The diffuse part is r / (1 - c r') T(wo) T(wi) / (eta^2 pi) with the reflectance r,
-// the transmittance T of the coat, its internal reflectance c, and r' = r if nonlinear, else 1
-// (Weidlich and Wilkie 2007, "Arbitrarily Layered Micro-Facet Surfaces"; light that is reflected to
-// and fro is a geometric series).
+// the transmittance T of the coat, the internal reflectance c of the coat, and r' = r if nonlinear,
+// else 1 (Weidlich and Wilkie 2007, "Arbitrarily Layered Micro-Facet Surfaces"). The factor 1 /
+// (1 - c r') is the sum of a geometric series, which has a term for each further reflection inside
+// the coat.
 
 #include <optional>
 

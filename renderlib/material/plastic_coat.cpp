@@ -22,9 +22,10 @@ struct Shares {
   double transmitted = 0;
 };
 
-/// Returns the shares of light from a direction with this cosine that a rough boundary reflects and
-/// transmits, by the midpoint rule over the unit square from which facets are sampled. The tail of
-/// the distribution lies at the upper end of the second number, so points are denser there.
+/// Returns the shares that a rough boundary reflects and transmits of light from a direction with
+/// this cosine. They are integrated by the midpoint rule over the unit square from which facets are
+/// sampled. The tail of the distribution lies at the upper end of the second number, so points are
+/// denser at this end.
 Shares shares_of(double cos_theta, double eta, const Facets& facets) {
   constexpr int kTurns = 16;
   constexpr int kHeights = 64;
@@ -55,13 +56,14 @@ Shares shares_of(double cos_theta, double eta, const Facets& facets) {
 }
 
 /// Returns the mean reflectance r of a smooth boundary for diffuse light from the denser side. It
-/// is computed from the mean reflectance s of the other side, by r = 1 - (1 - s) / index^2. The
-/// integrand of s is smooth, while the integrand of r has a kink at the angle of total reflection.
+/// is computed from the mean reflectance s for light from outside, by r = 1 - (1 - s) / index^2.
+/// The integrand of s is smooth, while the integrand of r has a kink at the angle of total
+/// reflection.
 double internal_smooth(double index) {
   constexpr int kSteps = 256;
   double outside = 0;
   for (int i = 0; i < kSteps; ++i) {
-    // Denser at grazing angles, where the reflectance changes most.
+    // The cosines are denser at grazing angles, where the reflectance changes most.
     const double root = (i + 0.5) / kSteps;
     const double cos_theta = root * root;
     outside += fresnel(cos_theta, index) * 2 * cos_theta * 2 * root / kSteps;
@@ -92,7 +94,8 @@ PlasticCoat::Row PlasticCoat::row_of(const Microfacets& surface, double alpha) c
   for (std::size_t i = 0; i < kCosines; ++i) {
     const double cos_theta = std::max(1e-6, static_cast<double>(i) / (kCosines - 1));
     row.passing.push_back(shares_of(cos_theta, index_, facets).transmitted);
-    // The mean over diffuse light from inside, in which directions are weighted by their cosine.
+    // `internal` is a mean over diffuse light from inside, in which directions are weighted by
+    // their cosine.
     row.internal += shares_of(cos_theta, 1 / index_, facets).reflected * 2 * cos_theta / kCosines;
   }
   return row;

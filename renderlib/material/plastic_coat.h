@@ -11,10 +11,10 @@
 namespace bandsaw {
 
 /// Tables of the coat's transmittance from the outside, by the cosine, and of its reflectance from
-/// the inside. They are for the alpha of Plastic::surface or, if that has a map, for all alphas up
-/// to it. Scattering is single: light that meets another facet is lost, as in the coat's
-/// reflection. The transmittance of a rough coat is interpolated linearly between 64 cosines, as in
-/// Mitsuba 3's roughplastic; the transmittance of a smooth coat is exact.
+/// the inside. They are for the alpha of Plastic::surface. If alpha has a map, they are for all
+/// alphas up to that value. Scattering is single: light that meets another facet is lost, as in the
+/// coat's reflection. The transmittance of a rough coat is interpolated linearly between 64
+/// cosines, as in Mitsuba 3's roughplastic. The transmittance of a smooth coat is exact.
 class PlasticCoat {
  public:
   PlasticCoat(const Microfacets& surface, double index_of_refraction);
@@ -23,7 +23,7 @@ class PlasticCoat {
   struct At {
     const PlasticCoat* coat;
     std::size_t row;      ///< row of the next smaller alpha
-    double next = 0;      ///< weight of the row after it
+    double next = 0;      ///< weight of the row after `row`
     bool smooth = false;  ///< the coat is smooth here; no row is used
 
     /// Returns the share of light that passes into the coat; the cosine is in [0, 1].
@@ -47,11 +47,12 @@ class PlasticCoat {
   double index_;
   double most_;  ///< alpha of the last row
   double internal_smooth_ = 0;
-  std::vector<Row>
-      rows_;  ///< alpha is most_ (i / (rows - 1))^2; one row without a map; none if smooth
+  /// The alpha of row i is most_ (i / (number of rows - 1))^2. There is one row, for most_, if
+  /// alpha has no map, and no row if the coat is smooth.
+  std::vector<Row> rows_;
 };
 
-/// Sets Plastic::coat of all materials of this kind. Materials with equal coats share one.
+/// Sets Plastic::coat of all materials of this kind. Materials with equal coats share one object.
 void prepare_materials(absl::Span<Material> materials);
 
 }  // namespace bandsaw

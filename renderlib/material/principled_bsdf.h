@@ -21,10 +21,12 @@ namespace bandsaw {
 
 struct PrincipledBsdf {
   Vec3 geometric;  ///< geometric normal on the side of wo
-  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along the uv coordinate u
-  Vec3 o;          ///< wo in the frame
-  bool inside =
-      false;         ///< wo is inside the body: only specular reflection and refraction are present
+  /// z is the shading normal, dot(wo, z) > 0. If the facets are anisotropic, x lies along the uv
+  /// coordinate u (facet_frame() in shading_normal.h).
+  Basis frame;
+  Vec3 o;  ///< wo in the frame
+  /// wo is inside the body: only specular reflection and refraction are present.
+  bool inside = false;
   double eta = 1.5;  ///< index beyond the surface over index on this side
   Facets facets;
   DisneyDiffuse diffuse;
@@ -39,7 +41,7 @@ struct PrincipledBsdf {
   std::array<double, 3> chances{};
 };
 
-/// Returns the BSDF. `normal` is on the side of wo; `outside` is true if that is the side of the
+/// Returns the BSDF. `normal` is on the side of wo. `outside` is true if wo is on the side of the
 /// surface's geometric normal.
 PrincipledBsdf principled_at(const Principled& material, absl::Span<const Texture> textures,
                              const SurfacePoint& point, const SidedNormals& normal, bool outside,

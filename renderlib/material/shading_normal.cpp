@@ -19,14 +19,15 @@ const ImageTexture* image_at(absl::Span<const Texture> textures, TextureId id) {
   return std::get_if<ImageTexture>(&textures[index_of(id)]);
 }
 
+/// Directions in which two coordinates increase, of any length.
 struct Directions {
   Vec3 u;
   Vec3 v;
 };
 
-/// Returns the directions, of any length, in which the map's own coordinates increase: the inverse
-/// of the map's transform, without the division by its determinant, applied to the directions of
-/// the uvs.
+/// Returns the directions in which the map's own coordinates increase. `uv` are the directions of
+/// the uvs, and `placed` is the map's transform of the uvs. The inverse of this transform, without
+/// the division by its determinant, is applied to `uv`.
 Directions along_map(const Directions& uv, const UvTransform& placed) {
   const auto& [a, b, x, d, e, y] = placed.m;
   const double sign = a * e - b * d < 0 ? -1 : 1;
@@ -48,11 +49,12 @@ UvSet set_of(absl::Span<const Texture> textures, TextureId map) {
   return image == nullptr ? UvSet::kFirst : image->uv_set;
 }
 
-/// Returns the step, in lengths of `way`, of a central difference of the height map `map`: 2^-14,
-/// or 2^-14 of a repetition if the map repeats more than once along `way`. So the difference spans
-/// at most one texel of an image with a side of up to 8192 texels. Heights are rounded to floats,
-/// which changes the slope by about 2^-11 of the height per repetition. This is not visible, but
-/// shorter steps would increase it.
+/// Returns the step of a central difference of the height map `map`, as a multiple of `way`, a
+/// change of the texture coordinates. The step is 2^-14, or 2^-14 of a repetition if the map
+/// repeats more than once along `way`. So the difference spans at most one texel of an image
+/// with a side of up to 8192 texels. Heights are rounded to floats, which changes the slope by
+/// about 2^-11 of the height per repetition. This error is not visible, but shorter steps would
+/// increase it.
 double difference_step(absl::Span<const Texture> textures, TextureId map,
                        const TextureCoordinates& way) {
   return 0x1p-14 / std::max(1.0, repetitions(textures, map, way));

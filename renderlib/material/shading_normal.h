@@ -19,7 +19,8 @@ namespace bandsaw {
 Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
                    const UvTransform& placed = {}, UvSet set = UvSet::kFirst);
 
-/// Does the same with the texel of `map` at the point, and the map's own transform and set of uvs.
+/// Returns the shading normal bent by the texel of the normal map `map` at the point. The transform
+/// and the set of uvs are those of the map.
 Vec3 mapped_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
                    double scale);
 
@@ -46,8 +47,8 @@ struct UvSets {
 /// anisotropic, the first set is included as well.
 UvSets uv_sets_of(const Material& material, absl::Span<const Texture> textures);
 
-/// Returns the frame of the facets of a rough surface: z is the shading normal n; x lies along the
-/// point's u where that has a direction, unless the surface is isotropic.
+/// Returns the frame of the facets of a rough surface, in which z is the shading normal n. If the
+/// surface is anisotropic, x lies along the uv coordinate u, where u has a direction.
 Basis facet_frame(const SurfacePoint& point, const Vec3& n, bool isotropic);
 
 /// Returns n, or visible_normal() where wo is behind n. The parameters are those of
@@ -55,8 +56,9 @@ Basis facet_frame(const SurfacePoint& point, const Vec3& n, bool isotropic);
 Vec3 facing_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo);
 
 /// Returns the shading normal `n`, bent towards the geometric normal `geometric` just so far that
-/// wo and its mirror image lie above the surface. This avoids black rims and light from behind. All
-/// are unit vectors, and dot(wo, geometric) MUST be >= 0. The result is continuous in all of them.
+/// wo and its mirror image lie above the surface. This avoids black rims and light from behind. The
+/// parameters are unit vectors, and dot(wo, geometric) MUST be >= 0. The result is continuous in
+/// all parameters.
 Vec3 visible_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo);
 
 }  // namespace bandsaw

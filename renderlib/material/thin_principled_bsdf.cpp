@@ -15,7 +15,8 @@ namespace {
 
 enum Lobe : std::size_t { kReflection, kTransmission, kDiffuse, kDiffuseTransmission };
 
-/// Minimum albedo that the selection of lobes assumes, so that no lobe that is present is rare.
+/// Minimum albedo that the selection of lobes assumes for a lobe, so that a dark lobe is not
+/// sampled too rarely.
 constexpr double kMinThinAlbedo = 0.1;
 
 /// Adds value and pdf of the specular reflection. i is wi in the frame, h the half vector.
@@ -108,7 +109,7 @@ std::optional<BsdfSample> sample(const ThinPrincipledBsdf& bsdf, double u, doubl
     left -= bsdf.chances[chosen];
   }
   if (bsdf.chances[chosen] == 0) {
-    return std::nullopt;  // all lobes are black, or rounding went past the last one
+    return std::nullopt;  // all lobes are black, or rounding went past the last lobe
   }
   Vec3 i;
   if (chosen == kDiffuse || chosen == kDiffuseTransmission) {

@@ -18,8 +18,10 @@
 namespace bandsaw {
 
 struct ThinPrincipledBsdf {
-  Vec3 geometric;    ///< geometric normal on the side of wo
-  Basis frame;       ///< z is the shading normal, dot(wo, z) > 0; x lies along the uv coordinate u
+  Vec3 geometric;  ///< geometric normal on the side of wo
+  /// z is the shading normal, dot(wo, z) > 0. If the facets are anisotropic, x lies along the uv
+  /// coordinate u (facet_frame() in shading_normal.h).
+  Basis frame;
   Vec3 o;            ///< wo in the frame
   double eta = 1.5;  ///< index of refraction of the sheet
   Facets facets;     ///< facets of the reflection

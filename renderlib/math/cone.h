@@ -4,12 +4,12 @@
 
 namespace bandsaw {
 
-/// The directions whose angle to an axis is at most a given one, which is less than 90 degrees. For
-/// example, the directions from a point to a lens.
+/// The directions whose angle to an axis is at most the cone's half-angle, which is less than 90
+/// degrees. For example, the directions from a point to a lens.
 struct Cone {
   Vec3 axis;       ///< unit
-  double sin = 0;  ///< sine of the given angle
-  double cos = 1;
+  double sin = 0;  ///< sine of the half-angle
+  double cos = 1;  ///< cosine of the half-angle
 
   /// Returns true if `direction`, of any length except 0, lies within the cone.
   bool contains(const Vec3& direction) const {

@@ -1,5 +1,7 @@
 #pragma once
 
+// Mathematical constants in double.
+
 namespace bandsaw {
 
 inline constexpr double kPi = 3.14159265358979323846;

@@ -12,7 +12,7 @@ struct SinCos {
   double cos;
 };
 
-/// Returns sine and cosine of 2 pi u, exact at multiples of 1/4; any finite u.
+/// Returns sine and cosine of 2 pi u for any finite u. They are exact if u is a multiple of 1/4.
 SinCos sincos_turns(double u);
 /// Returns sine and cosine of an angle in degrees, exact at multiples of 90.
 SinCos sincos_degrees(double degrees);
@@ -21,9 +21,9 @@ double tan_degrees(double degrees);
 
 /// Returns the angle of (x, y) in (-pi, pi]; 0 at (0, 0).
 double atan2(double y, double x);
-/// Returns a value in [-pi/2, pi/2]; x is clamped to [-1, 1].
+/// Returns the arcsine of x, in [-pi/2, pi/2]; x is clamped to [-1, 1].
 double asin(double x);
-/// Returns a value in [0, pi]; x is clamped to [-1, 1].
+/// Returns the arccosine of x, in [0, pi]; x is clamped to [-1, 1].
 double acos(double x);
 
 /// Returns e^x, which overflows to infinity and underflows to 0.

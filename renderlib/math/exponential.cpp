@@ -9,8 +9,8 @@
 #include "renderlib/math/polynomial.h"
 
 // exp() and expm1() write x as k log 2 + r with |r| <= log(2) / 2, and evaluate the Taylor series
-// of exp(r) - 1. log() and log1p() write their argument as 2^k m with m in [sqrt(1/2), sqrt(2));
-// with s = (m - 1) / (m + 1), log m is 2 s + 2 s^3 / 3 + 2 s^5 / 5 + … pow() is exp(y log x), in
+// of exp(r) - 1. log() and log1p() write their argument as 2^k m with m in [sqrt(1/2), sqrt(2)).
+// With s = (m - 1) / (m + 1), log m is 2 s + 2 s^3 / 3 + 2 s^5 / 5 + … pow() is exp(y log x), in
 // which log x is a sum of two doubles.
 
 namespace bandsaw {
@@ -43,13 +43,14 @@ TwoDoubles expm1_reduced(double hi, double lo) {
   return {sum.hi, sum.lo + fused(hi + rest, lo, lo)};
 }
 
+/// x as k log 2 + (hi + lo), where |hi + lo| <= log(2) / 2 up to rounding.
 struct ReducedExp {
   double k;  // an integer
   double hi;
   double lo;
 };
 
-/// Reduces the argument of exp; |x| < 1100.
+/// Reduces the argument x of exp() or expm1(); |x| < 1100.
 ReducedExp reduce_exp(double x) {
   const double k = std::nearbyint(x * kLog2E);
   const TwoDoubles r = two_sum(x - k * kLog2.hi, -k * kLog2.lo);
@@ -98,7 +99,8 @@ TwoDoubles log_parts(int k, double f, double extra) {
 
 }  // namespace
 
-// The logarithm of the largest double is 709.78…, that of half the smallest one -745.13…
+// The logarithm of the largest double is 709.78…, so exp(x) overflows for x >= 709.8. The logarithm
+// of half the smallest positive double is -745.13…, so exp(x) rounds to 0 for x < -745.2.
 double exp(double x) {
   if (!(x < 709.8)) {
     return std::isnan(x) ? x : kInfinity;

@@ -44,7 +44,8 @@ inline TwoDoubles halves(double x) {
   return {hi, x - hi};
 }
 
-/// Returns a b - product, where product is a b rounded and at least kLeastProduct (Dekker 1971).
+/// Returns a b - product, where `product` is a b rounded and |product| is at least kLeastProduct
+/// (Dekker 1971).
 inline double error_of_product(double a, double b, double product) {
   const TwoDoubles p = halves(a);
   const TwoDoubles q = halves(b);
@@ -91,8 +92,8 @@ inline double fma(double a, double b, double c) {
   return sum;
 }
 
-/// Returns a b - product exactly if that is a double, otherwise rounded, where product is a b
-/// rounded. An exact zero is +0.
+/// Returns a b - product, where `product` is a b rounded. The result is exact if the difference is
+/// a double; otherwise the difference is rounded. An exact zero is +0.
 inline double product_error(double a, double b, double product) {
   const double error = error_of_product(a, b, product);
   if (!(std::abs(product) > kLeastProduct) || !(std::abs(error) < 0x1p900)) [[unlikely]] {
@@ -108,7 +109,8 @@ using emulated::product_error;
 inline double fused(double a, double b, double c) { return emulated::fma(a, b, c); }
 inline float fused(float a, float b, float c) { return simd_plain::fused(a, b, c); }
 #else
-/// Returns a b - product, rounded once, where product is a b rounded: exact unless that underflows.
+/// Returns a b - product, rounded once, where `product` is a b rounded. The result is exact unless
+/// it underflows.
 inline double product_error(double a, double b, double product) { return std::fma(a, b, -product); }
 /// These functions return a b + c, rounded once.
 inline double fused(double a, double b, double c) { return std::fma(a, b, c); }

@@ -15,7 +15,7 @@ namespace {
 /// pi / 2 as the sum of two doubles.
 constexpr TwoDoubles kHalfPi = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 
-/// atan(k / 8).
+/// Element k is atan(k / 8) as the sum of two doubles.
 constexpr TwoDoubles kAtanEighths[] = {
     {0, 0},
     {0x1.fd5ba9aac2f6ep-4, -0x1.cd37686760c17p-59},
@@ -43,7 +43,7 @@ TwoDoubles atan_octant(double y, double x) {
   const double numerator = fused(-t, x, y);
   const double denominator = fused(t, y, x);
   const double z = numerator / denominator;
-  // Rounding error of the division.
+  // This is the rounding error of the division.
   const double z_rest = fused(-z, denominator, numerator) / denominator;
   const TwoDoubles& base = kAtanEighths[static_cast<int>(k)];
   const TwoDoubles sum = two_sum(base.hi, z);

@@ -16,7 +16,7 @@ struct Quaternion {
 };
 
 /// Returns the unit quaternion of a rotation matrix, the linear part of `t` (Shepperd 1978,
-/// "Quaternion from Rotation Matrix": starts with the largest component, so nothing cancels).
+/// "Quaternion from Rotation Matrix"). The largest component is computed first, so nothing cancels.
 Quaternion quaternion(const Transform& t);
 /// Returns the rotation matrix of a unit quaternion.
 Transform rotation(const Quaternion& q);

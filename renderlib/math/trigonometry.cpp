@@ -6,9 +6,9 @@
 #include "renderlib/math/fused.h"
 #include "renderlib/math/polynomial.h"
 
-// sin and cos: the angle is reduced exactly to at most an eighth of a turn, and represented as the
-// sum of two doubles; then Taylor series are evaluated. The first omitted term is below 2^-58 of
-// the result, which is less than the rounding errors.
+// For sine and cosine, the angle is reduced exactly to at most an eighth of a turn, and represented
+// as the sum of two doubles. Then Taylor series are evaluated. The first omitted term is below
+// 2^-58 of the result, which is less than the rounding errors.
 
 namespace bandsaw {
 namespace {
@@ -28,7 +28,7 @@ struct Parts {
   TwoDoubles cos;
 };
 
-/// Returns sine and cosine of x for |x| <= pi/4 and slightly above.
+/// Returns sine and cosine of x; |x| is at most slightly more than pi/4.
 Parts parts_reduced(const TwoDoubles& x) {
   static constexpr double kSin[] = {
       -1.0 / 6,        1.0 / 120,        -1.0 / 5040,          1.0 / 362880,

@@ -36,7 +36,8 @@ constexpr double kFirstNm = 380;
 constexpr double kStepNm = 10;
 /// The second radiation constant, nm K (CODATA 2018).
 constexpr double kSecond = 1.438776877e7;
-/// Temperatures below the first and above the second have the hue of that limit (blackbody.h).
+/// Below kMinHue_K the hue is that of kMinHue_K; above kMaxHue_K it is that of kMaxHue_K
+/// (blackbody.h).
 constexpr double kMinHue_K = 500;
 constexpr double kMaxHue_K = 1e5;
 
@@ -54,8 +55,9 @@ double relative_planck(double nm, double kelvin) {
   return fifth * expm1(kPeak) / expm1(kPeak * ratio);
 }
 
-/// Returns the colour of a spectrum whose maximum is 1, scaled so that a constant spectrum of 1 has
-/// luminance 1. Negative channels become 0; the others are scaled to keep the luminance.
+/// Returns the colour of a black body at `kelvin` whose spectrum is scaled to a maximum of 1. On
+/// this scale, a constant spectrum of 1 has luminance 1. Negative channels become 0, and the other
+/// channels are scaled to keep the luminance.
 Color peak_color(double kelvin) {
   std::array<double, 3> xyz{};
   double white = 0;
@@ -83,11 +85,11 @@ Rgb scaled(const Color& c, double by) {
           static_cast<float>(c[2] * by)};
 }
 
-/// The table has 2^8 temperatures for each octave: those doubles of which only the exponent and the
-/// first 8 bits of the fraction are used.
+/// The table has 2^8 temperatures for each octave. They are the doubles whose fraction is 0 after
+/// its first 8 bits.
 constexpr int kFractionBits = 8;
-/// Exponent and these 8 bits of the first temperature of the table, 64 K, and of the last, 131,072
-/// K.
+/// The exponent and the first 8 bits of the fraction, of the first temperature of the table (64 K)
+/// and of its last temperature (131,072 K).
 constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(64.0) >> (52 - kFractionBits);
 constexpr std::uint64_t kLast = std::bit_cast<std::uint64_t>(131072.0) >> (52 - kFractionBits);
 

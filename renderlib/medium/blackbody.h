@@ -21,7 +21,7 @@ inline constexpr double kDarkKelvin = 100;
 /// Returns linear sRGB of a black body at `kelvin` (>= 0, finite): Planck's spectrum, weighted by
 /// the colour matching functions of CIE 1931. In colours outside of the gamut (below 1900 K) the
 /// negative channel becomes 0, and the luminance is kept. Below 100 K the result is black. Below
-/// 500 K the hue is that of 500 K, which is pure red; above 100,000 K it is that of 100,000 K.
+/// 500 K the hue is that of 500 K, which is pure red. Above 100,000 K the hue is that of 100,000 K.
 Rgb blackbody(double kelvin, BlackbodyScale scale);
 
 /// A table of blackbody(). It has 256 temperatures between each power of 2 and the next, and is
@@ -30,7 +30,8 @@ Rgb blackbody(double kelvin, BlackbodyScale scale);
 class BlackbodyTable {
  public:
   explicit BlackbodyTable(BlackbodyScale scale);
-  /// Returns the colour at `kelvin` >= 0: black below 100 K, and above 131,072 K as at 131,072 K.
+  /// Returns the colour at `kelvin` >= 0. It is black below 100 K. Above 131,072 K it is the colour
+  /// at 131,072 K.
   Rgb at(double kelvin) const;
 
  private:

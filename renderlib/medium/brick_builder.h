@@ -19,8 +19,8 @@ namespace bandsaw {
 /// stored as 16-bit floats (halves) if each of them can be, otherwise as floats.
 class BrickBuilder {
  public:
-  /// Begins with zeros. `cells` and `channels` MUST be in the ranges of VolumeGrid, and the bricks
-  /// at most kMaxGridBricks.
+  /// At first all numbers of the grid are 0. `cells` and `channels` MUST be in the ranges of
+  /// VolumeGrid, and the bricks at most kMaxGridBricks.
   BrickBuilder(const std::array<std::uint32_t, 3>& cells, std::uint32_t channels);
 
   /// Sets the numbers of the brick whose first cell is (8 x, 8 y, 8 z). `numbers` has kBrickCells *
@@ -33,22 +33,23 @@ class BrickBuilder {
   VolumeGrid build() &&;
 
  private:
-  /// Returns the place of a brick in `values_`; appends the brick if it is new.
+  /// Returns the place of a brick in `values_`, counted in bricks. Appends the brick if it is new.
   std::uint32_t place_of(absl::Span<const float> brick);
 
   std::array<std::uint32_t, 3> cells_;
-  std::array<std::uint32_t, 3> bricks_;
+  std::array<std::uint32_t, 3> bricks_;  ///< number of bricks on each axis
   std::uint32_t channels_;
-  std::vector<std::uint32_t> index_;
+  std::vector<std::uint32_t> index_;  ///< place_of() each brick; kEmptyBrick if it is all zeros
   std::vector<float> values_;
-  std::vector<float> brick_;                                      ///< the one that is being set
-  std::unordered_multimap<std::uint64_t, std::uint32_t> places_;  ///< keyed by the brick's hash
+  std::vector<float> brick_;  ///< the numbers of the brick that set() stores
+  /// The place of each stored brick, keyed by the brick's hash.
+  std::unordered_multimap<std::uint64_t, std::uint32_t> places_;
   bool halves_ = true;  ///< all numbers up to now are halves
 };
 
-/// Returns a grid as BrickBuilder::build() does. `number(i)` returns number i of the box, x
-/// fastest, the channels of a cell together. It is called once for each i and MUST return a finite
-/// number >= 0.
+/// Returns the grid that BrickBuilder::build() returns for these numbers. `number(i)` returns
+/// number i of the box, x fastest, the channels of a cell together. It is called once for each i
+/// and MUST return a finite number >= 0.
 VolumeGrid dense_grid(const std::array<std::uint32_t, 3>& cells, std::uint32_t channels,
                       absl::FunctionRef<float(std::size_t)> number);
 
