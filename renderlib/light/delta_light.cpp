@@ -21,12 +21,12 @@ float over_distance2(const Vec3& to_light) {
   return distance2 > 0 ? static_cast<float>(std::min(1 / distance2, kMaxShare)) : 0.0f;
 }
 
-/// Returns the coordinates at which the direction `way` meets the plane of the image, as
-/// multiples of the image's half sides. `depth`, the component of `way` along the axis, MUST
+/// Returns the coordinates at which the direction `from_light` meets the plane of the image, as
+/// multiples of the image's half sides. `depth`, the component of `from_light` along the axis, MUST
 /// be > 0.
-Vec2 on_image(const ProjectedImage& image, const Vec3& way, double depth) {
-  return {dot(way, image.right) / (depth * image.half_width),
-          dot(way, image.up) / (depth * image.half_height)};
+Vec2 on_image(const ProjectedImage& image, const Vec3& from_light, double depth) {
+  return {dot(from_light, image.right) / (depth * image.half_width),
+          dot(from_light, image.up) / (depth * image.half_height)};
 }
 
 /// Returns the image's value at the coordinates `place` that on_image() returns.

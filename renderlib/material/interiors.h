@@ -42,19 +42,19 @@ class Interiors {
   bool hides(MaterialId id, const Dielectric& glass, bool inwards) const {
     const auto bodies = std::count_if(entries_.begin(), entries_.begin() + size_,
                                       [id](const Entry& entry) { return entry.id == id; });
-    const Entry* top = highest_but(id);
+    const Entry* top = highest_except(id);
     return bodies > (inwards ? 0 : 1) || (top != nullptr && top->priority > glass.priority);
   }
 
   /// Returns the index of refraction that would be present without material `id`.
   double index_without(MaterialId id) const {
-    const Entry* top = highest_but(id);
+    const Entry* top = highest_except(id);
     return top != nullptr ? top->index : 1;
   }
 
   /// Returns the glass that is present; kNothing if there is none.
   MaterialId there() const {
-    const Entry* top = highest_but(kNothing);
+    const Entry* top = highest_except(kNothing);
     return top != nullptr ? top->id : kNothing;
   }
 
@@ -83,7 +83,7 @@ class Interiors {
   };
 
   /// Returns the glass of highest priority except material `id`; null if there is none.
-  const Entry* highest_but(MaterialId id) const {
+  const Entry* highest_except(MaterialId id) const {
     const Entry* top = nullptr;
     for (std::size_t i = 0; i < size_; ++i) {
       // Among equal priorities the lower id wins, so that the order of entering does not matter.

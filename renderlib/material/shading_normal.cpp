@@ -49,15 +49,15 @@ UvSet set_of(absl::Span<const Texture> textures, TextureId map) {
   return image == nullptr ? UvSet::kFirst : image->uv_set;
 }
 
-/// Returns the step of a central difference of the height map `map`, as a multiple of `way`, a
+/// Returns the step of a central difference of the height map `map`, as a multiple of `change`, a
 /// change of the texture coordinates. The step is 2^-14, or 2^-14 of a repetition if the map
-/// repeats more than once along `way`. So the difference spans at most one texel of an image
+/// repeats more than once along `change`. So the difference spans at most one texel of an image
 /// with a side of up to 8192 texels. Heights are rounded to floats, which changes the slope by
 /// about 2^-11 of the height per repetition. This error is not visible, but shorter steps would
 /// increase it.
 double difference_step(absl::Span<const Texture> textures, TextureId map,
-                       const TextureCoordinates& way) {
-  return 0x1p-14 / std::max(1.0, repetitions(textures, map, way));
+                       const TextureCoordinates& change) {
+  return 0x1p-14 / std::max(1.0, repetitions(textures, map, change));
 }
 
 /// Returns the frame of the uvs, made orthonormal around the normal n; it is left-handed where the
@@ -129,13 +129,13 @@ Vec3 displaced_normal(const SurfacePoint& point, absl::Span<const Texture> textu
   const bool second = set_of(textures, map) == UvSet::kSecond;
   const Vec3& n = point.shading_normal;
   const auto slope = [&](const Vec2& toward, const Vec3& along) {
-    const TextureCoordinates way{toward, toward, along, {}};
-    const double step = difference_step(textures, map, way);
+    const TextureCoordinates change{toward, toward, along, {}};
+    const double step = difference_step(textures, map, change);
     const auto height = [&](double by) {
       TextureCoordinates at = texture_coordinates(point);
-      at.uv = at.uv + way.uv * by;
-      at.uv2 = at.uv2 + way.uv2 * by;
-      at.position = at.position + way.position * by;
+      at.uv = at.uv + change.uv * by;
+      at.uv2 = at.uv2 + change.uv2 * by;
+      at.position = at.position + change.position * by;
       return double{luminance(evaluate(textures, map, at))};
     };
     return (height(step) - height(-step)) / (2 * step);

@@ -55,8 +55,8 @@ SinCos sincos_reduced(const TwoDoubles& x) {
 
 /// Rotates the result by `count` quarter turns; `count` is an integer.
 SinCos quarter_turns(const SinCos& a, double count) {
-  const double sign_free = count - 4 * std::floor(count / 4);
-  switch (static_cast<int>(sign_free)) {
+  const double count_mod_4 = count - 4 * std::floor(count / 4);
+  switch (static_cast<int>(count_mod_4)) {
     case 0:
       return a;
     case 1:

@@ -17,9 +17,9 @@ Equiangular::Equiangular(const Vec3& origin, const Vec3& direction, double lengt
   const Vec3 to_pivot = pivot - origin;
   const double nearest = dot(to_pivot, direction);
   start_ = -nearest;
-  const double around = std::isfinite(length) ? length : 0;
+  const double finite_length = std::isfinite(length) ? length : 0;
   // 1e-94 keeps the squares of `aside_` above underflow if the other lengths are 0.
-  const double least = 1e-6 * std::max({around, std::abs(nearest), 1e-94});
+  const double least = 1e-6 * std::max({finite_length, std::abs(nearest), 1e-94});
   aside_ = std::max(bandsaw::length(to_pivot - direction * nearest), least);
   // The angle is the difference of two arctangents. It is computed as a single arctangent, without
   // cancellation.
