@@ -13,8 +13,9 @@ class Equiangular {
  public:
   Equiangular() = default;
   /// Samples [0, length] (> 0, may be infinite) along the unit direction `direction` from `origin`,
-  /// for the finite point `pivot`. The distance of the pivot from the ray counts as at least a
-  /// millionth of `length` and of the pivot's distance along the ray, so that the pdf is finite.
+  /// for the finite point `pivot`. For a pivot that is very near the ray, the pdf is computed as if
+  /// its distance from the ray were a millionth of `length` (if finite) or of its distance along
+  /// the ray, whichever is larger. So the pdf is finite.
   Equiangular(const Vec3& origin, const Vec3& direction, double length, const Vec3& pivot);
 
   /// Returns a finite distance in [0, length]; u in [0, 1).

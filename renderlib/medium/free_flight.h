@@ -42,7 +42,8 @@ class FreeFlight {
   Rgb after_passing() const;
   /// Returns the weight of the light that passes the whole segment: throughput * transmittance.
   Rgb passing() const;
-  /// Returns the weight scattered along the whole segment: throughput * scattering * reach.
+  /// Returns the weight scattered along the whole segment: throughput * scattering * the integral
+  /// of exp(-extinction * s) over s in [0, length] (`reach` in attenuation.h).
   Rgb all_scattered() const;
 
  private:

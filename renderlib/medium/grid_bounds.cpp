@@ -79,9 +79,10 @@ GridBounds::GridBounds(const VolumeGrid& grid)
     return (std::size_t{z} * bricks_[1] + y) * bricks_[0] + x;
   };
   std::fill(of_brick_.begin(), of_brick_.end(), kNothing);
-  // Adds the bounds of each brick to its own and, if values are interpolated, the bounds of its
-  // outer layers to those of its neighbours: near the border, a neighbour's values depend on these
-  // layers.
+  // Visits every brick and extends the entries of `of_brick_` by the bounds of the brick's values.
+  // All values of the brick count for its own entry. If values are interpolated, its outer layers
+  // also count for the entries of its neighbours, because the values of a neighbour near the common
+  // border depend on these layers.
   PartBounds zeros;
   zeros.fill(kZero);
   for (std::uint32_t z = 0; z < bricks_[2]; ++z) {

@@ -27,7 +27,7 @@ Box both(const Box& a, const Box& b) {
       {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
 
-/// Returns a box that contains the image of `box`, also after rounding.
+/// Returns a box that contains `map` applied to `box`, in spite of rounding errors.
 Box image_of(const Box& box, const Transform& map) {
   const Vec3 center = map.point((box.low + box.high) * 0.5);
   const Vec3 half = (box.high - box.low) * 0.5;
@@ -47,7 +47,7 @@ Box box_of(const VolumeGrid& grid) {
            static_cast<double>(grid.cells[2])}};
 }
 
-/// `regular` is invertible, because the grid is valid.
+/// Returns the inverse of `regular`, the transform of a valid grid, which is always invertible.
 Transform inverse_of(const Transform& regular) { return inverse(regular).value_or(Transform{}); }
 
 /// The bounds of a grid in the space of the regions, which is the cell space of one of the grids.
@@ -62,7 +62,8 @@ struct Bounded {
   }
 };
 
-/// Returns the side of cubes of which at most `most` fill the box: kBrickSide times a power of two.
+/// Returns the smallest side, kBrickSide times a power of two, for which at most `most` cubes of
+/// this side fill a box of the given size.
 double cube_side(const Vec3& size, double most) {
   double side = kBrickSide;
   while (std::ceil(size.x / side) * std::ceil(size.y / side) * std::ceil(size.z / side) > most) {
@@ -105,8 +106,9 @@ GridMedium::GridMedium(const Medium& medium, const std::vector<VolumeGrid>& grid
 }
 
 void GridMedium::find_regions(const MediumGrids& uses, const std::vector<VolumeGrid>& grids) {
-  // The first grid for which bounded() is called determines the regions: they are made of its
-  // bricks. It is not called for the albedo, which does not affect the bounds.
+  // The first grid for which bounded() is called determines the regions, which are its bricks or
+  // cubes of several of its bricks. bounded() is not called for the albedo grid, which does not
+  // affect the bounds.
   const VolumeGrid* primary = nullptr;
   Box block;
   const auto bounded = [&](const std::optional<GridUse>& use) -> std::optional<Bounded> {
@@ -138,6 +140,8 @@ void GridMedium::find_regions(const MediumGrids& uses, const std::vector<VolumeG
     const auto scale = density ? uses.density->scale : 1.0f;
     to.least = of_density.least * scale;
     to.most = of_density.most * scale;
+    // Whether the factor of the emission (struct MediumGrids) may be above 0, and whether the
+    // temperature may be high enough.
     const bool factor = emission ? at(*emission).most > 0 : to.most > 0;
     const bool hot = !temperature || double{at(*temperature).most} * uses.temperature->scale +
                                              temperature_offset_ >=

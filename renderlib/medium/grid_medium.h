@@ -28,7 +28,7 @@ struct Region {
 /// the cell space (volume_grid.h) of the density grid, or of another grid if there is none.
 struct Regions {
   Transform from_medium;  ///< from the medium's space to that of the regions
-  /// The block, in the space of the regions; its last cubes may reach out of it.
+  /// The block, in the space of the regions. The last cube along an axis may extend beyond `high`.
   Vec3 low;
   Vec3 high;
   double side = kBrickSide;  ///< side of a cube

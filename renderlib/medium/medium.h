@@ -28,8 +28,10 @@ struct GridUse {
 ///   density     = value of the density grid, by channel if it has three; 1 without one
 ///   extinction  = density (absorption + scattering)
 ///   scattering  = density scattering; with an albedo grid, extinction times min(its value, 1)
-///   emission    = emission times the value of the emission grid, or without one times the density,
-///                 and with a temperature grid times blackbody(value + temperature_offset)
+///   emission    = emission times f times t
+///                 f: the value of the emission grid; without an emission grid, the density
+///                 t: blackbody(value of the temperature grid + temperature_offset); without a
+///                 temperature grid, 1
 struct MediumGrids {
   std::optional<GridUse> density;
   std::optional<GridUse> albedo;

@@ -96,7 +96,7 @@ class RegionWalk {
       next_[k] = plane(k);
     }
   }
-  /// Returns where the ray leaves the current cube along an axis.
+  /// Returns the distance at which the ray leaves the current cube along axis k.
   double plane(std::size_t k) const {
     if (direction_[k] == 0) {
       return kInfinity;
@@ -125,11 +125,11 @@ class RegionWalk {
   std::array<double, 3> origin_{};
   std::array<double, 3> direction_{};
   std::array<double, 3> low_{};
-  double enter_ = 0;                     ///< where the ray enters the block of cubes
-  double leave_ = 0;                     ///< where it leaves the block
-  double at_ = 0;                        ///< where the next span begins
+  double enter_ = 0;                     ///< distance at which the ray enters the block of cubes
+  double leave_ = 0;                     ///< distance at which the ray leaves the block
+  double at_ = 0;                        ///< distance at which the next span begins
   std::array<std::uint32_t, 3> cube_{};  ///< the current cube
-  std::array<double, 3> next_{};         ///< where the ray leaves the cube, by axis
+  std::array<double, 3> next_{};         ///< distance at which the ray leaves the cube, by axis
 };
 
 }  // namespace bandsaw

@@ -74,11 +74,11 @@ class Roulette {
   std::uint32_t collisions_ = 0;
 };
 
-/// Calls `collide(distance, span, rate)` for each tentative collision along the ray, in order,
-/// until it returns false; `rate` is the number of such collisions per scene unit there. The
-/// parameter `rate(region, speed)` returns this number for a region (`speed` is
-/// RegionWalk::speed()). `enter(span)` is called before the collisions of each span. `free_paths`
-/// is the distance to the first collision, in mean free paths.
+/// Samples the tentative collisions along the ray, and calls `collide(distance, span, per_unit)`
+/// for each of them, in order, until `collide` returns false. `per_unit` is the rate of tentative
+/// collisions in the span, per scene unit. The function `rate(region, speed)` returns the rate for
+/// a region; `speed` is RegionWalk::speed(). `enter(span)` is called before the collisions of each
+/// span. `free_paths` is the distance to the first collision, in mean free paths.
 template <class Rate, class Enter, class Collide>
 void visit_collisions(const GridMedium& medium, const GridRay& ray, double length,
                       double free_paths, NumberStream& numbers, const Rate& rate,

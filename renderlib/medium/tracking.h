@@ -11,10 +11,11 @@
 //   history-aware). Absorption only lowers the weights. So the sum of the channels is the same for
 //   either outcome and never grows.
 // - Transmittance is estimated by residual ratio tracking (Novak, Selle and Jarosz 2014, "Residual
-//   Ratio Tracking for Estimating Attenuation in Participating Media", section 4.2), whose control
-//   is the least density of each region: in regions of constant density it is exact.
-// - Emission is collected at tentative collisions. Where a medium emits, there are at least two of
-//   them on average along a region.
+//   Ratio Tracking for Estimating Attenuation in Participating Media", section 4.2). The control
+//   variate is the least density of each region. So in regions of constant density the estimate is
+//   exact.
+// - Emission is collected at tentative collisions. In a region where the medium emits, there are on
+//   average at least two tentative collisions along the side of the region.
 //
 // Flights whose weight is low end by Russian roulette, and so do flights of very many collisions.
 
@@ -33,8 +34,8 @@ struct Flight {
   Rgb emitted;          ///< emission towards the start of the segment, times the weight before it
 };
 
-/// First numbers of a flight, each in [0, 1), so that flights of one pixel can be stratified. The
-/// other numbers of a flight come from the NumberStream.
+/// The first two random numbers of a flight, each in [0, 1). The caller passes them, so that the
+/// flights of one pixel can be stratified. Further random numbers come from the NumberStream.
 struct FirstCollision {
   double choice = 0;
   double distance = 0;

@@ -95,8 +95,8 @@ absl::Status check_outside(const VolumeGrid& grid, const GridReader& reader, std
     const bool in = i % 8 < inside[0] && i / 8 % 8 < inside[1] && i / 64 < inside[2];
     for (std::uint32_t c = 0; !in && c < grid.channels; ++c) {
       if (reader.stored(brick, i * grid.channels + c) != 0) {
-        return invalid("values",
-                       absl::StrCat("must be 0 outside of the box, brick ", brick, " is not"));
+        return invalid("values", absl::StrCat("must be 0 outside of the box, but brick ", brick,
+                                              " has another value there"));
       }
     }
   }
@@ -200,8 +200,8 @@ float GridReader::cell(std::uint32_t x, std::uint32_t y, std::uint32_t z,
 namespace {
 
 float number_of(float stored) { return stored; }
-/// Returns the number of a half that is >= 0 and finite. Exact: the exponent's bias is a factor of
-/// 2^112.
+/// Returns the number of a half that is >= 0 and finite. The result is exact: the exponents of a
+/// float and of a half have different biases, and the factor 2^112 corrects the difference.
 float number_of(std::uint16_t half) {
   return std::bit_cast<float>(std::uint32_t{half} << 13) * 0x1p112f;
 }
@@ -220,8 +220,8 @@ void load_corners(const std::byte* stored, std::uint32_t channels, std::uint32_t
   }
 }
 
-/// Interpolates between the corners of a cube, x fastest; `share` is the place in it, each in [0,
-/// 1].
+/// Interpolates linearly between the corners of a cube, which are given x fastest. `share` is the
+/// place in the cube along each axis, in [0, 1].
 template <std::size_t kChannels>
 std::array<float, kChannels> mix_corners(const std::array<std::array<float, kChannels>, 8>& corner,
                                          const std::array<float, 3>& share) {

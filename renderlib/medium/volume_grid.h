@@ -106,7 +106,8 @@ class GridReader {
  private:
   template <std::uint32_t kChannels>
   std::array<float, kChannels> interpolate(const Vec3& at) const;
-  /// Returns the numbers of a cell. For a cell outside of the box they are those of Border.
+  /// Returns the numbers of a cell. For a cell outside of the box they follow from Border: 0, or
+  /// the numbers of the nearest cell in the box.
   template <std::uint32_t kChannels>
   std::array<float, kChannels> cell_or_zero(const std::array<std::int32_t, 3>& at) const;
 

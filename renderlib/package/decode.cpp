@@ -1,5 +1,6 @@
 // Decoder fetches the blobs that the manifest names, checks their sizes, and makes shapes, meshes
-// and textures of them. Parts that an earlier package has are taken from DecodedParts.
+// and textures of them. If an earlier package has an equal part that is still in use, the part is
+// taken from DecodedParts.
 
 #include "renderlib/package/package.h"
 
@@ -113,7 +114,7 @@ absl::StatusOr<RampTexture> ramp(const package::RampTexture& from, const std::st
   to.steps = from.steps();
   if (from.color_size() != 3 * from.at_size()) {
     return manifest_error(field + ".color",
-                          absl::StrCat("must have 3 numbers a stop, has ", from.color_size(),
+                          absl::StrCat("must have 3 numbers for each stop, has ", from.color_size(),
                                        " for ", from.at_size(), " stops"));
   }
   for (int i = 0; i < from.at_size(); ++i) {
@@ -123,7 +124,7 @@ absl::StatusOr<RampTexture> ramp(const package::RampTexture& from, const std::st
   return to;
 }
 
-// Appends the texture that the decoder of a kind returned.
+// Appends `texture`, the result of one of the functions above, to `textures`, or returns its error.
 template <class T>
 absl::Status append(absl::StatusOr<T> texture, std::vector<Texture>& textures) {
   RETURN_IF_ERROR(texture.status());
@@ -164,7 +165,8 @@ absl::Status decode_texture(const package::Texture& from, const std::string& fie
   return manifest_error(field, "is of no kind that this program knows");
 }
 
-/// Reads the parts of one package. `field` and `prefix` are names of fields in error messages.
+/// Reads the parts of one package. For error messages, `field` is the name of the decoded field,
+/// and `prefix` the beginning of such names.
 class Decoder {
  public:
   Decoder(BlobSource& blobs, DecodedParts* parts) : blobs_(blobs), parts_(parts) {}
@@ -297,7 +299,7 @@ class Decoder {
     return absl::OkStatus();
   }
 
-  // Returns true if the mesh belongs to another package, with which it was validated.
+  // Returns true if the mesh was read for an earlier package, and so was validated with it.
   bool is_shared(const Mesh& mesh) const { return shared_.find(&mesh) != shared_.end(); }
 
   absl::StatusOr<Mesh> mesh(const package::Mesh& from, const std::string& field) {
@@ -330,8 +332,8 @@ class Decoder {
     return mesh;
   }
 
-  // Appends the texture; returning a StatusOr of this variant makes g++ 12 warn of uninitialised
-  // memory.
+  // Decodes a texture with its texels and appends it to `textures`. The texture is not returned,
+  // because a StatusOr of this variant makes g++ 12 warn of uninitialised memory.
   absl::Status texture(const package::Texture& from, const std::string& field,
                        std::vector<Texture>& textures) {
     RETURN_IF_ERROR(decode_texture(from, field, textures));

@@ -20,7 +20,7 @@ absl::StatusOr<Ours> decode_enum(int value, int first, int last, const std::stri
   return static_cast<Ours>(value - first);
 }
 
-/// The same for enums of the protocol whose first valid value is 1.
+/// Converts an enum as above, with `first` = 1.
 template <class Ours>
 absl::StatusOr<Ours> decode_enum(int value, int last, const std::string& field) {
   return decode_enum<Ours>(value, 1, last, field);

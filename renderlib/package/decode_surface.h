@@ -1,7 +1,7 @@
 #pragma once
 
-// Decodes the parts of a manifest (proto/package.proto) that are not geometry: camera, filter,
-// local shading, background. Checks only the form, not the values (scene/validate.h).
+// Decodes some parts of a manifest (proto/package.proto): camera, filter, local shading,
+// background, and lists of three numbers. Checks only the form, not the values (scene/validate.h).
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"
@@ -9,11 +9,13 @@
 
 namespace bandsaw {
 
-/// Decodes a camera. `field`, here and below, is its name in error messages. This function and
-/// those below return INVALID_ARGUMENT if a list has a wrong length or an enum an unknown value.
+// `field` is the name of the decoded field in error messages. All functions return INVALID_ARGUMENT
+// if a list has a wrong length or an enum has an unknown value.
+
 absl::StatusOr<Camera> decode_camera(const package::Camera& from, const std::string& field);
 /// Returns the default filter if the manifest has none.
 absl::StatusOr<PixelFilter> decode_filter(const package::Manifest& manifest);
+/// Returns the default for each value that the manifest does not have.
 absl::StatusOr<LocalShading> decode_local_shading(const package::Manifest& manifest);
 /// Returns INVALID_ARGUMENT also if the manifest has no background.
 absl::StatusOr<Background> decode_background(const package::Manifest& manifest);

@@ -33,8 +33,8 @@ Theirs as(Ours ours, int first = 0) {
   return static_cast<Theirs>(static_cast<int>(ours) + first);
 }
 
-/// Sets `ref` to the size and digest of the bytes. Adds the bytes to `blobs`, unless they were in
-/// the last package (`parts`).
+/// Sets `ref` to the size and digest of the bytes. Adds the bytes to `blobs`, unless `parts` knows
+/// them from the last package. `parts` may be nullptr.
 void put_shared(const SharedBytes& bytes, BlobMap& blobs, EncodedParts* parts, package::Blob& ref) {
   ref.set_size(bytes.size());
   if (const wire::Digest* known = parts != nullptr ? parts->digest_of(bytes) : nullptr) {
@@ -148,7 +148,8 @@ class Encoder {
     bandsaw::put_shared(bytes, blobs_, parts_, ref);
   }
 
-  // Makes one array from a list of shapes; `Value` is the type of the blob's entries.
+  // Adds a blob with one entry for each shape. `of(shape)`, or the member `of` of the shape, is the
+  // entry, and `Value` is its type.
   template <class Value, class Shape, class Of>
   void put_each(const std::vector<Shape>& shapes, package::Blob& ref, Of of) {
     std::vector<Value> values(shapes.size());

@@ -20,11 +20,11 @@ class EncodedParts {
  public:
   /// Returns true for a mesh of the last package.
   bool knows(const Mesh& mesh) const { return meshes_.contains(&mesh); }
-  /// If the mesh (the same object) was in the last package, makes it a part of the present one and
-  /// returns its serialised message (package::Mesh); otherwise nullptr.
+  /// Returns the serialised message (package::Mesh) of the mesh if this same object was in the last
+  /// package, otherwise nullptr. A mesh that is found becomes a part of the present package.
   const std::string* message_of(const Mesh& mesh);
-  /// If these bytes (at the same address) were in the last package, makes them a part of the
-  /// present one and returns their digest; otherwise nullptr.
+  /// Returns the digest of the bytes if the same number of bytes at the same address was in the
+  /// last package, otherwise nullptr. Bytes that are found become a part of the present package.
   const wire::Digest* digest_of(const SharedBytes& bytes);
 
   /// Adds a part to the present package.

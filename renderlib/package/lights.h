@@ -15,9 +15,12 @@ namespace bandsaw {
 void encode_environment(const Environment& from, package::Environment& to);
 void encode_light(const DeltaLight& from, package::Light& to);
 
-/// Checks only the form, not the values (scene/validate.h). Returns INVALID_ARGUMENT for an unknown
-/// kind or a list of a wrong length.
+// The decoders check only the form, not the values (scene/validate.h). They return INVALID_ARGUMENT
+// for an unknown kind or a list of a wrong length.
+
+/// Decodes the environment of the manifest's background.
 absl::StatusOr<Environment> decode_environment(const package::Environment& from);
+/// Decodes all delta lights of the manifest.
 absl::StatusOr<std::vector<DeltaLight>> decode_lights(const package::Manifest& manifest);
 
 }  // namespace bandsaw

@@ -31,7 +31,7 @@ std::uint64_t entries(const package::Blob& blob) {
   return blob.size() / sizeof(T);
 }
 
-/// Returns the numbers of shapes of the manifest or of a group.
+/// Returns how many shapes of each kind a group has, or a manifest has outside of its groups.
 template <class Message>
 ShapeCounts counts_of(const Message& from) {
   return {.spheres = entries<Vec3>(from.spheres().centers()),
@@ -59,6 +59,7 @@ absl::Status check_groups(const std::string& prefix, const Groups& groups) {
   return absl::OkStatus();
 }
 
+/// Does the checks of check_counts(). Its messages lack the prefix "scene package: ".
 absl::Status check_all(const package::Manifest& manifest) {
   ShapeCounts loose = counts_of(manifest);
   loose.instances = static_cast<std::uint64_t>(manifest.instance_size());
@@ -316,6 +317,7 @@ absl::StatusOr<std::vector<BlobRef>> missing_blobs(const std::string& manifest_b
     });
     meshes.erase(known, meshes.end());
   };
+  // A mesh that `parts` has needs no blobs. Only the remaining meshes are searched for blobs.
   remove_known(*manifest.mutable_mesh());
   remove_known(*manifest.mutable_boundaries()->mutable_mesh());
   std::set<std::string> missing;

@@ -12,9 +12,11 @@
 
 namespace bandsaw {
 
-/// Returns INVALID_ARGUMENT if there are too many bytes, or if they are no manifest or a manifest
-/// of another format; if name, image size, depth, another setting or a text is out of range; or if
-/// there are more shapes than a BVH can hold.
+/// Parses a manifest and checks it. Returns INVALID_ARGUMENT
+/// - if there are more than wire::kManifestBytes bytes,
+/// - if the bytes are no manifest, or a manifest of another format,
+/// - if the name, the image size, the depth, another setting or a text is out of range,
+/// - or if there are more shapes than a BVH can hold.
 absl::StatusOr<package::Manifest> parse_manifest(const std::string& bytes);
 
 /// Makes the error INVALID_ARGUMENT "scene package: <field>: <what is wrong>".

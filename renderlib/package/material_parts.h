@@ -1,7 +1,8 @@
 #pragma once
 
-// Conversion of colours, and of the numbers of materials, to and from proto/package.proto. Decoding
-// checks only the form, not the values (scene/validate.h).
+// Conversion of the values that describe materials to and from proto/package.proto: colours
+// (Rgb), textures with a factor (Channel, Tint) and numbers of textures. Decoding checks only the
+// form, not the values (scene/validate.h).
 
 #include <cstdint>
 #include <optional>
@@ -44,7 +45,8 @@ inline absl::StatusOr<Tint> decode(const package::Tint& from, const std::string&
   return Tint{TextureId{from.texture()}, factor};
 }
 
-/// Returns the texture of an optional field.
+/// Returns the texture with number `index` if the optional field is present, otherwise
+/// std::nullopt.
 inline std::optional<TextureId> texture_if(bool present, std::uint32_t index) {
   return present ? std::optional(TextureId{index}) : std::nullopt;
 }

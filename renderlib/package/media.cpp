@@ -1,4 +1,5 @@
-// Encodes and decodes coefficients and the descriptions of grids.
+// Encodes and decodes the coefficients of media, the descriptions of grids, and the placements of
+// boundaries.
 
 #include "renderlib/package/media.h"
 

@@ -37,8 +37,8 @@ struct BlobRef {
 };
 
 /// Adds the scene's arrays to `blobs` and returns the bytes of the manifest, which are not added.
-/// With `parts`, meshes, texels and grids that are the same objects as in the last package that was
-/// encoded with it are not added again.
+/// `parts` remembers the last package that was encoded with it. Meshes, texels and grids that are
+/// the same objects as in this last package are not added again.
 std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs,
                            EncodedParts* parts = nullptr);
 
@@ -50,15 +50,18 @@ absl::StatusOr<PackageInfo> package_info(const std::string& manifest);
 /// manifest is broken or exceeds a limit.
 absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest);
 
-/// Returns those blobs of a manifest that decode_package reads if it is called with `parts` now, in
-/// the order of package_blobs. Errors as package_blobs.
+/// Returns the blobs that decode_package() would read now if it were called with this manifest and
+/// `parts`. Their order and the errors are those of package_blobs().
 absl::StatusOr<std::vector<BlobRef>> missing_blobs(const std::string& manifest,
                                                    const DecodedParts& parts);
 
 /// Returns the scene, which is valid (scene/validate.h). Returns INVALID_ARGUMENT, with the field
-/// that is wrong, and NOT_FOUND or DATA_LOSS from `blobs`. With `parts`, meshes, texels and grids
-/// are shared with packages that were decoded with the same `parts` and are still in use; they are
-/// not read again. The others are added to `parts`.
+/// that is wrong, if the manifest, a blob's size or the scene is not valid. Returns the errors of
+/// `blobs`, such as NOT_FOUND or DATA_LOSS.
+///
+/// `parts` remembers meshes, texels and grids of packages that were decoded with it, as long as
+/// they are in use. The scene shares the parts that are remembered; they are not read again. Other
+/// meshes, texels and grids are read and added to `parts`.
 absl::StatusOr<SceneDescription> decode_package(const std::string& manifest, BlobSource& blobs,
                                                 DecodedParts* parts = nullptr);
 

@@ -1,6 +1,7 @@
-// The pilot is the first samples of all pixels. Pilot holds the errors that it has measured over
-// half of the pixels, and suggests a level for each tile, which stands for a factor on its number
-// of samples. gain() evaluates the suggestion on the errors of the other half.
+// The pilot is the first samples of all pixels. An object of the class Pilot holds the errors that
+// the pilot has over some of the pixels, and suggests a level for each tile. The level stands for a
+// factor on the tile's number of samples. gain() evaluates the suggestion on the errors of other
+// pixels.
 
 #include "renderlib/render/adaptive_plan.h"
 
@@ -14,14 +15,16 @@
 namespace bandsaw {
 namespace {
 
-/// Maximum weight of a half tile, over the mean weight: a plan dominated by a few half tiles takes
-/// many passes in which most machines have little to do.
+/// Maximum weight of a half tile, as a multiple of the mean weight. Without this limit a few half
+/// tiles could get most of the samples. Such a plan takes many passes in which most machines have
+/// little to do.
 constexpr double kMaxOverMean = 8;
-/// Weight of a tile's own error; its neighbours have the rest, which reduces the noise of the
-/// estimate.
+/// The error that is used for a tile is kOwnTile times its own error plus (1 - kOwnTile) times the
+/// mean error of its neighbours. The neighbours reduce the noise of the estimate.
 constexpr double kOwnTile = 0.5;
-/// Minimum gain in error at equal samples for which a plan is worthwhile: samples in noisy regions
-/// take 1.1 to 1.4 times the time of others (tests/bench/README.md).
+/// Minimum gain in error at equal samples for which a plan is worthwhile. It is larger than 1,
+/// because samples in noisy regions take 1.1 to 1.4 times the time of others
+/// (tests/bench/README.md).
 constexpr double kMinGain = 1.25;
 /// The gain of a plan is predicted for images with this many times the samples of the pilot.
 constexpr double kJudgedAfter = 8;
@@ -32,7 +35,7 @@ constexpr int kLevels = 16;
 int level_of_digit(char digit) { return digit <= '9' ? digit - '0' : digit - 'a' + 10; }
 char digit_of(int level) { return "0123456789abcdef"[level]; }
 
-/// Returns 2^((6 - level) / 2).
+/// Returns the factor of a level, 2^((6 - level) / 2).
 double share_of(int level) {
   constexpr double kRoot = 0.70710678118654752440;
   double share = 8;
@@ -70,9 +73,11 @@ class Mean {
   double relative_ = 0;
 };
 
-/// Returns one level per tile. Weights are divided by their root mean square. So one more sample
-/// reduces the error as much as one more sample of a tile that is sampled uniformly (such as a tile
-/// of the other half of the image), where the reduction depends on the root of the mean variance.
+/// Returns the level of each tile, given the weight of each tile. The factor of a tile is its
+/// weight (at most kMaxOverMean times the mean) divided by the root mean square of all weights. It
+/// is rounded to the factor of a level. With these factors, one more sample of a tile reduces the
+/// error as much as one more sample of a tile that is sampled uniformly, such as a tile of the
+/// other half of the image. (There, the reduction depends on the root of the mean variance.)
 std::vector<int> levels_of(std::vector<double> weights) {
   const auto count = static_cast<double>(weights.size());
   const double most = kMaxOverMean * std::accumulate(weights.begin(), weights.end(), 0.0) / count;
@@ -103,7 +108,7 @@ class Pilot {
 
   const std::vector<TileError>& tiles() const { return tiles_; }
 
-  /// Returns the sample allocation that these errors suggest.
+  /// Returns the level of each tile that these errors suggest.
   std::vector<int> levels() const {
     std::vector<double> weights;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
@@ -118,7 +123,8 @@ class Pilot {
     return std::sqrt((mean_.variance > 0 ? tile.variance / mean_.variance : 0) +
                      (mean_.relative > 0 ? tile.relative / mean_.relative : 0));
   }
-  /// Returns the mean error of the tiles adjacent to tile i; of all tiles if these have no pixels.
+  /// Returns the mean error of the tiles adjacent to tile i. If the adjacent tiles have no pixels,
+  /// returns the mean error of all tiles.
   TileError around(std::size_t i) const {
     const auto row = static_cast<std::uint32_t>(i) / grid_.columns();
     const auto column = static_cast<std::uint32_t>(i) % grid_.columns();
@@ -168,14 +174,17 @@ double gain(const std::array<Pilot, 2>& parts) {
   }
   const TileError before = evenly.value();
   const TileError after = planned.value();
+  // Returns the gain, given the error `from` of the pilot and the error `to` of the plan. The plan
+  // takes samples / before.pixels times the samples of the pilot. Uniform sampling with as many
+  // samples would have the error `from` divided by this quotient.
   const auto fall = [&](double from, double to) {
     return from > 0 ? from / to / (samples / before.pixels) : 1;
   };
   return std::min(fall(before.variance, after.variance), fall(before.relative, after.relative));
 }
 
-/// Returns a level for each tile, planned from the errors of half 0 or 1 of their pixels; all
-/// levels are 6 if the plan is not worthwhile.
+/// Returns a level for each tile, planned from the errors of half `half` (0 or 1) of each tile's
+/// pixels. All levels are 6 (uniform sampling) if the plan is not worthwhile.
 std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                          std::size_t half) {
   std::vector<TileError> all;

@@ -37,37 +37,42 @@ struct TileError {
   double relative = 0;       ///< variance / (value^2 + 0.01)
 };
 
-/// Errors of a half tile: of its pixels in even groups (render/pixel_groups.h), and of those in odd
-/// groups, which are independent of them.
+/// Errors of a half tile. Its groups of pixels are numbered in PixelGroups (render/pixel_groups.h).
+/// Entry 0 is for the pixels in groups with even numbers, and entry 1 for those in groups with odd
+/// numbers. The two errors are independent.
 using HalfTileErrors = std::array<TileError, 2>;
 
-/// The level of uniform sampling.
+/// The level of a half tile that gets as many samples as with uniform sampling. The name does not
+/// refer to the even half of a tile.
 inline constexpr char kEvenLevel = '6';
 
 /// Sample allocation of each half tile (half of the pixels of a tile, tile_samples.h) after the
 /// pilot.
 struct TilePlan {
-  std::uint64_t pilot = 0;  ///< samples of all pixels
+  std::uint64_t pilot = 0;  ///< number of samples that the pilot takes of each pixel
   /// One digit 0 to f for each half tile, in the order of TileGrid. Level l gives 2^((6 - l) / 2)
   /// times the samples of uniform sampling, but at least the pilot's.
   std::string levels;
 
-  /// Returns true if all half tiles get the samples of uniform sampling.
+  /// Returns true if sampling is uniform, that is, if all half tiles have the level kEvenLevel.
   bool even() const { return levels.find_first_not_of(kEvenLevel) == std::string::npos; }
   friend bool operator==(const TilePlan&, const TilePlan&) = default;
 };
 
 /// Computes the plan from the pilot. `tiles` has one entry for each half tile; `samples` is the
-/// number of samples of the pilot. The function is pure and has the same result on every machine.
+/// number of samples that the pilot took of each pixel. The function is pure and has the same
+/// result on every machine.
 ///
-/// The pilot itself decides whether the plan is worthwhile: the plan from even groups is evaluated
-/// on the errors of odd groups, and vice versa. Unless both resulting errors are well below the
-/// errors of uniform sampling with as many samples, all levels of the half of the image are 6.
+/// The pilot itself decides whether the plan is worthwhile. For this test, a plan is made from
+/// entry 0 of HalfTileErrors and evaluated on the errors of entry 1, and vice versa. Unless both
+/// resulting errors (absolute and relative) are well below the errors of uniform sampling with as
+/// many samples, all levels of the half of the image are 6.
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
 
-/// Returns the number of samples of this half tile divided by the number that uniform sampling
-/// would give it, 2^-4.5 to 8.
+/// Returns the factor of the half tile's level, 2^-4.5 to 8: the number of its samples divided by
+/// the number that uniform sampling would give it. The minimum, the pilot's samples, is not
+/// applied.
 double share_of(const TilePlan& plan, std::size_t half_tile);
 
 }  // namespace bandsaw

@@ -53,9 +53,10 @@ absl::Status validate(const Band& band, const RenderSettings& settings) {
                                                    ", ", band.rows.last, ")"));
   }
   if (!is_node(band.samples) || band.samples.last > kMaxSamples) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "samples: must be a power of two of blocks of ", kBlockSamples, ", aligned, below ",
-        kMaxSamples, ", are [", band.samples.first, ", ", band.samples.last, ")"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("samples: must be an aligned range of 2^k blocks of ", kBlockSamples,
+                     " samples that ends at or before ", kMaxSamples, ", are [", band.samples.first,
+                     ", ", band.samples.last, ")"));
   }
   return absl::OkStatus();
 }

@@ -1,4 +1,4 @@
-// Writer and Reader put and take numbers in the order of the format (band_file.h). The header and
+// Writes and reads the numbers of a record in the order of the format (band_file.h). The header and
 // the hash of a record are checked before its sums are read.
 
 #include "renderlib/render/band_file.h"
@@ -148,7 +148,7 @@ absl::Status damaged(std::uint64_t offset, absl::string_view what) {
 
 absl::Status cut_off(std::uint64_t offset, std::uint64_t wanted, std::uint64_t there) {
   return absl::OutOfRangeError(absl::StrCat("byte ", offset, ": the record is cut off: ", wanted,
-                                            " bytes wanted, ", there, " there"));
+                                            " bytes are needed, ", there, " are there"));
 }
 
 absl::Status read_sums(const std::byte* at, std::uint64_t offset, std::vector<double>& sums) {

@@ -63,12 +63,13 @@ struct DecodedBandRecord {
 
 /// Parses the record at byte `offset` of `bytes` and checks every field. Messages begin with "byte
 /// N: ", where N counts from the start of `bytes`. Returns OUT_OF_RANGE if the bytes end before the
-/// record does (a truncated file), DATA_LOSS if they are no such record.
+/// record does (a truncated file), and DATA_LOSS if the bytes are no record of this format or a
+/// damaged one.
 absl::StatusOr<DecodedBandRecord> decode_band_record(absl::Span<const std::byte> bytes,
                                                      std::uint64_t offset = 0);
 
-/// Returns one digest for each row, of the bits of its sums: equal for equal pixels. The
-/// coordinator compares the digests of a band and of its audit.
+/// Returns a digest for each row, computed from the bits of the row's sums. Rows with equal sums
+/// have equal digests. The coordinator compares the digests of a band and of its audit.
 std::vector<std::uint64_t> row_digests(const BandPixels& pixels);
 
 }  // namespace bandsaw

@@ -23,9 +23,9 @@ struct BandPart {
 /// order, each once.
 std::vector<std::uint32_t> maps_of(const BandPart& part);
 
-/// Divides the samples of a part that needs more than one map; both results have all of its rows. A
-/// pixel's sum is its sum in the first part plus its sum in the second, to the bit. `width` is the
-/// width of the image in pixels.
+/// Divides the samples of a part that needs more than one map. Both results have all rows of the
+/// part. A pixel's sum is, to the bit, its sum in the first result plus its sum in the second.
+/// `width` is the width of the image in pixels.
 std::pair<BandPart, BandPart> halves_of(const BandPart& part, std::uint32_t width);
 
 }  // namespace bandsaw

@@ -1,5 +1,6 @@
 // The canary is a small render whose hash tells whether two machines render the same pixels. Each
-// function below makes one scene; canary() renders a few pixels of all of them and hashes the sums.
+// function that returns a SceneDescription makes one scene. canary() renders a few pixels of all
+// scenes and hashes the sums.
 
 #include "renderlib/render/canary.h"
 
@@ -190,8 +191,8 @@ SceneDescription in_a_cloud() {
   return scene;
 }
 
-/// Returns a scene of an area light, a ball and a wall on a floor, with a black background: pixels
-/// reuse paths.
+/// Returns a scene of an area light, a ball and a wall on a floor, with a black background. In such
+/// a scene, pixels reuse paths.
 SceneDescription room() {
   SceneDescription scene;
   scene.textures = {ConstantTexture{{0.7f, 0.5f, 0.3f}}, ConstantTexture{gray(5)}};
@@ -205,8 +206,8 @@ SceneDescription room() {
   return scene;
 }
 
-/// Returns a scene of a ball and a pyramid on a floor under a sky, without lights: paths are split
-/// into several directions.
+/// Returns a scene of a ball and a pyramid on a floor under a sky, without lights. In such a scene,
+/// paths are split into several directions.
 SceneDescription outdoors() {
   SceneDescription scene;
   scene.background = {{0.9f, 0.8f, 0.7f}, {0.4f, 0.5f, 0.7f}};
@@ -267,8 +268,8 @@ void add_render(Hash64& hash, const SceneDescription& description, const RenderS
   hash.add(pixels->counters.rays);
 }
 
-/// Returns settings of path tracing without guiding and photon maps: their pilot, which decides
-/// whether they are worthwhile, would take longer than these renders.
+/// Returns settings of path tracing without guiding and photon maps. These need a pilot, which
+/// decides whether they are worthwhile and would take longer than the renders of the canary.
 RenderSettings path(std::uint32_t width, std::uint32_t height, std::uint32_t max_depth,
                     std::uint64_t seed) {
   return {.width = width,

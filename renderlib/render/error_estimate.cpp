@@ -63,7 +63,7 @@ Estimated of_channel(absl::Span<const NodeSums> nodes, std::size_t k) {
   return {sum / samples, weighed / (samples * samples)};
 }
 
-// Returns the value below which a share `share` of all values lies.
+// Returns the value below which the share `share` (0 to 1) of all values lies. Reorders `values`.
 double quantile(std::vector<float>& values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());
@@ -105,8 +105,8 @@ void ErrorSums::add(absl::Span<const NodeSums> nodes) {
   }
   sum_ += value;
   of_group_ += of_pixel;
-  // The sum of one sample of 1e30 exceeds the range of float, and infinity would make the shares
-  // NaN.
+  // A sample of 1e30 makes the variance exceed the range of float, and infinity would make the
+  // shares NaN.
   constexpr double kMax = std::numeric_limits<float>::max();
   variances_.push_back(static_cast<float>(std::clamp(of_pixel / 3, 0.0, kMax)));
   means_.push_back(static_cast<float>(value / 3));

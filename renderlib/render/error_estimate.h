@@ -1,12 +1,14 @@
 #pragma once
 
 // Error estimate of an image without a reference, from sums of samples that are independent or
-// stratified. Film::error() makes it; jobs with an error target stop by it.
+// stratified. Film::error() makes the estimate. Jobs with an error target use it to decide when to
+// stop.
 //
 // With Owen-scrambled points, an estimate from the variance of single samples would be 3 to 54
 // times too large. So the estimate is made from the difference of the two halves of a power-of-two
 // number of samples, which is at least as large as that of independent halves with the same error.
-// It is right for pure noise and up to about 2.5 times too large where sampling is well stratified.
+// The estimate is right for pure noise, and up to about 2.5 times too large where sampling is well
+// stratified.
 //
 // An estimate scatters, and so does the error of one image around that of all seeds. A job that
 // stops as soon as the estimate is small enough often stops when the estimate happens to be too
@@ -38,8 +40,8 @@ struct ErrorEstimate {
   /// of fewer than 64 pixels.
   double worst_share = 0;
 
-  /// Returns an upper bound of this image's relative RMSE that holds in at least 19 of 20 cases,
-  /// also if samples are added until it reaches a target. Not valid if doubtful().
+  /// Returns an upper bound of this image's relative RMSE. The bound holds in at least 19 of 20
+  /// cases, also if samples are added until the bound reaches a target. Not valid if doubtful().
   double at_most() const { return relative_rmse + margin; }
 
   /// Returns true if rare bright paths dominate the error. Pixels that have not sampled such a path
@@ -66,14 +68,14 @@ struct NodeSums {
 /// Accumulates the variances of pixels.
 class ErrorSums {
  public:
-  /// Adds a pixel: its contiguous nodes from sample 0 on, of which the first two MUST have equally
-  /// many samples. With the means a and b of the first two nodes, v = (a - b)^2 / 4 is the variance
-  /// of their common mean. The variance of a further node of mean e is estimated by (e - (a + b) /
-  /// 2)^2 - v, which is unbiased.
+  /// Adds a pixel. `nodes` are its contiguous nodes from sample 0 on; the first two MUST have
+  /// equally many samples. Let a and b be the means of the first two nodes. The variance of their
+  /// common mean is estimated by v = (a - b)^2 / 4. The variance of a further node of mean e is
+  /// estimated by (e - (a + b) / 2)^2 - v, which is unbiased.
   void add(absl::Span<const NodeSums> nodes);
   /// Ends a group of pixels: those added since the last call. The errors of pixels in one group
   /// (render/pixel_groups.h) may be correlated by path reuse. The errors of pixels in different
-  /// groups are not correlated. The margin accounts for that.
+  /// groups are not correlated. The margin accounts for the correlations within groups.
   void end_group();
 
   /// Returns the estimate. At least one pixel MUST have been added, and its group ended.

@@ -120,6 +120,7 @@ struct Film::Rows {
 
   std::uint32_t width() const { return strips.grid().width; }
   std::uint32_t height() const { return strips.grid().height; }
+  /// Returns the nodes of strip `index` of row y.
   StripNodes& of(std::uint32_t y, std::uint32_t index) {
     return nodes[std::size_t{y} * strips.per_row() + index];
   }
@@ -151,10 +152,11 @@ struct Film::Rows {
   void add_errors(F f) const;
   /// Collects in `out` a pixel's contiguous nodes from the first sample on.
   void node_sums(const PixelPlace& place, std::vector<NodeSums>& out) const;
-  /// Adds the contiguous nodes from left to right: 3 numbers for each pixel of the strip.
+  /// Sets `total` to the sum of the contiguous nodes, added from left to right. `total` has at
+  /// least 3 numbers for each pixel of the strip.
   void add_up(const StripNodes& from, std::vector<double>& total) const;
-  /// Divides the contiguous nodes into two parts of about equal size, and adds the nodes of the
-  /// part that contains the first node. Returns the number of samples of this part.
+  /// Divides the contiguous nodes into two parts of about equal size, and adds to `total` the nodes
+  /// of the part that contains the first node. Returns the number of samples of this part.
   std::uint64_t add_first_part(const StripNodes& from, std::vector<double>& total) const;
 };
 

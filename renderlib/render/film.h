@@ -5,8 +5,8 @@
 // are present, and produces the image.
 //
 // In adaptive sampling, half tiles (half of the pixels of a tile) take their own samples in a pass
-// (render/tile_samples.h). Then a pixel's sum is the tree of those samples, and its value is their
-// mean.
+// (render/tile_samples.h). Then a pixel's sum is that of the samples that the pixel has taken,
+// added along the tree, and the pixel's value is the mean of these samples.
 
 #include <cstdint>
 #include <memory>
@@ -30,7 +30,8 @@ class Film {
 
   /// Creates an empty film. Memory grows as rows arrive: 24 bytes per pixel for each unmerged node;
   /// in the end two halves remain. `spill_folder` is the folder of the (unlinked) files that back
-  /// the sums; empty: anonymous memory. Returns RESOURCE_EXHAUSTED if memory or disk is full.
+  /// the sums; empty: anonymous memory. Returns INVALID_ARGUMENT if the size is out of range
+  /// (validate(RenderSettings)).
   static absl::StatusOr<Film> create(std::uint32_t width, std::uint32_t height,
                                      std::string spill_folder, Grain grain = Grain::kRows);
   Film(Film&&) noexcept;
@@ -38,9 +39,10 @@ class Film {
   ~Film();
 
   /// Adds rows of samples that are not covered. Returns FAILED_PRECONDITION, without changing
-  /// anything, if some samples of a row are covered already; RESOURCE_EXHAUSTED if memory or disk
-  /// is full. `tiles` says which samples the half tiles of the band took. For a film of rows it
-  /// MUST be TileSamples::whole(): all pixels took the samples of the band.
+  /// anything, if some samples of a row are covered already; INVALID_ARGUMENT if the band does not
+  /// fit the film; RESOURCE_EXHAUSTED if memory or disk is full. `tiles` says which samples the
+  /// half tiles of the band took. For a film of rows it MUST be TileSamples::whole(): all pixels
+  /// took the samples of the band.
   absl::Status add(const BandPixels& pixels, const TileSamples& tiles = {});
 
   /// Returns true if the samples [0, samples) are covered in every row: rendered, or skipped by
@@ -53,23 +55,25 @@ class Film {
   /// in `missing_rows`.
   struct Snapshot {
     Image image;
-    std::uint64_t least_samples = 0;  ///< minimum over the rows, in samples of the passes
+    /// The largest n for which the samples [0, n) are covered in all rows (see complete()).
+    std::uint64_t least_samples = 0;
     std::uint32_t missing_rows = 0;
   };
-  /// Returns an image of every row_step-th row (> 0); the counts are over these rows, too.
+  /// Returns an image of every row_step-th row (row_step > 0). `least_samples` and `missing_rows`
+  /// are for these rows only.
   Snapshot snapshot(std::uint32_t row_step = 1) const;
 
-  /// Returns the error of the samples that a snapshot shows; std::nullopt until every row has two
+  /// Returns the error of the samples that a snapshot shows; std::nullopt until every pixel has two
   /// halves of equal size.
   std::optional<ErrorEstimate> error() const;
 
-  /// One of two independent parts of the samples that a snapshot shows: the first nodes of the
-  /// tree, about half of the samples.
+  /// One of two independent parts of the samples that a snapshot shows. It contains each pixel's
+  /// first node of the tree, and about half of its samples.
   struct FirstPart {
     Image mean;
     std::vector<float> share;  ///< share in each pixel's samples, (0, 1)
   };
-  /// Returns std::nullopt until every row has two nodes, that is, more than one block. In a
+  /// Returns std::nullopt until every pixel has two nodes, that is, more than one block. In a
   /// complete film, the part has first_part_samples() samples of each pixel (render/first_part.h).
   std::optional<FirstPart> first_part() const;
 

@@ -1,8 +1,8 @@
 // A film divides the samples of each pixel into two parts of about equal size, and offers the image
-// of the first part by itself: from it and the rest, the denoiser learns how noisy the image is.
-// The division is by nodes of the summation tree (ranges of 2^k blocks of samples). For an image
-// that is read from a file, this file computes from the number of samples alone how many the first
-// part has.
+// of the first part by itself. From the images of the two parts, the denoiser learns how noisy the
+// image is. The division is by nodes of the summation tree (ranges of 2^k blocks of samples). For
+// an image that is read from a file, this file computes from the number of a pixel's samples alone
+// how many of them are in the first part.
 
 #include "renderlib/render/first_part.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// The functions of a kernel (kernel.h) other than Scene::build_with. They are compiled once for
-// each kernel, that is, for each instruction set. They MUST only be called through `Kernel`,
-// because the machine may lack the instruction set of a kernel.
+// The functions of a kernel (kernel.h) other than Scene::build_with and fit(). They are compiled
+// once for each kernel, that is, for each instruction set. They MUST only be called through
+// `Kernel`, because the machine may lack the instruction set of a kernel.
 
 #include "renderlib/render/hash64.h"
 #include "renderlib/render/render_band.h"

@@ -85,7 +85,7 @@ void PixelSums::add_group(absl::Span<const PixelPlace> places, const SampleRange
     const std::uint64_t first = samples.first + block * kBlockSamples;
     stack[top++] = leaf(places, {first, std::min(first + kBlockSamples, samples.last)},
                         absl::MakeSpan(pixels), counters);
-    // Each 1 at the end of the block's number means that this block completes a larger node.
+    // Each trailing 1 in the block's binary number means that the block completes a larger node.
     for (std::uint64_t pairs = block; (pairs & 1) != 0; pairs >>= 1) {
       --top;
       for (std::size_t i = 0; i < pixels.size(); ++i) {

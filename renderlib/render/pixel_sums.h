@@ -38,9 +38,9 @@ class PixelSums {
   void add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last, const TileSamples& tiles,
                absl::Span<double> sums, Counters& counters) const;
 
-  /// The same for the groups [first, last) of a half tile (tile_samples.h). A group of which only
-  /// some pixels lie in the band is traced as a whole; the other pixels are neither written nor
-  /// counted.
+  /// Does the same as add_run() for the groups [first, last) of a half tile (tile_samples.h). If
+  /// only some pixels of a group lie in the band, the group is traced as a whole, but the pixels
+  /// outside of the band are neither written nor counted.
   void add_groups(const PixelGroups& groups, std::uint32_t first, std::uint32_t last,
                   const TileSamples& tiles, absl::Span<double> sums, Counters& counters) const;
 

@@ -24,9 +24,10 @@ namespace {
 /// together.
 constexpr std::uint64_t kSamplesPerUnit = 1024;
 
-/// Partition of a band's pixels among threads. A strip is a row, and a unit a run of neighbours in
-/// it, whose rays use the same cached data. If pixels share paths, a strip is the part of a row of
-/// tiles that lies in the band, and a unit some groups of a half tile.
+/// Partition of a band's pixels among threads. A strip is a row, and a unit is a run of
+/// neighbouring pixels in it, because their rays use the same cached data. If pixels share paths, a
+/// strip is the part of a row of tiles that lies in the band, and a unit is some groups of a half
+/// tile.
 class Units {
  public:
   Units(const PixelSums& sums, const Band& band, const TileGrid& grid)
@@ -158,6 +159,7 @@ Preparation preparation_of(Pool& pool, const std::atomic<bool>& stop, const Rows
   return {pool, stop, progress ? [&progress] { progress(0); } : std::function<void()>()};
 }
 
+/// Returns the key of the training for these settings in the scene's guiding cache.
 GuidingKey field_key(const RenderSettings& settings) {
   return {settings.width, settings.height, settings.max_depth,
           settings.integrator == Integrator::kPath};
@@ -173,6 +175,7 @@ absl::StatusOr<BandPixels> render_with_maps(const Render& render, const BandPart
   const std::vector<std::uint32_t> numbers = maps_of(part);
   if (numbers.size() > kMaxMaps) {
     const auto [first, second] = halves_of(part, render.settings.width);
+    // A row is complete only when the last part is rendered. So the first part reports 0 rows.
     const RowsDone no_rows = progress ? [&progress](std::uint32_t) { progress(0); } : RowsDone();
     ASSIGN_OR_RETURN(BandPixels pixels, render_with_maps(render, first, no_rows));
     ASSIGN_OR_RETURN(const BandPixels more, render_with_maps(render, second, progress));

@@ -15,16 +15,16 @@
 
 namespace bandsaw {
 
-/// Called from a pool thread each time a row is complete, with the number of complete rows (each
-/// value 1..rows once, possibly out of order), and with 0 after each step of a preparation
-/// (integrate/preparation.h); MUST be fast and thread-safe.
+/// Called from a pool thread each time a row is complete, with the number of complete rows. Each
+/// number from 1 to the number of rows is passed once, possibly out of order. Also called with 0
+/// after each step of a preparation (integrate/preparation.h). MUST be fast and thread-safe.
 using RowsDone = std::function<void(std::uint32_t)>;
 
 /// Renders the band. The pixels depend only on scene, settings, band and `tiles`. `tiles` says
-/// which samples half tiles take (tile_samples.h), for rows that include the band's; by default,
-/// all half tiles take the samples of the band. Sums of pixels without samples are zero. `progress`
-/// may be empty. Checks `stop` at least once per row of a tile and returns CANCELLED if it is set.
-/// Returns INVALID_ARGUMENT if settings or band are out of range.
+/// which samples half tiles take (tile_samples.h), and MUST include the rows of the band. By
+/// default, all half tiles take the samples of the band. Sums of pixels without samples are zero.
+/// `progress` may be empty. Checks `stop` at least once per row of a tile and returns CANCELLED if
+/// it is set. Returns INVALID_ARGUMENT if settings or band are out of range.
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,
                                        const Band& band, Pool& pool, const std::atomic<bool>& stop,
                                        const RowsDone& progress, const TileSamples& tiles = {});

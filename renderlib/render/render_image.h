@@ -17,9 +17,10 @@
 
 namespace bandsaw {
 
-/// Returns the passes (ranges of samples, each rendered of all rows) that make up samples
-/// [0, samples): one block, one block, two, four, …, so that each pass doubles the samples and
-/// leaves two halves for the error estimate; then the rest, node by node (band.h).
+/// Returns the passes that make up samples [0, samples). A pass is a range of samples that is
+/// rendered of all rows. The first passes have one block, one block, two blocks, four blocks, and
+/// so on. So each further pass doubles the number of samples and leaves two halves for the error
+/// estimate. The last passes are the remaining nodes (band.h), one by one.
 std::vector<SampleRange> passes_of(std::uint64_t samples);
 
 /// Returns the bands of the passes of samples [0, samples) over `rows`, pass by pass, from the top.

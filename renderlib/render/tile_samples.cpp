@@ -15,9 +15,11 @@ std::uint32_t tile_rows(const RowRange& rows) {
   return (rows.last + kTileSide - 1) / kTileSide - first_tile_row(rows);
 }
 
-/// Returns the part of `taken` (the samples of a half tile in `pass`) that is rendered with the
-/// samples `within` of the pass. All three are nodes. If the pass has more parts than `taken` has
-/// blocks, each block belongs to the first of several parts, and the other parts are empty.
+/// Returns the samples that a half tile takes in a band. In the whole pass with samples `pass`, the
+/// half tile takes the samples `taken`. The band has the samples `within`, which are one of several
+/// equal parts of the pass; the result is the corresponding part of `taken`. All three arguments
+/// are nodes. If there are more parts than blocks in `taken`, a block belongs to the first of
+/// several parts, and the result is empty for the others.
 SampleRange part_of(const SampleRange& taken, const SampleRange& pass, const SampleRange& within) {
   const std::uint64_t parts = pass.blocks() / within.blocks();
   const std::uint64_t part = (within.first_block() - pass.first_block()) / within.blocks();
