@@ -115,8 +115,9 @@ struct FlightRate {
 
   double operator()(const Region& region, double speed) const {
     const double majorant = medium.max_extinction() * region.most;
-    const double seen = region.emits ? kCollisionsWhereItEmits * speed / medium.regions().side : 0;
-    return std::max(majorant, seen);
+    const double for_emission =
+        region.emits ? kCollisionsWhereItEmits * speed / medium.regions().side : 0;
+    return std::max(majorant, for_emission);
   }
 };
 

@@ -86,10 +86,10 @@ std::vector<int> levels_of(std::vector<double> weights) {
     weight = std::min(weight, most);
     squares += weight * weight;
   }
-  const double even = std::sqrt(squares / count);
+  const double root_mean_square = std::sqrt(squares / count);
   std::vector<int> levels;
   for (const double weight : weights) {
-    levels.push_back(even > 0 ? level_of(weight / even) : level_of(1));
+    levels.push_back(root_mean_square > 0 ? level_of(weight / root_mean_square) : level_of(1));
   }
   return levels;
 }
@@ -112,7 +112,7 @@ class Pilot {
   std::vector<int> levels() const {
     std::vector<double> weights;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
-      weights.push_back(weight(here(i)));
+      weights.push_back(weight(blended_error(i)));
     }
     return levels_of(std::move(weights));
   }
@@ -141,7 +141,7 @@ class Pilot {
     return value.pixels > 0 ? value : mean_;
   }
   /// Returns the error of the tile i blended with around(i).
-  TileError here(std::size_t i) const {
+  TileError blended_error(std::size_t i) const {
     const TileError others = around(i);
     const TileError& own = tiles_[i];
     return own.pixels == 0

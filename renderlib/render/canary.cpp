@@ -42,7 +42,7 @@ Mesh pyramid() {
 
 /// Adds a group that rotates and moves, within a moving frame, and a static instance of the same
 /// group.
-void add_what_moves(SceneDescription& scene) {
+void add_moving_group(SceneDescription& scene) {
   std::get<PerspectiveCamera>(scene.camera).shutter = {0.5, 1.5};
   Geometry& g = scene.geometry;
   Shapes group;
@@ -97,7 +97,7 @@ SceneDescription every_feature() {
       {MeshId{0}, MaterialId{7}, translation({0.2, 0, -0.6}) * rotation({0, 1, 0.1}, 25)},
       {MeshId{0}, MaterialId{6}, translation({-1.9, 0, -0.8}) * scaling({-0.3, 0.5, 0.3})}};
   g.disks = {{{-2.2, 1.6, 0.3}, normalize(Vec3{1, 0.3, 0.8}), 0.4, MaterialId{5}}};
-  add_what_moves(scene);
+  add_moving_group(scene);
   return scene;
 }
 
@@ -224,7 +224,7 @@ SceneDescription outdoors() {
 
 /// Returns the scene of every_feature() with the materials of other renderers, and all properties
 /// that materials can have.
-SceneDescription of_other_materials() {
+SceneDescription with_other_materials() {
   SceneDescription scene = every_feature();
   const auto texture = [](std::uint32_t i) { return TextureId{i}; };
   const Microfacets brushed{
@@ -270,8 +270,8 @@ void add_render(Hash64& hash, const SceneDescription& description, const RenderS
 
 /// Returns settings of path tracing without guiding and photon maps. These need a pilot, which
 /// decides whether they are worthwhile and would take longer than the renders of the canary.
-RenderSettings path(std::uint32_t width, std::uint32_t height, std::uint32_t max_depth,
-                    std::uint64_t seed) {
+RenderSettings path_settings(std::uint32_t width, std::uint32_t height, std::uint32_t max_depth,
+                             std::uint64_t seed) {
   return {.width = width,
           .height = height,
           .max_depth = max_depth,
@@ -286,15 +286,15 @@ std::uint64_t canary(const Kernel* kernel) {
   Hash64 hash;
   hash.add(std::uint64_t{kPixelVersion});
   chosen.add_elementary_functions(hash);
-  add_render(hash, every_feature(), path(12, 9, 8, 20260), chosen);
-  add_render(hash, through_a_lens(), path(4, 3, 3, 1), chosen);
-  add_render(hash, flat_view(), path(4, 3, 3, 2), chosen);
-  add_render(hash, lit_from_outside(), path(6, 4, 4, 4), chosen);
-  add_render(hash, in_smoke(), path(6, 4, 5, 4), chosen);
-  add_render(hash, in_a_cloud(), path(6, 4, 5, 4), chosen);
-  add_render(hash, of_other_materials(), path(12, 9, 6, 9), chosen);
-  add_render(hash, room(), path(20, 4, 5, 5), chosen);
-  add_render(hash, outdoors(), path(8, 6, 5, 6), chosen);
+  add_render(hash, every_feature(), path_settings(12, 9, 8, 20260), chosen);
+  add_render(hash, through_a_lens(), path_settings(4, 3, 3, 1), chosen);
+  add_render(hash, flat_view(), path_settings(4, 3, 3, 2), chosen);
+  add_render(hash, lit_from_outside(), path_settings(6, 4, 4, 4), chosen);
+  add_render(hash, in_smoke(), path_settings(6, 4, 5, 4), chosen);
+  add_render(hash, in_a_cloud(), path_settings(6, 4, 5, 4), chosen);
+  add_render(hash, with_other_materials(), path_settings(12, 9, 6, 9), chosen);
+  add_render(hash, room(), path_settings(20, 4, 5, 5), chosen);
+  add_render(hash, outdoors(), path_settings(8, 6, 5, 6), chosen);
   for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,
                                       Integrator::kAlbedo, Integrator::kAmbientOcclusion}) {
     add_render(hash, flat_view(),

@@ -28,7 +28,7 @@ constexpr double kDivisorOffset = 0.01;
 // sqrt(10 / 3). That matters little in an image of many pixels; and if one of eight pixels is
 // bright, it dominates its group's square anyway. Rare bright samples occur in both T and V, which
 // makes the difference smaller.
-constexpr double kOfSquares = 1.5;
+constexpr double kVarianceOverSquares = 1.5;
 // Width of the margin in standard deviations of T - V. If T - V were normal, 1.64 would suffice in
 // 19 of 20 cases. The larger value covers repeated stopping decisions. It also covers images of few
 // pixels: their sums are skewed, and when V happens to be too small, so is the sum of squares from
@@ -125,7 +125,7 @@ ErrorEstimate ErrorSums::estimate() const {
   out.rmse = std::sqrt(std::max(0.0, squares_ / count));
   out.relative_mse = std::max(0.0, relative_squares_ / count);
   if (out.mean > 0) {
-    const double beyond = kDeviations * std::sqrt(kOfSquares * squared_variances_);
+    const double beyond = kDeviations * std::sqrt(kVarianceOverSquares * squared_variances_);
     out.relative_rmse = out.rmse / out.mean;
     out.margin =
         std::sqrt((std::max(0.0, squares_) + beyond) / count) / out.mean - out.relative_rmse;
