@@ -1,5 +1,5 @@
-// Connects executor, uploader and session: a task is rendered, its band is sent until the
-// coordinator has answered, and each event is reported to the session and logged.
+// Connects executor, uploader and session. The executor renders a task. The uploader sends the band
+// until the coordinator has answered. Each event is reported to the session and logged.
 
 #include "worker/band_pipeline.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// The part of a worker that renders: it loads the scenes of leased bands (a band is a range of rows
+// The part of a worker that renders. It loads the scenes of leased bands (a band is a range of rows
 // and samples), renders the bands, sends their pixels to the coordinator, and reports each event to
-// the session. The Daemon has one.
+// the session. The Daemon has one BandPipeline.
 
 #include <functional>
 #include <memory>
@@ -30,22 +30,25 @@ class BandPipeline {
   BandPipeline(SharedSession& session, std::unique_ptr<BlobCache> cache, int threads,
                const Kernel* kernel, CoordinatorApi& calls, LogTail log_tail, std::uint64_t seed);
 
-  /// Renders the band when the earlier ones are rendered, and sends its pixels.
+  /// Renders the band and then sends its pixels. Bands are rendered in the order of the calls (see
+  /// Executor).
   void start(const Task& task) { executor_.add(task); }
-  /// Cancels the rendering of a band, or drops its pixels: its lease was revoked.
+  /// Cancels the rendering of a band whose lease was revoked, or drops its pixels.
   void stop(TaskId task);
   /// Called when the coordinator is reachable again.
   void connected() { uploader_.retry_now(); }
 
  private:
+  /// Loads a scene for the executor, as LoadScene.
   absl::StatusOr<std::shared_ptr<const Scene>> load(const wire::Digest& manifest,
                                                     const std::atomic<bool>& stop,
                                                     const Prepared& prepared);
   ExecutorEvents executor_events();
   void failed(TaskId task, const absl::Status& status);
-  /// Sends a band once; see Uploader for the errors.
+  /// Makes one attempt to send a band. The errors are those of SendBand (uploader.h).
   absl::StatusOr<farm::PutBandReply::Outcome> put(const FinishedBand& band);
-  /// Removes a band from the session: the coordinator has acknowledged or refused it.
+  /// Removes a band from the session after the coordinator has acknowledged it or refused it for
+  /// good. A refusal is reported as a failure of the band.
   void settled(TaskId task, const absl::StatusOr<farm::PutBandReply::Outcome>& outcome);
 
   SharedSession& session_;

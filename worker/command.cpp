@@ -60,8 +60,8 @@ std::string default_cache_folder() {
   return "";
 }
 
-/// FAILED_PRECONDITION: the floating-point unit is not in its default mode (round to nearest,
-/// nothing flushed to zero), which would change pixels.
+/// Returns FAILED_PRECONDITION if the floating-point unit is not in its default mode (round to
+/// nearest, nothing flushed to zero), because another mode would change pixels.
 absl::Status check_machine() {
   if (!float_mode_is_default()) {
     return absl::FailedPreconditionError(
@@ -71,8 +71,8 @@ absl::Status check_machine() {
   return absl::OkStatus();
 }
 
-/// A coordinator that offers this program for download reads its versions from this mark in the
-/// file; the program itself does not use it.
+/// A coordinator that offers this program for download reads the program's versions from this mark
+/// in the file. The program itself does not use the mark.
 [[gnu::used]] constexpr wire::WorkerMark kMark{.pixel_version = kPixelVersion,
                                                .version = BANDSAW_VERSION};
 
@@ -144,9 +144,9 @@ sigset_t watched_signals() {
   return set;
 }
 
-/// Drains at the first SIGTERM or SIGINT, exits at once at the second. Ignores SIGUSR1 and
-/// SIGUSR2 from other processes: batch systems send them as warnings. The signals MUST be blocked
-/// in all threads.
+/// Drains the daemon at the first SIGTERM or SIGINT, and ends the process at the second. Ignores
+/// SIGUSR1 and SIGUSR2 from other processes, because batch systems send them as warnings. The
+/// signals MUST be blocked in all threads.
 class SignalWatch {
  public:
   explicit SignalWatch(Daemon& daemon) : thread_([this, &daemon] { watch(daemon); }) {}

@@ -156,7 +156,7 @@ void Daemon::Impl::note_log(const farm::ToWorker& message) {
   }
   if (message.has_welcome()) {
     options_.log->again(message.welcome().epoch() != epoch_);
-  } else if (!message.has_refused()) {  // a refusal begins a stream, on which nothing was sent
+  } else if (!message.has_refused()) {  // on a refused stream, no lines were sent
     options_.log->arrived();
   }
 }

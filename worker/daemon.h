@@ -1,7 +1,7 @@
 #pragma once
 
-// The worker as a whole: keeps a session stream to the coordinator open, reconnecting without end,
-// and connects session, cache, executor and uploader.
+// The worker as a whole. It keeps a session stream to the coordinator open, reconnects whenever the
+// stream is lost, and connects session, cache, executor and uploader.
 
 #include <functional>
 #include <memory>
@@ -21,8 +21,9 @@ namespace bandsaw::worker {
 
 class LogQueue;  // worker/log_queue.h
 
-/// Returns an implementation that is used instead of `calls`, which outlives it. A test uses it to
-/// make a worker that returns wrong pixels.
+/// A function that returns an implementation of the calls, which is used instead of `calls`.
+/// `calls` outlives this implementation. A test uses such a function to make a worker that returns
+/// wrong pixels.
 using WrapCalls = std::function<std::unique_ptr<CoordinatorApi>(CoordinatorApi& calls)>;
 
 struct DaemonOptions {

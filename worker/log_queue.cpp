@@ -1,6 +1,6 @@
 // A sink of spdlog that keeps lines until they are sent. Sent lines may be lost: a connection may
-// break before they arrive, and a coordinator that restarts may lose those that it has received.
-// again() puts the last ones back into the queue.
+// break before they arrive, and a coordinator that restarts may lose lines that it has received.
+// again() puts the last sent lines back into the queue.
 
 #include "worker/log_queue.h"
 

@@ -12,18 +12,19 @@
 
 namespace bandsaw::worker {
 
-/// A bounded queue: when it is full, the oldest lines are dropped, and a line with their number
+/// A bounded queue. When it is full, the oldest lines are dropped, and a line with their number
 /// takes their place.
 class LogQueue final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   /// Removes and returns the oldest lines, at most `most`. Thread-safe.
   std::vector<std::string> take(std::size_t most);
-  /// To be called for each message of the coordinator that is not a Welcome: the lines taken so far
-  /// count as arrived. Thread-safe.
+  /// To be called for each message of the coordinator except Welcome and Refused. The lines taken
+  /// so far then count as arrived. Thread-safe.
   void arrived();
   /// To be called when the coordinator has accepted a new connection. Puts the lines taken since
-  /// arrived() back into the queue, or all taken lines if the coordinator has `restarted`; at most
-  /// the last 50. If more were taken since arrived(), the others count as dropped. Thread-safe.
+  /// arrived() back into the queue. If the coordinator has `restarted`, puts all taken lines back.
+  /// At most the last 50 lines are put back. If more lines were taken since arrived(), the earlier
+  /// ones count as dropped. Thread-safe.
   void again(bool restarted);
 
  protected:

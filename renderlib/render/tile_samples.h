@@ -1,17 +1,18 @@
 #pragma once
 
-// Tiles of an image, and the samples that they take in a pass (a range of samples that is rendered
-// of the whole image).
+// Tiles of an image, and the samples that they take in a pass. A pass is one range of samples,
+// rendered for the whole image.
 //
 // The image is divided into tiles of 16 x 16 pixels from its top left; tiles at the right and lower
 // edge may be smaller. The pixels of a tile form 32 groups of eight (render/tile_pattern.h). The
 // even groups are one half tile, and the odd groups are the other one. Each half tile has eight
 // pixels in every row of a whole tile. A half tile is the unit of adaptive sampling
-// (render/adaptive_plan.h): its number of samples is decided from the errors of the other half.
+// (render/adaptive_plan.h). The errors of one half of the image decide how many samples the half
+// tiles of the other half take.
 //
-// In each pass, a half tile takes the next node (render/band.h) of its own sequence of samples, or
-// none, as the plan says. So it always has the first samples of its sequence, and the pass
-// determines only when it takes them.
+// Each half tile has its own sequence of samples. In each pass, the half tile takes the next node
+// (render/band.h) of this sequence, or none, as the plan says. So it always has the first samples
+// of its sequence, and the pass determines only when the half tile takes them.
 
 #include <array>
 #include <cstddef>
@@ -36,7 +37,7 @@ struct TileGrid {
   friend bool operator==(const TileGrid&, const TileGrid&) = default;
 };
 
-/// Returns the half of its tile, 0 or 1, to which a pixel belongs.
+/// Returns the half of its tile to which a pixel belongs: 0 is the even half, 1 the odd half.
 inline std::uint32_t half_of(std::uint32_t x, std::uint32_t y) { return group_in_tile(x, y) & 1; }
 
 /// The pixels of one row of a half tile, from left to right. May be empty at the edge.
@@ -86,9 +87,10 @@ class TileSamples {
   std::uint64_t count(std::uint32_t width, const Band& band) const;
   /// Returns the part for some of the rows.
   TileSamples of(const RowRange& rows) const;
-  /// Returns the part for a band with some of the rows and a node of samples within the pass: the
-  /// band takes the corresponding part of each half tile's samples. For example, the first half of
-  /// a pass takes the first half of them, or the only block.
+  /// Returns the part for a band. The band has some of the rows, and its samples are a node within
+  /// `pass`, for which this object was made. The band takes the corresponding part of each half
+  /// tile's samples. For example, a band with the first half of the pass takes the first half of
+  /// the half tile's samples, or all of them if they are a single block.
   TileSamples of(const SampleRange& pass, const Band& band) const;
 
   /// Returns two numbers for each half tile in the order of TileGrid: its first sample and its
@@ -98,7 +100,8 @@ class TileSamples {
   friend bool operator==(const TileSamples&, const TileSamples&) = default;
 
  private:
-  /// Samples of one half tile: half the size of a SampleRange, because a pass has many of them.
+  /// The samples [first, last) of one half tile. This struct has half the size of a SampleRange,
+  /// because a pass has many half tiles.
   struct Taken {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
@@ -116,7 +119,7 @@ class TileSamples {
   std::vector<Taken> taken_;
 };
 
-// The coordinator checks bands of workers with these functions.
+// The coordinator checks the bands that workers send with the following functions.
 
 /// Returns INVALID_ARGUMENT if the sums of a pixel without samples are not zero. `tiles` covers at
 /// least the band's rows.

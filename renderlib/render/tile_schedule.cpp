@@ -1,6 +1,7 @@
 // Decides in each pass which half tiles (the units of adaptive sampling) take their next node of
-// samples. A half tile takes it if it is behind the plan by more samples than a threshold. The
-// threshold differs between half tiles, so that not all of them take a node in the same pass.
+// samples. A half tile takes its next node if it is behind the plan by more samples than a
+// threshold. The threshold differs between half tiles, so that not all of them take a node in the
+// same pass.
 
 #include "renderlib/render/tile_schedule.h"
 
@@ -19,9 +20,11 @@ double spread(std::size_t i) {
   return static_cast<std::uint32_t>(i * 2'654'435'769u) / 4'294'967'296.0;
 }
 
-/// Returns the number of samples of the next node after `samples` samples, which are whole blocks.
-/// The node is the longest that may begin there. It is limited to a quarter of the current octave
-/// or to the samples owed, whichever is larger.
+/// Returns the number of samples of the next node of a half tile that has `samples` samples, which
+/// are whole blocks. `owed` is the number of samples by which the half tile is behind the plan. The
+/// node is the longest that may begin after `samples`, with two limits, of which the larger one
+/// counts: a quarter of the largest power of two up to `samples`, and the largest power of two up
+/// to `owed`. The node has at least one block.
 std::uint64_t next_step(std::uint64_t samples, double owed) {
   const std::uint64_t aligned = longest_at(samples / kBlockSamples) * kBlockSamples;
   const std::uint64_t quarter = std::bit_floor(samples) / 4;

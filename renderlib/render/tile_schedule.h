@@ -1,8 +1,8 @@
 #pragma once
 
 // Schedule of the samples that a plan (adaptive_plan.h) gives to half tiles (tile_samples.h). The
-// coordinator makes one for each adaptive job. A pass is a range of samples that is rendered of the
-// whole image.
+// coordinator makes one schedule for each adaptive job. A pass is one range of samples, rendered
+// for the whole image.
 
 #include <array>
 #include <cstdint>
@@ -16,19 +16,21 @@ namespace bandsaw {
 
 /// Decides which samples half tiles take in each pass after the pilot.
 ///
-/// A half tile always has the first samples of its own sequence: 4, 5, 6 or 7 quarters of 2^k. If
-/// some samples were left out, the others would not form nets of Sobol' points. Complete nets
-/// matter, because in smooth regions the error falls with each of them. A half tile takes its next
-/// quarter when the plan gives it that many samples. Half tiles of equal share take it in different
-/// passes, spread evenly over the image, so that on average they have what the plan gives. If all
-/// levels of a half of the image are 6 (uniform), it takes the samples of each pass.
+/// A half tile always has the first samples of its own sequence, and their number is 4, 5, 6 or 7
+/// quarters of 2^k. If some samples were left out, the others would not form nets of Sobol' points.
+/// Complete nets matter, because in smooth regions the error falls with each complete net.
+///
+/// A half tile takes its next node when it is far enough behind the plan. Half tiles of equal share
+/// take their nodes in different passes, spread evenly over the image. So on average the half tiles
+/// have as many samples as the plan gives. If all levels of one half of the image (even or odd) are
+/// 6 (uniform), all half tiles of this half take the samples of each pass.
 class TileSchedule {
  public:
-  /// `plan.levels` has one digit 0 to f for each half tile.
+  /// `plan.levels` MUST have one digit 0 to f for each half tile.
   TileSchedule(const TileGrid& grid, const TilePlan& plan);
 
-  /// Returns the samples for `pass`, which MUST follow the previous one; the first pass follows the
-  /// pilot.
+  /// Returns the samples of all half tiles in `pass`. `pass` MUST begin where the previous pass
+  /// ended, and the first pass where the pilot ended.
   TileSamples next(const SampleRange& pass);
 
  private:
@@ -38,7 +40,7 @@ class TileSchedule {
 
   TileGrid grid_;
   TilePlan plan_;
-  /// For each half of the image: true if all its levels are 6.
+  /// For each half of the image (even, odd): true if all its levels are 6 (uniform).
   std::array<bool, 2> even_{true, true};
   std::vector<std::uint64_t> taken_;  ///< samples taken so far by each half tile
 };

@@ -1,8 +1,8 @@
 #pragma once
 
-// A hash that identifies what was rendered: workers send it with their bands, and the coordinator
-// compares it with that of the job. The job's number is not enough, because numbers are reused
-// after a coordinator's journal is restored from a copy or reset.
+// A hash that identifies the image that a band belongs to. Workers send it with their bands, and
+// the coordinator compares it with the hash of the job. The job's number is not enough, because
+// numbers are reused after a coordinator's journal is restored from a copy or reset.
 
 #include <cstdint>
 

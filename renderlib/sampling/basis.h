@@ -17,8 +17,7 @@ struct Basis {
 };
 
 /// Returns a right-handed basis whose z is the unit vector n (Duff et al. 2017, "Building an
-/// Orthonormal Basis, Revisited", JCGT 6(1), listing 3: there is no special case except for the
-/// sign of n.z).
+/// Orthonormal Basis, Revisited", JCGT 6(1), listing 3). The sign of n.z is the only special case.
 inline Basis orthonormal_basis(const Vec3& n) {
   const double sign = std::copysign(1.0, n.z);
   const double a = -1.0 / (sign + n.z);

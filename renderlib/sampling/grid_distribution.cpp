@@ -12,7 +12,7 @@
 namespace bandsaw {
 namespace {
 
-/// A step of a cumulative sum, and the place within it, in [0, 1).
+/// A step of a cumulative sum, and the position `rest` within this step, in [0, 1).
 struct Step {
   std::size_t index;
   double rest;
@@ -23,7 +23,7 @@ struct Step {
 Step invert(absl::Span<const double> ends, double number) {
   const double target = number * ends.back();
   auto end = std::upper_bound(ends.begin(), ends.end(), target);
-  // The product was rounded up to the total: use the last step of non-zero weight.
+  // If the product was rounded up to the total, use the last step of non-zero weight.
   if (end == ends.end()) {
     end = std::lower_bound(ends.begin(), ends.end(), ends.back());
   }

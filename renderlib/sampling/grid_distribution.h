@@ -18,7 +18,7 @@ class GridDistribution {
     std::uint32_t column = 0;
     std::uint32_t row = 0;
     double u = 0;  ///< remainder of the random number for the column, rescaled to [0, 1)
-    double v = 0;  ///< the same for the row
+    double v = 0;  ///< remainder of the random number for the row, rescaled to [0, 1)
   };
 
   GridDistribution() = default;

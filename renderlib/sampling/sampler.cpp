@@ -47,8 +47,9 @@ UInt scramble_reversed(UInt x, UInt seed) {
   return x;
 }
 
-/// Recurrence of a Sobol' dimension (Joe and Kuo 2008), which computes each direction number from
-/// the `degree` previous ones: the primitive polynomial, and the first direction numbers.
+/// Recurrence of a Sobol' dimension (Joe and Kuo 2008). It computes each direction number from the
+/// `degree` previous direction numbers. It is given by a primitive polynomial and the first
+/// direction numbers.
 struct Polynomial {
   int degree;
   std::uint32_t coefficients;  ///< bits of the inner coefficients

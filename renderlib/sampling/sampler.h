@@ -1,11 +1,12 @@
 #pragma once
 
-// The random numbers of samples: a pure function of (seed, pixel, sample index, dimension), so that
-// any machine can render any sample. They are Owen-scrambled Sobol' points in groups of four
-// dimensions, each group with its own shuffle and scrambling (padding): Burley 2020, "Practical
-// Hash-based Owen Scrambling", JCGT 9(4), section 4; scramble constants of Vegdahl 2021. Each group
-// has a fixed meaning (kGroupCamera and the functions group_... below); there is no "next number",
-// so that paths of different length stay stratified.
+// The random numbers of samples. Each number is a pure function of (seed, pixel, sample index,
+// dimension), so that any machine can render any sample. The numbers are Owen-scrambled Sobol'
+// points in groups of four dimensions. Each group has its own shuffle and scrambling (padding):
+// Burley 2020, "Practical Hash-based Owen Scrambling", JCGT 9(4), section 4, with the scramble
+// constants of Vegdahl 2021. Each group has a fixed meaning (kGroupCamera and the functions
+// group_... below). There is no function for "the next number", so that paths of different length
+// stay stratified.
 
 #include <array>
 #include <cstdint>
@@ -23,8 +24,8 @@ struct SampleKey {
   std::uint64_t sample = 0;
 };
 
-/// Pixel coordinates from this one on are outside of the largest image, whose sides have 2^16
-/// pixels. Photons and the training of path guiding take their numbers there.
+/// Pixel coordinates of at least this value are outside of the largest image, whose sides have 2^16
+/// pixels. Photons and the training of path guiding use such coordinates for their random numbers.
 inline constexpr std::uint32_t kBeyondImages = 1u << 24;
 
 /// Four numbers in [0, 1), multiples of 2^-32. Any aligned power-of-two range of samples of one
@@ -33,7 +34,7 @@ inline constexpr std::uint32_t kBeyondImages = 1u << 24;
 using Sample4 = std::array<double, 4>;
 
 /// An unbounded stream of independent numbers, for loops whose length is random (tracking in media
-/// that vary in space): SplitMix64, a pure function of its seed.
+/// that vary in space). The generator is SplitMix64. The numbers are a pure function of its seed.
 class NumberStream {
  public:
   explicit constexpr NumberStream(std::uint64_t seed) : state_(seed) {}
@@ -103,7 +104,7 @@ enum class ShadowUse : std::uint32_t {
   kLens,           ///< light sampling through the lens
   kMediumSegment,  ///< light sampling in media segment 0; segment n has kMediumSegment + n
 };
-/// Transmittance of media along a shadow ray of scattering `bounce` (below 2^11): a stream.
+/// Stream for the transmittance of media along a shadow ray of scattering `bounce` (below 2^11).
 /// `segment` (below 2^17) is the number of the media segment for kMediumSegment, otherwise 0.
 constexpr std::uint32_t group_shadow(std::uint32_t bounce, ShadowUse use,
                                      std::uint32_t segment = 0) {

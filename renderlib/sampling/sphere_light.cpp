@@ -12,15 +12,16 @@ namespace bandsaw {
 namespace {
 
 /// At distances from the centre below this multiple of the radius, the cone is so wide that area
-/// sampling is equally good. The sample and its pdf use the same criterion.
+/// sampling is equally good. sample_sphere_light() and sphere_light_pdf() use the same criterion.
 constexpr double kNear = 1 + 0x1p-20;
 
+/// Returns true if a cone is sampled. `distance2` is the squared distance from the centre.
 bool sees_cone(double distance2, double radius) {
   return distance2 > radius * radius * (kNear * kNear);
 }
 
-/// Tolerance for the cosine of a sampled point's normal on the rim, which may be positive by
-/// rounding.
+/// On the rim of the visible part, the cosine between the normal and the direction to the point is
+/// 0, and may be positive after rounding. Points with a cosine up to this value count as visible.
 constexpr double kRimCosine = 1e-6;
 
 double area_pdf(double radius) { return kSpherePdf / (radius * radius); }
@@ -40,7 +41,7 @@ std::optional<SphereSample> sample_sphere_light(const Vec3& center, double radiu
   }
   const double distance = std::sqrt(distance2);
   const double sin2_max = radius * radius / distance2;
-  const double spread = one_minus_cos_from_sin2(sin2_max);
+  const double spread = one_minus_cos_from_sin2(sin2_max);  // 1 - cos of the cone's half-angle
   const Vec3 local = sample_cone(u, v, spread);
   // Let theta be the angle between the direction and the axis, and alpha the angle at the centre
   // between the axis towards the point and the normal where the direction first meets the sphere:
@@ -49,7 +50,8 @@ std::optional<SphereSample> sample_sphere_light(const Vec3& center, double radiu
   const double chord2 = std::max(0.0, 1 - sin2 / sin2_max);
   const double sin_max = radius / distance;
   const double cos_alpha = std::min(1.0, sin2 / sin_max + local.z * std::sqrt(chord2));
-  // sin alpha = (d cos theta - sqrt(r^2 - d^2 sin^2 theta)) sin theta / r.
+  // sin alpha = (d cos theta - sqrt(r^2 - d^2 sin^2 theta)) sin theta / r; `along` is
+  // sin alpha / sin theta.
   const double along = local.z / sin_max - std::sqrt(chord2);
   const Basis frame = orthonormal_basis(axis / distance);
   SphereSample sample;

@@ -1,8 +1,8 @@
 #pragma once
 
-// Samples a sphere as seen from a point, uniformly in solid angle: the directions form a cone if
-// the point is outside. For a point inside the sphere, on it or very near it, the area is sampled
-// uniformly instead.
+// Samples a sphere as seen from a point. If the point is outside, the directions form a cone, which
+// is sampled uniformly in solid angle. If the point is inside the sphere, on it or very near it,
+// the area is sampled uniformly instead.
 
 #include <optional>
 

@@ -12,7 +12,7 @@
 namespace bandsaw {
 namespace {
 
-/// Largest cosine of an angle that counts as right.
+/// Largest cosine of an angle that counts as a right angle.
 constexpr double kRightAngle = 1e-9;
 /// Below this solid angle, in steradians, the inversion loses precision, and area sampling is
 /// equally good.
@@ -40,8 +40,8 @@ std::optional<SphericalRectangle> SphericalRectangle::seen_from(const Vec3& poin
   r.z0_ = -std::abs(dot(to_corner, cross(x, y)));
   const double z2 = r.z0_ * r.z0_;
   // z components of the unit normals of the planes through the point and each edge, in the order
-  // y0, x1, y1, x0. The normals of adjacent planes have no other component in common, so the
-  // product is the cosine of the angle between the planes.
+  // y0, x1, y1, x0. For two adjacent planes, z is the only component that is not 0 in both normals.
+  // So the product of their z components is the cosine of the angle between the normals.
   const std::array<double, 4> n = {
       -r.y0_ / std::sqrt(r.y0_ * r.y0_ + z2), r.x1_ / std::sqrt(r.x1_ * r.x1_ + z2),
       r.y1_ / std::sqrt(r.y1_ * r.y1_ + z2), -r.x0_ / std::sqrt(r.x0_ * r.x0_ + z2)};

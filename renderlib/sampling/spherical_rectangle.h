@@ -18,8 +18,8 @@ bool is_rectangle(const Vec3& u, const Vec3& v);
 class SphericalRectangle {
  public:
   /// Creates the rectangle corner + a u + b v as seen from `point`; is_rectangle(u, v) MUST be
-  /// true. Returns std::nullopt if its solid angle is below 1e-9 steradians or it is seen exactly
-  /// edge-on: sample its area instead.
+  /// true. Returns std::nullopt if the solid angle is below 1e-9 steradians or if the rectangle is
+  /// seen exactly edge-on. The caller then samples the rectangle's area instead.
   static std::optional<SphericalRectangle> seen_from(const Vec3& point, const Vec3& corner,
                                                      const Vec3& u, const Vec3& v);
 

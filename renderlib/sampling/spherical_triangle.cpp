@@ -14,6 +14,7 @@ namespace {
 /// Returns the normalised component of `v` perpendicular to the unit vector n.
 Vec3 across(const Vec3& v, const Vec3& n) { return normalize(v - n * dot(v, n)); }
 
+/// Returns the square root, or 0 if rounding has made `square` negative.
 double root(double square) { return std::sqrt(std::max(0.0, square)); }
 
 }  // namespace
@@ -29,6 +30,7 @@ std::optional<SphericalTriangle> SphericalTriangle::seen_from(const Vec3& point,
   const double la = length(t.to_a_);
   const double lb = length(to_b);
   const double lc = length(to_c);
+  // tan(solid angle / 2) = volume / beside (Van Oosterom and Strackee 1983).
   const double volume = std::abs(dot(t.to_a_, cross(u, v)));
   const double beside =
       la * lb * lc + dot(t.to_a_, to_b) * lc + dot(to_b, to_c) * la + dot(to_c, t.to_a_) * lb;
@@ -56,8 +58,9 @@ Vec2 SphericalTriangle::on_plane(const Vec3& direction) const {
 }
 
 Vec2 SphericalTriangle::sample(double s, double t) const {
-  // Arvo's algorithm with phi = share - alpha: first the side of the sub-triangle with the given
-  // share of the area, then a point between it and b.
+  // Arvo's algorithm with phi = share - alpha, where `share` is s times the solid angle. First a
+  // sub-triangle with the solid angle `share` is found by its vertex c, which lies on the side from
+  // a to the triangle's vertex c. Then a point between this vertex and b is sampled.
   const SinCos share = sincos_turns(s * solid_angle_ * (0.5 * kInvPi));
   const double sin_phi = share.sin * cos_alpha_ - share.cos * sin_alpha_;
   const double cos_phi = share.cos * cos_alpha_ + share.sin * sin_alpha_;

@@ -18,7 +18,8 @@ class SphericalTriangle {
   static constexpr double kMinSolidAngle = 1e-3;
 
   /// Creates the triangle a, a + u, a + v as seen from `point`. Returns std::nullopt if its solid
-  /// angle is below kMinSolidAngle or it is seen edge-on: sample its area instead.
+  /// angle is below kMinSolidAngle or if it is seen edge-on. The caller then samples its area
+  /// instead.
   static std::optional<SphericalTriangle> seen_from(const Vec3& point, const Vec3& a, const Vec3& u,
                                                     const Vec3& v);
 
@@ -43,7 +44,7 @@ class SphericalTriangle {
   Vec3 toward_c_;         ///< unit tangent at a, towards c
   double cos_c_ = 0;      ///< cosine of the side from a to b
   double sin_alpha_ = 0;  ///< sine of the angle at a
-  double cos_alpha_ = 0;
+  double cos_alpha_ = 0;  ///< cosine of the angle at a
   double solid_angle_ = 0;
 };
 

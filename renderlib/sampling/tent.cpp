@@ -1,5 +1,5 @@
-// One of the two sides of a tent is chosen, and then a point on it. In latitude the density has a
-// factor sin(theta), and its distribution is inverted by Newton's method.
+// One of the two sides of a tent is chosen, and then a point on this side. In latitude the density
+// has a factor sin(theta), and the distribution is inverted by Newton's method.
 
 #include "renderlib/sampling/tent.h"
 
@@ -14,10 +14,11 @@ namespace {
 
 constexpr double kTurnsPerRadian = 0.5 * kInvPi;
 
-/// One side of a tent in latitude: from the row's centre over `width` radians towards theta = 0
-/// (sign -1) or away from it (sign +1). Its density is (1 - s / width) sin(centre + sign s).
+/// One side of a tent in latitude. It reaches from the row's centre over `width` radians towards
+/// theta = 0 (sign -1) or away from theta = 0 (sign +1). At the distance s from the centre, in
+/// radians, the density is (1 - s / width) sin(centre + sign s).
 struct Side {
-  SinCos centre;
+  SinCos centre;  ///< sine and cosine of theta at the row's centre
   double sign;
   double width;
 
@@ -35,7 +36,8 @@ struct Side {
   }
   double mass() const { return at(width).mass; }
 
-  /// Returns s at which the integral is the share u of the total: Newton's method within a bracket.
+  /// Returns the s up to which the integral of the density is u times the total. Uses Newton's
+  /// method within a bracket.
   double inverse(double u) const {
     const double target = u * mass();
     double low = 0;
@@ -79,9 +81,9 @@ struct LatitudeTent {
   double above() const { return first ? cap() : side(-1).mass(); }
   double below() const { return last ? cap() : side(1).mass(); }
 
-  double width;   ///< of a row, in radians
-  double theta;   ///< angle of the row's centre from the top
-  SinCos centre;  ///< of theta
+  double width;   ///< width of a row, in radians
+  double theta;   ///< angle of the row's centre from the top, in radians
+  SinCos centre;  ///< sine and cosine of theta
   bool first;     ///< the row touches the pole at theta = 0
   bool last;      ///< the row touches the other pole
 };
@@ -94,8 +96,8 @@ double sample_tent(std::uint32_t index, std::uint32_t texels, Ends ends, double 
   const double rest = below ? 2 * u : 2 * u - 1;
   const bool flat = ends == Ends::kClamped && index == (below ? 0 : texels - 1);
   if (flat) {
-    // The half texel at the border, constant 1, has the same weight as a whole texel that falls to
-    // 0.
+    // Towards the border, the tent is 1 over half a texel. This side has the same integral, 1/2, as
+    // the other side, which falls from 1 to 0 over a whole texel.
     return below ? 0.5 * rest : centre + 0.5 * rest;
   }
   const double x = below ? centre - 1 + std::sqrt(rest) : centre + 1 - std::sqrt(1 - rest);

@@ -1,8 +1,9 @@
 #pragma once
 
-// Tent-shaped interpolation kernel of a texel: it is 1 at the texel's centre and falls linearly to
-// 0 at the centres of its neighbours. To sample a linearly interpolated image exactly, one samples
-// a texel by its weight and then a point from its tent (light/environment_light.h).
+// Tent-shaped interpolation kernel of a texel. The kernel is 1 at the texel's centre and falls
+// linearly to 0 at the centres of the neighbouring texels. A linearly interpolated image is sampled
+// exactly by first sampling a texel by its weight, and then a point from the tent of this texel
+// (light/environment_light.h).
 
 #include <cstdint>
 
@@ -15,10 +16,12 @@ enum class Ends : std::uint8_t { kWrapped, kClamped };
 /// [0, 1).
 double sample_tent(std::uint32_t index, std::uint32_t texels, Ends ends, double u);
 
-/// Returns the integral of tent * sin(theta) over a full turn: the solid angle of the tent of a row
-/// of a latitude-longitude image with `rows` rows, where theta in [0, pi] is measured from its top.
+/// Returns the integral of tent * sin(theta) over a full turn, for the tent of row `row` of a
+/// latitude-longitude image with `rows` rows. theta in [0, pi] is measured from the top of the
+/// image.
 double latitude_tent_solid_angle(std::uint32_t row, std::uint32_t rows);
-/// Samples theta, in radians, with a pdf proportional to tent * sin(theta); v in [0, 1).
+/// Samples theta, in radians, with a pdf proportional to tent * sin(theta), for the same tent; v in
+/// [0, 1).
 double sample_latitude_tent(std::uint32_t row, std::uint32_t rows, double v);
 
 }  // namespace bandsaw

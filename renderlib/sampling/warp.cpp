@@ -39,13 +39,14 @@ Vec2 swapped(const Vec2& v, std::uint64_t mask) {
   return {std::bit_cast<double>(x ^ change), std::bit_cast<double>(y ^ change)};
 }
 
-/// Returns the point of the unit circle at `turn` in [0, 1]. The quadrant is unpredictable, so
-/// there is no branch.
+/// Returns the point of the unit circle at the angle of `turn` turns, in [0, 1]. The quadrant is
+/// unpredictable, so there is no branch.
 Vec2 on_circle(double turn) {
   const double quarters = std::floor(4 * turn + 0.5);
   const SinCos angle = sincos_eighths(2 * (4 * turn - quarters));
   const auto quarter = static_cast<std::uint64_t>(quarters);
   const Vec2 at = swapped({angle.cos, angle.sin}, -(quarter & 1));
+  // Bit 63 is the sign. Flips x in quarters 1 and 2, and y in quarters 2 and 3.
   return {std::bit_cast<double>(std::bit_cast<std::uint64_t>(at.x) ^ ((quarter + 1) & 2) << 62),
           std::bit_cast<double>(std::bit_cast<std::uint64_t>(at.y) ^ (quarter & 2) << 62)};
 }
@@ -58,8 +59,8 @@ Vec2 sample_disk(double u, double v) {
   if (a == 0 && b == 0) {
     return {0, 0};
   }
-  // The angle is pi / 4 b / a or pi / 2 - pi / 4 a / b. The choice between them is unpredictable,
-  // so there is no branch.
+  // The angle is (pi / 4) (b / a) or pi / 2 - (pi / 4) (a / b). The choice between the two is
+  // unpredictable, so there is no branch.
   const std::uint64_t swap = std::abs(a) > std::abs(b) ? 0 : ~std::uint64_t{0};
   const Vec2 ordered = swapped({a, b}, swap);
   const SinCos angle = sincos_eighths(ordered.y / ordered.x);
@@ -68,7 +69,8 @@ Vec2 sample_disk(double u, double v) {
 
 Vec3 sample_cosine_hemisphere(double u, double v) {
   const Vec2 d = sample_disk(u, v);
-  // On the rim rounding may leave 0 for z; a direction of pdf 0 must not be sampled.
+  // On the rim, rounding could make z 0. The minimum prevents this, because a direction of pdf 0
+  // must not be sampled.
   constexpr double kMinSquare = 0x1p-64;
   const double z = std::sqrt(std::max(kMinSquare, 1 - d.x * d.x - d.y * d.y));
   return {d.x, d.y, z};

@@ -33,8 +33,8 @@ absl::Status check_mesh_counts(absl::string_view field, std::uint64_t triangles,
 }
 
 absl::Status check_shape_counts(absl::string_view field, const ShapeCounts& counts) {
-  // Each count is a number of bytes below 2^64, divided by at least 24, so the sum does not
-  // overflow.
+  // Each count is a number of bytes, which is below 2^64, divided by at least 24. So the sum does
+  // not overflow.
   const std::uint64_t items =
       counts.spheres + 2 * counts.quads + counts.triangles + counts.disks + counts.instances;
   if (items > kMaxTreeItems) {

@@ -12,11 +12,11 @@
 
 namespace bandsaw {
 
-/// Maximum number of positions of a mesh: triangles refer to their corners by 32-bit indices.
+/// Maximum number of positions of a mesh. Triangles refer to their corners by 32-bit indices.
 inline constexpr std::uint64_t kMaxMeshPositions = std::uint64_t{1} << 32;
 
-/// Numbers of the shapes and instances that are in one BVH: either the BVH of the scene, which has
-/// those outside of groups and meshes, or the BVH of one group.
+/// Numbers of the shapes and instances that are in one BVH. This is the BVH of one group, or the
+/// BVH of the scene, which has the shapes and instances outside of groups and meshes.
 struct ShapeCounts {
   std::uint64_t spheres = 0;
   std::uint64_t quads = 0;
@@ -25,7 +25,8 @@ struct ShapeCounts {
   std::uint64_t instances = 0;
 };
 
-/// Returns INVALID_ARGUMENT if a BVH cannot hold the mesh, which `field` names: "meshes[3]: has
+/// Returns INVALID_ARGUMENT if a mesh has more triangles than a BVH can hold, or more than
+/// kMaxMeshPositions positions. `field` is the name of the mesh in the message: "meshes[3]: has
 /// 600000000 triangles, a mesh holds at most 536870911: split it into several meshes".
 absl::Status check_mesh_counts(absl::string_view field, std::uint64_t triangles,
                                std::uint64_t positions);

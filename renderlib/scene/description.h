@@ -19,8 +19,10 @@
 namespace bandsaw {
 
 struct SceneDescription {
-  Camera camera;                          ///< when the shutter opens, if it moves
-  std::optional<Camera> camera_at_close;  ///< absent: it does not move (camera.h, validate_motion)
+  Camera camera;  ///< the camera; if it moves, its state when the shutter opens
+  /// The camera's state when the shutter closes; absent if the camera does not move (camera.h,
+  /// validate_motion).
+  std::optional<Camera> camera_at_close;
   Background background;
   std::vector<Texture> textures;
   std::vector<Material> materials;

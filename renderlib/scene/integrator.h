@@ -1,7 +1,7 @@
 #pragma once
 
-// Integrators: what a sample of a pixel computes. Some return the arriving light, others a property
-// of the first surface (integrate/sample_value.h).
+// An integrator determines which value a sample of a pixel has. Some integrators return the
+// arriving light, others a property of the first surface (integrate/sample_value.h).
 
 #include <optional>
 
@@ -13,8 +13,9 @@ namespace bandsaw {
 
 /// The values are used in protocols and files.
 enum class Integrator {
-  /// Path tracing (integrate/path.h). This works as kPathGuided where a pilot shows that this pays
-  /// (integrate/guiding_gain.h), and otherwise as kPathPlain.
+  /// Path tracing (integrate/path.h). A pilot measures whether path guiding and photon maps are
+  /// worth their cost in the scene (integrate/guiding_gain.h). If they are, this integrator works
+  /// as kPathGuided, otherwise as kPathPlain.
   kPath = 0,
   kDirect = 1,   ///< direct light and the ambient term; paths continue at mirrors and glass
   kNormals = 2,  ///< (n + 1) / 2 of the shading normal in world space; black for a miss
@@ -22,7 +23,7 @@ enum class Integrator {
   kAlbedo = 4,   ///< albedo (material/albedo.h); black for a miss
   /// Share of cosine-weighted directions without a nearby surface; 1 for a miss.
   kAmbientOcclusion = 5,
-  kPathLights = 6,      ///< kPathPlain with light sampling alone, where a BSDF has a pdf
+  kPathLights = 6,      ///< kPathPlain, but with light sampling alone where a BSDF has a pdf
   kPathScattering = 7,  ///< kPathPlain with BSDF sampling alone
   /// Path tracing with path guiding (integrate/guiding_training.h). Caustics of small lamps
   /// (integrate/caustics.h) and indirect light (integrate/indirect_photons.h) come from photon
@@ -43,8 +44,8 @@ constexpr bool computes_radiance(Integrator integrator) {
 /// "path_scattering", "path_guided" or "path_plain"; for the guides of the denoiser
 /// (guide_integrators.h) "guide_albedo" or "guide_shape".
 absl::string_view integrator_name(Integrator integrator);
-/// The inverse of integrator_name(), except for the guides of the denoiser; std::nullopt for any
-/// other name.
+/// Returns the integrator with this name. Returns std::nullopt if there is none, and for the names
+/// of the guides of the denoiser.
 std::optional<Integrator> integrator_named(absl::string_view name);
 
 /// Scene parameters of kDirect and kAmbientOcclusion.

@@ -45,6 +45,9 @@ absl::Status check_use(const std::string& field, const std::optional<GridUse>& u
   return absl::OkStatus();
 }
 
+/// Checks the grids of a medium. The numbers of a temperature grid are multiplied by its scale
+/// alone, so their coefficient is 1. The numbers of an albedo grid have no maximum, so their
+/// coefficient is 0.
 absl::Status check_grids(const std::string& field, const Medium& medium,
                          const std::vector<float>& most_of) {
   const float emission = max_component(medium.emission);

@@ -7,11 +7,11 @@
 // medium that the scene names last. Outside of all shapes the medium is the fog; without fog there
 // is none.
 //
-// A medium may vary in space as given by grids (medium/medium.h). Their numbers are given in the
-// space of the medium, which moves with its boundary: the space of the boundary's frame
-// (geometry/frame.h), and the world's for a boundary without a frame. So several boundaries may
-// contain the same medium, each in a place of its own. Where boundaries of the same medium overlap,
-// the one with the highest number counts; loose spheres come before all instances.
+// A medium may vary in space as given by grids (medium/medium.h). The grids lie in the space of the
+// medium, which moves with the boundary. It is the space of the boundary's frame
+// (geometry/frame.h), or world space if the boundary has no frame. So several boundaries may
+// contain the same medium, each at its own place. Where boundaries of the same medium overlap, the
+// boundary with the highest number counts. Loose spheres come before all instances in this order.
 
 #include <optional>
 #include <vector>
@@ -33,8 +33,9 @@ struct Media {
   /// visible, the scene's own geometry contains it as well; otherwise it is invisible. Placements
   /// change the region of a medium, not its density: coefficients are per unit of world space.
   Geometry boundaries;
-  /// The medium outside of all boundaries, without end. MUST NOT have grids, nor emit where it
-  /// neither absorbs nor scatters (is_endless_glow): it would be infinitely bright.
+  /// The medium outside of all boundaries, which has no end. MUST NOT have grids. MUST NOT emit in
+  /// a channel in which it neither absorbs nor scatters (is_endless_glow), because it would be
+  /// infinitely bright.
   std::optional<MediumId> fog;
 
   bool has_boundaries() const {

@@ -1,6 +1,6 @@
 // Stores the frame of each boundary before static boundaries lose their frames
-// (static_instances.h). For a boundary that has lost its frame the map is computed once, for others
-// at each time.
+// (static_instances.h). The map of a boundary that has lost its frame is computed once. The map of
+// a boundary that moves is computed anew for each time.
 
 #include "renderlib/scene/medium_spaces.h"
 

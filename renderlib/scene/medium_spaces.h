@@ -17,7 +17,7 @@ class MediumSpaces {
   /// Stores the frames of all boundaries, before static ones lose them (static_instances.h).
   explicit MediumSpaces(const Geometry& boundaries);
 
-  /// Computes the maps of boundaries that are static, as at `time`.
+  /// Computes the maps of static boundaries from their original frames at `time`.
   void prepare(const Geometry& boundaries, double time);
 
   /// Returns the map from the world to the space of the medium in a boundary. `boundary` is
@@ -27,7 +27,7 @@ class MediumSpaces {
 
  private:
   std::vector<FrameId> frames_;   ///< the original frame of each instance
-  std::vector<Transform> still_;  ///< the map of each instance; unused for instances that move
+  std::vector<Transform> still_;  ///< the map of each static instance; unused for moving instances
 };
 
 }  // namespace bandsaw

@@ -46,8 +46,9 @@ void zero_if_not_finite(std::vector<std::array<float, N>>& list) {
   }
 }
 
-/// Returns true if a triangle of a mesh that deforms may be hit at some time: its corners are
-/// finite, as are their changes, and no two of them are equal at both ends.
+/// Returns true if a triangle of a mesh that deforms may be hit at some time. This holds if its
+/// corners and their movements are finite, and if no two corners are equal both when the shutter
+/// opens and when it closes.
 bool may_be_hit(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::array<float, 3>& open = mesh.positions[triangle[i]];
@@ -93,15 +94,15 @@ std::size_t clean_shapes(Shapes& shapes) {
                        [](const Triangle& t) { return !has_area(t.b - t.a, t.c - t.a); });
 }
 
-/// The meshes of earlier scenes, which were cleaned there, and the number of triangles that each
-/// lost.
+/// The meshes of earlier scenes, which were cleaned when those scenes were built, each with the
+/// number of triangles that it lost.
 using CleanMeshes = std::map<const Mesh*, std::size_t>;
 
-/// Removes quads and triangles, including those of meshes, whose area is zero or not finite (e.g.
-/// because a vertex is not finite); the others keep their order. Normals, uvs and colours that are
-/// not finite become zero. The meshes in `known` are clean already. Returns the number of removed
-/// primitives; those of a mesh or group count once per instance. Appends to `dropped_of_mesh` the
-/// number of triangles that each mesh lost.
+/// Removes quads and triangles whose area is zero or not finite (e.g. because a vertex is not
+/// finite), also from meshes and groups. The others keep their order. Normals, uvs and colours that
+/// are not finite become zero. The meshes in `known` are clean already. Returns the number of
+/// removed primitives; a primitive of a mesh or group counts once per instance. Appends to
+/// `dropped_of_mesh` the number of triangles that each mesh lost.
 std::size_t clean(Geometry& geometry, const CleanMeshes& known,
                   std::vector<std::size_t>& dropped_of_mesh) {
   std::size_t dropped = clean_shapes(geometry);
@@ -171,9 +172,9 @@ bool all_of_shapes(const Shapes& shapes, const OfMaterial& test) {
   return all(shapes.spheres) && all(shapes.quads) && all(shapes.triangles) && all(shapes.disks);
 }
 
-/// Returns true if area and delta lights emit all the light (the background is black), nothing
-/// moves, there are no media, and every surface is either opaque or absent, for paths and shadow
-/// rays alike. `features` are those that the scene uses.
+/// Returns true if neighbouring pixels can reuse each other's path vertices. This needs lights, a
+/// black background, no motion and no media. Every surface must be opaque for paths and shadow rays
+/// alike. `features` are the features that the scene uses.
 bool can_reuse_paths(const SceneDescription& scene, const Lights& lights,
                      const SceneFeatures& features) {
   if (lights.empty() || !is_black(scene.background) || features.media || features.motion) {
@@ -233,8 +234,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(
   own.geometry.shutter = {shutter.open, shutter.close};
   own.media.boundaries.shutter = own.geometry.shutter;
   make_static(own.geometry);
-  // The space of a medium is that of its boundary's frame. Static boundaries lose their frames
-  // below.
+  // The space of a medium is the space of its boundary's frame. MediumSpaces stores the frames
+  // here, because make_static() below removes the frames of static boundaries.
   if (has_grids(own.media)) {
     scene->medium_spaces_ = MediumSpaces(own.media.boundaries);
   }

@@ -25,15 +25,15 @@ struct Kernel;       // renderlib/render/kernel.h
 class GuidingCache;  // renderlib/guiding/guiding_cache.h
 
 class Scene;
-/// Other scenes whose BVHs of meshes may be used again, such as those of earlier frames.
+/// Other scenes, such as those of earlier frames. The BVHs of their meshes may be used again.
 using EarlierScenes = absl::Span<const std::shared_ptr<const Scene>>;
 
 /// Made by build() and never changed afterwards.
 class Scene {
  public:
   /// Validates the description (scene/validate.h), removes and counts primitives that no ray can
-  /// hit, and builds the BVHs and lights. Returns INVALID_ARGUMENT: "spheres[3].radius: must be >
-  /// 0, is -1". The other parameters change no pixel:
+  /// hit, and builds the BVHs and lights. Returns INVALID_ARGUMENT if the description is not valid,
+  /// e.g. "spheres[3].radius: must be > 0, is -1". The other parameters change no pixel:
   /// - `forced`: features to enable in addition to those that the scene uses, for tests; this costs
   ///   time.
   /// - `traversal`: how rays find their primitives.
@@ -104,8 +104,10 @@ class Scene {
       Traversal traversal, const EarlierScenes& earlier);
 
   Scene(const Kernel& kernel, SceneDescription description);
-  /// If a scene of this kernel may use the meshes of this one again: adds to `clean` each mesh with
-  /// the number of triangles that it lost, and to `accels` the BVHs that contain them.
+  /// Offers the meshes of this scene to a new scene that is built with `kernel`. Adds each mesh to
+  /// `clean`, with the number of triangles that it lost, and adds the BVHs that contain the meshes
+  /// to `accels`. Adds nothing if this scene has another kernel or was not built with
+  /// Traversal::kBvh.
   void add_meshes_to(const Kernel& kernel, std::map<const Mesh*, std::size_t>& clean,
                      std::vector<const Accel*>& accels) const;
   const Kernel* kernel_;

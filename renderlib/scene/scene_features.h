@@ -1,8 +1,8 @@
 #pragma once
 
-// The features that a scene uses; unused features cost nothing. A flag that is not set only skips
-// work that would change nothing: with additional flags a scene has the same pixels to the bit.
-// integrate/NOTES.md has the cost of each.
+// The features that a scene uses. Unused features cost nothing. If a flag is not set, only work
+// that would change nothing is skipped. So a scene has the same pixels, to the bit, with additional
+// flags. integrate/NOTES.md has the cost of each feature.
 
 #include <array>
 

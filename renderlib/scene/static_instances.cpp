@@ -26,6 +26,7 @@ void make_static(Geometry& geometry) {
   const Interval& interval = geometry.shutter;
   std::vector<bool> still;
   for (const Frame& frame : geometry.frames) {
+    // A parent precedes its children, so it has been decided.
     const bool parent = frame.parent == kNoFrame || still[index_of(frame.parent)];
     still.push_back(parent && (interval.open == interval.close || stands(frame, interval)));
   }

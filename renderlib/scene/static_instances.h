@@ -7,12 +7,13 @@
 
 namespace bandsaw {
 
-/// Each instance whose frames have the same transform throughout Geometry::shutter gets this
-/// transform as a fixed placement, and no frame. The fixed placement has the same bits as the one
-/// that was computed from the frames before, so no pixel changes.
+/// Makes instances static whose frames have the same transform throughout Geometry::shutter. Such
+/// an instance gets its placement in the world as `to_world`, and loses its frame. The new
+/// `to_world` has the same bits as the placement that is computed from the frames, so no pixel
+/// changes.
 void make_static(Geometry& geometry);
 
-/// Returns true if any instance still moves or deforms.
+/// Returns true if any instance moves or deforms while the shutter is open.
 bool moves(const Geometry& geometry);
 
 }  // namespace bandsaw

@@ -1,7 +1,8 @@
 #pragma once
 
 // Validation of scene descriptions: every index, range and number. All descriptions are validated
-// here, whatever their source: Scene::build, the decoder of packages and the importer call this.
+// here, whatever their source. Scene::build, the decoder of packages and the importer call
+// validate().
 
 #include <functional>
 
@@ -24,8 +25,9 @@ enum class MeshVertices {
 /// again.
 using IsChecked = std::function<bool(const Mesh&)>;
 
-/// Returns INVALID_ARGUMENT with the field's path, the allowed range and the value:
-/// "spheres[3].radius: must be > 0, is -1". `checked` may be empty: then all meshes are checked.
+/// Returns INVALID_ARGUMENT if something is wrong. The message has the field's path, the allowed
+/// range and the value: "spheres[3].radius: must be > 0, is -1". If `checked` is empty, all meshes
+/// are checked.
 absl::Status validate(const SceneDescription& scene, MeshVertices vertices = MeshVertices::kAny,
                       const IsChecked& checked = {});
 

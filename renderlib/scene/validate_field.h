@@ -58,13 +58,14 @@ inline absl::Status check_color(const std::string& field, const Rgb& color, floa
 /// Checks textures and materials (validate_surfaces.cpp).
 absl::Status check_surfaces(const SceneDescription& scene);
 
-/// Checks materials (validate_materials.cpp). The textures are valid.
+/// Checks materials (validate_materials.cpp). The textures MUST have been checked before.
 absl::Status check_materials(const std::vector<Material>& materials,
                              const std::vector<Texture>& textures);
 
 /// Checks shapes, meshes, groups, frames and instances (validate_geometry.cpp). `prefix` is
-/// prepended to the names of fields in errors; `materials` is the number of materials (of media, if
-/// the shapes are boundaries of media). `vertices` and `checked` are those of validate().
+/// prepended to the names of fields in errors. `materials` is the number of materials, or the
+/// number of media if the shapes are boundaries of media. `vertices` and `checked` are the
+/// parameters of validate().
 absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
                             std::size_t materials, MeshVertices vertices,
                             const IsChecked& checked = {});

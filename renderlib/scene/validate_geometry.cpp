@@ -14,7 +14,8 @@
 namespace bandsaw {
 namespace {
 
-/// Tolerance of the length of unit normals; code that depends on it normalises them again.
+/// Tolerance of the length of unit normals. Code that needs a more exact length normalises the
+/// normals again.
 constexpr double kUnitSlack = 1e-6;
 
 absl::Status check_radius(const std::string& field, double radius) {
@@ -69,6 +70,7 @@ absl::Status check_shapes(const std::string& where, const Shapes& shapes, std::s
   return check_list(where + "disks", shapes.disks, materials);
 }
 
+/// Checks that a list has no entry, or one entry for each position of its mesh.
 absl::Status check_one_a_position(const std::string& field, std::size_t count,
                                   std::size_t positions) {
   if (count != 0 && count != positions) {
@@ -167,6 +169,7 @@ absl::Status check_instance(const std::string& field, const Instance& instance,
   return check_placement(field + ".to_world", instance.to_world);
 }
 
+/// Checks a frame. `number` is its index; its parent must have a lower index.
 absl::Status check_frame(const std::string& field, const Frame& frame, std::size_t number) {
   if (frame.parent != kNoFrame) {
     RETURN_IF_ERROR(check_index(field + ".parent", frame.parent, number));

@@ -18,8 +18,8 @@
 namespace bandsaw {
 namespace {
 
-/// Checks the index of a texture and that it reaches no value above `max`. The texture itself has
-/// been checked.
+/// Checks that the index of a texture is valid and that no value of the texture is above `max`. The
+/// texture itself has been checked before.
 absl::Status check_texture(const std::string& field, TextureId id,
                            const std::vector<Texture>& textures, float max) {
   RETURN_IF_ERROR(check_index(field, id, textures.size()));
@@ -273,9 +273,10 @@ struct CheckKind {
   absl::Status operator()(const Mix& m) const { return reflectance("amount", m.amount); }
 };
 
-/// Checks the parts of materials[index] if it is a mixture. `parts` has the number of parts of each
-/// material before this one, which is 1 for a material that is no mixture. The number of this
-/// material is appended.
+/// Checks the parts of materials[index] if it is a mixture. parts[i] is the number of parts of
+/// materials[i], for all i < index. The number of parts of materials[index] is appended. A mixture
+/// counts as one part in addition to the parts of its two materials. A material that is no mixture
+/// has one part.
 absl::Status check_mixture(const std::vector<Material>& materials, std::size_t index,
                            std::vector<std::uint64_t>& parts) {
   const std::string field = item("materials", index);

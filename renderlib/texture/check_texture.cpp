@@ -29,10 +29,12 @@ absl::Status check_color(absl::string_view field, const Rgb& c) {
                  absl::StrCat("must be finite and >= 0, is [", c.r, ", ", c.g, ", ", c.b, "]"));
 }
 
+/// Checks one texture; called by std::visit. The cost of a texture is the number of textures that
+/// one lookup of it evaluates.
 struct CheckParts {
-  std::size_t index;                        ///< of the texture that is checked
-  const std::vector<std::uint64_t>& costs;  ///< of the textures before it
-  std::uint64_t& cost;                      ///< of this texture; the costs of its parts are added
+  std::size_t index;                        ///< index of the texture that is checked
+  const std::vector<std::uint64_t>& costs;  ///< costs of the textures before it
+  std::uint64_t& cost;                      ///< its own cost; the costs of its parts are added
 
   /// Checks a reference to another texture.
   absl::Status part(absl::string_view field, TextureId id) const {

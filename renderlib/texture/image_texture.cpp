@@ -63,7 +63,7 @@ std::uint32_t wrapped_index(std::int64_t i, std::uint32_t size, ImageTexture::Wr
   return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, last));
 }
 
-/// x and y are in [0, 1], y from the top. The same holds for bilinear().
+/// Returns the texel at a point. x and y are in [0, 1], and y is measured from the top.
 Rgb nearest(const ImageTexture& image, double x, double y) {
   const auto column = static_cast<std::int64_t>(std::floor(x * image.width));
   const auto row = static_cast<std::int64_t>(std::floor(y * image.height));
@@ -72,6 +72,7 @@ Rgb nearest(const ImageTexture& image, double x, double y) {
                static_cast<std::uint32_t>(std::min<std::int64_t>(row, image.height - 1)));
 }
 
+/// Interpolates between the four texels whose centres surround a point; x and y as for nearest().
 Rgb bilinear(const ImageTexture& image, double x, double y) {
   const double px = x * image.width - 0.5;
   const double py = y * image.height - 0.5;

@@ -19,7 +19,7 @@ using Gradients = std::array<Vec3, kGradients>;
 Gradients make_gradients() {
   Gradients gradients;
   std::uint64_t state = 0;
-  const auto next = [&state] {
+  const auto next = [&state] {  // a random number in [-1, 1)
     state += kSplitMixIncrement;
     return static_cast<double>(split_mix(state) >> 11) * 0x1p-52 - 1;
   };
@@ -53,10 +53,12 @@ std::uint64_t hash(const Lattice& p) {
                    p.z * kSplitMixIncrement);
 }
 
+/// Converts a coordinate of a lattice point, which is a whole number, to its value modulo 2^64.
 std::uint64_t lattice(double whole) {
   return static_cast<std::uint64_t>(static_cast<std::int64_t>(whole));
 }
 
+/// Returns the Hermite weight for t in [0, 1].
 double smooth(double t) { return t * t * (3 - 2 * t); }
 double blend(double a, double b, double t) { return a + (b - a) * t; }
 

@@ -77,6 +77,7 @@ double repetitions(const NoiseTexture& texture, const TextureCoordinates& way) {
   if (texture.kind != NoiseTexture::Kind::kMarble) {
     return max_abs(texture.scale * p);
   }
+  // Marble repeats with the cells of its turbulence, and with the period 2 pi of its sine.
   const double cells = max_abs(texture.turbulence_scale * p);
   const double phase =
       std::abs(texture.scale * dot(texture.axis, p)) + std::abs(texture.strength) * cells;
@@ -109,7 +110,8 @@ double coordinate(const RampTexture& ramp, const TextureCoordinates& at) {
 }
 
 Rgb evaluate(const RampTexture& ramp, double value) {
-  // The values of a texture are floats, so a step is at the float nearest to its stop.
+  // The values of a texture are floats. So the stops of a stepped ramp over a texture are rounded
+  // to floats, too.
   const bool in_floats = ramp.steps && ramp.over == RampTexture::Over::kTexture;
   const auto next =
       std::find_if(ramp.stops.begin(), ramp.stops.end(), [&](const RampTexture::Stop& stop) {

@@ -7,14 +7,14 @@
 
 namespace bandsaw {
 
-/// Returns true if the point lies in a cell of texture `even`.
+/// Returns true if the point lies in a cell that has the texture `checker.even`.
 bool is_even(const CheckerTexture& checker, const TextureCoordinates& at);
 
 /// Returns the colour at the point.
 Rgb evaluate(const NoiseTexture& noise, const TextureCoordinates& at);
 
-/// Returns how many times the texture repeats while the coordinates change by `way`, as
-/// repetitions() in texture.h; textures that it refers to do not count.
+/// Returns how many times the texture itself repeats while the coordinates change by `way`, as
+/// repetitions() in texture.h. Textures that it refers to do not count.
 double repetitions(const CheckerTexture& checker, const TextureCoordinates& way);
 double repetitions(const NoiseTexture& noise, const TextureCoordinates& way);
 /// `ramp.over` MUST NOT be kTexture.

@@ -61,8 +61,8 @@ struct ImageTexture {
 std::uint64_t texel_bytes(const ImageTexture& image);
 
 /// Alternates two textures in cells, which are rectangles of the uv plane or boxes of space. Each
-/// cell begins early, by 2^-20 of its size or more if rounding errors are larger, so that a plane
-/// on a border between cells has one texture.
+/// cell begins early, so that a plane on a border between cells has one texture. It begins early by
+/// 2^-20 of its size, or by more if rounding errors are larger.
 struct CheckerTexture {
   enum class Mapping : std::uint8_t { kUv, kPosition };
   TextureId even{};  ///< texture of the cell that begins at the origin
@@ -99,14 +99,15 @@ struct RampTexture {
     double at = 0;
     Rgb color;
   };
-  Over over = Over::kTexture;
-  TextureId texture{};  ///< for kTexture alone
+  Over over = Over::kTexture;  ///< the number that is mapped: the luminance, or this coordinate
+  TextureId texture{};         ///< for kTexture alone
   UvSet uv_set = UvSet::kFirst;
   Space space = Space::kWorld;
-  /// True: piecewise constant from each stop to the next; otherwise linear between stops.
+  /// If true, the colour is constant from each stop to the next; otherwise it is interpolated
+  /// linearly between stops.
   bool steps = false;
   /// At least one stop; `at` is finite and strictly increasing. Values before the first stop get
-  /// the colour of the first stop, and values after the last stop its colour.
+  /// the colour of the first stop, and values after the last stop get the colour of the last stop.
   std::vector<Stop> stops;
 };
 
@@ -126,22 +127,23 @@ struct ProductTexture {
 using Texture = std::variant<ConstantTexture, ImageTexture, CheckerTexture, NoiseTexture,
                              RampTexture, MixTexture, ProductTexture>;
 
-/// Returns the colour of textures[id]. Coordinates that are not finite count as 0. Filtering is
-/// done on linear values.
+/// Returns the colour of textures[id]. Coordinates that are not finite count as 0, except in a ramp
+/// over a coordinate. There, NaN counts as a value before the first stop, and infinities are not
+/// changed. Filtering is done on linear values.
 Rgb evaluate(absl::Span<const Texture> textures, TextureId id, const TextureCoordinates& at);
 
 /// Returns an upper bound of all channels, for energy checks and light bounds; 1 for 8-bit images.
 float max_value(absl::Span<const Texture> textures, TextureId id);
 
-/// Returns the linear mean: exact for images; for other textures an estimate that is black only if
-/// they are black everywhere.
+/// Returns the linear mean. It is exact for images. For other textures it is an estimate, which is
+/// black only if the texture is black everywhere.
 Rgb mean(absl::Span<const Texture> textures, TextureId id);
 
 /// Returns about how many times textures[id] repeats while the coordinates change by `way`; >= 0,
 /// not rounded. A repetition is a whole image, a cell of a checker, a cell of the lattice of noise,
 /// a vein of marble or, for a ramp over a coordinate, the distance from its first to its last stop.
-/// If the texture refers to others, the result is the largest number among it and them. Constants
-/// give 0.
+/// If the texture refers to other textures, the result is the largest number of repetitions among
+/// them and the texture itself. Constants give 0.
 double repetitions(absl::Span<const Texture> textures, TextureId id, const TextureCoordinates& way);
 
 /// Returns true if the texture itself uses uv coordinates; textures that it refers to do not count.

@@ -1,5 +1,5 @@
-// Collects the blobs of a scene that was begun, decodes and builds it, and renders rows of it with
-// the pool of one thread.
+// Collects the blobs of a scene after begin_scene(), decodes the blobs and builds the scene. Rows
+// are rendered by a pool with one thread.
 
 #include "worker/browser/browser_renderer.h"
 
@@ -14,6 +14,7 @@
 namespace bandsaw::worker {
 namespace {
 
+/// The bytes of one blob.
 class HeldBytes : public BlobBytes {
  public:
   explicit HeldBytes(SharedBytes bytes) : bytes_(std::move(bytes)) {}
@@ -23,7 +24,7 @@ class HeldBytes : public BlobBytes {
   SharedBytes bytes_;
 };
 
-/// The blobs of one package, whose digests were checked.
+/// The blobs of one package. Their digests were checked before.
 class HeldBlobs : public BlobSource {
  public:
   explicit HeldBlobs(const std::map<wire::Digest, SharedBytes>& blobs) : blobs_(blobs) {}
@@ -109,7 +110,8 @@ absl::StatusOr<BandPixels> BrowserRenderer::render(const Task& task, const RowRa
     return absl::InvalidArgumentError(
         absl::StrCat("rows ", rows.first, ":", rows.last, " do not lie in the band"));
   }
-  const std::atomic<bool> never{false};
+  const std::atomic<bool> never{false};  // render_band() is never stopped
+  // render_band() reports 0 rows after each step of its preparation.
   const auto progress = [&](std::uint32_t rows_done) {
     if (rows_done == 0) {
       step();

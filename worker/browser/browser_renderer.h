@@ -1,8 +1,8 @@
 #pragma once
 
-// The renderer of one core of a browser's tab, compiled to WebAssembly: loads scenes from blobs
-// that it is given, and renders rows of bands (a band is a range of rows and samples). The page's
-// JavaScript calls the renderer through exports.h, fetches the blobs and checks their digests.
+// The renderer of one core of a browser's tab, compiled to WebAssembly. It builds scenes from blobs
+// and renders rows of bands (a band is a range of rows and samples). The page's JavaScript calls
+// the renderer through exports.h, fetches the blobs and checks their digests.
 
 #include <atomic>
 #include <functional>
@@ -28,16 +28,17 @@ class BrowserRenderer {
  public:
   BrowserRenderer() : pool_(1) {}
 
-  /// Begins a scene. `text`: the manifest, whose digest was checked. Returns the blobs that it
-  /// needs, in the order in which they are used; those that it shares with scenes that are loaded
-  /// are not among them. Drops a scene that was begun and not built. INVALID_ARGUMENT: the manifest
-  /// is broken.
+  /// Begins a scene. `manifest`: the digest of the manifest. `text`: the manifest itself. The
+  /// caller has checked that both match. Returns the blobs that the scene needs, in the order in
+  /// which they are used, without the blobs that loaded scenes have already. If another scene was
+  /// begun and not built, drops that scene. INVALID_ARGUMENT: the manifest is broken.
   absl::StatusOr<std::vector<BlobRef>> begin_scene(const wire::Digest& manifest, std::string text);
-  /// Takes a blob of the scene that was begun. Its digest was checked. INVALID_ARGUMENT: the scene
-  /// has no such blob of this size. FAILED_PRECONDITION: no scene was begun.
+  /// Takes a blob of the scene that was begun. The caller has checked the digest of the bytes.
+  /// INVALID_ARGUMENT: the scene has no blob with this digest and size. FAILED_PRECONDITION: no
+  /// scene was begun.
   absl::Status add_blob(const wire::Digest& digest, SharedBytes bytes);
-  /// Builds the scene from its blobs. NOT_FOUND: one is missing. INVALID_ARGUMENT: the package is
-  /// broken. FAILED_PRECONDITION: no scene was begun.
+  /// Builds the scene that was begun from its blobs. NOT_FOUND: a blob is missing.
+  /// INVALID_ARGUMENT: the package is broken. FAILED_PRECONDITION: no scene was begun.
   absl::Status build_scene();
   /// Frees a scene, if it is loaded.
   void drop_scene(const wire::Digest& manifest) { scenes_.erase(manifest); }
@@ -46,7 +47,8 @@ class BrowserRenderer {
   /// scene is not loaded.
   absl::StatusOr<std::uint32_t> row_step(const wire::Digest& manifest) const;
 
-  /// Renders rows of a task's band; the sums are those of the same rows in the whole band.
+  /// Renders rows of a task's band. The sums have the same values as if the whole band were
+  /// rendered.
   /// NOT_FOUND: the scene is not loaded. INVALID_ARGUMENT: the rows do not lie in the band.
   /// `step` is called after each step of the preparation before the first row.
   absl::StatusOr<BandPixels> render(const Task& task, const RowRange& rows,

@@ -23,6 +23,7 @@ std::string bytes_of(const std::optional<farm::FromWorker>& message) {
   return message ? message->SerializeAsString() : "";
 }
 
+/// Checks a text of WorkerInfo. `name` is its name in the message, `most` its maximum in bytes.
 absl::Status check_text(const char* name, const std::string& text, std::size_t most) {
   if (text.empty() || clean_text(text, most) != text) {
     return absl::InvalidArgumentError(
@@ -31,7 +32,7 @@ absl::Status check_text(const char* name, const std::string& text, std::size_t m
   return absl::OkStatus();
 }
 
-/// Returns 4 bytes, little-endian.
+/// Returns the length as 4 bytes, little-endian.
 std::string length_bytes(std::size_t length) {
   std::string bytes;
   for (int shift = 0; shift < 32; shift += 8) {

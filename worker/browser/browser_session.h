@@ -21,26 +21,26 @@ struct BrowserBand {
   std::string lease;
 };
 
-/// Effects of a message from the coordinator: what the page's JavaScript has to do.
+/// The actions that the page's JavaScript has to take after a message from the coordinator.
 struct BrowserOrders {
-  std::vector<TaskId> stop;
-  std::optional<BrowserBand> start;
-  std::vector<std::string> send;  ///< messages for the coordinator
+  std::vector<TaskId> stop;          ///< bands that are no longer wanted
+  std::optional<BrowserBand> start;  ///< a band to render
+  std::vector<std::string> send;     ///< messages for the coordinator
   std::optional<Dismissal> dismissal;
 };
 
 class BrowserSession {
  public:
-  /// INVALID_ARGUMENT: a text of `info` is empty, too long or not plain, its instance does not have
-  /// 32 hexadecimal digits, or its number of threads is out of range.
+  /// INVALID_ARGUMENT: a text of `info` is empty, is too long or contains control characters, its
+  /// instance does not have 32 hexadecimal digits, or its number of threads is out of range.
   static absl::StatusOr<BrowserSession> create(WorkerInfo info);
 
   const Session& session() const { return session_; }
 
-  // The stream. The messages that are returned are bytes to send.
+  // The stream. Messages to send are returned as bytes.
   std::string hello() const;
-  /// Changes what the next Hello offers. `memory_bytes`: the memory that scenes may take; 0: no
-  /// limit.
+  /// Changes the number of threads and the memory that the next Hello offers. `memory_bytes`: the
+  /// memory that scenes may take; 0: no limit.
   void offer(std::uint32_t threads, std::uint64_t memory_bytes);
   /// INVALID_ARGUMENT: the bytes are no message.
   absl::StatusOr<BrowserOrders> receive(const std::string& message);
@@ -50,7 +50,7 @@ class BrowserSession {
   // Rendering; see Session. Calls for a band that is not held have no effect.
   void preparing(TaskId task, std::uint64_t prepared) { session_.preparing(task, prepared); }
   /// Notes that `rows_done` rows of the band are rendered, in all. `counters`: the bytes of the
-  /// farm.Counters of the newly rendered rows. INVALID_ARGUMENT: they are no such message.
+  /// farm.Counters of the newly rendered rows. INVALID_ARGUMENT: these bytes are no farm.Counters.
   absl::Status rendering(TaskId task, std::uint32_t rows_done, const std::string& counters);
   /// Returns false if the band is not wanted any more.
   bool finished(TaskId task) { return session_.finished(task); }
@@ -64,7 +64,7 @@ class BrowserSession {
   absl::StatusOr<std::string> band_header(TaskId task, std::uint64_t size,
                                           const wire::Digest& digest, const RenderCost& cost) const;
   /// Takes the bytes of the coordinator's farm.PutBandReply, and drops the band. Returns "stored",
-  /// "duplicate" or "unwanted". INVALID_ARGUMENT: they are no such message.
+  /// "duplicate" or "unwanted". INVALID_ARGUMENT: the bytes are no farm.PutBandReply.
   absl::StatusOr<std::string> band_reply(TaskId task, const std::string& reply);
 
   /// Requests no more leases. Returns the message to send, or an empty text.

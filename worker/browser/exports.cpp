@@ -122,7 +122,7 @@ struct BandsawSession {
 struct BandsawRenderer {
   Answerer answer;
   BrowserRenderer renderer;
-  /// The rows that were rendered last.
+  /// The task, the pixels and the picture of the rows that were rendered last.
   bandsaw::worker::Task task;
   bandsaw::BandPixels pixels;
   std::vector<std::uint8_t> picture;
@@ -130,7 +130,8 @@ struct BandsawRenderer {
 
 namespace {
 
-/// Calls `body` with the session, unless it was not made.
+/// Calls `body` with the session and returns its answer. If the session could not be made, answers
+/// with the reason instead.
 template <class Body>
 const BandsawAnswer* with(BandsawSession* session, Body body) {
   return session->session.ok() ? body(*session->session)

@@ -1,10 +1,11 @@
 #pragma once
 
-// The functions of bandsaw.wasm, in C: with them the JavaScript of a tab that renders
-// (coordinator/web/page/join_wasm.js) calls the classes BrowserSession and BrowserRenderer. Texts
-// and bytes are passed as an address and a length. A tab has one module: one instance of it holds a
-// session, each of the others a renderer. Nothing is thrown; a call that fails says why in its
-// answer. If memory cannot be allocated, the instance ends.
+// The functions of bandsaw.wasm, in C. The JavaScript of a tab that renders
+// (coordinator/web/page/join_wasm.js) uses them to call the classes BrowserSession and
+// BrowserRenderer. Texts and bytes are passed as an address and a length. A tab has one
+// module and several instances of it. One instance holds a session, and each of the other instances
+// holds a renderer. No function throws. A call that fails has the reason in its answer. If memory
+// cannot be allocated, the instance ends.
 
 #include <stddef.h>
 #include <stdint.h>
@@ -38,8 +39,8 @@ BandsawSession* bandsaw_session_new(const char* instance, size_t instance_size, 
 void bandsaw_session_delete(BandsawSession* session);
 /// Returns the answer of the last call.
 const BandsawAnswer* bandsaw_session_answer(BandsawSession* session);
-/// Answers a message for the coordinator, as do heartbeat, failed, drain and log. Empty: there is
-/// nothing to send.
+/// Answers a message for the coordinator, as do heartbeat, failed, drain and log. If the message is
+/// empty, there is nothing to send.
 const BandsawAnswer* bandsaw_session_hello(BandsawSession* session);
 const BandsawAnswer* bandsaw_session_heartbeat(BandsawSession* session);
 const BandsawAnswer* bandsaw_session_offer(BandsawSession* session, uint32_t threads,
@@ -65,8 +66,8 @@ const BandsawAnswer* bandsaw_session_finished(BandsawSession* session, uint32_t 
 const BandsawAnswer* bandsaw_session_failed(BandsawSession* session, uint32_t task,
                                             const char* reason, size_t reason_size, const char* log,
                                             size_t log_size);
-/// Answers what precedes the sums in the body of POST /join/band. `digest`: 32 bytes, SHA-256 of
-/// the sums; `size`: their bytes. Times are in seconds.
+/// Answers the bytes that precede the sums in the body of POST /join/band. `digest`: the SHA-256 of
+/// the sums, 32 bytes. `size`: the size of the sums in bytes. Times are in seconds.
 const BandsawAnswer* bandsaw_session_band_header(BandsawSession* session, uint32_t task,
                                                  const void* digest, size_t digest_size,
                                                  double size, double render_s, double cpu_s);
@@ -85,7 +86,8 @@ const BandsawAnswer* bandsaw_session_sha256(BandsawSession* session, const void*
 
 BandsawRenderer* bandsaw_renderer_new(void);
 void bandsaw_renderer_delete(BandsawRenderer* renderer);
-/// Answers JSON: [{"digest", "size"}…], the blobs to add.
+/// Begins a scene. `digest` is the digest of `manifest`. Answers JSON: [{"digest", "size"}…], the
+/// blobs to add.
 const BandsawAnswer* bandsaw_renderer_begin_scene(BandsawRenderer* renderer, const char* digest,
                                                   size_t digest_size, const void* manifest,
                                                   size_t size);

@@ -22,8 +22,9 @@
 namespace bandsaw::worker {
 namespace {
 
+/// A file of the cache.
 struct Entry {
-  std::filesystem::file_time_type used;
+  std::filesystem::file_time_type used;  ///< time of the last use
   std::string path;
   std::uint64_t bytes = 0;
   friend bool operator<(const Entry& a, const Entry& b) {
@@ -31,16 +32,16 @@ struct Entry {
   }
 };
 
-/// Returns true if the name is one that the cache gives. Only such files are removed, so a folder
-/// that was given by mistake loses nothing else.
+/// Returns true if the cache gives such names to its files. Only such files are removed. So if a
+/// user names a wrong folder as the cache, its other files are safe.
 bool is_ours(const std::filesystem::path& path) {
   const bool whole_or_part = path.extension().empty() || path.extension() == ".part";
   return whole_or_part && wire::digest_from_hex(path.stem().string()).ok();
 }
 
-/// Each time that a worker has added 1 / kListings of the size limit, it lists the folder, to see
-/// what other workers have added. So no worker adds much more than this part of the limit before it
-/// counts what the others have added.
+/// Each time that a worker has added 1 / kListings of the size limit, it lists the folder, because
+/// other workers may have added files. So a worker does not add much more than this part of the
+/// limit before it counts their files.
 constexpr std::uint64_t kListings = 16;
 
 /// Lists the cache's files. Files that are removed during the scan are left out.
@@ -62,8 +63,8 @@ std::vector<Entry> entries(const std::string& folder) {
   return found;
 }
 
-/// Returns true if `fd` is still the file of that name: another worker may have renamed it while
-/// this one waited for its lock.
+/// Returns true if `path` is still the name of the open file `fd`. Another worker may have renamed
+/// or removed the file before this worker locked it.
 bool is_at(int fd, const std::string& path) {
   struct stat open_file {};
   struct stat named {};
@@ -71,12 +72,14 @@ bool is_at(int fd, const std::string& path) {
          open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
 }
 
-/// Returns true if a call that failed with this errno may succeed after files are removed: the disk
-/// or the user's quota has no bytes or no inodes left.
+/// Returns true if this errno says that the disk or the user's quota has no bytes or no inodes
+/// left. The call that failed may then succeed after files are removed.
 bool is_full(int error) { return error == ENOSPC || error == EDQUOT; }
 
-/// Removes a file unless it is being downloaded. Otherwise another worker's commit could give the
-/// blob's name to a partial file that a third worker has started again.
+/// Removes a file unless it is being downloaded. If a partial file were removed during its
+/// download, another worker could begin a new partial file of the same name. Then the commit of the
+/// first download would give the blob's name to this new file, which is incomplete. Returns true if
+/// the file was removed.
 bool remove_unused(const std::string& path) {
   // NFS grants exclusive locks only on files that are open for writing.
   const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
@@ -89,8 +92,8 @@ bool remove_unused(const std::string& path) {
   return removed;
 }
 
-/// Removes the least recently used files, `wanted` bytes of them or all, except `kept`. Returns the
-/// number of bytes removed.
+/// Removes the least recently used files of `all`, except `kept`, until `wanted` bytes are removed
+/// or no file is left. Returns the number of bytes removed.
 std::uint64_t remove_oldest(std::vector<Entry> all, std::uint64_t wanted, const std::string& kept) {
   std::sort(all.begin(), all.end());
   std::uint64_t freed = 0;
@@ -237,7 +240,7 @@ absl::Status BlobCache::Download::commit() {
   }
   const std::string path = cache_.blobs_.path_of(digest_);
   if (rename(part.c_str(), path.c_str()) != 0) {
-    // The partial file was removed by a user who needed space; the blob is fetched again.
+    // A user who needed space has removed the partial file. The caller fetches the blob again.
     return absl::UnavailableError(errno_status(errno, part).message());
   }
   cache_.make_room(offset_, path);

@@ -1,10 +1,10 @@
 #pragma once
 
-// The worker's cache of blobs (arrays and manifests of scenes, named by their SHA-256) on disk:
-// `<folder>/<digest in hexadecimal>`. Files are written atomically; the least recently used are
-// removed when the size limit is exceeded. Several workers of one machine may share a folder: files
-// appear by rename, a download holds a lock on its partial file, and a file that is removed during
-// a read only has to be fetched again.
+// The worker's cache on disk of blobs (arrays and manifests of scenes, named by their SHA-256). The
+// name of a file is `<folder>/<digest in hexadecimal>`. Files are written atomically. When the size
+// limit is exceeded, the least recently used files are removed. Several workers of one machine may
+// share a folder, because files appear by rename, a download holds a lock on its partial file, and
+// a file that is removed during a read only has to be fetched again.
 
 #include <cstdint>
 #include <memory>
@@ -42,8 +42,8 @@ class BlobCache : public BlobSource {
     /// nothing is left to evict.
     absl::Status append(absl::Span<const std::byte> bytes);
     /// Publishes the blob under its name. DATA_LOSS: the bytes do not match the digest, or
-    /// cannot be read again; they are deleted. UNAVAILABLE: the partial file cannot be renamed, as
-    /// when a user has removed it.
+    /// cannot be read again; they are deleted. UNAVAILABLE: the partial file cannot be renamed,
+    /// e.g. because a user has removed it.
     absl::Status commit();
     /// Deletes the partial file, so that the next download begins at byte 0. This download MUST NOT
     /// continue.
@@ -62,24 +62,25 @@ class BlobCache : public BlobSource {
 
  private:
   BlobCache(std::string folder, std::uint64_t max_bytes);
+  /// Returns the path of the partial file of a blob.
   std::string part_of(const wire::Digest& digest) const;
   /// Opens the partial file `path` for reading and writing, and returns its descriptor. Creates the
   /// file and the cache's folder if they are missing. Errors are those of begin().
   absl::StatusOr<int> open_part(const std::string& path) EXCLUDES(mutex_);
-  /// Accounts for `added` bytes and evicts the oldest files until the rest fits. Keeps the file
-  /// `newest`.
+  /// Adds `added` bytes to the size of the cache, and evicts the least recently used files, except
+  /// `newest`, until the size limit is kept.
   void make_room(std::uint64_t added, const std::string& newest) EXCLUDES(mutex_);
-  /// Evicts the least recently used files because the disk is full: `wanted` bytes, or more.
-  /// Returns false if there is nothing left to evict.
+  /// Evicts the least recently used files because the disk is full, until at least `wanted` bytes
+  /// are removed or no file is left. Returns false if there was nothing to evict.
   bool give_up_some(std::uint64_t wanted) EXCLUDES(mutex_);
 
   const std::string folder_;
   const std::uint64_t max_bytes_;
   BlobFolder blobs_;
   Mutex mutex_;
-  /// Size at the last scan of the folder plus what this worker added since.
+  /// Size of the folder at its last scan, plus the bytes that this worker has added since then.
   std::uint64_t bytes_ GUARDED_BY(mutex_) = 0;
-  std::uint64_t added_ GUARDED_BY(mutex_) = 0;  ///< what this worker added since that scan
+  std::uint64_t added_ GUARDED_BY(mutex_) = 0;  ///< bytes that this worker added since that scan
 };
 
 }  // namespace bandsaw::worker

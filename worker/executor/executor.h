@@ -1,8 +1,9 @@
 #pragma once
 
 // Renders tasks (leased bands) in their order of arrival, each on all cores. Two tasks run at the
-// same time, so that the first tiles of the later one fill the cores that the last tiles of the
-// earlier one leave idle. The later task begins when the first row of the earlier one is finished.
+// same time. When the last tiles of the earlier task leave cores idle, the first tiles of the later
+// task use these cores. The rendering of the later task begins when the first row of the earlier
+// task is finished.
 
 #include <atomic>
 #include <deque>
@@ -61,9 +62,9 @@ class Executor {
   void reach(Running& running, Reached reached) EXCLUDES(mutex_);
   /// Waits until every earlier task has reached `reached`. CANCELLED: this task was stopped.
   absl::Status wait_for_earlier(const Running& running, Reached reached) EXCLUDES(mutex_);
-  /// Ends a band. Returns the time, and the CPU time of the process, since the later of two
-  /// moments: `began`, when its rendering began, and the previous call. The CPU time may include
-  /// that of loading the next band's scene.
+  /// To be called when a band is rendered. Returns the time, and the CPU time of the process, since
+  /// the later of two moments: `began`, when the rendering of this band began, and the previous
+  /// call. The CPU time may include the loading of the next band's scene.
   RenderCost cost_since(const RenderCost& began) EXCLUDES(mutex_);
 
   Pool& pool_;

@@ -16,10 +16,11 @@
 namespace bandsaw::worker {
 namespace {
 
-// The interval at which a wait checks `stop` and the download of another worker.
+// The interval at which a wait checks `stop`, and whether another worker has finished a download.
 constexpr auto kLook = std::chrono::milliseconds(50);
-constexpr int kWrongBytesTimes =
-    3;  // after so many downloads with a wrong digest, the source itself is wrong
+// After so many downloads whose bytes do not have the digest, the source itself is considered
+// wrong.
+constexpr int kWrongBytesTimes = 3;
 
 absl::Status stopped() { return absl::CancelledError("stopped"); }
 
@@ -63,7 +64,7 @@ absl::Status FetchingSource::fetch(const wire::Digest& digest) {
     }
     ASSIGN_OR_RETURN(const std::unique_ptr<BlobCache::Download> place, cache_.begin(digest));
     if (place == nullptr) {
-      step(1);  // another worker of this machine fetches it, which is progress as well
+      step(1);  // another worker of this machine fetches the blob, which is progress as well
       pause(kLook, stop_);
       continue;
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Loads the scene of a package (a manifest and the blobs that it names by their digests): fetches
-// each missing blob into the cache, decodes the package, builds the scene.
+// Loads the scene of a package (a manifest and the blobs that it names by their digests). Fetches
+// each missing blob into the cache, decodes the package and builds the scene.
 
 #include <atomic>
 #include <functional>
@@ -19,8 +19,9 @@ namespace bandsaw::worker {
 /// Receives the next bytes of a blob; an error ends the transfer.
 using TakeBytes = std::function<absl::Status(absl::Span<const std::byte>)>;
 
-/// Passes the blob's bytes from `offset` on to `take`. UNAVAILABLE, DEADLINE_EXCEEDED: try again,
-/// from the first missing byte. INVALID_ARGUMENT: the blob has fewer than `offset` bytes.
+/// Passes all bytes of the blob from `offset` to `take`. UNAVAILABLE, DEADLINE_EXCEEDED: the caller
+/// should try again from the first missing byte. INVALID_ARGUMENT: the blob has fewer than `offset`
+/// bytes.
 using TransferBlob = std::function<absl::Status(const wire::Digest& digest, std::uint64_t offset,
                                                 const TakeBytes& take)>;
 
@@ -39,7 +40,10 @@ class FetchingSource : public BlobSource {
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
 
  private:
+  /// Downloads a blob into the cache. Repeats transfers that are interrupted, and waits while
+  /// another worker downloads the blob.
   absl::Status fetch(const wire::Digest& digest);
+  /// Makes one transfer, from the end of the partial file.
   absl::Status download(const wire::Digest& digest, BlobCache::Download& download);
   void step(std::uint64_t amount) { prepared_(progress_ += amount); }
 
@@ -50,16 +54,16 @@ class FetchingSource : public BlobSource {
   std::uint64_t progress_ = 0;
 };
 
-/// Builds scenes. What a scene shares with earlier ones that are still in use (meshes with their
-/// BVHs, texels, grids) is neither read nor built again, so loading a frame of a sequence takes
-/// time only for the parts that have changed.
+/// Builds scenes. A scene may share parts (meshes with their BVHs, texels, grids) with earlier
+/// scenes that are still in use. These parts are neither read nor built again. So loading a frame
+/// of a sequence takes time only for the parts that have changed.
 class PackageLoader {
  public:
   /// `kernel`: as in Scene::build. `pool` MUST outlive the loader.
   explicit PackageLoader(Pool& pool, const Kernel* kernel = nullptr)
       : pool_(pool), kernel_(kernel) {}
-  /// Builds the scene. Errors as FetchingSource::get, and INVALID_ARGUMENT: this worker cannot
-  /// render the package. MUST NOT be called by two threads at a time.
+  /// Builds the scene. The errors are those of FetchingSource::get. In addition, INVALID_ARGUMENT:
+  /// this worker cannot render the package. MUST NOT be called by two threads at a time.
   absl::StatusOr<std::shared_ptr<const Scene>> load(const wire::Digest& manifest,
                                                     FetchingSource& blobs);
 

@@ -50,8 +50,8 @@ class Uploader {
   CondVar changed_;
   bool closing_ GUARDED_BY(mutex_) = false;
   bool retry_now_ GUARDED_BY(mutex_) = false;
-  /// Their number is bounded, because the coordinator leases no more bands than the worker's credit
-  /// allows while these are not acknowledged.
+  /// The bands that are not acknowledged. Their number is bounded: they still count against the
+  /// worker's credit, and the coordinator leases no more bands than the credit allows.
   std::deque<std::shared_ptr<const FinishedBand>> bands_ GUARDED_BY(mutex_);
   Backoff backoff_;  ///< used by the thread only
   std::thread thread_;

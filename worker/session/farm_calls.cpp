@@ -14,9 +14,9 @@
 namespace bandsaw::worker {
 namespace {
 
-// kDeadline: the deadline of a stream of bands. kServes: the age up to which a stream takes a
-// further band. So each band has at least a minute. A band whose transfer is interrupted is sent
-// again.
+// kDeadline: the deadline of a stream of bands, from its opening. kServes: the age up to which a
+// stream takes a further band. So there is at least a minute for the transfer of each band. A band
+// whose transfer is interrupted is sent again.
 constexpr std::chrono::milliseconds kDeadline{120'000};
 constexpr std::chrono::milliseconds kServes{60'000};
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// The worker's calls by gRPC on its bulk channel: the connection for blobs and pixels, which is
-// separate from that of the heartbeats. Calls in progress are registered, so that shutdown can
-// cancel them.
+// The worker's calls by gRPC on its bulk channel. This is the connection for blobs and pixels,
+// which is separate from the connection for heartbeats. Calls in progress are registered, so that
+// shutdown can cancel them.
 
 #include <memory>
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace bandsaw::worker {
 
-/// Holds the channel of the current connection; it changes with every reconnect.
+/// Holds the channel of the current connection. The channel changes with every reconnect.
 class FarmCalls final : public CoordinatorApi {
  public:
   /// `instance`: names this process in each band that is sent.
@@ -24,7 +24,8 @@ class FarmCalls final : public CoordinatorApi {
   ~FarmCalls() override;
 
   const link::JoinString& join() const { return join_; }
-  /// nullptr: not connected; calls then fail with UNAVAILABLE at once.
+  /// Sets the channel for later calls. nullptr: not connected; calls then fail with UNAVAILABLE at
+  /// once.
   void set_channel(std::shared_ptr<grpc::Channel> bulk) EXCLUDES(mutex_);
   /// Cancels all calls in progress and all later ones.
   void leave() EXCLUDES(mutex_);
@@ -51,7 +52,7 @@ class FarmCalls final : public CoordinatorApi {
   };
 
  private:
-  /// nullptr: not connected.
+  /// Returns the current channel; nullptr: not connected.
   std::shared_ptr<grpc::Channel> bulk() EXCLUDES(mutex_);
 
   const link::JoinString join_;

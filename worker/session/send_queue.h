@@ -1,6 +1,6 @@
 #pragma once
 
-// The messages that wait to be written to one session stream: any thread adds messages, and the
+// The messages that wait to be written to one session stream. Any thread adds messages. The
 // stream's writing thread takes them, or learns that a heartbeat is due.
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace bandsaw::worker {
 class SendQueue {
  public:
   void push(farm::FromWorker message) EXCLUDES(mutex_);
-  /// Makes a heartbeat due now, because a state changed.
+  /// Makes a heartbeat due now. To be called when the state of a band has changed.
   void beat_now() EXCLUDES(mutex_);
   /// Accepts no more messages; those in the queue are still returned.
   void close() EXCLUDES(mutex_);

@@ -124,8 +124,8 @@ void Session::take_lease(const farm::Lease& lease, SessionEffects& effects) {
     effects.send.push_back(failure(lease.lease(), std::string(task.status().message()), {}));
     return;
   }
-  // The coordinator answers Hello with a lease of the same band: rendering continues under the new
-  // lease id.
+  // The coordinator may answer Hello with a lease of a band that this worker holds. Rendering then
+  // continues under the new lease id.
   const auto same = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
     return held.task.job == task->job && held.task.band == task->band;
   });
@@ -134,7 +134,8 @@ void Session::take_lease(const farm::Lease& lease, SessionEffects& effects) {
       same->name = {.lease = lease.lease(), .epoch = epoch_};
       return;
     }
-    effects.stop.push_back(same->task.id);  // it belonged to another job with the same number
+    // The held band belonged to another job, which had the same number.
+    effects.stop.push_back(same->task.id);
     held_.erase(same);
   }
   if (held_.size() >= wire::kBandsPerWorker) {
@@ -148,8 +149,8 @@ void Session::take_lease(const farm::Lease& lease, SessionEffects& effects) {
 
 void Session::take_revoke(const farm::Revoke& revoke, SessionEffects& effects) {
   for (const std::uint64_t lease : revoke.lease()) {
-    // Ids are unique within an epoch. An id of an earlier epoch is meant only if the current epoch
-    // has none that is equal.
+    // Ids are unique within an epoch only. So a lease of the current epoch with this id is looked
+    // for first, and then a lease of an earlier epoch.
     auto meant = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
       return held.name.lease == lease && held.name.epoch == epoch_;
     });
@@ -170,7 +171,7 @@ farm::FromWorker Session::heartbeat() const {
   beat->set_doing(doing());
   for (const Held& held : held_) {
     if (held.name.epoch != epoch_) {
-      continue;  // the current coordinator has not assigned an id to it
+      continue;  // the coordinator has not assigned an id to this band since it started
     }
     farm::LeaseProgress* progress = beat->add_lease();
     progress->set_lease(held.name.lease);

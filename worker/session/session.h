@@ -1,9 +1,9 @@
 #pragma once
 
-// State machine of a worker's session: the leases it holds and the messages it sends, without
-// clock, thread or socket. Inputs are the coordinator's messages and events of rendering; outputs
-// are messages to send and bands to render or to stop. A task is a leased band, under an id of this
-// process. Terms: proto/README.md, "Glossary".
+// State machine of a worker's session. It keeps the leases that the worker holds and makes the
+// messages that the worker sends, without clock, thread or socket. Inputs are the coordinator's
+// messages and events of rendering. Outputs are messages to send and bands to render or to stop. A
+// task is a leased band, under an id of this process. Terms: proto/README.md, "Glossary".
 
 #include <chrono>
 #include <optional>
@@ -35,10 +35,10 @@ struct Dismissal {
   bool for_ever = false;
 };
 
-/// Effects of a message from the coordinator: what the caller has to do.
+/// The actions that the caller has to take after a message from the coordinator.
 struct SessionEffects {
-  std::vector<TaskId> stop;  ///< no longer wanted: cancel rendering or drop the result
-  std::vector<Task> start;   ///< in rendering order
+  std::vector<TaskId> stop;  ///< bands no longer wanted: cancel rendering or drop the result
+  std::vector<Task> start;   ///< bands to render, in this order
   std::vector<farm::FromWorker> send;
   std::optional<Dismissal> dismissal;
 };
@@ -59,7 +59,7 @@ class Session {
   // The stream.
   /// Returns the first message of a stream, which lists all leases held.
   farm::FromWorker hello() const;
-  /// Changes what the next Hello offers; `memory_bytes` as in WorkerInfo.
+  /// Changes the number of threads and the memory that the next Hello offers, as in WorkerInfo.
   void offer(std::uint32_t threads, std::uint64_t memory_bytes);
   SessionEffects receive(const farm::ToWorker& message);
   void disconnected() { connected_ = false; }
@@ -77,9 +77,11 @@ class Session {
   /// that the renderer has done another step of the preparation before the first row. Such a step
   /// counts as progress of the preparation. Returns true if this is the first call for this band.
   bool rendering(TaskId task, std::uint32_t rows_done);
-  /// Marks a band as finished. Returns false if its lease was revoked: discard the pixels.
+  /// Marks a band as finished. Returns false if the band is not held any more, because its lease
+  /// was revoked. The caller then discards the pixels.
   bool finished(TaskId task);
-  /// Removes a failed band. Returns the message to send; std::nullopt if not connected: in this
+  /// Removes a failed band. Returns the message to send, or std::nullopt in three cases: the band
+  /// is not held, its lease is of an earlier epoch, or the session is not connected. In the last
   /// case the next Hello does not list the band, so the coordinator leases it again.
   std::optional<farm::FromWorker> failed(TaskId task, const std::string& reason,
                                          const std::vector<std::string>& log);
@@ -98,6 +100,7 @@ class Session {
 
  private:
   enum class Stage { kWaiting, kPreparing, kRendering, kFinished };
+  /// A band that is held. The last two members are the progress, as in LeaseProgress (farm.proto).
   struct Held {
     Task task;
     LeaseName name;

@@ -1,7 +1,7 @@
 #pragma once
 
-// The worker's session (session.h), shared by its threads: it adds one lock and the send queue of
-// the current stream, which gets every message that Session returns.
+// The worker's session (session.h), shared by the worker's threads. It adds a lock to Session, and
+// the send queue of the current stream, which gets every message that Session returns.
 
 #include <memory>
 
@@ -23,7 +23,7 @@ class SharedSession {
   /// Processes a message. Its answers have been put into the send queue when this returns.
   SessionEffects receive(const farm::ToWorker& message) EXCLUDES(mutex_);
   std::chrono::milliseconds heartbeat_interval() EXCLUDES(mutex_);
-  /// std::nullopt before Welcome.
+  /// Returns the heartbeat to send; std::nullopt before Welcome.
   std::optional<farm::FromWorker> heartbeat() EXCLUDES(mutex_);
   bool was_welcomed() EXCLUDES(mutex_);
   std::string name() EXCLUDES(mutex_);
@@ -39,7 +39,7 @@ class SharedSession {
   /// Returns lease 0 if the band is no longer held. UNAVAILABLE: not connected to a coordinator.
   absl::StatusOr<LeaseName> lease_of(TaskId task) EXCLUDES(mutex_);
 
-  // For shutdown. leave() ends without finishing bands; drain() as Session::drain.
+  // For shutdown. drain() is Session::drain. leave() ends the session without finishing the bands.
   void drain(const std::string& reason) EXCLUDES(mutex_);
   void leave() EXCLUDES(mutex_);
   /// Returns true once the worker has drained, or after leave().
