@@ -97,7 +97,8 @@ void describe(CLI::App& app, Arguments& arguments) {
                  "The join string, a file that holds it, or - for standard input")
       ->envname("BANDSAW_JOIN")
       ->required();
-  app.add_option("--threads", arguments.threads, "Threads to render with; default: all")
+  app.add_option("--threads", arguments.threads,
+                 "Number of rendering threads; default: one for each hardware thread")
       ->check(CLI::Range(std::size_t{1}, wire::kThreadsPerWorker));
   app.add_option("--name", arguments.name, "Displayed name; default: the host's");
   app.add_option("--cache", arguments.cache,
@@ -105,8 +106,8 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--cache-size", arguments.cache_gb, "Maximum size of that folder, gigabytes")
       ->check(CLI::Range(0.001, 1e6));
   app.add_option("--kernel", arguments.kernel,
-                 "The renderer's code: avx2, neon or plain, as far as the program has it and the "
-                 "machine runs it; the image is the same. Default: the fastest");
+                 "The renderer's code: avx2, neon or plain, if the program has it and the machine "
+                 "can run it; the image is the same. Default: the fastest");
   app.add_flag("--quiet", arguments.quiet, "Log warnings and errors only");
 }
 
@@ -190,8 +191,9 @@ int run(const Arguments& arguments, const WrapCalls& wrap_calls) {
   }
   if (join->role != link::Role::kWorker) {
     return fail(kWrongUsage,
-                absl::InvalidArgumentError("this join string is for users: a worker needs the one "
-                                           "in the file `join` of the coordinator's data folder"));
+                absl::InvalidArgumentError(
+                    "this join string is for users; a worker needs the join string in the file "
+                    "`join` of the coordinator's data folder"));
   }
   if (arguments.cache.empty()) {
     return fail(kWrongUsage, absl::InvalidArgumentError(

@@ -193,7 +193,7 @@ void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& addr
 void Daemon::Impl::log_loss(const absl::Status& status) {
   const std::string why = status.ok() ? "the stream ended" : std::string(status.message());
   if (why != last_loss_) {  // one line for an outage, not one for each try
-    spdlog::warn("{}; trying again until it answers", why);
+    spdlog::warn("{}; trying again until the coordinator answers", why);
     last_loss_ = why;
   }
 }

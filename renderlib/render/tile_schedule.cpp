@@ -38,17 +38,17 @@ TileSchedule::TileSchedule(const TileGrid& grid, const TilePlan& plan)
     : grid_(grid), plan_(plan), taken_(grid.half_tiles(), static_cast<std::uint32_t>(plan.pilot)) {
   BANDSAW_CHECK(plan.levels.size() == grid.half_tiles(), "one level a half tile");
   for (std::size_t i = 0; i < plan.levels.size(); ++i) {
-    even_[i % 2] = even_[i % 2] && plan.levels[i] == kEvenLevel;
+    uniform_[i % 2] = uniform_[i % 2] && plan.levels[i] == kEvenLevel;
   }
 }
 
 TileSamples TileSchedule::next(const SampleRange& pass) {
-  if (even_[0] && even_[1]) {
+  if (uniform_[0] && uniform_[1]) {
     return {};
   }
   TileSamples tiles(grid_.width, {0, grid_.height});
   for (std::size_t i = 0; i < taken_.size(); ++i) {
-    const SampleRange samples = even_[i % 2] ? pass : node_of(i, pass);
+    const SampleRange samples = uniform_[i % 2] ? pass : node_of(i, pass);
     if (samples.samples() > 0) {
       taken_[i] = samples.last;
       tiles.set(i, samples);

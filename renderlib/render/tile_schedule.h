@@ -41,7 +41,7 @@ class TileSchedule {
   TileGrid grid_;
   TilePlan plan_;
   /// For each half of the image (even, odd): true if all its levels are 6 (uniform).
-  std::array<bool, 2> even_{true, true};
+  std::array<bool, 2> uniform_{true, true};
   std::vector<std::uint64_t> taken_;  ///< samples taken so far by each half tile
 };
 

@@ -39,15 +39,15 @@ GridDistribution::GridDistribution(std::uint32_t width, std::uint32_t height,
     : width_(width) {
   row_ends_.reserve(height);
   column_ends_.reserve(std::size_t{width} * height);
-  double rows = 0;
+  double sum = 0;
   for (std::uint32_t row = 0; row < height; ++row) {
-    double columns = 0;
+    double row_sum = 0;
     for (std::uint32_t column = 0; column < width; ++column) {
-      columns += weight(column, row);
-      column_ends_.push_back(columns);
+      row_sum += weight(column, row);
+      column_ends_.push_back(row_sum);
     }
-    rows += columns;
-    row_ends_.push_back(rows);
+    sum += row_sum;
+    row_ends_.push_back(sum);
   }
 }
 

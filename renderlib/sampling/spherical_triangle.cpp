@@ -30,11 +30,11 @@ std::optional<SphericalTriangle> SphericalTriangle::seen_from(const Vec3& point,
   const double la = length(t.to_a_);
   const double lb = length(to_b);
   const double lc = length(to_c);
-  // tan(solid angle / 2) = volume / beside (Van Oosterom and Strackee 1983).
+  // tan(solid angle / 2) = volume / denominator (Van Oosterom and Strackee 1983).
   const double volume = std::abs(dot(t.to_a_, cross(u, v)));
-  const double beside =
+  const double denominator =
       la * lb * lc + dot(t.to_a_, to_b) * lc + dot(to_b, to_c) * la + dot(to_c, t.to_a_) * lb;
-  t.solid_angle_ = 2 * atan2(volume, beside);
+  t.solid_angle_ = 2 * atan2(volume, denominator);
   if (!(t.solid_angle_ >= kMinSolidAngle) || !(volume > 0)) {
     return std::nullopt;
   }
@@ -58,17 +58,17 @@ Vec2 SphericalTriangle::on_plane(const Vec3& direction) const {
 }
 
 Vec2 SphericalTriangle::sample(double s, double t) const {
-  // Arvo's algorithm with phi = share - alpha, where `share` is s times the solid angle. First a
-  // sub-triangle with the solid angle `share` is found by its vertex c, which lies on the side from
+  // Arvo's algorithm with phi = area - alpha, where `area` is s times the solid angle. First a
+  // sub-triangle with the solid angle `area` is found by its vertex c, which lies on the side from
   // a to the triangle's vertex c. Then a point between this vertex and b is sampled.
-  const SinCos share = sincos_turns(s * solid_angle_ * (0.5 * kInvPi));
-  const double sin_phi = share.sin * cos_alpha_ - share.cos * sin_alpha_;
-  const double cos_phi = share.cos * cos_alpha_ + share.sin * sin_alpha_;
+  const SinCos area = sincos_turns(s * solid_angle_ * (0.5 * kInvPi));
+  const double sin_phi = area.sin * cos_alpha_ - area.cos * sin_alpha_;
+  const double cos_phi = area.cos * cos_alpha_ + area.sin * sin_alpha_;
   const double p = cos_phi - cos_alpha_;
   const double q = sin_phi + sin_alpha_ * cos_c_;
-  const double below = (q * sin_phi + p * cos_phi) * sin_alpha_;
-  const double raw = ((q * cos_phi - p * sin_phi) * cos_alpha_ - q) / below;
-  const double cos_side = below == 0 || std::isnan(raw) ? 1 : std::clamp(raw, -1.0, 1.0);
+  const double denominator = (q * sin_phi + p * cos_phi) * sin_alpha_;
+  const double raw = ((q * cos_phi - p * sin_phi) * cos_alpha_ - q) / denominator;
+  const double cos_side = denominator == 0 || std::isnan(raw) ? 1 : std::clamp(raw, -1.0, 1.0);
   const Vec3 c = a_ * cos_side + toward_c_ * root((1 - cos_side) * (1 + cos_side));
   const double height = t * (1 - dot(c, b_));  // 1 - cosine of the angle to b
   const Vec3 toward = c - b_ * dot(c, b_);

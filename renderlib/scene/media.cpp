@@ -26,17 +26,17 @@ absl::Status check_rates(const std::string& field, const Rgb& rates) {
 }
 
 /// Checks the use of a grid. `coefficient` is the medium's largest coefficient that is multiplied
-/// by the numbers of the grid. `most_of` holds the largest number of each grid.
+/// by the numbers of the grid. `grid_maxima` holds the largest number of each grid.
 absl::Status check_use(const std::string& field, const std::optional<GridUse>& use,
-                       const std::vector<float>& most_of, float coefficient) {
+                       const std::vector<float>& grid_maxima, float coefficient) {
   if (!use) {
     return absl::OkStatus();
   }
-  RETURN_IF_ERROR(check_index(field + ".grid", use->grid, most_of.size()));
+  RETURN_IF_ERROR(check_index(field + ".grid", use->grid, grid_maxima.size()));
   if (!(use->scale >= 0 && std::isfinite(use->scale))) {
     return invalid(field + ".scale", absl::StrCat("must be finite and >= 0, is ", use->scale));
   }
-  const double most = double{coefficient} * use->scale * most_of[index_of(use->grid)];
+  const double most = double{coefficient} * use->scale * grid_maxima[index_of(use->grid)];
   if (!(most <= kMaxPerUnit)) {
     return invalid(field,
                    absl::StrCat("must be at most ", kMaxPerUnit,
@@ -49,15 +49,15 @@ absl::Status check_use(const std::string& field, const std::optional<GridUse>& u
 /// alone, so their coefficient is 1. The numbers of an albedo grid have no maximum, so their
 /// coefficient is 0.
 absl::Status check_grids(const std::string& field, const Medium& medium,
-                         const std::vector<float>& most_of) {
+                         const std::vector<float>& grid_maxima) {
   const float emission = max_component(medium.emission);
   const float coefficient =
       std::max({max_component(medium.absorption), max_component(medium.scattering), emission});
   const MediumGrids& grids = medium.grids;
-  RETURN_IF_ERROR(check_use(field + ".density_grid", grids.density, most_of, coefficient));
-  RETURN_IF_ERROR(check_use(field + ".albedo_grid", grids.albedo, most_of, 0));
-  RETURN_IF_ERROR(check_use(field + ".emission_grid", grids.emission, most_of, emission));
-  RETURN_IF_ERROR(check_use(field + ".temperature_grid", grids.temperature, most_of, 1));
+  RETURN_IF_ERROR(check_use(field + ".density_grid", grids.density, grid_maxima, coefficient));
+  RETURN_IF_ERROR(check_use(field + ".albedo_grid", grids.albedo, grid_maxima, 0));
+  RETURN_IF_ERROR(check_use(field + ".emission_grid", grids.emission, grid_maxima, emission));
+  RETURN_IF_ERROR(check_use(field + ".temperature_grid", grids.temperature, grid_maxima, 1));
   if (!std::isfinite(grids.temperature_offset)) {
     return invalid(field + ".temperature_offset", "must be finite");
   }
@@ -65,7 +65,7 @@ absl::Status check_grids(const std::string& field, const Medium& medium,
 }
 
 absl::Status check_medium(const std::string& field, const Medium& medium,
-                          const std::vector<float>& most_of) {
+                          const std::vector<float>& grid_maxima) {
   RETURN_IF_ERROR(check_rates(field + ".absorption", medium.absorption));
   RETURN_IF_ERROR(check_rates(field + ".scattering", medium.scattering));
   RETURN_IF_ERROR(check_rates(field + ".emission", medium.emission));
@@ -73,7 +73,7 @@ absl::Status check_medium(const std::string& field, const Medium& medium,
     return invalid(field + ".g",
                    absl::StrCat("must be in [", -kMaxG, ", ", kMaxG, "], is ", medium.g));
   }
-  return check_grids(field, medium, most_of);
+  return check_grids(field, medium, grid_maxima);
 }
 
 absl::Status check_fog(const Media& media) {
@@ -82,7 +82,8 @@ absl::Status check_fog(const Media& media) {
         "fog", absl::StrCat("must be below ", media.media.size(), ", is ", index_of(*media.fog)));
   }
   if (media.media[index_of(*media.fog)].grids.any()) {
-    return invalid("fog", "must not have grids: it has no space of its own");
+    return invalid("fog",
+                   "must not have grids, because the fog has no boundary that gives it a space");
   }
   if (is_endless_glow(media.media[index_of(*media.fog)])) {
     return invalid("fog",
@@ -145,16 +146,16 @@ Shapes unit_ball() {
 }
 
 absl::Status validate(const Media& media) {
-  std::vector<float> most_of;
+  std::vector<float> grid_maxima;
   for (std::size_t i = 0; i < media.grids.size(); ++i) {
     const absl::StatusOr<float> most = check_grid(media.grids[i]);
     if (!most.ok()) {
       return absl::InvalidArgumentError(absl::StrCat("grids[", i, "]", most.status().message()));
     }
-    most_of.push_back(*most);
+    grid_maxima.push_back(*most);
   }
   for (std::size_t i = 0; i < media.media.size(); ++i) {
-    RETURN_IF_ERROR(check_medium(absl::StrCat("media[", i, "]"), media.media[i], most_of));
+    RETURN_IF_ERROR(check_medium(absl::StrCat("media[", i, "]"), media.media[i], grid_maxima));
   }
   if (media.fog) {
     RETURN_IF_ERROR(check_fog(media));

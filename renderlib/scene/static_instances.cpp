@@ -11,10 +11,10 @@ namespace bandsaw {
 namespace {
 
 /// Returns true if the frame's own transform, relative to its parent, is constant in the interval.
-bool stands(const Frame& frame, const Interval& interval) {
+bool is_constant(const Frame& frame, const Interval& interval) {
   const Transform at_open = motion_at(frame, interval.open);
-  const bool ends_there = motion_at(frame, interval.close) == at_open;
-  return ends_there && std::all_of(frame.keys.begin(), frame.keys.end(), [&](const Key& key) {
+  const bool same_at_close = motion_at(frame, interval.close) == at_open;
+  return same_at_close && std::all_of(frame.keys.begin(), frame.keys.end(), [&](const Key& key) {
            const bool within = key.time > interval.open && key.time < interval.close;
            return !within || key.at == at_open;
          });
@@ -27,8 +27,9 @@ void make_static(Geometry& geometry) {
   std::vector<bool> still;
   for (const Frame& frame : geometry.frames) {
     // A parent precedes its children, so it has been decided.
-    const bool parent = frame.parent == kNoFrame || still[index_of(frame.parent)];
-    still.push_back(parent && (interval.open == interval.close || stands(frame, interval)));
+    const bool parent_is_still = frame.parent == kNoFrame || still[index_of(frame.parent)];
+    still.push_back(parent_is_still &&
+                    (interval.open == interval.close || is_constant(frame, interval)));
   }
   for (Instance& instance : geometry.instances) {
     if (instance.frame != kNoFrame && still[index_of(instance.frame)]) {

@@ -71,8 +71,8 @@ absl::Status check_shapes(const std::string& where, const Shapes& shapes, std::s
 }
 
 /// Checks that a list has no entry, or one entry for each position of its mesh.
-absl::Status check_one_a_position(const std::string& field, std::size_t count,
-                                  std::size_t positions) {
+absl::Status check_one_per_position(const std::string& field, std::size_t count,
+                                    std::size_t positions) {
   if (count != 0 && count != positions) {
     return invalid(field,
                    absl::StrCat("must be none or one a position (", positions, "), are ", count));
@@ -103,19 +103,19 @@ absl::Status check_finite_vertices(const std::string& field, const Mesh& mesh) {
   return check_finite(field + ".colors", mesh.colors);
 }
 
-absl::Status check_mesh(const std::string& field, const Mesh& mesh, MeshVertices vertices_are) {
-  if (vertices_are == MeshVertices::kFinite) {
+absl::Status check_mesh(const std::string& field, const Mesh& mesh, MeshVertices allowed) {
+  if (allowed == MeshVertices::kFinite) {
     RETURN_IF_ERROR(check_finite_vertices(field, mesh));
   }
   const std::size_t vertices = mesh.positions.size();
-  RETURN_IF_ERROR(check_one_a_position(field + ".normals", mesh.normals.size(), vertices));
-  RETURN_IF_ERROR(check_one_a_position(field + ".uvs", mesh.uvs.size(), vertices));
-  RETURN_IF_ERROR(check_one_a_position(field + ".uvs2", mesh.uvs2.size(), vertices));
-  RETURN_IF_ERROR(check_one_a_position(field + ".colors", mesh.colors.size(), vertices));
-  RETURN_IF_ERROR(check_one_a_position(field + ".positions_at_close",
-                                       mesh.positions_at_close.size(), vertices));
+  RETURN_IF_ERROR(check_one_per_position(field + ".normals", mesh.normals.size(), vertices));
+  RETURN_IF_ERROR(check_one_per_position(field + ".uvs", mesh.uvs.size(), vertices));
+  RETURN_IF_ERROR(check_one_per_position(field + ".uvs2", mesh.uvs2.size(), vertices));
+  RETURN_IF_ERROR(check_one_per_position(field + ".colors", mesh.colors.size(), vertices));
+  RETURN_IF_ERROR(check_one_per_position(field + ".positions_at_close",
+                                         mesh.positions_at_close.size(), vertices));
   RETURN_IF_ERROR(
-      check_one_a_position(field + ".normals_at_close", mesh.normals_at_close.size(), vertices));
+      check_one_per_position(field + ".normals_at_close", mesh.normals_at_close.size(), vertices));
   if (!mesh.normals_at_close.empty() && (mesh.normals.empty() || mesh.positions_at_close.empty())) {
     return invalid(field + ".normals_at_close",
                    "must be none without normals or positions_at_close");

@@ -105,9 +105,9 @@ Rgb evaluate(const ImageTexture& image, const TextureCoordinates& at) {
                                                         : bilinear(image, x, y);
 }
 
-double repetitions(const ImageTexture& image, const TextureCoordinates& way) {
-  const auto& [a, b, x, d, e, y] = image.uv_transform.m;
-  const Vec2& uv = way.of(image.uv_set);
+double repetitions(const ImageTexture& image, const TextureCoordinates& change) {
+  const auto& [a, b, c, d, e, f] = image.uv_transform.m;
+  const Vec2& uv = change.of(image.uv_set);
   return std::max(std::abs(a * uv.x + b * uv.y), std::abs(d * uv.x + e * uv.y));
 }
 

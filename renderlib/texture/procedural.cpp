@@ -26,7 +26,7 @@ double parity(double x, double slack) {
 double slack_of(double largest) { return 0x1p-20 + 0x1p-40 * largest; }
 
 /// Returns t of NoiseTexture before clamping to [0, 1].
-double strength_at(const NoiseTexture& texture, const Vec3& p) {
+double unclamped_t(const NoiseTexture& texture, const Vec3& p) {
   switch (texture.kind) {
     case NoiseTexture::Kind::kNoise:
       return 0.5 * (1 + noise(texture.scale * p));
@@ -58,22 +58,22 @@ bool is_even(const CheckerTexture& checker, const TextureCoordinates& at) {
 }
 
 Rgb evaluate(const NoiseTexture& texture, const TextureCoordinates& at) {
-  const double t = std::clamp(strength_at(texture, at.of(texture.space)), 0.0, 1.0);
+  const double t = std::clamp(unclamped_t(texture, at.of(texture.space)), 0.0, 1.0);
   return blend(texture.low, texture.high, static_cast<float>(t));
 }
 
-double repetitions(const CheckerTexture& checker, const TextureCoordinates& way) {
+double repetitions(const CheckerTexture& checker, const TextureCoordinates& change) {
   const Vec3& size = checker.size;
   if (checker.mapping == CheckerTexture::Mapping::kUv) {
-    const Vec2& uv = way.of(checker.uv_set);
+    const Vec2& uv = change.of(checker.uv_set);
     return max_abs({uv.x / size.x, uv.y / size.y, 0});
   }
-  const Vec3& p = way.of(checker.space);
+  const Vec3& p = change.of(checker.space);
   return max_abs({p.x / size.x, p.y / size.y, p.z / size.z});
 }
 
-double repetitions(const NoiseTexture& texture, const TextureCoordinates& way) {
-  const Vec3& p = way.of(texture.space);
+double repetitions(const NoiseTexture& texture, const TextureCoordinates& change) {
+  const Vec3& p = change.of(texture.space);
   if (texture.kind != NoiseTexture::Kind::kMarble) {
     return max_abs(texture.scale * p);
   }
@@ -84,9 +84,9 @@ double repetitions(const NoiseTexture& texture, const TextureCoordinates& way) {
   return std::max(cells, phase * (0.5 * kInvPi));
 }
 
-double repetitions(const RampTexture& ramp, const TextureCoordinates& way) {
+double repetitions(const RampTexture& ramp, const TextureCoordinates& change) {
   const double range = ramp.stops.back().at - ramp.stops.front().at;
-  return range > 0 ? std::abs(coordinate(ramp, way)) / range : 0;
+  return range > 0 ? std::abs(coordinate(ramp, change)) / range : 0;
 }
 
 double coordinate(const RampTexture& ramp, const TextureCoordinates& at) {

@@ -13,12 +13,12 @@ bool is_even(const CheckerTexture& checker, const TextureCoordinates& at);
 /// Returns the colour at the point.
 Rgb evaluate(const NoiseTexture& noise, const TextureCoordinates& at);
 
-/// Returns how many times the texture itself repeats while the coordinates change by `way`, as
-/// repetitions() in texture.h. Textures that it refers to do not count.
-double repetitions(const CheckerTexture& checker, const TextureCoordinates& way);
-double repetitions(const NoiseTexture& noise, const TextureCoordinates& way);
+/// Returns how many times the texture itself repeats between two points whose coordinates differ by
+/// `change`, as repetitions() in texture.h. Textures that it refers to do not count.
+double repetitions(const CheckerTexture& checker, const TextureCoordinates& change);
+double repetitions(const NoiseTexture& noise, const TextureCoordinates& change);
 /// `ramp.over` MUST NOT be kTexture.
-double repetitions(const RampTexture& ramp, const TextureCoordinates& way);
+double repetitions(const RampTexture& ramp, const TextureCoordinates& change);
 
 /// Returns the coordinate that the ramp maps to a colour. `ramp.over` MUST NOT be kTexture.
 double coordinate(const RampTexture& ramp, const TextureCoordinates& at);

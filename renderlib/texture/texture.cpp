@@ -37,7 +37,7 @@ struct Evaluate {
   Rgb operator()(const ProductTexture& t) const { return of(t.a) * of(t.b); }
 };
 
-struct Most {
+struct MaxValue {
   absl::Span<const Texture> textures;
 
   float of(TextureId id) const { return std::visit(*this, textures[index_of(id)]); }
@@ -63,12 +63,12 @@ struct Mean {
   absl::Span<const Texture> textures;
 
   Rgb of(TextureId id) const { return std::visit(*this, textures[index_of(id)]); }
-  static Rgb half(const Rgb& a, const Rgb& b) { return (a + b) * 0.5f; }
+  static Rgb average(const Rgb& a, const Rgb& b) { return (a + b) * 0.5f; }
 
   Rgb operator()(const ConstantTexture& t) const { return t.value; }
   Rgb operator()(const ImageTexture& t) const { return mean(t); }
-  Rgb operator()(const CheckerTexture& t) const { return half(of(t.even), of(t.odd)); }
-  Rgb operator()(const NoiseTexture& t) const { return half(t.low, t.high); }
+  Rgb operator()(const CheckerTexture& t) const { return average(of(t.even), of(t.odd)); }
+  Rgb operator()(const NoiseTexture& t) const { return average(t.low, t.high); }
   Rgb operator()(const RampTexture& t) const {
     Rgb sum;
     for (const RampTexture::Stop& stop : t.stops) {
@@ -76,24 +76,24 @@ struct Mean {
     }
     return sum * (1 / static_cast<float>(t.stops.size()));
   }
-  Rgb operator()(const MixTexture& t) const { return half(of(t.a), of(t.b)); }
+  Rgb operator()(const MixTexture& t) const { return average(of(t.a), of(t.b)); }
   Rgb operator()(const ProductTexture& t) const { return of(t.a) * of(t.b); }
 };
 
 struct Repetitions {
   absl::Span<const Texture> textures;
-  const TextureCoordinates& way;
+  const TextureCoordinates& change;
 
   double of(TextureId id) const { return std::visit(*this, textures[index_of(id)]); }
 
   double operator()(const ConstantTexture&) const { return 0; }
-  double operator()(const ImageTexture& t) const { return repetitions(t, way); }
+  double operator()(const ImageTexture& t) const { return repetitions(t, change); }
   double operator()(const CheckerTexture& t) const {
-    return std::max({repetitions(t, way), of(t.even), of(t.odd)});
+    return std::max({repetitions(t, change), of(t.even), of(t.odd)});
   }
-  double operator()(const NoiseTexture& t) const { return repetitions(t, way); }
+  double operator()(const NoiseTexture& t) const { return repetitions(t, change); }
   double operator()(const RampTexture& t) const {
-    return t.over == RampTexture::Over::kTexture ? of(t.texture) : repetitions(t, way);
+    return t.over == RampTexture::Over::kTexture ? of(t.texture) : repetitions(t, change);
   }
   double operator()(const MixTexture& t) const {
     return std::max({of(t.a), of(t.b), of(t.amount)});
@@ -129,13 +129,15 @@ Rgb evaluate(absl::Span<const Texture> textures, TextureId id, const TextureCoor
   return Evaluate{textures, at}.of(id);
 }
 
-float max_value(absl::Span<const Texture> textures, TextureId id) { return Most{textures}.of(id); }
+float max_value(absl::Span<const Texture> textures, TextureId id) {
+  return MaxValue{textures}.of(id);
+}
 
 Rgb mean(absl::Span<const Texture> textures, TextureId id) { return Mean{textures}.of(id); }
 
 double repetitions(absl::Span<const Texture> textures, TextureId id,
-                   const TextureCoordinates& way) {
-  return Repetitions{textures, way}.of(id);
+                   const TextureCoordinates& change) {
+  return Repetitions{textures, change}.of(id);
 }
 
 bool uses_uv(const Texture& texture) {

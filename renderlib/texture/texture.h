@@ -139,12 +139,13 @@ float max_value(absl::Span<const Texture> textures, TextureId id);
 /// black only if the texture is black everywhere.
 Rgb mean(absl::Span<const Texture> textures, TextureId id);
 
-/// Returns about how many times textures[id] repeats while the coordinates change by `way`; >= 0,
-/// not rounded. A repetition is a whole image, a cell of a checker, a cell of the lattice of noise,
-/// a vein of marble or, for a ramp over a coordinate, the distance from its first to its last stop.
-/// If the texture refers to other textures, the result is the largest number of repetitions among
-/// them and the texture itself. Constants give 0.
-double repetitions(absl::Span<const Texture> textures, TextureId id, const TextureCoordinates& way);
+/// Returns about how many times textures[id] repeats between two points whose coordinates differ by
+/// `change`; >= 0, not rounded. A repetition is a whole image, a cell of a checker, a cell of the
+/// lattice of noise, a vein of marble or, for a ramp over a coordinate, the distance from its first
+/// to its last stop. If the texture refers to other textures, the result is the largest number of
+/// repetitions among them and the texture itself. Constants give 0.
+double repetitions(absl::Span<const Texture> textures, TextureId id,
+                   const TextureCoordinates& change);
 
 /// Returns true if the texture itself uses uv coordinates; textures that it refers to do not count.
 bool uses_uv(const Texture& texture);

@@ -127,7 +127,7 @@ absl::StatusOr<std::unique_ptr<BlobCache>> BlobCache::open(std::string folder,
   return cache;
 }
 
-std::string BlobCache::part_of(const wire::Digest& digest) const {
+std::string BlobCache::part_path(const wire::Digest& digest) const {
   return absl::StrCat(blobs_.path_of(digest), ".part");
 }
 
@@ -158,14 +158,14 @@ absl::StatusOr<int> BlobCache::open_part(const std::string& path) {
       std::error_code ignored;  // then opening the file fails again
       std::filesystem::create_directories(folder_, ignored);
       is_folder_made = true;
-    } else if (!is_full(error) || !give_up_some(1)) {
+    } else if (!is_full(error) || !free_space(1)) {
       return errno_status(error, path);
     }
   }
 }
 
 absl::StatusOr<std::unique_ptr<BlobCache::Download>> BlobCache::begin(const wire::Digest& digest) {
-  const std::string path = part_of(digest);
+  const std::string path = part_path(digest);
   ASSIGN_OR_RETURN(const int fd, open_part(path));
   const bool is_taken = flock(fd, LOCK_EX | LOCK_NB) != 0;
   if (is_taken && errno != EWOULDBLOCK) {
@@ -197,7 +197,7 @@ void BlobCache::make_room(std::uint64_t added, const std::string& newest) {
   }
 }
 
-bool BlobCache::give_up_some(std::uint64_t wanted) {
+bool BlobCache::free_space(std::uint64_t wanted) {
   constexpr std::uint64_t kAtOnce = 64 << 20;  // so that the folder is not scanned for each chunk
   MutexLock lock(mutex_);
   const std::uint64_t freed = remove_oldest(entries(folder_), std::max(wanted, kAtOnce), "");
@@ -216,7 +216,7 @@ absl::Status BlobCache::Download::append(absl::Span<const std::byte> bytes) {
     const ssize_t written = pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset_));
     if (written < 0 && errno != EINTR) {
       const int error = errno;
-      if (is_full(error) && cache_.give_up_some(bytes.size())) {
+      if (is_full(error) && cache_.free_space(bytes.size())) {
         continue;
       }
       return errno_status(error, absl::StrCat("the cache folder ", cache_.folder_));
@@ -230,7 +230,7 @@ absl::Status BlobCache::Download::append(absl::Span<const std::byte> bytes) {
 }
 
 absl::Status BlobCache::Download::commit() {
-  const std::string part = cache_.part_of(digest_);
+  const std::string part = cache_.part_path(digest_);
   const absl::StatusOr<wire::Digest> received = digest_of_file(fd_, offset_, part);
   if (!received.ok() || *received != digest_) {
     discard();
@@ -247,6 +247,6 @@ absl::Status BlobCache::Download::commit() {
   return absl::OkStatus();
 }
 
-void BlobCache::Download::discard() { unlink(cache_.part_of(digest_).c_str()); }
+void BlobCache::Download::discard() { unlink(cache_.part_path(digest_).c_str()); }
 
 }  // namespace bandsaw::worker

@@ -63,7 +63,7 @@ class BlobCache : public BlobSource {
  private:
   BlobCache(std::string folder, std::uint64_t max_bytes);
   /// Returns the path of the partial file of a blob.
-  std::string part_of(const wire::Digest& digest) const;
+  std::string part_path(const wire::Digest& digest) const;
   /// Opens the partial file `path` for reading and writing, and returns its descriptor. Creates the
   /// file and the cache's folder if they are missing. Errors are those of begin().
   absl::StatusOr<int> open_part(const std::string& path) EXCLUDES(mutex_);
@@ -72,7 +72,7 @@ class BlobCache : public BlobSource {
   void make_room(std::uint64_t added, const std::string& newest) EXCLUDES(mutex_);
   /// Evicts the least recently used files because the disk is full, until at least `wanted` bytes
   /// are removed or no file is left. Returns false if there was nothing to evict.
-  bool give_up_some(std::uint64_t wanted) EXCLUDES(mutex_);
+  bool free_space(std::uint64_t wanted) EXCLUDES(mutex_);
 
   const std::string folder_;
   const std::uint64_t max_bytes_;

@@ -17,10 +17,10 @@ namespace bandsaw::worker {
 namespace {
 
 // The interval at which a wait checks `stop`, and whether another worker has finished a download.
-constexpr auto kLook = std::chrono::milliseconds(50);
+constexpr auto kPollInterval = std::chrono::milliseconds(50);
 // After so many downloads whose bytes do not have the digest, the source itself is considered
 // wrong.
-constexpr int kWrongBytesTimes = 3;
+constexpr int kMaxWrongDownloads = 3;
 
 absl::Status stopped() { return absl::CancelledError("stopped"); }
 
@@ -28,12 +28,12 @@ absl::Status stopped() { return absl::CancelledError("stopped"); }
 void pause(std::chrono::milliseconds time, const std::atomic<bool>& stop) {
   const auto end = std::chrono::steady_clock::now() + time;
   while (!stop && std::chrono::steady_clock::now() < end) {
-    std::this_thread::sleep_for(std::min(kLook, time));
+    std::this_thread::sleep_for(std::min(kPollInterval, time));
   }
 }
 
 /// Returns true if the transfer may succeed when it is repeated.
-bool is_passing(const absl::Status& status) {
+bool is_temporary(const absl::Status& status) {
   return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status) ||
          absl::IsCancelled(status) || absl::IsAborted(status);
 }
@@ -45,7 +45,7 @@ absl::StatusOr<std::unique_ptr<BlobBytes>> FetchingSource::get(const wire::Diges
   for (int attempt = 0;; ++attempt) {
     if (cache_.has(digest)) {
       absl::StatusOr<std::unique_ptr<BlobBytes>> blob = cache_.get(digest);
-      if (blob.ok() || attempt == kWrongBytesTimes ||
+      if (blob.ok() || attempt == kMaxWrongDownloads ||
           !(absl::IsDataLoss(blob.status()) || absl::IsNotFound(blob.status()))) {
         step(1);
         return blob;
@@ -62,24 +62,24 @@ absl::Status FetchingSource::fetch(const wire::Digest& digest) {
     if (cache_.has(digest)) {
       return absl::OkStatus();
     }
-    ASSIGN_OR_RETURN(const std::unique_ptr<BlobCache::Download> place, cache_.begin(digest));
-    if (place == nullptr) {
+    ASSIGN_OR_RETURN(const std::unique_ptr<BlobCache::Download> partial, cache_.begin(digest));
+    if (partial == nullptr) {
       step(1);  // another worker of this machine fetches the blob, which is progress as well
-      pause(kLook, stop_);
+      pause(kPollInterval, stop_);
       continue;
     }
-    const std::uint64_t before = place->offset();
-    const absl::Status status = download(digest, *place);
+    const std::uint64_t before = partial->offset();
+    const absl::Status status = download(digest, *partial);
     if (status.ok()) {
       return status;
     }
-    if (absl::IsDataLoss(status) && ++wrong < kWrongBytesTimes) {
+    if (absl::IsDataLoss(status) && ++wrong < kMaxWrongDownloads) {
       continue;
     }
-    if (!is_passing(status)) {
+    if (!is_temporary(status)) {
       return status;
     }
-    if (place->offset() > before) {
+    if (partial->offset() > before) {
       backoff.reset();
     }
     pause(backoff.next(), stop_);
@@ -87,26 +87,26 @@ absl::Status FetchingSource::fetch(const wire::Digest& digest) {
   return stopped();
 }
 
-absl::Status FetchingSource::download(const wire::Digest& digest, BlobCache::Download& place) {
-  const std::uint64_t before = place.offset();
+absl::Status FetchingSource::download(const wire::Digest& digest, BlobCache::Download& partial) {
+  const std::uint64_t before = partial.offset();
   const absl::Status status =
       transfer_(digest, before, [&](absl::Span<const std::byte> bytes) -> absl::Status {
         if (stop_) {
           return stopped();
         }
-        if (place.offset() + bytes.size() > wire::kBlobBytes) {
+        if (partial.offset() + bytes.size() > wire::kBlobBytes) {
           return absl::InvalidArgumentError(
               absl::StrCat("blob ", digest.hex(), " has more than ", wire::kBlobBytes, " bytes"));
         }
         step(bytes.size());
-        return place.append(bytes);
+        return partial.append(bytes);
       });
-  if (absl::IsInvalidArgument(status) && before > 0 && place.offset() == before) {
-    place.discard();  // the partial file is longer than the blob
+  if (absl::IsInvalidArgument(status) && before > 0 && partial.offset() == before) {
+    partial.discard();  // the partial file is longer than the blob
     return absl::DataLossError(status.message());
   }
   RETURN_IF_ERROR(status);
-  return place.commit();
+  return partial.commit();
 }
 
 std::vector<std::shared_ptr<const Scene>> PackageLoader::scenes_in_use() {

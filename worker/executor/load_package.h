@@ -43,8 +43,8 @@ class FetchingSource : public BlobSource {
   /// Downloads a blob into the cache. Repeats transfers that are interrupted, and waits while
   /// another worker downloads the blob.
   absl::Status fetch(const wire::Digest& digest);
-  /// Makes one transfer, from the end of the partial file.
-  absl::Status download(const wire::Digest& digest, BlobCache::Download& download);
+  /// Makes one transfer, from the end of the partial file, and commits the blob.
+  absl::Status download(const wire::Digest& digest, BlobCache::Download& partial);
   void step(std::uint64_t amount) { prepared_(progress_ += amount); }
 
   BlobCache& cache_;

@@ -14,11 +14,11 @@
 namespace bandsaw::worker {
 namespace {
 
-// kDeadline: the deadline of a stream of bands, from its opening. kServes: the age up to which a
-// stream takes a further band. So there is at least a minute for the transfer of each band. A band
-// whose transfer is interrupted is sent again.
+// kDeadline: the deadline of a stream of bands, from its opening. kMaxStreamAge: the age up to
+// which a stream takes a further band. So there is at least a minute for the transfer of each band.
+// A band whose transfer is interrupted is sent again.
 constexpr std::chrono::milliseconds kDeadline{120'000};
-constexpr std::chrono::milliseconds kServes{60'000};
+constexpr std::chrono::milliseconds kMaxStreamAge{60'000};
 
 farm::BandHeader header_of(const FinishedBand& band, const std::string& instance,
                            const LeaseName& lease) {
@@ -82,7 +82,7 @@ FarmCalls::BandStream::~BandStream() {
 }
 
 bool FarmCalls::BandStream::serves(const std::shared_ptr<grpc::Channel>& channel) const {
-  return channel == channel_ && std::chrono::steady_clock::now() - opened_ < kServes;
+  return channel == channel_ && std::chrono::steady_clock::now() - opened_ < kMaxStreamAge;
 }
 
 bool FarmCalls::BandStream::send(const FinishedBand& band, const std::string& instance,
