@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// For each folder: the other folders whose headers it may include. It may include itself too, and
-// whatever the named folders may include.
+// For each folder: the other folders whose headers it may include. A folder may also include its
+// own headers, and all headers that the named folders may include.
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"proto/wire", {}},
     {"proto/link", {"proto/wire"}},
@@ -158,6 +158,7 @@ TEST(Architecture, EveryIncludeFollowsTheAllowedDependencies) {
   EXPECT_GT(checked, 100u);  // fewer: the pattern has missed some
 }
 
+// The test applies the same rule to Assimp.
 TEST(Architecture, OnlyPackageAndImportUseProtobufInRenderlib) {
   for (const fs::path& source : sources()) {
     const std::string folder = source.parent_path().string();
@@ -241,7 +242,7 @@ std::map<std::string, std::set<std::string>> types_of_headers() {
 }
 
 // If two headers define types of the same name and no file includes both, no compiler reports the
-// clash. The linker takes the two types for one and mixes their inline members.
+// clash. The linker then treats them as a single type and mixes their inline members.
 TEST(Architecture, ATypeIsDefinedInOneHeader) {
   const auto found = types_of_headers();
   EXPECT_GT(found.size(), 300u);  // fewer: the patterns have missed some

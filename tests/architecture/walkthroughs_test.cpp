@@ -25,7 +25,7 @@ void add_walkthroughs(const fs::path& readme, std::vector<Walkthrough>& to) {
   static const std::regex kHeading("(#+) (.*)");
   std::ifstream in(readme);
   std::size_t level = 0;  // heading level of the walkthrough that is being read; 0: none
-  bool fenced = false;
+  bool fenced = false;    // inside a block between two lines of ```, where # begins no heading
   for (std::string line; std::getline(in, line);) {
     fenced = fenced != line.starts_with("```");
     std::smatch heading;
@@ -58,8 +58,9 @@ std::vector<Walkthrough> walkthroughs() {
   return found;
 }
 
-/// Returns the file names and paths in a text. In backquotes these are all words with a slash or
-/// the suffix of a source file. Elsewhere (in diagrams) they are the names of source files.
+/// Returns the file names and paths in a text. A word in backquotes counts if it has a slash, or
+/// one of the suffixes in kSource. Anywhere, as in a diagram, a word with a suffix of kInDiagram
+/// counts.
 std::vector<std::string> paths_in(const std::string& text) {
   static const std::regex kQuoted("`([A-Za-z0-9_./-]+)`");
   static const std::regex kSource(R"(.*\.(h|cpp|proto|md|sh|txt))");
@@ -77,8 +78,9 @@ std::vector<std::string> paths_in(const std::string& text) {
   return paths;
 }
 
-/// Returns true if `path` exists relative to the folder of the README or to the repository. A bare
-/// file name, as in a diagram, may also be that of a file which the walkthrough names by its path.
+/// Returns true if `path` exists relative to the folder of the README or to the repository. `all`:
+/// all paths of the walkthrough. A bare file name, as in a diagram, also exists if `all` contains
+/// the path of an existing file with this name.
 bool exists(const Walkthrough& walkthrough, const std::string& path,
             const std::vector<std::string>& all) {
   for (const fs::path& base : {walkthrough.readme.parent_path(), fs::path(BANDSAW_SOURCE)}) {

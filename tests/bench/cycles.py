@@ -1,8 +1,9 @@
 """Renders a scene of Bandsaw with Cycles, for peers.sh.
 
 blender -b --python cycles.py -- SCENE.textproto WIDTH HEIGHT SAMPLES SEED OUTPUT.exr
-Prints "cpu_s=…": the CPU seconds of SAMPLES - 1 samples. It is the difference to a render with one
-sample, so it does not contain the preparation of the scene.
+Prints "cpu_s=…": the CPU seconds of SAMPLES - 1 samples a pixel. The program subtracts the time of
+a render with one sample from that of a render with SAMPLES samples. So the preparation of the scene
+does not count.
 
 Supports perspective cameras with a lens, quads, spheres (as meshes, because Cycles has no spheres),
 models in PLY files without a transform, diffuse, emissive, metal and dielectric materials of one
@@ -57,7 +58,8 @@ def colour(message):
     return (*message["rgb"][0], 1)
 
 
-# Makes Blender's material of a message `material`, which has a name and one more field, its kind.
+# Returns Blender's material for a message `material`. The message has a name and one more field,
+# which is the kind of the material.
 def make_material(message):
     (name,) = message.pop("name")
     ((kind, (fields,)),) = message.items()
@@ -90,6 +92,7 @@ def make_material(message):
     return material
 
 
+# Adds an object to the scene. The material belongs to the object, because spheres share a mesh.
 def add_object(mesh, material):
     thing = bpy.data.objects.new("thing", mesh)
     bpy.context.scene.collection.objects.link(thing)
@@ -121,7 +124,7 @@ def add_shapes(scene, materials, folder):
             add_object(mesh, material)
             continue
         radius = shape["sphere"][0]["radius"][0]
-        segments = 1024 if radius > 50 else 64  # large spheres are grounds, whose facets would be seen
+        segments = 1024 if radius > 50 else 64  # facets of a large sphere, a ground, would be seen
         if segments not in spheres:
             spheres[segments] = sphere_mesh(segments)
         thing = add_object(spheres[segments], material)
@@ -151,6 +154,7 @@ def set_camera(fields):
     if "aperture" in fields:
         camera.data.dof.use_dof = True
         camera.data.dof.focus_distance = fields["focus_distance"][0]
+        # The f-number is the focal length over the diameter of the lens; Blender's lens is in mm.
         camera.data.dof.aperture_fstop = camera.data.lens * 1e-3 / fields["aperture"][0]
 
 
@@ -175,7 +179,8 @@ def set_background(fields):
     tree.links.new(mix.outputs[0], background.inputs["Color"])
 
 
-# Turns off what makes Cycles biased, and adaptive sampling: both renderers take the same number of samples in each pixel.
+# Turns off everything that makes Cycles biased. Also turns off adaptive sampling, so that both
+# renderers take the same number of samples in each pixel.
 def set_quality(width, height, seed):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -197,7 +202,7 @@ def set_quality(width, height, seed):
 
 
 def rendered(samples):
-    """Renders with so many samples a pixel and returns the CPU seconds."""
+    """Renders with this many samples a pixel and returns the CPU seconds."""
     bpy.context.scene.cycles.samples = samples
     bpy.context.scene.update_tag()
     before = resource.getrusage(resource.RUSAGE_SELF)

@@ -39,7 +39,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Stream = grpc::ClientReaderWriter<farm::FromWorker, farm::ToWorker>;
 
-constexpr std::chrono::milliseconds kLong{600'000};  // deadline of calls, longer than each takes
+constexpr std::chrono::milliseconds kLong{600'000};  // deadline of calls; every call is shorter
 // The image has many rows of few bytes each, because the cost of bands is measured, not that of
 // their bytes.
 constexpr std::uint32_t kWidth = 64;
@@ -220,7 +220,9 @@ struct Coordinator {
       test::Process::start({BANDSAW_BIN, "serve", "--data", folder / "data", "--listen",
                             "127.0.0.1:0", "--web", "none", "--audit", "0%"});
   Coordinator() { BANDSAW_CHECK(process.wait_for("join with:"), process.err().c_str()); }
+  /// Join string for workers.
   link::JoinString workers() const { return join_from(folder / "data/join"); }
+  /// Join string for users, who submit jobs.
   link::JoinString people() const { return join_from(folder / "data/farm"); }
 };
 

@@ -24,6 +24,8 @@ struct EmbreeKernel::State {
 
 namespace {
 
+/// Embree's memory monitor: adds `bytes`, which is negative for freed memory, to the counter at
+/// `state`.
 bool count_bytes(void* state, ssize_t bytes, bool) {
   *static_cast<std::atomic<long long>*>(state) += bytes;
   return true;

@@ -19,6 +19,7 @@ constexpr std::uint32_t kWidth = 1920;
 constexpr std::uint32_t kHeight = 1080;
 constexpr std::uint64_t kSamples = 64;
 
+/// Cost of a row, relative to the mean of all rows. Here every row costs the same.
 double even(std::uint32_t) { return 1; }
 /// Rows of the upper half cost 20 times as much as those of the lower half; the mean is 1.
 double uneven(std::uint32_t row) { return row < kHeight / 2 ? 40.0 / 21 : 2.0 / 21; }

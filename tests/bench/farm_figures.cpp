@@ -1,6 +1,11 @@
-// Measures a farm of real processes on one machine, as a table.
+// Measures a farm of real processes on one machine and prints a table.
 //
-//   farm_figures [loss|pixels|again|left]...    default: all of them, ten minutes on two cores
+//   farm_figures [loss|pixels|again|left]...    default: all four, ten minutes on two cores
+//
+//   loss: time until the loss of a worker is detected
+//   pixels: time until the first pixels of a job arrive
+//   again: finished bands that are rendered again after the coordinator was killed
+//   left: error of the remaining time that is reported during a job
 
 #include "tests/bench/farm_figures.h"
 
@@ -38,7 +43,7 @@ void print(const std::vector<Figure>& figures) {
 
 int main(int argc, char** argv) {
   using namespace bandsaw::bench;
-  GTEST_FLAG_SET(throw_on_failure, true);  // failed assertions of the tests' farm end this program
+  GTEST_FLAG_SET(throw_on_failure, true);  // a failed assertion in tests/farm ends this program
   testing::InitGoogleTest(&argc, argv);
   const std::set<std::string> asked(argv + 1, argv + argc);
   const auto wanted = [&](const char* name) { return asked.empty() || asked.contains(name); };

@@ -1,7 +1,7 @@
 #pragma once
 
-// The measurements of the program farm_figures: each starts a farm of real processes and returns
-// one row of the table that is printed.
+// The measurements of the program farm_figures. Each measurement starts farms of real processes and
+// returns one or more rows of the table that the program prints.
 
 #include <chrono>
 #include <optional>
@@ -10,6 +10,7 @@
 
 namespace bandsaw::bench {
 
+/// A row of the table.
 struct Figure {
   std::string name;
   std::string aim;               ///< the value that is wanted, as text: "≤ 5 s"

@@ -16,8 +16,10 @@ using test::FarmProcesses;
 using test::Hosts;
 using test::Process;
 
-constexpr int kKills = 10;
-constexpr int kSilences = 3;  // losses by freeze or pulled cable; each takes seconds to be detected
+constexpr int kKills = 10;  // number of losses by SIGKILL
+// Number of losses by a freeze, and number by a pulled cable. The coordinator needs seconds to
+// detect each of them.
+constexpr int kSilences = 3;
 
 /// Submits a job that does not end during the measurement.
 void keep_busy(const FarmProcesses& farm) {
@@ -45,7 +47,7 @@ double seen_after(FarmProcesses& farm, const std::string& worker,
 }
 
 /// Measures the time until the coordinator reports the loss of a worker that gets the signal
-/// `number`. Does so `times` times, each time with a new worker.
+/// `number`. The measurement is repeated `times` times, each time with a new worker.
 Figure signalled(const std::string& name, const std::string& aim, int number, int times) {
   Figure figure{name, aim, " s", {}, ""};
   FarmProcesses farm;
@@ -58,6 +60,8 @@ Figure signalled(const std::string& name, const std::string& aim, int number, in
   return figure;
 }
 
+/// Measures the time until the coordinator reports the loss of a worker whose cable is pulled. The
+/// figure has no values if machines cannot be simulated here.
 Figure cable_pulled() {
   Figure figure{"loss seen: cable pulled", "≤ 5 s", " s", {}, ""};
   std::vector<std::string> names = {"coordinator"};

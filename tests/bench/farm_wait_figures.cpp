@@ -21,7 +21,7 @@ using test::FarmProcesses;
 using test::Process;
 
 constexpr int kRuns = 5;
-constexpr int kSeeds = 4;  // seeds of the jobs whose remaining time is measured
+constexpr int kSeeds = 4;  // runs, with different seeds, of each job of time_left_figure()
 
 std::string gallery(const std::string& scene) {
   return std::string(BANDSAW_GALLERY) + "/" + scene + ".textproto";
@@ -93,8 +93,8 @@ struct Job {
   std::vector<std::string> options;
 };
 
-/// Runs a job to its end. Returns the relative error of the remaining time that was reported after
-/// a quarter of its time; NaN if none was reported.
+/// Runs a job to its end. Takes the first report after a quarter of the job's whole time. Returns
+/// the relative error of the remaining time in this report; NaN if the report has none.
 double error_of_time_left(const FarmProcesses& farm, const Job& job, int seed) {
   std::vector<std::string> arguments = {
       "submit", gallery(job.scene),   "--json", "--seed", std::to_string(seed),
@@ -157,8 +157,9 @@ Figure time_left_figure() {
       if (std::abs(error) <= 0.15) {
         ++within;
       } else {
-        figure.remark += job.scene + " " + job.options.back() +
-                         (std::isnan(error) ? " was not printed; " : " was not; ");
+        figure.remark +=
+            job.scene + " " + job.options.back() +
+            (std::isnan(error) ? ": no time left was reported; " : ": not within 15 %; ");
       }
       if (!std::isnan(error)) {
         figure.measured.push_back(100 * error);

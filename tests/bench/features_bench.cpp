@@ -1,5 +1,6 @@
-// Measures the cost of each scene feature: scenes are rendered with their own features and with
-// unused features forced, in turns. Writes Markdown to standard output.
+// Measures the cost of each scene feature (renderlib/scene/scene_features.h). Each scene is
+// rendered with its own features and with unused features forced, in turns. Writes Markdown to
+// standard output.
 //
 //   features_bench SCENE...    scene files or models
 
@@ -27,14 +28,16 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// One scene with its own features or with forced ones, and the times of its renders. Each time is
-/// relative to that of the scene with its own features in the same round.
+/// A scene with its own features or with forced features.
 struct Variant {
   std::string name;
   std::shared_ptr<const Scene> scene;
+  /// For each round: CPU time of a render, divided by that of the scene with its own features.
   std::vector<double> ratios;
 };
 
+/// Returns the scene with its own features, twice; then with each unused feature forced; then with
+/// all features forced.
 std::vector<Variant> variants_of(const SceneDescription& description, Pool& pool) {
   std::vector<Variant> out = {{"own", Scene::build(description, pool).value(), {}}};
   const SceneFeatures own = out[0].scene->features();
@@ -50,6 +53,7 @@ std::vector<Variant> variants_of(const SceneDescription& description, Pool& pool
   return out;
 }
 
+/// Returns the CPU seconds of a render; 0 if it failed.
 double seconds_of(const Scene& scene, const RenderSettings& settings, std::uint64_t samples,
                   Pool& pool) {
   const std::atomic<bool> stop = false;
@@ -68,6 +72,8 @@ std::uint64_t samples_for(const Scene& scene, const RenderSettings& settings, Po
   return samples;
 }
 
+/// Prints a row for each variant of a scene file, except for the one that all are compared with:
+/// the median of the ratios and the range of their middle half.
 void measure(const std::string& path, Pool& pool) {
   const auto imported = import_scene(path);
   if (!imported.ok()) {

@@ -86,8 +86,8 @@ Figures packed(const Family& family, double size, const std::string& folder) {
   return {};
 }
 
-/// Measures what a worker does with a cached package: from the files to the first eight rows of an
-/// image of 600 x 400.
+/// Measures the time from the files of a package, as a worker has them in its cache, to the first
+/// eight rows of an image of 600 x 400.
 Figures begun(const std::string& folder) {
   const double start = wall_seconds();
   Pool pool(threads());
@@ -113,7 +113,8 @@ Figures from_disk(const Family& family, double size) {
   return out;
 }
 
-/// Returns the exponent: the slope of the line through the points in logarithms, by least squares.
+/// Returns the exponent of growth: the slope of the least-squares line through the points
+/// (log size, log value).
 double exponent(const std::vector<std::pair<double, double>>& points) {
   double x = 0, y = 0, xx = 0, xy = 0;
   for (const auto& [size, value] : points) {
@@ -126,7 +127,7 @@ double exponent(const std::vector<std::pair<double, double>>& points) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-/// A column of the table, and a plot.
+/// A column of the table, which is also drawn as a plot.
 struct Column {
   const char* name;
   const char* file;  ///< part of the plot's file name
@@ -145,6 +146,7 @@ struct Grown {
   std::string name;
   std::vector<std::pair<double, Figures>> by_size;
 
+  /// Returns (size, value in the column's unit) for each size at which the figure was measured.
   std::vector<std::pair<double, double>> points(const Column& column) const {
     std::vector<std::pair<double, double>> out;
     for (const auto& [size, figures] : by_size) {

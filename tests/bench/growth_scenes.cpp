@@ -17,7 +17,7 @@ namespace {
 using test::Random;
 using test::SceneMaker;
 
-constexpr std::uint32_t kSide = 128;
+constexpr std::uint32_t kSide = 128;  // width and height of the images, pixels
 
 GrownScene grown(SceneMaker maker, std::uint32_t max_depth = 8) {
   return {.scene = std::move(maker.scene),
@@ -115,6 +115,7 @@ GrownScene pixels(double count) {
   return out;
 }
 
+/// A Cornell box with paths of at most `depth` scatterings.
 GrownScene deep(double depth) {
   return grown(test::cornell_box(), static_cast<std::uint32_t>(depth));
 }

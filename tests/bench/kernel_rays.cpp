@@ -1,4 +1,4 @@
-// The rays of kernel_bench: camera rays in tiles of 8 x 8 pixels. From each surface that they hit,
+// The rays of kernel_bench: camera rays in tiles of 8 x 8 pixels. From each point that they hit,
 // there is a ray in a random direction and a shadow ray to a light.
 
 #include "tests/bench/kernel_rays.h"
@@ -14,6 +14,7 @@ namespace {
 constexpr int kTile = 8;
 constexpr int kSide = 1024;
 
+/// Rounds the coordinates to floats.
 Vec3 to_float(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }

@@ -31,7 +31,7 @@ Figures measured_apart(const std::function<Figures()>& work) {
   const bool received = child > 0 && read(ends[0], &figures, sizeof figures) == sizeof figures;
   close(ends[0]);
   if (!received || wait4(child, &status, 0, &used) != child || status != 0) {
-    std::fprintf(stderr, "a measurement failed: no memory?\n");
+    std::fprintf(stderr, "a measurement failed; maybe there was too little memory\n");
     std::exit(1);
   }
   figures.peak_bytes = 1024.0 * static_cast<double>(used.ru_maxrss);

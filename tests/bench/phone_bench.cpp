@@ -31,24 +31,26 @@ namespace bandsaw::coordinator {
 namespace {
 
 struct PhoneStudyOptions {
-  std::vector<std::string> images;  ///< beginnings of their names; empty: all
+  std::vector<std::string> images;  ///< beginnings of image names; empty: all images
   std::vector<std::string> outputs = {"phone.csv", "phone.svg"};
   int runs = 10;                       ///< runs of each image on each machine
-  std::optional<std::uint32_t> width;  ///< pixels; std::nullopt: the study's own
-  int threads = 0;                     ///< threads of "all"; 0: one for each CPU
+  std::optional<std::uint32_t> width;  ///< pixels; std::nullopt: as in the study
+  int threads = 0;                     ///< number of "all threads"; 0: one for each CPU
   FarmOption farm;                     ///< empty: the default farm, if there is one
   Verbosity verbosity;
 };
 
 constexpr std::uint64_t kSamples = 1;  // per pixel, as in the study
 
+/// Returns the peak resident memory of this process, in MB.
 double peak_mb() {
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
   return static_cast<double>(used.ru_maxrss) * 1024 / 1e6;
 }
 
-/// Imports the images and renders each of them several times in each of the three ways.
+/// Imports the images. Renders each image several times on one thread, on all threads, and on the
+/// farm if there is one.
 class PhoneRun {
  public:
   PhoneRun(const PhoneStudyOptions& options, Process& process, FarmClient* client,
@@ -180,8 +182,8 @@ class PhoneRun {
   Process& process_;
   FarmClient* const client_;  ///< nullptr: no farm
   const std::atomic<bool>& stop_;
-  Pool one_;
-  Pool all_;
+  Pool one_;  ///< one thread
+  Pool all_;  ///< all threads
 };
 
 /// Returns the images whose names begin with one of the words, or all images if there are no words.
@@ -201,7 +203,7 @@ absl::StatusOr<std::set<std::string>> chosen(const std::vector<std::string>& wor
                      [&](const std::string& name) { return begins(name, word); })) {
       return absl::NotFoundError(absl::StrCat(
           "phone_bench: no image's name begins with '", word,
-          "'; they begin with texture, objects, spheres, triangles, lights, kind, size"));
+          "'; the names begin with texture, objects, spheres, triangles, lights, kind, size"));
     }
   }
   std::erase_if(names, [&](const std::string& name) {
@@ -231,7 +233,7 @@ ExitCode run(const PhoneStudyOptions& options, Process& process) {
     return fail(exit_code_of(client.status()), client.status());
   }
   if (!client.ok() && !options.verbosity.quiet) {
-    console.complain(absl::StrCat("without a farm: ", client.status().message()));
+    console.complain(absl::StrCat("no image is timed on a farm: ", client.status().message()));
   }
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(process.interrupts, [&] {
@@ -265,7 +267,7 @@ int phone_bench(int argc, char** argv) {
   CLI::App app("Times the 23 images of a study of ray tracing on phones.", "phone_bench");
   app.add_option("images", options.images, "Beginnings of the images' names [default: all]");
   app.add_option("-o,--output", options.outputs, "Files for the figures (.csv) or the plot (.svg)");
-  app.add_option("--runs", options.runs, "How often each image is timed")
+  app.add_option("--runs", options.runs, "Number of times that each image is timed")
       ->check(CLI::PositiveNumber);
   app.add_option("--width", options.width, "Pixels; the height keeps the aspect ratio");
   app.add_option("--threads", options.threads, "Threads [default: one for each CPU]");

@@ -1,4 +1,6 @@
-// The tables of the phone study, with the name of the image of each row and its published time.
+// The tables of the phone study, another author's study of ray tracing on phones (phone_study.h).
+// Each row has the name of an image and, if the study states it, the time of the image in
+// milliseconds.
 
 #include "tests/bench/phone_study.h"
 

@@ -1,8 +1,9 @@
 #pragma once
 
-// Benchmark with the 23 images of a study of ray tracing on phones (gallery/study), timed as in
-// that study, ten times each. Few of its results are known: its times by number of objects ranged
-// from 290 to 3,289 ms, and phones took 35 to 150 times as long as a laptop.
+// Benchmark with the 23 images of another author's study of ray tracing on phones
+// (renderlib/gallery/study), timed ten times each, as in the study. Few results of the study are
+// known: its times by number of objects ranged from 290 to 3,289 ms, and phones took 35 to 150
+// times as long as a laptop.
 
 #include <optional>
 #include <string>

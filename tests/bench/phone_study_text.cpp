@@ -1,7 +1,7 @@
-// Formats the results of the phone study as tables, answers, CSV and a plot. The study is another
-// author's: it rendered 23 images on a laptop and on phones. The same images are rendered on one
-// thread, on all threads and on a farm, and their times are shown beside those that the study
-// states.
+// Formats the results of phone_bench as tables, answers, CSV and a plot. The phone study is another
+// author's study, which rendered 23 images on a laptop and on phones. phone_bench renders the same
+// images on one thread, on all threads and on a farm. Their times are shown beside the times that
+// the study states.
 
 #include <algorithm>
 
@@ -24,6 +24,7 @@ const PhoneImage* image_of(const PhoneStudy& study, absl::string_view name) {
 std::string ms(double value) {
   return value < 10 ? absl::StrFormat("%.2f", value) : absl::StrFormat("%.1f", value);
 }
+/// Returns the median of `times` as text; a dash if there are none.
 std::string middle(const std::vector<double>& times) {
   return times.empty() ? kNone : ms(median(times));
 }
@@ -126,6 +127,7 @@ std::string answers(const PhoneStudy& study) {
       absl::StrFormat("- Precomputation: %s ms at most, once a scene.\n", ms(most_build)));
 }
 
+/// Appends a line of CSV for each run of an image on `machine`: "1 thread", "farm".
 void add_lines(std::string& out, const PhoneImage& image, const std::string& machine,
                const PhoneTimes& times) {
   for (std::size_t i = 0; i < times.render.size(); ++i) {

@@ -1,4 +1,5 @@
-"""Tests the installed add-on in Blender without a window. It talks to tests/python/fake_farm.py, a coordinator that renders nothing:
+"""Tests the installed add-on in Blender without a window. The add-on talks to
+tests/python/fake_farm.py, a coordinator that renders nothing:
 
     BLENDER_USER_SCRIPTS=EMPTY-FOLDER blender -b --factory-startup --python addon_test.py -- ADDON.zip"""
 
@@ -103,8 +104,8 @@ class AddOn(unittest.TestCase):
         return self.sent()[0]["material"][-1]
 
     def texels(self, texture):
-        """Returns the linear pixels of the image of a message Texture that was sent last: (height,
-        width, 3), rows from the bottom."""
+        """`texture`: a message Texture of the scene that was sent last. Returns the linear pixels
+        of its image as an array (height, width, 3), with rows from the bottom."""
         name = texture["image"]["file"]
         path = os.path.join(self.folder.name, name)
         with open(path, "wb") as file:
@@ -189,7 +190,8 @@ class AddOn(unittest.TestCase):
         self.render()
         self.assertEqual([job["kind"] for job in self.fake.jobs.values()], ["path", "depth", "normals", "albedo"])
         engine = sys.modules["bandsaw_blender.engine"]
-        # The farm's layer has (n + 1) / 2 with y up; Blender's pass has n with z up. Depth 0 means no hit, in Blender 1e10.
+        # For a normal n, the farm's layer has (n + 1) / 2 with y up, and Blender's pass has n with z
+        # up. If a ray hits nothing, the depth is 0 on the farm and 1e10 in Blender.
         up = engine.pass_pixels("normals", np.full((1, 1, 3), 0.5) + [[[0, 0.5, 0]]], None)
         self.assertEqual(up.tolist(), [[[0, 0, 1]]])
         eye = {"window": [-2, 4, -3, 1]}
@@ -420,7 +422,7 @@ class AddOn(unittest.TestCase):
             self.render()
             texture = self.sent()[0]["material"][-1]["gltf"]["base_color_texture"]
             pixels = self.texels(texture)
-            if name == "nowhere":  # on the active map, which is baked whole
+            if name == "nowhere":  # the texture lies on the active map and is baked whole
                 self.assertNotIn("uv_set", texture["image"])
                 self.assertLess(pixels[:, 64, 0].max(), 0.01)
                 self.assertGreater(pixels[:, 192, 0].min(), 0.99)
@@ -434,7 +436,8 @@ class AddOn(unittest.TestCase):
         def nodes(tree, shader):
             coordinates = tree.nodes.new("ShaderNodeNewGeometry")
             tree.links.new(coordinates.outputs["Normal"], shader.inputs["Base Color"])
-        wall = scenes.plane(4, scenes.material("snow", nodes), turn=(0, np.pi / 2, 0))  # its normal is +x in the world, +z in its space
+        # The wall's normal is +x in the world, and +z in the wall's own space.
+        wall = scenes.plane(4, scenes.material("snow", nodes), turn=(0, np.pi / 2, 0))
         wall.scale = (1, 2, 3)
         self.render()
         pixels = self.texels(self.sent()[0]["material"][-1]["gltf"]["base_color_texture"])
@@ -487,7 +490,8 @@ class AddOn(unittest.TestCase):
             tree.links.new(scale.outputs[0], scenes.socket(shader, "Emission"))
             scenes.socket(shader, "Emission_Strength").default_value = 1
         made = self.material_of(nodes)["gltf"]
-        for field in ("base_color_texture", "emissive_texture"):  # 0.25 is encoded: Cycles multiplies the values of the file
+        # Cycles multiplies the file's encoded sRGB values. The product 0.25 is 0.0509 when decoded.
+        for field in ("base_color_texture", "emissive_texture"):
             self.assertLess(abs(self.texels(made[field]) - (0.0509, 0.0509, 0)).max(), 0.002, field)
 
         def with_alpha(tree, shader):

@@ -9,13 +9,14 @@ from mathutils import Vector
 SCENES = {}
 
 
-# Decorates a function that builds a scene. How far its images may differ is in judge.sh.
+# Decorator that registers a function that builds a scene. judge.sh limits how much its images may
+# differ.
 def scene(function):
     SCENES[function.__name__] = function
     return function
 
 
-# Replaces what is in Blender by the scene of this name.
+# Replaces everything in Blender by the scene of this name.
 def build(name):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     made = bpy.context.scene
@@ -60,6 +61,7 @@ NEW_NAMES = {"Specular": "Specular IOR Level", "Transmission": "Transmission Wei
 
 
 def socket(node, key):
+    """Returns an input of a node. `key`: its name in Blender 3; underscores stand for spaces."""
     key = key.replace("_", " ")
     return node.inputs[key] if key in node.inputs else node.inputs[NEW_NAMES[key]]
 

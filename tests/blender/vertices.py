@@ -1,5 +1,5 @@
 """Writes the positions that the vertices of an animated glTF file have in Blender at each frame.
-vertices_check.py compares them with those of bandsaw-import.
+vertices_check.py compares them with the positions that bandsaw-import computes.
 
     blender -b --factory-startup --python vertices.py -- FILE.glb OUT.npy FIRST LAST
 

@@ -1,9 +1,10 @@
-"""Compares the vertices that bandsaw-import gives a model at each frame with Blender's (vertices.py):
+"""Compares the positions that bandsaw-import and Blender (vertices.py) compute for the vertices of
+a model at each frame.
 
     vertices_check.py BANDSAW-IMPORT FILE.glb BLENDER.npy FIRST FOLDER
 
-FIRST: number of the first frame. FOLDER gets the scene package of each frame. In a package, the
-file of positions is recognised by its size."""
+FIRST: number of the first frame. The scene package of each frame is written to FOLDER. In a
+package, the file of positions is recognised by its size."""
 
 import os
 import subprocess

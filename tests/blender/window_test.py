@@ -1,7 +1,10 @@
-"""The part of a test of the add-on that runs inside Blender, in the window that window.sh has opened. This script prepares a scene and a fake
-farm. window.sh then presses F12, which starts a render, and Escape, which must cancel the job at the farm; meanwhile the picture must grow.
-The script tells window.sh what has happened by appending words to the file `state`: "ready" (Blender takes keys), "looked" (Blender has
-been given a preview), "cancelled" (the job is cancelled)."""
+"""The part of a test of the add-on that runs inside Blender, in the window that window.sh opens.
+
+This script prepares a scene and a fake farm. window.sh then presses F12, which starts a render.
+While the farm renders, the picture in the window must grow. At the end window.sh presses Escape,
+which must cancel the job at the farm. This script tells window.sh what has happened by appending
+words to the file `state`: "ready" (Blender accepts keys), "looked" (Blender has been given a
+preview), "cancelled" (the job is cancelled)."""
 
 import os
 import sys
@@ -23,7 +26,7 @@ bpy.ops.preferences.addon_enable(module="bandsaw_blender")
 fake = fake_farm.FakeFarm(120)  # a render takes 120 seconds
 bpy.context.preferences.addons["bandsaw_blender"].preferences.farm = fake.string
 bpy.context.preferences.view.render_display_type = "SCREEN"
-bpy.context.preferences.view.show_splash = False  # it would take the keys
+bpy.context.preferences.view.show_splash = False  # the splash screen would receive the keys
 made = bpy.context.scene
 made.render.engine = "BANDSAW"
 made.render.resolution_x, made.render.resolution_y = 600, 400

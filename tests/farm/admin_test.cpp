@@ -1,4 +1,5 @@
-// Administration of a farm: logs, doctor, secret rotation; and a band that crashes its workers.
+// Tests the administration of a farm: logs, `doctor`, the rotation of secrets, links for browsers.
+// Also tests a band that crashes its workers.
 
 #include <gtest/gtest.h>
 
@@ -43,8 +44,8 @@ TEST_F(Administration, TheFileForUsersIsWrittenLast) {
             std::filesystem::last_write_time(farm_.farm_file()));
 }
 
-// "127.1" stands for a name that DNS does not know, such as one of mDNS: the system's resolver
-// takes it for 127.0.0.1, and gRPC's own resolver does not know it.
+// The address "127.1" stands for a name that DNS does not know, such as a name of mDNS. The
+// system's resolver reads "127.1" as 127.0.0.1. gRPC's own resolver does not know it.
 TEST_F(Administration, NamesAreLookedUpByTheSystem) {
   const auto named = [&](const std::string& file) {
     link::JoinString join = *link::join_string_from(file);
@@ -147,7 +148,7 @@ TEST_F(Administration, ALinkForBrowsersLastsUntilItIsRevokedOrASecretIsRenewed) 
   farm_.coordinator().signal(SIGKILL);
   farm_.coordinator().wait();
   farm_.restart_coordinator();
-  EXPECT_EQ(secret(), before) << "a restart keeps it";
+  EXPECT_EQ(secret(), before) << "a restart must keep the secret";
   EXPECT_EQ(say({"link", "--revoke"}).code, 0);
   for (const char* role : {"worker", "farm"}) {
     const std::string next = secret();
@@ -161,7 +162,7 @@ TEST_F(Administration, ALinkForBrowsersLastsUntilItIsRevokedOrASecretIsRenewed) 
   farm_.coordinator().wait();
   EXPECT_EQ(here({"secret", "rotate", "worker"}).code, 0);
   farm_.restart_coordinator();
-  EXPECT_NE(secret(), last) << "also if no coordinator runs";
+  EXPECT_NE(secret(), last) << "a rotation without a coordinator must change the secret too";
 }
 
 // The job is one band of a million samples, so each worker is killed while it renders this band.

@@ -95,7 +95,7 @@ TEST_F(InviteArchitectures, AThirtyTwoBitSystemOnA64BitKernelIsReported) {
   EXPECT_EQ(invited.code, 1);
   EXPECT_THAT(invited.err, HasSubstr("phone: the worker does not run there: "));
   EXPECT_THAT(invited.err, HasSubstr("(it needs a 64-bit system with glibc)"));
-  EXPECT_EQ(invited.err.find('\n'), invited.err.size() - 1) << "one line: " << invited.err;
+  EXPECT_EQ(invited.err.find('\n'), invited.err.size() - 1) << "not one line: " << invited.err;
 }
 
 TEST_F(InviteArchitectures, TheOutputOfAHostIsPrintedOnOneLine) {
@@ -140,7 +140,7 @@ TEST(PasteArchitectures, TheLineFetchesTheProgramForTheMachine) {
       run({"/bin/sh", "-c", "cd " + folder.path() + " && uname() { echo arm64; }; " + line},
           {"PATH=/usr/bin:/bin"});
   EXPECT_THAT(pasted.out, HasSubstr("bandsaw-worker.new: OK")) << pasted.err;
-  EXPECT_NE(pasted.code, 0) << "the file of the test does not run";
+  EXPECT_NE(pasted.code, 0) << "the line must fail, because this file cannot run";
   EXPECT_EQ(file_bytes(folder / "bandsaw-worker"), program);
 }
 

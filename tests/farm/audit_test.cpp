@@ -13,6 +13,7 @@ namespace {
 
 class AuditedFarm : public testing::Test {
  protected:
+  /// Runs a command as a user of the farm.
   Finished say(std::vector<std::string> arguments) {
     return run(farm_.command(std::move(arguments)));
   }

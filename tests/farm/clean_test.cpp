@@ -13,6 +13,8 @@ namespace {
 
 class CleanImages : public testing::Test {
  protected:
+  /// Returns the arguments of `command`, "render" or "submit", for a clean image of a gallery
+  /// scene.
   static std::vector<std::string> image(const std::string& command, const std::string& scene,
                                         const std::string& samples, const std::string& file) {
     return {command,     std::string(BANDSAW_GALLERY) + "/" + scene + ".textproto",
@@ -52,7 +54,7 @@ TEST_F(CleanImages, AreTheSameFromThreeWorkersOfWhichOneIsKilled) {
   farm_.worker("three").signal(SIGKILL);
   EXPECT_EQ(client.wait(), 0) << client.err();
   EXPECT_TRUE(file_bytes(farm_.path("there.exr")) == expected);
-  // The farm has the guides already, so `watch` does not let them be rendered again.
+  // The farm has the guides already, so `watch` does not have them rendered again.
   run_on_farm({"watch", "1", "--denoise", "--quiet", "-o", farm_.path("watched.exr")});
   EXPECT_TRUE(file_bytes(farm_.path("watched.exr")) == expected);
   const Finished jobs = run(farm_.command({"jobs", "--json"}));
@@ -86,7 +88,7 @@ TEST_F(CleanImages, AreTheSameWithFewSamples) {
   EXPECT_TRUE(file_bytes(farm_.path("there.pfm")) == expected);
 }
 
-// The library is a stand-in, which the program finds in the way in which it finds an installed
+// The library in this test is a stand-in. The program finds it as it would find an installed
 // library.
 TEST_F(CleanImages, AreMadeByAnInstalledLibrary) {
   std::vector<std::string> command = image("render", "spheres", "20", farm_.path("oidn.exr"));

@@ -16,6 +16,7 @@ const std::vector<std::string> kControlSettings = {
 
 class Control : public testing::Test {
  protected:
+  /// Runs a command as a user of the farm. It must succeed. Returns its standard output.
   std::string say(std::vector<std::string> arguments) {
     const Finished finished = run(farm_.command(std::move(arguments)));
     EXPECT_EQ(finished.code, 0) << finished.err;
@@ -32,6 +33,7 @@ class Control : public testing::Test {
     return out;
   }
 
+  /// Returns the first field "samples_done" of the text, with its value.
   static std::string samples_done(const std::string& json) {
     const std::size_t at = json.find("\"samples_done\":");
     return json.substr(at, json.find(',', at) - at);

@@ -18,7 +18,7 @@ class FakeMachines {
   FakeMachines(const FakeMachines&) = delete;
   FakeMachines& operator=(const FakeMachines&) = delete;
 
-  /// Replaces a command of this machine by a shell script.
+  /// Replaces a command by a shell script on machine `host`; "all": on every machine.
   void replace(const std::string& host, const std::string& command, const std::string& script);
   /// Adds a systemctl and a loginctl that manage one user service and log their calls.
   void add_systemd(const std::string& host);

@@ -1,7 +1,7 @@
 #pragma once
 
-// A farm of real processes for one test: a coordinator on a free port, workers, and the command;
-// all on loopback, or each on a machine of its own.
+// A farm of real processes for one test: a coordinator on a free port, workers, and commands of
+// users. All processes are on loopback, or each is on a simulated machine of its own (hosts.h).
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,8 @@ class FarmProcesses {
 
   /// Returns the command line `bandsaw ARGUMENTS --farm …`.
   std::vector<std::string> command(std::vector<std::string> arguments) const;
-  /// Returns the command line that runs the command on machine `host`, if there are hosts.
+  /// Returns the command line that runs `argv` on machine `host`; `argv` itself if all processes
+  /// are on loopback.
   std::vector<std::string> on(const std::string& host, std::vector<std::string> argv) const;
   std::string path(const std::string& name) const { return folder_ / name; }
   std::string join_file() const { return folder_ / "data/join"; }  ///< join string of workers
@@ -68,8 +69,8 @@ class FarmProcesses {
   std::map<std::string, Process> workers_;
 };
 
-/// Waits until `serve` has printed the line for a machine that has no worker, and returns the line.
-/// The test fails if it does not come.
+/// Waits until `serve` has printed the line that a user pastes on a machine without a worker.
+/// Returns the line. The test fails if the line does not come.
 std::string line_to_paste(Process& coordinator);
 
 /// Returns the bytes of a file; the test fails if it cannot be read.

@@ -179,7 +179,8 @@ TEST_F(ForeignScenes, AnImportedSceneHasTheSameBytes) {
     EXPECT_NE(finished.out.find("wrote "), std::string::npos) << finished.out;
     EXPECT_TRUE(rendered(farm_.path(scene), "foreign.pfm") == rendered(output, "ours.pfm"))
         << scene;
-    EXPECT_TRUE(fs::exists(folder + "/kitchen_files")) << "the meshes, beside the scene file";
+    EXPECT_TRUE(fs::exists(folder + "/kitchen_files"))
+        << "the meshes must be beside the scene file";
   }
 }
 
@@ -203,11 +204,12 @@ TEST_F(ForeignScenes, StrictImportRefusesWhatHasNoCounterpart) {
       run({BANDSAW_BIN, "import", farm_.path("hair.pbrt"), "--strict", "-o", output});
   EXPECT_EQ(strict.code, 2);
   EXPECT_NE(strict.err.find("hair.pbrt:2: the material \"hair\""), std::string::npos) << strict.err;
-  EXPECT_FALSE(fs::exists(output)) << "half written";
+  EXPECT_FALSE(fs::exists(output)) << "a refused import must write no file";
   const Finished lenient = run({BANDSAW_BIN, "import", farm_.path("hair.pbrt"), "-o", output});
   EXPECT_EQ(lenient.code, 0) << lenient.err;
   EXPECT_NE(lenient.err.find("warning: "), std::string::npos) << lenient.err;
-  EXPECT_NE(file_bytes(output).find("# "), std::string::npos) << "the warnings are in the text too";
+  EXPECT_NE(file_bytes(output).find("# "), std::string::npos)
+      << "the warnings must be in the text too";
 }
 
 }  // namespace

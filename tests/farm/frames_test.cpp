@@ -53,6 +53,7 @@ class Frames : public testing::Test {
             "--fps",     "12",
             "--shutter", "0.5"};
   }
+  /// Returns the command line that submits these frames.
   std::vector<std::string> submit(const std::string& frames, std::vector<std::string> more = {}) {
     std::vector<std::string> arguments = {"submit", scene_, "--frames", frames, "--json"};
     const std::vector<std::string> chosen = settings();
@@ -271,7 +272,8 @@ TEST_F(Frames, AreCleanedAsRenderDoes) {
     EXPECT_THAT(file_bytes(farm_.path(absl::StrFormat("w.%04d.json", frame))),
                 HasSubstr("\"method\":\"regression\""));
   }
-  // The farm has the guides, the images that the denoiser needs, of the first submission.
+  // The farm still has the guides of the first submission, which are the images that the denoiser
+  // needs.
   const Finished again =
       run(farm_.command({"watch", "1", "--denoise", "-o", farm_.path("again.####.pfm")}));
   ASSERT_EQ(again.code, 0) << again.err;
@@ -291,7 +293,8 @@ TEST_F(Frames, FramesOfOneSampleAreNotCleaned) {
 }
 
 TEST_F(Frames, CanBeWrittenAsAVideo) {
-  ASSERT_TRUE(std::filesystem::exists("/usr/bin/ffprobe")) << "apt-get install ffmpeg";
+  ASSERT_TRUE(std::filesystem::exists("/usr/bin/ffprobe"))
+      << "ffprobe is missing: apt-get install ffmpeg";
   farm_.add_worker("one", 1);
   farm_.add_worker("two", 1);
   const std::string video = farm_.path("walk.mp4");
@@ -301,7 +304,7 @@ TEST_F(Frames, CanBeWrittenAsAVideo) {
       run({"/usr/bin/ffprobe", "-v", "error", "-count_frames", "-show_entries",
            "stream=codec_name,width,height,nb_read_frames,r_frame_rate", "-of", "csv=p=0", video});
   EXPECT_EQ(probe.out, "h264,24,24,12/1,6\n") << probe.err;
-  // ffmpeg must not take the part of the name before the colon for a protocol.
+  // ffmpeg must not read the part of the name before the colon as a protocol.
   const Finished colon = run(in_the_folder(farm_.command({"watch", "1", "--video", "a:b.mp4"})));
   EXPECT_EQ(colon.code, 0) << colon.err;
   EXPECT_TRUE(std::filesystem::exists(farm_.path("a:b.mp4")));

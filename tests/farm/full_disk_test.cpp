@@ -1,4 +1,5 @@
-// A coordinator that is started on a full disk: a small tmpfs that holds its data folder.
+// Tests a coordinator that is started on a full disk: a small tmpfs holds its data folder. Also
+// tests commands whose standard output is on a full disk or has no reader.
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -62,7 +63,7 @@ class FullDiskFarm : public testing::Test {
     ASSERT_TRUE(worker_->wait_for("joined")) << worker_->err();
   }
   /// Brings the farm to this state: job 1 is done, job 2 is being rendered, job 3 waits. Then ends
-  /// the coordinator and the worker. The caller fills the disk.
+  /// the coordinator and the worker.
   void stop_with_jobs_and_fill() {
     start_worker();
     ASSERT_EQ(say(with_samples({"submit", kCornell, "-o", folder_ / "first.pfm"}, 8)).code, 0);
@@ -90,6 +91,7 @@ class FullDiskFarm : public testing::Test {
   }
   void make_room() { ASSERT_TRUE(std::filesystem::remove(disk_ + "/filler")); }
 
+  /// Runs a command as a user of the farm.
   Finished say(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), BANDSAW_BIN);
     arguments.insert(arguments.end(), {"--farm", data() + "/farm"});
@@ -139,8 +141,9 @@ TEST_F(FullDiskFarm, StartsAndServesResultsAndContinuesWhenThereIsSpace) {
   fill();
   ASSERT_NO_FATAL_FAILURE(start());
   expect_what_is_there_is_served();
-  EXPECT_EQ(say({"cancel", "3"}).code, 0) << "the reserve is there for it";
-  EXPECT_FALSE(std::filesystem::exists(data() + "/jobs/3/bands")) << "and its room is given back";
+  EXPECT_EQ(say({"cancel", "3"}).code, 0) << "the reserve must leave room to cancel a job";
+  EXPECT_FALSE(std::filesystem::exists(data() + "/jobs/3/bands"))
+      << "the bands of a cancelled job must be deleted";
   expect_it_goes_on();
 }
 

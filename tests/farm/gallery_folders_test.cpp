@@ -36,7 +36,7 @@ TEST(GalleryFolders, RenderAndFarmGiveTheSameBytes) {
   const std::vector<std::string> scenes = scenes_of_folders();
   EXPECT_EQ(std::count_if(scenes.begin(), scenes.end(),
                           [](const std::string& s) { return s.find("/study/") != s.npos; }),
-            24);  // the study's 23 images, and its first image
+            24);  // the study's 23 images, and first.textproto
   for (const std::string& scene : scenes) {
     SCOPED_TRACE(scene);
     const std::vector<std::string> settings = {"--width", "20", "--samples", "16", "--quiet"};

@@ -15,8 +15,9 @@ namespace bandsaw::test {
 /// Each machine is known by its name.
 class Hosts {
  public:
-  /// While this object exists, the sockets that its thread opens and the processes that it starts
-  /// belong to a machine. It MUST be destroyed by the same thread.
+  /// While this object exists, the sockets that the calling thread opens and the processes that the
+  /// thread starts belong to the visited machine. The thread that created the object MUST destroy
+  /// it.
   class Visit {
    public:
     ~Visit();
@@ -37,9 +38,10 @@ class Hosts {
   Hosts& operator=(const Hosts&) = delete;
 
   std::string address(const std::string& name) const;  ///< IPv4, without a port
-  /// Returns the command line that runs the command on that machine. The process id is that of the
+  /// Returns the command line that runs `argv` on machine `name`. The process id is that of the
   /// command itself.
   std::vector<std::string> on(const std::string& name, std::vector<std::string> argv) const;
+  /// Moves the calling thread to machine `name` while the returned object exists.
   std::unique_ptr<Visit> visit(const std::string& name) const;
 
   /// Disconnects the cable: packets are dropped in both directions, connections are not reset.

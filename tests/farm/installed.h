@@ -15,8 +15,8 @@ class Installed {
  public:
   Installed();
   std::string bandsaw() const { return folder_ / "bin/bandsaw"; }
-  /// Path at which the program for aarch64 machines is expected; its folder exists, the file does
-  /// not.
+  /// Path at which the program for aarch64 machines is expected. Its folder exists. The file exists
+  /// only after put_aarch64_worker().
   std::string aarch64_worker() const { return folder_ / "lib/bandsaw/bandsaw-worker-aarch64"; }
   void put_aarch64_worker(const std::string& bytes) const;
 

@@ -61,7 +61,8 @@ bool has_no_child(pid_t pid) {
 }
 
 // The signal comes as soon as the importer has ended, while the scene is decoded and its BVH is
-// built. On a busy machine it may come after the command has ended, which the exit code shows.
+// built. On a busy machine the signal may come after the command has ended; then the exit code is
+// 0.
 TEST(Interrupt, AnInterruptAfterTheImportLeavesNoTemporaryFiles) {
   const TempDir folder;
   write_grid(folder / "grid.ply", 800);

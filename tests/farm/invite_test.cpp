@@ -64,7 +64,8 @@ TEST_F(Invite, ASecondInvitationReplacesTheFirst) {
   // The first worker has ended if its process does not exist or is a zombie.
   const std::string runs =
       "grep -qs '^State:[[:space:]][^ZX]' /proc/" + std::to_string(std::stoi(first)) + "/status";
-  EXPECT_NE(run({"/bin/sh", "-c", runs}).code, 0) << "the first is still there";
+  EXPECT_NE(run({"/bin/sh", "-c", runs}).code, 0)
+      << "the first worker still runs, but it must have ended";
   EXPECT_EQ(dismiss({"desk"}).code, 0);
 }
 

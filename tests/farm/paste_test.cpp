@@ -1,5 +1,5 @@
-// The line that `bandsaw serve` prints for a machine without a worker, run by a shell as if it were
-// pasted.
+// Tests the line that `bandsaw serve` prints for a machine without a worker. A shell runs the line
+// as if a user had pasted it.
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 namespace bandsaw::test {
 namespace {
 
-// Returns the printed line with `exec` before the worker: the shell that the test starts becomes
-// the worker, so that signals reach it.
+// Returns the printed line with `exec` before the worker's program. So the shell that the test
+// starts becomes the worker, and signals of the test reach the worker.
 std::string pasted_line(Process& coordinator) {
   const std::string line = line_to_paste(coordinator);
   std::smatch parts;
@@ -54,7 +54,7 @@ TEST(Paste, ItStartsNoWorkerIfTheKeyOrTheProgramDiffers) {
   }
   FarmProcesses farm(hosts->get(), {"--web", (*hosts)->address("coordinator") + ":0"});
   const std::string line = pasted_line(farm.coordinator());
-  const std::string zeros(43, 'A');  // with "=", 32 zero bytes in Base64: a digest of no key
+  const std::string zeros(43, 'A');  // with "=": Base64 of 32 zero bytes; no key has this digest
   const std::string other_key =
       std::regex_replace(line, std::regex("sha256//[^ ]*"), "sha256//" + zeros + "=");
   Process impostor = paste(farm, "coordinator", farm.path("one"), other_key);

@@ -31,8 +31,8 @@ double number(const Struct& json, const std::string& of, const std::string& fiel
   return section(json, of).fields().at(field).number_value();
 }
 
-/// Removes the fields that depend on the machines, times and names, and the course of the error
-/// ("curve"), because a farm measures it while rows of the next pass arrive.
+/// Removes the fields that depend on the machines, times and names. Also removes the course of the
+/// error ("curve"), because a farm measures the error while rows of the next pass arrive.
 Struct comparable(Struct json) {
   for (const char* field : {"time", "machines", "outputs", "curve"}) {
     EXPECT_EQ(json.mutable_fields()->erase(field), 1u) << field;
@@ -87,7 +87,8 @@ TEST_F(ReportOfAFarm, AgreesWithThatOfOneMachine) {
     for (const auto& worker : workers) {
       samples += worker.struct_value().fields().at("samples").number_value();
     }
-    EXPECT_EQ(samples, number(farm, "work", "samples")) << "the shares are the whole";
+    EXPECT_EQ(samples, number(farm, "work", "samples"))
+        << "the samples of all workers must be all samples of the image";
   }
 }
 
@@ -105,7 +106,8 @@ TEST_F(ReportOfAFarm, IsTheSameAfterARestart) {
       << second.ShortDebugString();
 }
 
-// --time does not promise the same bytes, but rendering the reported number of samples does.
+// Two renders with --time need not give the same bytes. A render with the reported number of
+// samples gives the same bytes.
 TEST_F(ReportOfAFarm, TheSamplesOfATimeLimitGiveTheSameBytes) {
   farm_.add_worker("desk", 2);
   const std::vector<std::string> limited = {"--width", "64", "--time", "0.3s"};
@@ -118,7 +120,7 @@ TEST_F(ReportOfAFarm, TheSamplesOfATimeLimitGiveTheSameBytes) {
     ASSERT_GT(samples, 0);
     render({"--width", "64", "--samples", std::to_string(samples)}, "again.pfm");
     EXPECT_TRUE(file_bytes(of + ".pfm") == file_bytes(farm_.path("again.pfm"))) << name;
-    // The error is unknown for a single block of samples, in both cases.
+    // If the samples are a single block, the error must be unknown in both reports.
     const auto error = [](const std::string& file) { return report(file).fields().at("error"); };
     EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(error(of + ".json"),
                                                                    error(farm_.path("again.json"))))

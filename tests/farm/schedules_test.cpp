@@ -1,7 +1,8 @@
-// Random schedules of events on a farm of real processes: workers are killed, frozen, drained and
-// disconnected, others join, the coordinator is killed; the image has the same bytes each time. The
-// default is 10 schedules. BANDSAW_SCHEDULES=n runs n of them, BANDSAW_SEED=n runs only the
-// schedule of seed n. The events are a function of the seed; their timing relative to bands is not.
+// Random schedules of events on a farm of real processes. Workers are killed, frozen, drained and
+// disconnected, other workers join, and the coordinator is killed. The image must have the same
+// bytes each time. The default is 10 schedules. BANDSAW_SCHEDULES=n runs n schedules.
+// BANDSAW_SEED=n runs only the schedule of seed n. The events are a function of the seed; their
+// timing relative to bands is not.
 
 #include <gtest/gtest.h>
 
@@ -58,6 +59,7 @@ class Schedule {
   std::string outcome() { return absl::StrJoin(outcome_, "; ") + "\n" + farm_.coordinator_log(); }
 
  private:
+  /// Adds an event to the text of outcome().
   void tell(std::string what) { outcome_.push_back(std::move(what)); }
 
   /// Waits until a worker has stored another band. Returns false if the job is over.
@@ -140,7 +142,7 @@ class Schedule {
     }
   }
 
-  // Frozen workers continue, and pulled cables are connected again.
+  // Lets frozen workers continue, and connects pulled cables again.
   void calm_down() {
     tell("all go on");
     for (const std::string& name : frozen_) {
@@ -176,7 +178,8 @@ TEST(Schedules, RandomFailuresDoNotChangeTheBytes) {
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     Schedule schedule(seed, hosts);
     const bool equal = schedule.run() == expected;
-    EXPECT_TRUE(equal) << "again with BANDSAW_SEED=" << seed << ": " << schedule.outcome();
+    EXPECT_TRUE(equal) << "other bytes, or no image; run it again with BANDSAW_SEED=" << seed
+                       << ": " << schedule.outcome();
     same += equal ? 1 : 0;
   }
   std::printf("%llu of %llu random schedules gave the same bytes%s\n",

@@ -58,9 +58,12 @@ void Survival::expect_the_same_bytes(Process& client) {
   EXPECT_TRUE(file_bytes(farm_.path("farm.pfm")) == file_bytes(farm_.path("local.pfm")));
 }
 
-// Returns true if the rows that both bands contain were given to two workers on purpose: at the end
-// of a job the coordinator assigns a slow worker's bands to idle ones too, and logs it.
+// Returns true if the coordinator gave the rows that both bands contain to two workers on purpose.
+// At the end of a job it assigns a slow worker's bands to idle workers too. It logs each such band
+// as "copied" or "moved".
 bool Survival::shared(const LoggedBand& one, const LoggedBand& other) const {
+  // Whether `whole`, a logged band, overlaps `band` and contains all rows that `one` and `other`
+  // share.
   const auto within = [&](const LoggedBand& band, const LoggedBand& whole) {
     const std::uint32_t first = std::max(one.first_row, other.first_row);
     const std::uint32_t last = std::min(one.last_row, other.last_row);

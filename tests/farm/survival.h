@@ -1,7 +1,7 @@
 #pragma once
 
-// One job on a farm that loses machines, cables or its coordinator, and the invariants it must
-// satisfy.
+// One job on a farm that loses machines, cables or its coordinator, and the invariants that the job
+// must satisfy.
 
 #include <string>
 
@@ -31,8 +31,8 @@ class Survival {
   /// Counts bands that one worker had stored and another rendered as well, and bands that one
   /// worker rendered twice. Rows that the coordinator gave to two workers on purpose (backup tasks,
   /// and rows that it moved from a slow worker to an idle one) do not count. Bands that the worker
-  /// `cut_off` rendered in vain do not count either: it could not know what the other workers did
-  /// meanwhile, or was killed before it could send them.
+  /// `cut_off` rendered in vain do not count either. That worker could not know what the other
+  /// workers did meanwhile, or it was killed before it could send its bands.
   int rendered_again(const std::string& cut_off = "");
 
   /// Expects rendered_again() to be 0; otherwise prints every log.

@@ -1,5 +1,5 @@
-// A worker is killed or frozen, the coordinator is killed, a worker joins late: the job ends with
-// the same bytes, and no finished band is rendered again because of it.
+// A worker is killed, frozen or drained, a worker joins late, or the coordinator is killed. The job
+// must end with the same bytes, and no finished band may be rendered again.
 
 #include <gtest/gtest.h>
 
@@ -85,8 +85,9 @@ TEST_F(Survive, ADrainedWorker) {
   farm_.add_worker("staying", 1);
   Process client = job_.submit();
   job_.wait_until_stored("leaving", 2);
-  farm_.worker("leaving").signal(SIGUSR1);  // a warning of batch systems, which is ignored
-  farm_.worker("leaving").signal(SIGUSR2);  // as well
+  // Batch systems send SIGUSR1 or SIGUSR2 as a warning. A worker ignores both.
+  farm_.worker("leaving").signal(SIGUSR1);
+  farm_.worker("leaving").signal(SIGUSR2);
   farm_.worker("leaving").signal(SIGTERM);
   EXPECT_EQ(farm_.worker("leaving").wait(), 0);
   // A drained worker has delivered all that it rendered.

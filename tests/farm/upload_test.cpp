@@ -29,6 +29,7 @@ class Upload : public testing::Test {
     return missing->empty() ? std::nullopt : std::optional(missing->front().there);
   }
 
+  /// Uploads at least half of the blob, then disconnects.
   void leave_in_the_middle() {
     const auto client = connect();
     const absl::Status cut = client->put_blob(digest(), bytes_, 0, [&](std::uint64_t sent) {
@@ -50,7 +51,8 @@ TEST_F(Upload, ResumesAlsoAfterARestartOfTheCoordinator) {
   leave_in_the_middle();
   std::uint64_t kept = 0;
   while (kept == 0 && !HasFailure()) {
-    // The coordinator notices the disconnection a moment later, and reports no part before.
+    // The coordinator notices the disconnection a moment later. Until then it reports no part of
+    // the blob.
     kept = there().value_or(bytes_.size());
   }
   ASSERT_LT(kept, bytes_.size());
@@ -62,12 +64,12 @@ TEST_F(Upload, ResumesAlsoAfterARestartOfTheCoordinator) {
   const absl::Status put = connect()->put_blob(
       digest(), bytes_, kept, [&](std::uint64_t sent) { first = first.value_or(sent); });
   ASSERT_TRUE(put.ok()) << put;
-  EXPECT_EQ(first, kept + (1 << 20)) << "the first chunk is the one after those that are there";
+  EXPECT_EQ(first, kept + (1 << 20)) << "the upload must continue after the kept bytes";
   EXPECT_EQ(there(), std::nullopt);
 }
 
 TEST_F(Upload, RestartsIfTheFarmLostThePart) {
-  // Claims that the farm has the first 8 MiB, which it has not.
+  // The client claims that the farm has the first 8 MiB, but the farm has no part of the blob.
   const absl::Status put = connect()->put_blob(digest(), bytes_, 8 << 20, [](std::uint64_t) {});
   EXPECT_TRUE(put.ok()) << put;
   EXPECT_EQ(there(), std::nullopt);

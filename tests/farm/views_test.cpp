@@ -1,5 +1,5 @@
-// Views of an image in progress: in the terminal, in the image viewer tev, and by the call for
-// previews of the coordinator.
+// Views of an image in progress: in the terminal, in the image viewer tev, and through the
+// coordinator's call for previews.
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -45,7 +45,7 @@ class FakeViewer {
     close(listening_);
   }
   const std::string& address() const { return address_; }
-  /// Returns all packets after the other side has closed the connection.
+  /// Waits until the other side has closed the connection, then returns all packets.
   std::vector<std::string> packets() {
     thread_.join();
     std::vector<std::string> out;
@@ -102,7 +102,7 @@ void expect_the_image(std::vector<std::string> packets, std::size_t header,
                       const std::string& pfm) {
   ASSERT_GE(packets.size(), 2u);
   // Byte 4 is the type of a packet: 4 creates an image, 6 updates it.
-  EXPECT_EQ(packets.front()[4], 4) << "it is created once";
+  EXPECT_EQ(packets.front()[4], 4) << "the first packet must create the image";
   for (std::size_t i = 1; i < packets.size(); ++i) {
     EXPECT_EQ(packets[i][4], 6);
     ASSERT_EQ(packets[i].size(), header + kSide * kSide * 12);
@@ -146,7 +146,8 @@ TEST(Views, AMissingViewerIsReportedOnceAndTheImageIsRendered) {
   EXPECT_FALSE(file_bytes(folder / "a.pfm").empty());
 }
 
-// Tests the terminal output; `script` gives the command a terminal.
+// Runs the command on a terminal, which the program `script` provides. `environment`: one more
+// variable, "NAME=value". The standard output is what the terminal would show.
 Finished on_terminal(const std::vector<std::string>& command, const std::string& environment) {
   std::string line;
   for (const std::string& word : command) {
@@ -184,7 +185,8 @@ TEST(Views, APreviewShowsTheRowsThatAreStored) {
   const Finished submitted =
       run(farm.command({"submit", kCornell, "--width", "64", "--samples", "1048576", "--detach"}));
   ASSERT_EQ(submitted.code, 0) << submitted.err;
-  // Previews of job 1 with at most about 20 pixels a side; 0: as large as the image.
+  // preview(1, 20) asks for job 1 with at most about 20 pixels a side. With 0 instead of 20, a
+  // preview is as large as the image.
   absl::StatusOr<FarmImage> early = (*client)->preview(1, 20);
   while (absl::IsNotFound(early.status())) {
     early = (*client)->preview(1, 20);

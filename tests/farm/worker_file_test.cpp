@@ -14,6 +14,7 @@
 namespace bandsaw::test {
 namespace {
 
+/// Returns the shared libraries that a program needs (the NEEDED entries of its ELF file).
 std::set<std::string> libraries_of(const std::string& program) {
   const Finished read = run({"/usr/bin/readelf", "--dynamic", "--wide", program});
   EXPECT_EQ(read.code, 0) << read.err;
@@ -46,7 +47,8 @@ TEST(WorkerFile, NeedsOnlyGlibc) {
   }
 }
 
-// Programs that are linked with shared libraries show that the test above can fail.
+// Unlike the worker, the command `bandsaw` is linked with the shared C++ library. If libraries_of()
+// did not find this library, it could also miss a library of the worker.
 TEST(WorkerFile, TheCommandNeedsMoreThanGlibc) {
   EXPECT_TRUE(libraries_of(BANDSAW_BIN).contains("libstdc++.so.6"));
 }
