@@ -165,16 +165,16 @@ class NullWorker {
   std::vector<double> work(Clock::time_point until) {
     std::vector<double> took;
     farm::ToWorker message;
-    auto beaten = Clock::now();
+    auto last_beat = Clock::now();
     while (Clock::now() < until && stream_->Read(&message)) {
       if (message.has_lease()) {
         const auto began = Clock::now();
         put(message.lease());
         took.push_back(std::chrono::duration<double>(Clock::now() - began).count());
       }
-      if (Clock::now() - beaten > std::chrono::seconds(1)) {
+      if (Clock::now() - last_beat > std::chrono::seconds(1)) {
         beat();
-        beaten = Clock::now();
+        last_beat = Clock::now();
       }
     }
     return took;

@@ -62,10 +62,10 @@ Figures rendered(const Family& family, double size) {
   const double start = wall_seconds();
   const auto scene = must(Scene::build(std::move(grown.scene), pool));
   out.build_s = wall_seconds() - start;
-  const double begun = process_cpu_seconds();
+  const double cpu_start = process_cpu_seconds();
   const BandPixels pixels =
       rows_of(*scene, grown.settings, grown.samples, grown.settings.height, pool);
-  const double ns = 1e9 * (process_cpu_seconds() - begun);
+  const double ns = 1e9 * (process_cpu_seconds() - cpu_start);
   out.ns_per_ray = ns / static_cast<double>(pixels.counters.rays);
   out.ns_per_sample = ns / (static_cast<double>(grown.settings.width) * grown.settings.height *
                             static_cast<double>(grown.samples));
@@ -88,7 +88,7 @@ Figures packed(const Family& family, double size, const std::string& folder) {
 
 /// Measures the time from the files of a package, as a worker has them in its cache, to the first
 /// eight rows of an image of 600 x 400.
-Figures begun(const std::string& folder) {
+Figures first_rows(const std::string& folder) {
   const double start = wall_seconds();
   Pool pool(threads());
   std::ifstream file(folder + "/manifest", std::ios::binary);
@@ -101,14 +101,14 @@ Figures begun(const std::string& folder) {
   return out;
 }
 
-/// Measures begun() in a process of its own. The package is made in another process, so that making
-/// it does not add to the peak memory.
+/// Measures first_rows() in a process of its own. The package is made in another process, so that
+/// making it does not add to the peak memory.
 Figures from_disk(const Family& family, double size) {
   const std::string folder =
       (std::filesystem::temp_directory_path() / ("growth-" + std::to_string(getpid()))).string();
   std::filesystem::create_directory(folder);
   measured_apart([&] { return packed(family, size, folder); });
-  const Figures out = measured_apart([&] { return begun(folder); });
+  const Figures out = measured_apart([&] { return first_rows(folder); });
   std::filesystem::remove_all(folder);
   return out;
 }

@@ -25,7 +25,7 @@ std::string ms(double value) {
   return value < 10 ? absl::StrFormat("%.2f", value) : absl::StrFormat("%.1f", value);
 }
 /// Returns the median of `times` as text; a dash if there are none.
-std::string middle(const std::vector<double>& times) {
+std::string median_text(const std::vector<double>& times) {
   return times.empty() ? kNone : ms(median(times));
 }
 
@@ -34,9 +34,9 @@ std::string threads_text(int threads) {
 }
 
 std::string row_text(const PhoneRow& row, const PhoneImage& image) {
-  return absl::StrFormat("| %s | %s | %s | %s | %s | %s |\n", row.label, middle(image.one.build),
-                         middle(image.one.render), middle(image.all.render),
-                         middle(image.farm.render),
+  return absl::StrFormat("| %s | %s | %s | %s | %s | %s |\n", row.label,
+                         median_text(image.one.build), median_text(image.one.render),
+                         median_text(image.all.render), median_text(image.farm.render),
                          row.study_ms > 0 ? absl::StrFormat("%.0f", row.study_ms) : kNotKnown);
 }
 

@@ -131,7 +131,7 @@ class AddOn(unittest.TestCase):
         self.assertEqual(got[:, :, 3].min(), 1)
         self.assertEqual(self.fake.scenes[-1]["samples"], "7")
 
-    def test_an_error_may_be_the_target(self):
+    def test_an_error_limit_is_sent_as_a_fraction(self):
         self.scene.bandsaw.stop, self.scene.bandsaw.error = "ERROR", 5
         self.render()
         self.assertAlmostEqual(float(self.fake.scenes[-1]["error"]), 0.05)
@@ -165,7 +165,7 @@ class AddOn(unittest.TestCase):
         found = [json.loads(scene["files"][scene["main"]])["background"]["constant"]["rgb"] for scene in self.fake.scenes]
         self.assertEqual(found, [[2, 2, 2], [3, 3, 3]])
 
-    def test_percentage_and_region(self):
+    def test_percentage_and_region_change_size_and_window(self):
         self.scene.render.resolution_percentage = 50
         self.render()
         self.assertEqual(self.sent()[0]["image"]["width"], 48)
@@ -183,7 +183,7 @@ class AddOn(unittest.TestCase):
         self.assertAlmostEqual(top, 0)
         self.assertEqual(self.pixels().shape, (16, 24, 4))
 
-    def test_passes(self):
+    def test_passes_are_rendered_and_converted(self):
         layer = bpy.context.view_layer
         layer.use_pass_z = layer.use_pass_normal = layer.use_pass_diffuse_color = True
         self.scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
@@ -235,25 +235,25 @@ class AddOn(unittest.TestCase):
         self.assertRaises(module.Stopped, module.BandsawEngine.add_passes, engine, mock.Mock(view_layer=layer), job, None, None)
         self.assertEqual([submitted.cancel.call_count for submitted in passes], [1, 1, 1])
 
-    def test_no_string(self):
+    def test_a_missing_string_is_reported(self):
         preferences().farm = ""
         os.environ.pop("BANDSAW_FARM", None)
         self.fails_with("paste its string")
 
-    def test_a_wrong_string(self):
+    def test_a_wrong_string_is_reported(self):
         preferences().farm = self.fake.string[:-1] + "x"
         self.fails_with("refuses this string")
         preferences().farm = "hello"
         self.fails_with("must begin with bsw1-f-")
 
-    def test_no_farm(self):
+    def test_a_missing_coordinator_is_reported(self):
         other = fake_farm.FakeFarm()
         string = other.string
         other.stop()
         preferences().farm = string
         self.fails_with("no coordinator answers", "bandsaw serve")
 
-    def test_a_coordinator_that_goes(self):
+    def test_a_coordinator_that_disappears_is_reported(self):
         engine = sys.modules["bandsaw_blender.engine"]
         self.addCleanup(setattr, engine, "PATIENCE", engine.PATIENCE)
         engine.PATIENCE = 0.5
@@ -268,11 +268,11 @@ class AddOn(unittest.TestCase):
         self.fake.answer = once_then_close
         self.fails_with("no coordinator answers")
 
-    def test_a_refused_scene(self):
+    def test_a_refused_scene_is_reported(self):
         self.fake.refusals = [400]
         self.fails_with("not now")
 
-    def test_no_camera(self):
+    def test_a_missing_camera_is_reported(self):
         self.scene.camera = None
         self.assertRaises(RuntimeError, self.render)  # Blender's own message
 
@@ -292,7 +292,7 @@ class AddOn(unittest.TestCase):
         self.assertIn('material "table"', named[0])
         self.assertIn("missing", named[0])
 
-    def test_what_is_not_shown_is_named(self):
+    def test_unsupported_features_cause_warnings(self):
         def nodes(tree, shader):
             tree.links.new(tree.nodes.new("ShaderNodeBsdfToon" if hasattr(bpy.types, "ShaderNodeBsdfToon") else "ShaderNodeBsdfSheen").outputs[0],
                            tree.nodes["Material Output"].inputs["Surface"])
@@ -370,7 +370,7 @@ class AddOn(unittest.TestCase):
             self.assertEqual(color[0 if green else 1], 0, kind)
         self.assertEqual(self.told(), "")
 
-    def test_a_muted_link_is_none(self):
+    def test_a_muted_link_is_ignored(self):
         def nodes(tree, shader):
             tree.links.new(tree.nodes.new("ShaderNodeRGB").outputs[0], shader.inputs["Base Color"]).is_muted = True
             displacement = tree.nodes.new("ShaderNodeDisplacement")
@@ -385,7 +385,7 @@ class AddOn(unittest.TestCase):
             shader.mute = True
         self.assertEqual(self.material_of(nodes)["diffuse"]["texture"]["color"]["rgb"], [0, 0, 0])
 
-    def test_muted_volumes_worlds_and_lamps(self):
+    def test_muted_volumes_worlds_and_lamps_are_not_sent(self):
         def fog(tree, shader):
             node = tree.nodes.new("ShaderNodeVolumePrincipled")
             tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
@@ -432,7 +432,7 @@ class AddOn(unittest.TestCase):
                 self.assertGreater(pixels[:, :, 1 - column].min(), 0.99, name)
             bpy.data.objects.remove(thing)
 
-    def test_baked_normals_are_in_the_world_and_shared_ones_are_named(self):
+    def test_baked_normals_are_in_world_space_and_a_shared_mesh_causes_a_warning(self):
         def nodes(tree, shader):
             coordinates = tree.nodes.new("ShaderNodeNewGeometry")
             tree.links.new(coordinates.outputs["Normal"], shader.inputs["Base Color"])
@@ -499,7 +499,7 @@ class AddOn(unittest.TestCase):
             tree.links.new(tree.nodes["Image Texture"].outputs["Alpha"], shader.inputs["Alpha"])
         self.assertLess(abs(self.texels(self.material_of(with_alpha)["gltf"]["base_color_texture"]) - (1, 1, 0)).max(), 0.005)
 
-    def test_what_cannot_be_hidden_is_named(self):
+    def test_visibility_settings_without_effect_cause_warnings(self):
         self.render()
         self.assertEqual(self.told(), "")
         thing = scenes.cube((0, 0, 1), 1, scenes.diffuse(1, 0, 0))
@@ -516,7 +516,7 @@ class AddOn(unittest.TestCase):
         self.assertIn("Ray Visibility", told)
         self.assertIn("Clip Start", told)
 
-    def test_fire_in_a_grid_is_named(self):
+    def test_fire_in_a_grid_causes_a_warning(self):
         fire = scenes.only("VolumePrincipled", Blackbody_Intensity=1.0)
         tree = fire.node_tree
         end = tree.nodes["Material Output"]
@@ -530,7 +530,7 @@ class AddOn(unittest.TestCase):
         self.render()
         self.assertIn('the volume "flame": fire', self.told())
 
-    def test_two_million_triangles(self):
+    def test_two_million_triangles_are_converted_without_added_vertices(self):
         geometry = sys.modules["bandsaw_blender.geometry"]
         mesh = bpy.data.meshes.new("big")
         n = 1001

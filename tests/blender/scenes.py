@@ -247,7 +247,8 @@ def mixed():
     world(1, 1, 1)
     plane(20, diffuse(0.6, 0.5, 0.4))
 
-    def half(first, second, factor):
+    def mixture(first, second, factor):
+        """Returns a function for material(): a mix of two BSDFs. `factor`: the share of the second."""
         def nodes(tree, shader):
             mix = tree.nodes.new("ShaderNodeMixShader")
             mix.inputs[0].default_value = factor
@@ -261,9 +262,9 @@ def mixed():
         return nodes
 
     glossy = "BsdfGlossy" if hasattr(bpy.types, "ShaderNodeBsdfGlossy") else "BsdfAnisotropic"
-    ball((-2.2, 0, 1), material("a", half(("BsdfTransparent", (1, 1, 1)), ("BsdfDiffuse", (0.8, 0.2, 0.2)), 0.6)))
-    ball((0, 0, 1), material("b", half(("BsdfDiffuse", (0.2, 0.5, 0.8)), (glossy, (0.9, 0.9, 0.9)), 0.3)))
-    ball((2.2, 0, 1), material("c", half(("BsdfTranslucent", (0.7, 0.7, 0.2)), ("BsdfDiffuse", (0.2, 0.7, 0.3)), 0.5)))
+    ball((-2.2, 0, 1), material("a", mixture(("BsdfTransparent", (1, 1, 1)), ("BsdfDiffuse", (0.8, 0.2, 0.2)), 0.6)))
+    ball((0, 0, 1), material("b", mixture(("BsdfDiffuse", (0.2, 0.5, 0.8)), (glossy, (0.9, 0.9, 0.9)), 0.3)))
+    ball((2.2, 0, 1), material("c", mixture(("BsdfTranslucent", (0.7, 0.7, 0.2)), ("BsdfDiffuse", (0.2, 0.7, 0.3)), 0.5)))
 
 
 @scene

@@ -98,7 +98,7 @@ TEST_F(Administration, TheDoctorNamesEachProblem) {
   EXPECT_NE(ill.out.find("ok       import"), std::string::npos) << ill.out;
 }
 
-TEST_F(Administration, AWorkersOldSecretIsVoidAtOnceAndTheNewOneJoins) {
+TEST_F(Administration, AWorkersOldSecretIsVoidAtOnceAndAWorkerJoinsWithTheNewOne) {
   Process& old = farm_.add_worker("old", 1);
   const std::string before = file_bytes(farm_.join_file());
   const Finished rotated = here({"secret", "rotate", "worker"});

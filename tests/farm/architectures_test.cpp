@@ -41,7 +41,7 @@ class InviteArchitectures : public ::testing::Test {
   Installed installed_;
 };
 
-TEST_F(InviteArchitectures, EachHostGetsTheProgramForIt) {
+TEST_F(InviteArchitectures, EachHostGetsTheProgramForItsArchitecture) {
   const std::string program = worker_file(EM_AARCH64, fitting_mark());
   installed_.put_aarch64_worker(program);
   // chmod is called after the received program is checked. This script keeps a copy of that

@@ -112,7 +112,7 @@ TEST_F(CleanImages, AreMadeByAnInstalledLibrary) {
       << report;
 }
 
-TEST_F(CleanImages, AreRefusedWithoutNoise) {
+TEST_F(CleanImages, AreRefusedForADepthImageAndForOneSample) {
   farm_.add_worker("one", 1);
   std::vector<std::string> depth = image("submit", "spheres", "5", farm_.path("depth.pfm"));
   depth.insert(depth.end(), {"--integrator", "depth"});

@@ -197,7 +197,7 @@ TEST_F(ForeignScenes, ImportReplacesNothingUnlessForced) {
   EXPECT_NE(file_bytes(output), "mine");
 }
 
-TEST_F(ForeignScenes, StrictImportRefusesWhatHasNoCounterpart) {
+TEST_F(ForeignScenes, StrictImportRefusesFeaturesWithoutCounterpart) {
   write("hair.pbrt", "WorldBegin\nMaterial \"hair\"\nShape \"sphere\"\n");
   const std::string output = farm_.path("hair.textproto");
   const Finished strict =

@@ -168,7 +168,7 @@ TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
   EXPECT_EQ(jobs_of_frames().size(), 18u);
 }
 
-TEST_F(Frames, FramesWithoutANameDoNotReplaceFilesOfTheModel) {
+TEST_F(Frames, FramesWithoutAnOutputNameDoNotReplaceFilesOfTheModel) {
   farm_.add_worker("one", 1);
   std::ofstream(farm_.path("walk.0002.png")) << "a texture";
   const Finished refused = run(in_the_folder(submit("1-3")));

@@ -64,7 +64,7 @@ class FullDiskFarm : public testing::Test {
   }
   /// Brings the farm to this state: job 1 is done, job 2 is being rendered, job 3 waits. Then ends
   /// the coordinator and the worker.
-  void stop_with_jobs_and_fill() {
+  void stop_with_jobs() {
     start_worker();
     ASSERT_EQ(say(with_samples({"submit", kCornell, "-o", folder_ / "first.pfm"}, 8)).code, 0);
     ASSERT_EQ(say(with_samples({"submit", kCornell, "--detach"}, 64)).code, 0);
@@ -109,7 +109,7 @@ class FullDiskFarm : public testing::Test {
     ASSERT_EQ(run(with_samples({BANDSAW_BIN, "render", kCornell, "-o", local}, samples)).code, 0);
     EXPECT_TRUE(file_bytes(file) == file_bytes(local));
   }
-  void expect_what_is_there_is_served() {
+  void expect_results_are_served_and_jobs_paused() {
     EXPECT_THAT(coordinator_->err(), HasSubstr("disk is full"));
     EXPECT_THAT(say({"jobs", "--json"}).out, HasSubstr(R"("state":"paused")"));
     EXPECT_THAT(say({"why", "2"}).out, HasSubstr("disk is full"));
@@ -119,7 +119,7 @@ class FullDiskFarm : public testing::Test {
     EXPECT_NE(refused.code, 0);
     EXPECT_THAT(refused.out + refused.err, HasSubstr("disk is full"));
   }
-  void expect_it_goes_on() {
+  void expect_jobs_continue_when_there_is_room() {
     make_room();
     ask_until({"why", "2"}, "no worker is connected");
     start_worker();
@@ -137,23 +137,23 @@ class FullDiskFarm : public testing::Test {
 };
 
 TEST_F(FullDiskFarm, StartsAndServesResultsAndContinuesWhenThereIsSpace) {
-  ASSERT_NO_FATAL_FAILURE(stop_with_jobs_and_fill());
+  ASSERT_NO_FATAL_FAILURE(stop_with_jobs());
   fill();
   ASSERT_NO_FATAL_FAILURE(start());
-  expect_what_is_there_is_served();
+  expect_results_are_served_and_jobs_paused();
   EXPECT_EQ(say({"cancel", "3"}).code, 0) << "the reserve must leave room to cancel a job";
   EXPECT_FALSE(std::filesystem::exists(data() + "/jobs/3/bands"))
       << "the bands of a cancelled job must be deleted";
-  expect_it_goes_on();
+  expect_jobs_continue_when_there_is_room();
 }
 
 TEST_F(FullDiskFarm, StartsWithoutItsReserve) {
-  ASSERT_NO_FATAL_FAILURE(stop_with_jobs_and_fill());
+  ASSERT_NO_FATAL_FAILURE(stop_with_jobs());
   ASSERT_TRUE(std::filesystem::remove(data() + "/reserve"));
   fill();
   ASSERT_NO_FATAL_FAILURE(start());
-  expect_what_is_there_is_served();
-  expect_it_goes_on();
+  expect_results_are_served_and_jobs_paused();
+  expect_jobs_continue_when_there_is_room();
 }
 
 // Every write to /dev/full fails as on a full disk.

@@ -47,7 +47,7 @@ TEST(Paste, TheLineInstallsAndStartsAWorker) {
   EXPECT_EQ(worker.wait(), 0) << worker.err();
 }
 
-TEST(Paste, ItStartsNoWorkerIfTheKeyOrTheProgramDiffers) {
+TEST(Paste, TheLineStartsNoWorkerIfTheKeyOrTheProgramDiffers) {
   const auto hosts = Hosts::create({"coordinator"});
   if (!hosts.ok()) {
     GTEST_SKIP() << hosts.status().message();
@@ -66,7 +66,7 @@ TEST(Paste, ItStartsNoWorkerIfTheKeyOrTheProgramDiffers) {
   EXPECT_NE(damaged.out().find("FAILED"), std::string::npos) << damaged.out();
 }
 
-TEST(Paste, OnLoopbackItNeedsNoKey) {
+TEST(Paste, TheLineNeedsNoKeyOnLoopback) {
   FarmProcesses farm(nullptr, {"--web", "127.0.0.1:0"});
   const std::string line = pasted_line(farm.coordinator());
   EXPECT_NE(line.find(" http://127.0.0.1:"), std::string::npos) << farm.coordinator().out();

@@ -57,7 +57,7 @@ class ReportOfAFarm : public testing::Test {
 };
 
 // A closed output pipe does not prevent the image from being written.
-TEST(Render, OutlivesTheReaderOfItsProgress) {
+TEST(Render, WritesTheImageAlthoughTheReaderOfItsProgressHasEnded) {
   const TempDir folder;
   const std::string image = folder / "a.pfm";
   const std::string command = std::string(BANDSAW_BIN) + " render " + kCornell +

@@ -40,7 +40,7 @@ TEST_F(StudyCommand, WritesTableFiguresAndPlot) {
   EXPECT_EQ(file_bytes(folder_ / "s.svg").rfind("<svg ", 0), 0u);
 }
 
-TEST_F(StudyCommand, EveryObjectIsRefusedForLargeScenes) {
+TEST_F(StudyCommand, TheOptionEveryObjectIsRefusedForLargeScenes) {
   const Finished done =
       run(study({BANDSAW_GALLERY "/mesh.textproto", "--every-object", "--width", "12"}));
   EXPECT_EQ(done.code, 2);

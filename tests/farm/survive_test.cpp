@@ -64,7 +64,7 @@ TEST_F(Survive, AKilledCoordinator) {
 
 // All light has passed glass, so each worker makes photon maps. One worker is killed. The
 // coordinator is killed while the worker that joins in its place makes its own maps.
-TEST_F(Survive, AKilledWorkerAndCoordinatorWherePhotonMapsPay) {
+TEST_F(Survive, AKilledWorkerAndCoordinatorWhilePhotonMapsAreMade) {
   Survival job(farm_, BANDSAW_GALLERY "/hard_light/lamp_in_glass.textproto");
   farm_.add_worker("victim", 1);
   farm_.add_worker("other", 1);

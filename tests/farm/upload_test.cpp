@@ -23,7 +23,7 @@ class Upload : public testing::Test {
   }
 
   /// Returns the number of bytes of the blob that the farm has; std::nullopt: all.
-  std::optional<std::uint64_t> there() {
+  std::optional<std::uint64_t> bytes_on_farm() {
     const auto missing = connect()->missing_blobs({digest()});
     EXPECT_TRUE(missing.ok()) << missing.status();
     return missing->empty() ? std::nullopt : std::optional(missing->front().there);
@@ -53,26 +53,26 @@ TEST_F(Upload, ResumesAlsoAfterARestartOfTheCoordinator) {
   while (kept == 0 && !HasFailure()) {
     // The coordinator notices the disconnection a moment later. Until then it reports no part of
     // the blob.
-    kept = there().value_or(bytes_.size());
+    kept = bytes_on_farm().value_or(bytes_.size());
   }
   ASSERT_LT(kept, bytes_.size());
   farm_.coordinator().signal(SIGKILL);
   farm_.coordinator().wait();
   farm_.restart_coordinator();
-  EXPECT_EQ(there(), kept);
+  EXPECT_EQ(bytes_on_farm(), kept);
   std::optional<std::uint64_t> first;
   const absl::Status put = connect()->put_blob(
       digest(), bytes_, kept, [&](std::uint64_t sent) { first = first.value_or(sent); });
   ASSERT_TRUE(put.ok()) << put;
   EXPECT_EQ(first, kept + (1 << 20)) << "the upload must continue after the kept bytes";
-  EXPECT_EQ(there(), std::nullopt);
+  EXPECT_EQ(bytes_on_farm(), std::nullopt);
 }
 
 TEST_F(Upload, RestartsIfTheFarmLostThePart) {
   // The client claims that the farm has the first 8 MiB, but the farm has no part of the blob.
   const absl::Status put = connect()->put_blob(digest(), bytes_, 8 << 20, [](std::uint64_t) {});
   EXPECT_TRUE(put.ok()) << put;
-  EXPECT_EQ(there(), std::nullopt);
+  EXPECT_EQ(bytes_on_farm(), std::nullopt);
 }
 
 }  // namespace

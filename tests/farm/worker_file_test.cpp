@@ -49,7 +49,7 @@ TEST(WorkerFile, NeedsOnlyGlibc) {
 
 // Unlike the worker, the command `bandsaw` is linked with the shared C++ library. If libraries_of()
 // did not find this library, it could also miss a library of the worker.
-TEST(WorkerFile, TheCommandNeedsMoreThanGlibc) {
+TEST(WorkerFile, LibrariesOfTheCommandContainTheSharedCppLibrary) {
   EXPECT_TRUE(libraries_of(BANDSAW_BIN).contains("libstdc++.so.6"));
 }
 

@@ -55,7 +55,7 @@ class WrongInput : public testing::Test {
   TempDir folder_;
 };
 
-TEST_F(WrongInput, MissingScene) {
+TEST_F(WrongInput, AMissingSceneIsNamed) {
   expect_error(render({folder_ / "no.textproto", "-o", output()}), kWrongUse, {"no.textproto"});
   EXPECT_TRUE(nothing_written());
 }
@@ -74,19 +74,19 @@ TEST_F(WrongInput, ValueOutOfRangeNamesTheField) {
   expect_error(render({scene, "-o", output()}), kWrongUse, {"scene.textproto:3:", "radius", "-1"});
 }
 
-TEST_F(WrongInput, MissingTexture) {
+TEST_F(WrongInput, AMissingTextureIsNamed) {
   const std::string scene = scene_with(
       "material { name: \"m\" diffuse { texture { image { file: \"no.png\" } } } }\n"
       "shape { sphere { center: [0, 0, -3] radius: 1 } material: \"m\" }\n");
   expect_error(render({scene, "-o", output()}), kWrongUse, {"no.png"});
 }
 
-TEST_F(WrongInput, AFileOutsideTheScenesFolder) {
+TEST_F(WrongInput, AFileOutsideTheScenesFolderIsRefused) {
   const std::string scene = scene_with("model { file: \"../../etc/passwd\" }\n");
   expect_error(render({scene, "-o", output()}), kWrongUse, {"../../etc/passwd", "below"});
 }
 
-TEST_F(WrongInput, TruncatedModel) {
+TEST_F(WrongInput, ATruncatedModelIsRefused) {
   const std::string whole =
       file_bytes("/usr/share/assimp/models/glTF2/BoxTextured-glTF-Binary/BoxTextured.glb");
   write_input(folder_ / "cut.glb", whole.substr(0, whole.size() / 2));
@@ -99,7 +99,7 @@ TEST_F(WrongInput, UnwritableOutputIsReportedBeforeRendering) {
   expect_error(render({kCornell, "-o", folder_ / "out.jpeg"}), kWrongUse, {"jpeg", "pfm"});
 }
 
-TEST_F(WrongInput, FullDisk) {
+TEST_F(WrongInput, AFullDiskLeavesNoPartialFile) {
   const std::string disk = folder_ / "disk";
   ASSERT_EQ(mkdir(disk.c_str(), 0700), 0);
   if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=16k") != 0) {
@@ -113,7 +113,7 @@ TEST_F(WrongInput, FullDisk) {
   EXPECT_TRUE(empty);
 }
 
-TEST_F(WrongInput, OptionsThatExcludeEachOther) {
+TEST_F(WrongInput, WrongOptionsAndCommandsAreRefused) {
   expect_error(run({BANDSAW_BIN, "render", kCornell, "--samples", "4", "--error", "1%"}), kWrongUse,
                {});
   expect_error(run({BANDSAW_BIN, "render", kCornell, "--samples", "0"}), kWrongUse, {"samples"});
@@ -121,13 +121,13 @@ TEST_F(WrongInput, OptionsThatExcludeEachOther) {
   expect_error(run({BANDSAW_BIN, "rendr", kCornell}), kWrongUse, {"rendr"});
 }
 
-TEST_F(WrongInput, WrongJoinString) {
+TEST_F(WrongInput, AWrongJoinStringIsRefused) {
   const Finished worker = run({BANDSAW_WORKER_BIN, "--join", "bsw1-w-nonsense"});
   expect_error(worker, kWrongUse, {"join string"});
   expect_error(run({BANDSAW_BIN, "jobs", "--farm", "bsw1-x"}), kWrongUse, {"join string"});
 }
 
-TEST_F(WrongInput, NoCoordinatorAtThePort) {
+TEST_F(WrongInput, AMissingCoordinatorIsReported) {
   std::string farm;
   {
     FarmProcesses gone;
@@ -145,7 +145,7 @@ TEST_F(WrongInput, AWorkersSecretCannotSubmit) {
   EXPECT_TRUE(nothing_written());
 }
 
-TEST_F(WrongInput, ASecondCoordinatorOnThePortOrTheFolder) {
+TEST_F(WrongInput, ASecondCoordinatorOnThePortOrTheFolderIsRefused) {
   FarmProcesses farm;
   const std::string join = file_bytes(farm.farm_file());
   const std::size_t at = join.find("127.0.0.1:");
@@ -156,7 +156,7 @@ TEST_F(WrongInput, ASecondCoordinatorOnThePortOrTheFolder) {
                kFailed, {farm.path("data")});
 }
 
-TEST_F(WrongInput, UnknownJob) {
+TEST_F(WrongInput, AnUnknownJobIsReported) {
   FarmProcesses farm;
   expect_error(run(farm.command({"watch", "99"})), kFailed, {"99"});
   expect_error(run(farm.command({"cancel", "99"})), kFailed, {"99"});
