@@ -12,6 +12,8 @@
 
 namespace {
 
+/// Reads one record after another, until the reader refuses one or the bytes end. Each accepted
+/// record must give the same bytes when it is written again.
 void read_all(absl::Span<const std::byte> bytes) {
   std::uint64_t offset = 0;
   while (offset < bytes.size()) {

@@ -22,9 +22,10 @@ bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
 
 class Sender {
  public:
-  /// Sends the next message. The bits of `what` select what is in it: 1 a header, 2 a wrong byte, 4
-  /// more bytes than the band has; in the header 8 a negative sum, 16 wrong rows, 32 a wrong size,
-  /// 64 a wrong digest.
+  /// Sends the next message. `what` is the sum of values that select its contents: 1 a header,
+  /// which begins a band; 2 a wrong byte; 4 more bytes than the band has. Four more values count
+  /// only if there is a header: 8 gives the band a negative sum; 16, 32 and 64 give the header
+  /// wrong rows, a wrong size and a wrong digest. `number` selects lengths and places.
   void step(std::uint8_t what, std::uint32_t number) {
     farm::BandChunk chunk;
     if ((what & 1) != 0) {
@@ -51,6 +52,7 @@ class Sender {
   }
 
  private:
+  /// Makes a new band and its header.
   void announce(std::uint8_t what, std::uint32_t number, farm::BandHeader& header) {
     const std::uint32_t width = 1 + number % 7;
     const std::uint32_t rows = 1 + number / 8 % 5;
@@ -68,6 +70,7 @@ class Sender {
     header.set_sha256((what & 64) != 0 ? wire::Digest().raw() : wire::sha256(band_).raw());
   }
 
+  /// Checks the received band, which is complete, and forgets it.
   void take() {
     const farm::BandHeader header = intake_.header();
     const auto pixels = intake_.take();
@@ -81,11 +84,13 @@ class Sender {
       BANDSAW_CHECK(
           pixels->sums.size() == std::size_t{3} * pixels->width * pixels->band.rows.count(),
           "each pixel has three sums");
-      BANDSAW_CHECK(std::all_of(pixels->sums.begin(), pixels->sums.end(), is_sum), "sums");
+      BANDSAW_CHECK(std::all_of(pixels->sums.begin(), pixels->sums.end(), is_sum),
+                    "each sum is finite and >= 0");
     }
     leave();
   }
 
+  /// Forgets the band. The next message may begin another band.
   void leave() {
     intake_ = BandIntake(memory_);
     came_.clear();

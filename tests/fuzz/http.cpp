@@ -1,6 +1,7 @@
-// Fuzz target (fuzz.h): a request to the dashboard. The input is taken in two ways: as the bytes of
-// a connection; and as lines "Name: value" up to an empty line, followed by the body, so that
-// mutations reach the handlers easily. A line without ": " is the request's target.
+// Fuzz target (fuzz.h): a request to the dashboard. Each input is used twice. In one use the input
+// is the bytes that arrive on a connection. In the other use the input is a list of header lines
+// "Name: value" up to an empty line, and then the body; a line without ": " is the request's
+// target. In this form mutations reach the handlers easily.
 
 #include <sys/socket.h>
 #include <unistd.h>

@@ -24,11 +24,11 @@ void read_mesh(absl::string_view bytes) {
   PlyMesh whole = mesh->mesh;
   for (const auto& triangle : whole.triangles) {
     for (const std::uint32_t index : triangle) {
-      BANDSAW_CHECK(index < whole.positions.size(), "indices are those of vertices");
+      BANDSAW_CHECK(index < whole.positions.size(), "each index is that of a vertex");
     }
   }
   BANDSAW_CHECK(whole.normals.empty() || whole.normals.size() == whole.positions.size(),
-                "each vertex has a normal, or none");
+                "either all vertices have a normal or none has one");
   mitsuba::orient_by_normals(whole);
   mitsuba::add_smooth_normals(whole);
   mitsuba::has_left_handed_uvs(whole);

@@ -23,7 +23,8 @@ namespace {
 using namespace bandsaw;
 using namespace bandsaw::coordinator;
 
-/// Returns the bytes of the blob. They are so many that parts of an interrupted upload are kept.
+/// Returns the bytes of the blob. The blob is so large that the store keeps the received part of an
+/// interrupted upload.
 const std::string& content() {
   static const std::string bytes = test::pattern(PartialBlobs::kMinBytes + 40'000);
   return bytes;
@@ -33,9 +34,9 @@ class Sender {
  public:
   explicit Sender(const std::string& folder) : folder_(folder), store_(*BlobStore::open(folder)) {}
 
-  /// Does the next step. `what` modulo 6 selects its kind: 0 the sender is interrupted, 1 the
-  /// coordinator restarts, 2 a stored byte is damaged, 3 the sender ends, otherwise a chunk is
-  /// sent.
+  /// Does the next step. `what` modulo 6 selects its kind: 0 the upload is interrupted, 1 the
+  /// coordinator restarts, 2 a byte of the stored part is damaged, 3 the sender ends the upload,
+  /// otherwise a chunk is sent. `number` selects lengths and places.
   void step(std::uint8_t what, std::uint32_t number) {
     switch (what % 6) {
       case 0:
@@ -58,6 +59,7 @@ class Sender {
   }
 
  private:
+  /// Ends the upload. The next chunk begins another upload.
   void leave() {
     writer_.reset();
     intake_ = {};
@@ -121,11 +123,11 @@ class Sender {
       return;
     }
     const auto blob = store_->get(digest_);
-    BANDSAW_CHECK(blob.ok(), "nobody touched it");
+    BANDSAW_CHECK(blob.ok(), "a stored blob can be read");
     const auto bytes = (*blob)->bytes();
     BANDSAW_CHECK(bytes.size() == content().size() &&
                       std::memcmp(bytes.data(), content().data(), bytes.size()) == 0,
-                  "a blob that is there is the one of its digest");
+                  "a stored blob has the bytes of its digest");
     BANDSAW_CHECK(store_->remove(digest_).ok(), "a blob can be removed");
   }
 
@@ -144,7 +146,7 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
     BlobIntake intake;
     if (intake.add(message).ok()) {
       BANDSAW_CHECK(intake.received() <= intake.size() && intake.size() <= wire::kBlobBytes,
-                    "what was taken is within its size");
+                    "the accepted bytes are within the announced size");
     }
   }
   const test::TempDir folder;

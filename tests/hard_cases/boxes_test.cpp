@@ -33,11 +33,12 @@ bool meets(const FloatBox& box, const Ray& ray) {
   const FloatRay floats(trace_setup(ray.origin, ray.direction, ray.t_max), box.reach());
   Float8 enter;
   const unsigned met = enter_children(node, floats, floats.above(ray.t_max), enter);
-  EXPECT_EQ(met & ~32u, 0u) << "an unused child is entered";
+  EXPECT_EQ(met & ~32u, 0u) << "the ray must not enter an unused child";
   return met != 0;
 }
 
-// Rays within the faces of a box, where 0 times infinity is NaN.
+// The rays lie within faces of the box. There a plain slab test would multiply 0 by infinity, and
+// the product is NaN.
 TEST(Tree, B1B4_RaysWithinAFaceHitTheBox) {
   const FloatBox box = {{0, 0, 0}, {1, 1, 1}};
   for (const double x : {0.0, 1.0}) {
@@ -76,7 +77,10 @@ bool truly_meets(const FloatBox& box, const Ray& ray) {
   return enter <= leave;
 }
 
-/// Returns a box around `center`, and a ray from anywhere through a point of one of its edges.
+/// Returns a box around `center`, and a ray from anywhere through a point of the box. The point is
+/// random: it lies inside the box or on a face, an edge or a corner. One ray in eight is parallel,
+/// or nearly parallel, to the faces of constant x. The length of the direction is about 2^-40 to
+/// 2^39.
 std::pair<FloatBox, Ray> aimed(const Vec3& center, test::Random& random) {
   const auto extent = [&] { return std::pow(10, random.uniform(-6, 1)); };
   const double x = extent();
@@ -108,7 +112,7 @@ TEST(Tree, B2B3_NeverMissesABoxThatIsHit) {
     for (int i = 0; i < boxes; ++i) {
       const double offset = at_any_distance ? std::pow(10, random.uniform(-6, 6)) : 1e4;
       const auto [box, ray] = aimed(offset * test::random_direction(random), random);
-      // The exact test is needed only if ours finds no intersection.
+      // The exact test is needed only if the renderer finds no intersection.
       const bool found = meets(box, ray);
       if (found) {
         ++met;

@@ -91,8 +91,9 @@ TEST(MaterialHardCases, M7FresnelIsExactAroundTheCriticalAngle) {
       for (const double sign : {-1.0, 1.0}) {
         const double cosine = critical + sign * std::pow(10.0, -k);
         const long double exact = exact_fresnel(cosine, eta);
-        // Just beyond the critical angle F falls like a square root: the tolerance is the effect of
-        // the cosine's last bit.
+        // Near the critical angle F depends on the square root of the distance to the critical
+        // cosine. So the last bit of the cosine has a large effect on F, which the tolerance
+        // allows.
         const double bit = 1e-15 * std::pow(10.0, k / 2.0);
         const auto off = static_cast<double>(std::abs(fresnel(cosine, eta) - exact));
         EXPECT_LE(off, 1e-12 + bit);
@@ -157,8 +158,8 @@ TEST(Ggx, SeenFacetsCoverTheWholeDirection) {
   for (const double alpha : {0.05, 0.2, 0.5, 1.0}) {
     for (const double z : {1.0, 0.7, 0.3, 0.1}) {
       const Vec3 o{std::sqrt(1 - z * z), 0, z};
-      // The substitution tan = alpha sqrt(x / (1 - x)) of the slopes makes D cos dh uniform in x; x
-      // = 1 - s^2 increases the density at steep slopes.
+      // The substitution tan = alpha sqrt(x / (1 - x)) of the slopes makes D cos dh uniform in x.
+      // The second substitution, x = 1 - s^2, puts more points at steep slopes.
       constexpr int kSide = 600;
       double sum = 0;
       for (int a = 0; a < kSide; ++a) {

@@ -42,8 +42,9 @@ TEST(Cone, L2_NarrowConesKeepTheirDigits) {
   test::at_most("L2", "relative error of 1 - cos", error.value(), 1e-12);
 }
 
-/// Returns the solid angle of a square of side 2 h whose middle is (aside, 0) at height 1, by
-/// Gauss's rule of 5 x 5 points: exact to the tenth power of h.
+/// Returns the solid angle of a square as seen from the origin. The square has the side 2 h, and
+/// its middle is (aside, 0) at height 1. The integral is computed by Gauss's rule of 5 x 5 points,
+/// whose relative error is of the order of h^10.
 Wide solid_angle(double h, double aside) {
   const double nodes[] = {0, 0.5384693101056831, -0.5384693101056831, 0.9061798459386640,
                           -0.9061798459386640};
@@ -128,6 +129,8 @@ TEST(Sampler, R3_NeighboursShareNoSamples) {
   test::at_most("R3", "variance of 2 x 2 means over a quarter, off 1", std::abs(ratio - 1), 0.05);
 }
 
+// Samples checkerboards of cells x cells cells within each pixel; `cells` is odd. The RMSE of
+// independent samples is about 0.5 / sqrt(samples).
 TEST(Sampler, R9_DetailFinerThanAPixelIsNoWorseThanWithIndependentSamples) {
   Worst ratio;
   for (const int cells : {3, 7, 13, 29, 101}) {
@@ -175,6 +178,8 @@ TEST(Film, A1_LongSumsKeepTheirDigits) {
                 std::abs(snapshot.image.pixels[0].g / mean - 1), 1e-7);
 }
 
+/// Returns the error estimate of an image from the sums of its two halves. `a` and `b` have three
+/// sums a pixel, each of `samples` samples.
 ErrorEstimate estimate_of(const std::vector<double>& a, const std::vector<double>& b,
                           std::uint64_t samples) {
   ErrorSums sums;

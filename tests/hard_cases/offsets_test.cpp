@@ -49,6 +49,7 @@ Geometry flat_patch(double size, const Vec3& at, bool triangles) {
 
 // The rays that leave a plane hit no neighbour in the plane, whatever the scales.
 TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
+  // Edge length of the cells, distance of the square from the origin.
   const std::pair<double, double> rows[] = {{1, 0},    {1, 1e3}, {1, 1e5},    {1, 1e6},
                                             {1e-3, 1}, {1e6, 0}, {1e-6, 1e-6}};
   Pool pool(1);
@@ -82,8 +83,8 @@ TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
   test::at_most("O1", "hits in 14 rows of " + std::to_string(rays), hits, 0);
 }
 
-/// Two planes that intersect in the z axis, at angles 0 and `angle` from x, between which paths
-/// scatter.
+/// Two plane quads that meet in the z axis. The first is at the angle 0 from the x axis, the second
+/// at `angle`. Paths scatter between them.
 struct Crease {
   Geometry geometry;
   Vec3 inwards[2];
@@ -99,8 +100,9 @@ struct Crease {
   bool holds(const Vec3& p) const {
     return p.x > 0 && dot(p, inwards[0]) > 0 && dot(p, inwards[1]) > 0;
   }
-  /// Returns true if a ray that hits neither plane leaves by the opening: between the planes at 0.9
-  /// from the axis, or beyond their ends.
+  /// Expects a ray that hits neither plane. Returns true if the ray leaves by the opening: if it
+  /// starts more than 0.9 from the z axis, or if the point of the ray at the distance 0.9 from the
+  /// axis is between the planes or has |z| > 0.9.
   bool leaves_by_opening(const Ray& ray) const {
     const Vec3& o = ray.origin;
     const Vec3& d = ray.direction;

@@ -41,6 +41,7 @@ struct Rendering {
   const Kernel* kernel = nullptr;  ///< nullptr for the fastest
 };
 
+/// Returns the hash of the sums of all pixels, rendered as `how` says.
 std::string hash_of(const ImportedScene& imported, const Rendering& how) {
   Pool building(how.building_threads);
   Pool pool(how.threads);

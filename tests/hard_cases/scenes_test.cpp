@@ -15,6 +15,8 @@
 namespace bandsaw {
 namespace {
 
+/// Returns a scene of a white ball, which is a mesh of slices and stacks, under one directional
+/// light. `smooth`: the mesh has vertex normals.
 std::shared_ptr<const Scene> white_ball(int slices, int stacks, bool smooth) {
   Mesh mesh = test::rough_sphere(slices, stacks, 1, 1);
   if (smooth) {
@@ -28,6 +30,7 @@ std::shared_ptr<const Scene> white_ball(int slices, int stacks, bool smooth) {
   return maker.build();
 }
 
+/// Returns the radiance along the ray from (x, y, 5) in direction -z.
 double radiance(const Scene& scene, double x, double y) {
   PathCounts counts;
   const Ray ray{.origin = {x, y, 5}, .direction = {0, 0, -1}};
@@ -58,9 +61,9 @@ TEST(SmoothNormals, T13_CoarseMeshesAreShadedAlmostAsFineOnes) {
                 smooth_error / flat_error, 2);
 }
 
-// A light in the plane of the ceiling: the ceiling neither hides nor occludes it. At the middle of
-// the floor, each quarter of the light gives E = a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)), where a
-// is the side of a quarter over its height.
+// The light lies in the plane of the ceiling. The ceiling must neither hide the light from a ray
+// nor occlude it from the floor. At the middle of the floor, each quarter of the light gives
+// E = a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)), where a is the side of a quarter over its height.
 TEST(Ceiling, Q4_ALightInItsPlaneGivesTheClosedForm) {
   test::SceneMaker maker;
   maker.quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, maker.diffuse(1));

@@ -272,6 +272,8 @@ TEST(SphereUv, S8_StaysInTheUnitSquare) {
 
 /// Traces a ray that is refracted at each hit and never reflected, and changes `direction` to that
 /// of the last refraction. Returns a letter for each hit: o for the outer sphere, i for the inner.
+/// Stops after 9 hits. If no direction can be sampled at a hit, stops there with the letter "?" and
+/// leaves `direction` unchanged.
 std::string pass_through(const Geometry& g, const Accel& accel, Vec3& direction, Vec3 origin) {
   const Material glass = Dielectric{1.5};
   const Material air = Dielectric{1};

@@ -84,6 +84,7 @@ double variance(const Seen& seen, const std::vector<double>& weights) {
   return squares - by_cosine * by_cosine - by_light * by_light;
 }
 
+/// Returns the smaller of the variances of the two techniques alone.
 double of_better_technique(const Seen& seen) {
   return std::min(variance(seen, std::vector<double>(kBins, 0)),
                   variance(seen, std::vector<double>(kBins, 1)));
@@ -95,8 +96,9 @@ struct Place {
   double scale = 0;  ///< factor of the variance
 };
 
-/// Returns the weights that minimise the sum of the scaled variances. There the gradient of the sum
-/// is zero, which is a system of equations whose matrix is positive definite.
+/// Returns the weights that minimise the sum of the scaled variances. At the minimum the gradient
+/// of the sum is zero. This is a system of linear equations whose matrix is positive definite; it
+/// is solved by Gaussian elimination.
 std::vector<double> best_weights(const std::vector<Place>& places) {
   std::vector<std::vector<double>> rows(kBins, std::vector<double>(kBins + 1));
   for (const auto& [seen, scale] : places) {

@@ -17,10 +17,9 @@ SECRET = "abcdefghijklmnopqrst-_"
 
 
 class FakeFarm:
-    """`seconds`: the time that a job takes; 0: each request for its state completes a quarter of it. Tests may set four variables. `refusals`: the
-    HTTP statuses with which the next scenes are refused. `full`: True if its disk is full, so that files are refused. `warnings`: those of every
-    accepted scene. `clean_failure`: the reason why pictures are not denoised, or empty. `scenes`, `jobs` and `requests` hold all that it has
-    received."""
+    """A job takes `seconds`. If `seconds` is 0, each request for the state of a job completes a quarter of the job. Tests may set three variables.
+    `refusals`: the HTTP statuses with which the next scenes are refused. `full`: True if the disk of the coordinator is full, so that files are
+    refused. `warnings`: the warnings in the answer to every accepted scene. `scenes`, `jobs` and `requests` hold all that it has received."""
 
     def __init__(self, seconds=0.0):
         self.seconds, self.refusals, self.warnings, self.full, self.clean_failure = seconds, [], [], False, ""
@@ -34,7 +33,7 @@ class FakeFarm:
 
             def do_POST(self):
                 if farm.full and self.path == "/api/files":
-                    farm.answer(self, self.rfile.read(1))  # the answer is sent, and the connection closed, before the rest has come
+                    farm.answer(self, self.rfile.read(1))  # sends the answer and closes the connection before the rest of the body arrives
                 else:
                     farm.answer(self, self.rfile.read(int(self.headers.get("Content-Length", 0))))
 

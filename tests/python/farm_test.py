@@ -19,7 +19,7 @@ CORNELL = os.path.join(SOURCE, "renderlib", "gallery", "cornell.textproto")
 
 
 class LoopbackFarm:
-    """A coordinator and a worker. `web`: the address of --web."""
+    """A coordinator and a worker. `web`, `listen`: the addresses for the options --web and --listen of the coordinator."""
 
     def __init__(self, folder, web="127.0.0.1:0", listen="127.0.0.1:0"):
         self.folder, self.data, self.listen, self.web = folder, os.path.join(folder, "farm"), listen, web
@@ -199,7 +199,7 @@ class Restarted(unittest.TestCase):
                 string = loopback.string
                 farm = bandsaw.Farm(string)
                 if not farm._addresses or bandsaw._is_loopback(farm._addresses[0][0]):
-                    self.skipTest("this machine has no address but loopback")
+                    self.skipTest("this machine has only loopback addresses")
                 ports = (farm._join.addresses[0][1], farm._join.web[1])
                 job = farm.submit(CORNELL, samples=512, width=64)
                 states = []

@@ -64,8 +64,8 @@ class NoFarms(unittest.TestCase):
         self.assertIn("bandsaw serve", str(caught.exception))
 
     def answer_with(self, reply, connections=1):
-        """Returns the port of a server that answers the first `connections` connections with `reply`. It appends the first bytes that come
-        over each to `self.received`."""
+        """Returns the port of a server that answers the first `connections` connections with `reply`. The server appends the first bytes of each
+        connection to `self.received`."""
         server = socket.create_server(("127.0.0.1", 0))
         self.addCleanup(server.close)
         self.received = received = []
@@ -112,6 +112,7 @@ class NoFarms(unittest.TestCase):
 
 class Files(unittest.TestCase):
     def make(self, **files):
+        """Makes a temporary folder with these files and returns its path. In the names of the files "__" stands for "."."""
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         for name, text in files.items():
@@ -161,7 +162,7 @@ class Files(unittest.TestCase):
         began = time.monotonic()
         _, files = bandsaw._files_of(os.path.join(folder, "a.fbx"))
         self.assertEqual(sorted(files), ["a.fbx", "a.png"])
-        self.assertLess(time.monotonic() - began, 10)  # it would be minutes if a search began at every byte of the line
+        self.assertLess(time.monotonic() - began, 10)  # it would take minutes if a search began at every byte of the line
 
     def test_a_missing_scene_is_named(self):
         with self.assertRaises(bandsaw.BandsawError) as caught:
@@ -457,7 +458,7 @@ class AddOn(unittest.TestCase):
         shown = atlas.triangle >= 0
         spread = atlas.spread(places.reshape(-1, 2))
         self.assertLess(np.abs(spread - centres)[shown].max(), 1e-4)  # the weights give back the place
-        # All four texels of a bilinear look-up inside a triangle are its own.
+        # All four texels of a bilinear look-up inside a triangle belong to this triangle.
         for number in range(7):
             corners = places[number]
             for weights in ((1, 0, 0), (0, 1, 0), (0, 0, 1), (0.5, 0.5, 0), (0, 0.5, 0.5), (0.5, 0, 0.5), (1 / 3, 1 / 3, 1 / 3)):

@@ -13,7 +13,7 @@ if shutil.which("jupyter-nbconvert") is None:
     sys.exit(77)
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-import farm_test  # noqa: E402  (takes BIN-FOLDER)
+import farm_test  # noqa: E402  (takes BIN-FOLDER out of sys.argv)
 
 
 class Notebook(unittest.TestCase):

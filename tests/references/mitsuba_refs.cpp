@@ -10,10 +10,10 @@
 //
 // A channel of a pixel fails if the p-value of its difference is below Sidak's level for the image
 // at 0.01. As in Mitsuba's tests, up to 0.25 % of the channels may fail. The variance of the
-// difference is the sum of two variances. The first is that of the rendered image: the variance of
-// one sample, as the reference states it and at least 1e-4, over the number of samples, or the
-// variance that the seeds show if it is larger. The second is that of the reference image, which
-// has 32,000 samples.
+// difference is the sum of two variances. The first is the variance of the rendered image. It is
+// the larger of two values: the reference's variance of one sample (at least 1e-4) over the number
+// of samples, and the variance that the seeds show. The second is the variance of the reference
+// image, which has 32,000 samples.
 
 #include <algorithm>
 #include <array>
@@ -125,14 +125,17 @@ float channel_of(const Image& image, std::size_t i) {
 
 struct Comparison {
   double failing = 0;  ///< share of the channels that fail the test
-  double strictly =
-      0;  ///< the same with the variance of the reference alone, as in Mitsuba's tests
+  /// Share of the channels that fail if the variance of the difference is only the reference's
+  /// variance of one sample over the number of samples, as in Mitsuba's tests.
+  double strictly = 0;
   double relative = 0;  ///< difference of the means of both images, over that of the reference
   double error = 0;     ///< standard error of `relative`
   std::array<double, 3> channels = {};  ///< `relative` of each channel
   std::vector<double> z;                ///< difference over its standard deviation, of each channel
 };
 
+/// Compares the rendered image with the reference, by the test that the comment at the top of this
+/// file describes. `variance`: the reference's variance of one sample.
 Comparison compare(const Rendered& ours, const Image& reference, const Image& variance) {
   constexpr double kReferenceSamples = 32000;
   const std::size_t channels = ours.mean.size();
@@ -257,6 +260,8 @@ bool run_one(const fs::path& scene, const Options& options, Pool& pool) {
   return passes;
 }
 
+/// Renders and compares all selected scenes and prints the table. Returns the exit code: 1 if a
+/// scene fails.
 int run(const Options& options) {
   std::vector<fs::path> scenes;
   for (const auto& entry : fs::recursive_directory_iterator(options.folder + "/tests/scenes")) {

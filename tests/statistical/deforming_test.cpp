@@ -75,9 +75,10 @@ TEST(Deforming, C9_AMovingEdgeIsALinearRamp) {
   test::report_hard_case("C9", "a mesh whose vertices move is within 4 SE of the ramp too");
 }
 
-// A square grows from a point to 8 x 8 pixels. It covers the point (x, y), counted from its centre,
-// from the time max(|x|, |y|) / 4 on, of a shutter that is open from 0 to 1. So the value of a
-// pixel is 1 minus the mean of max(|x|, |y|) / 4 over the pixel.
+// A square grows from a point to 8 x 8 pixels. Let t, from 0 to 1, be the share of the shutter's
+// open time that has passed, and (x, y) a point relative to the centre. The square covers the point
+// if t is at least max(|x|, |y|) / 4. So the value of a pixel is 1 minus a quarter of the mean of
+// max(|x|, |y|) over the pixel.
 TEST(Deforming, AGrowingSquareCoversEachPixelForItsShareOfTheTime) {
   const Mesh square = changing_quad({{4, 4, 0}, {4, 4, 0}, {4, 4, 0}, {4, 4, 0}},
                                     {{0, 0, 0}, {8, 0, 0}, {8, 8, 0}, {0, 8, 0}});
@@ -87,6 +88,7 @@ TEST(Deforming, AGrowingSquareCoversEachPixelForItsShareOfTheTime) {
     for (int x = 0; x < 8; ++x) {
       const double a = x < 4 ? 3 - x : x - 4;  // distance of the nearer side from the centre
       const double b = y < 4 ? 3 - y : y - 4;
+      // The mean of max(|x|, |y|) over the pixel.
       const double reach = a == b ? a + 2.0 / 3 : std::max(a, b) + 0.5;
       const Moments& pixel = found[static_cast<std::size_t>(8 * y + x)];
       EXPECT_NEAR(pixel.mean(), 1 - reach / 4, 4 * pixel.standard_error() + 1e-9) << x << " " << y;
@@ -161,7 +163,8 @@ TEST(DeformingLight, EqualsRigidMotion) {
   for (const Technique technique : kAllTechniques) {
     const Moments a = under(deforming, technique);
     const Moments b = under(rigid, technique);
-    // Both take the same samples of the same places: they differ by the rounding to float only.
+    // Both scenes take the same samples at the same places, so the means differ only by the
+    // rounding to float.
     EXPECT_NEAR(a.mean(), b.mean(), 1e-4 * b.mean());
     EXPECT_LE(b.standard_error(), 0.02 * b.mean());
   }

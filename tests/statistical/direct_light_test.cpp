@@ -1,8 +1,8 @@
-// Compares the irradiance under lights with closed forms. A measured value may differ by 4 standard
-// errors, and the standard error may be 1e-3 of the value. The standard error is that of the mean
-// over 32 seeds. So each comparison of a correct renderer fails with a probability of about
-// 1 / 2 700 when the random numbers change. An id such as L4 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// Compares the irradiance under lights with closed forms. A measured value may differ by at most 4
+// standard errors, and the standard error may be at most 1e-3 of the value. The standard error is
+// that of the mean over 32 seeds. So each comparison of a correct renderer fails with a probability
+// of about 1 / 2 700 when the random numbers change. An id such as L4 in a test's name is that of a
+// case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -84,8 +84,9 @@ TEST(DirectLight, OfASquareAboveTheReceiverMeetsTheClosedForm) {
   expect_irradiance(square(1, 1), 0.652688257754);
 }
 
-/// The same square as two loose triangles, as a mesh of two triangles with a mirrored, scaled
-/// placement, and as a mesh of 128 triangles that is scaled by 100.
+/// A square of side 2 at height 1 is made in three ways: as two triangles that are in no mesh, as a
+/// mesh of two triangles with a mirrored and scaled placement, and as a mesh of 128 triangles that
+/// is scaled by 100.
 TEST(DirectLight, ASquareGivesTheSameAsQuadTrianglesOrMesh) {
   const double expected = 1.740839502734;
   SceneMaker triangles;

@@ -26,7 +26,7 @@ void add_patch(SceneMaker& maker, double tilt, MaterialId material) {
   maker.quad(along * -0.5 + Vec3{0, 0, -0.01}, {0, 0, 0.02}, along, material);
 }
 
-/// A ray down to the patch.
+/// Returns a ray that hits the patch of add_patch() along its normal.
 Ray onto_patch(double tilt) {
   const SinCos turn = sincos_degrees(tilt);
   const Vec3 normal{-turn.sin, turn.cos, 0};
@@ -72,7 +72,8 @@ TEST(EnvironmentLight, L8OneTexelGivesTheLightOfTheQuadrature) {
                       return x == 20 && y == row ? 1e5f : 0.0f;
                     }));
     add_patch(maker, 0, maker.diffuse(1));
-    // Light of the interpolated image by quadrature: L times solid angle times cosine.
+    // The light of the interpolated image, L times solid angle times cosine, by quadrature over the
+    // rows. Across the columns the interpolated texel has the integral of one texel.
     double expected = 0;
     constexpr int kFine = 2000;
     for (int i = 0; i < kFine; ++i) {
@@ -99,7 +100,9 @@ ImageTexture sunny() {
   });
 }
 
-/// Returns the integral of radiance times cosine over pi without a scene, by quadrature.
+/// Returns the radiance of a white diffuse patch with this normal under the background alone. It is
+/// the integral of the background's radiance times the cosine, divided by pi; the integral is
+/// computed by quadrature.
 double reflected(const SceneMaker& maker, const Vec3& normal) {
   constexpr int kBands = 1600;
   double sum = 0;
@@ -173,7 +176,8 @@ TEST(EnvironmentLight, C10LosslessObjectsAreInvisibleInAWhiteEnvironment) {
   maker.sphere({-2, 0, 0}, 0.9, maker.metal(1, 0));
   maker.sphere({0, 0, 0}, 0.9, maker.glass(1.5));
   maker.sphere({2, 0, 0}, 0.9, maker.diffuse(1));
-  EXPECT_TRUE(maker.build()->lights().empty()) << "it is even: no shadow ray is spent on it";
+  EXPECT_TRUE(maker.build()->lights().empty())
+      << "a constant environment must be no light, so that no shadow ray is spent on it";
   for (const double x : {-2.0, 0.0, 2.0}) {
     const Ray ray{.origin = {x + 0.4, 0.3, 5}, .direction = {0, 0, -1}};
     expect_radiance(maker, ray, 1, {.max_depth = 1000, .russian_roulette = false}, 64);
@@ -230,10 +234,12 @@ TEST(DeltaLight, ASpotFallsOffAsItsKindSays) {
   }
 }
 
-/// A floor in y = 0, and a ray down to it.
+/// Adds a white floor in the plane y = 0.
 void add_floor(SceneMaker& maker) {
   maker.quad({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}, maker.diffuse(1));
 }
+
+/// Returns a ray that hits the floor from above at (x, z).
 Ray onto_floor(double x, double z) { return {.origin = {x, 0.1, z}, .direction = {0, -1, 0}}; }
 
 /// Four texels of different values, without interpolation. In uv: (0, 0) is 1, (1, 0) is 2, (0, 1)
@@ -268,7 +274,7 @@ TEST(DeltaLight, AProjectorShowsItsImageOnAPlane) {
   expect(1.49, -4.49, 4);
   expect(1.51, 0, 0);
   expect(0, -4.51, 0);
-  // A placement keeps the sides of the image, and a mirrored placement mirrors the image.
+  // This placement mirrors the projector in x and keeps its position. So the image is mirrored.
   maker.scene.lights = {placed(light, translation({2, 0, 0}) * scaling({-1, 1, 1}))};
   expect(0.1, 0.1, 1);
   expect(-1.49, -4.49, 4);
@@ -306,8 +312,8 @@ TEST(DeltaLight, ASpotsImageCoversTheSquareAroundItsCone) {
   expect_radiance(maker, onto_floor(1.5, 1.5), 0, {.max_depth = 1}, 4);
 }
 
-/// Light selection loses no projector, whether lights are selected from a list (few) or from the
-/// light tree (many): their images add up.
+/// The images of all projectors add up. Few lights are selected from a list, many from the light
+/// tree; neither selection may lose a projector.
 TEST(DeltaLight, ManyProjectorsAddUp) {
   for (const int count : {12, 60}) {
     SceneMaker maker;

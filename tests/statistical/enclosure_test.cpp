@@ -1,5 +1,6 @@
-// Closed rooms, whose total light is known: form factors, the balance of energy, and a radiosity
-// solution. Irradiance is averaged over whole surfaces, within 4 standard errors.
+// Compares the light in closed rooms with form factors, with the balance of energy, and with a
+// radiosity solution. In rooms of plane walls the measured values are means over whole surfaces.
+// All measured values may differ by at most 4 standard errors.
 
 #include <gtest/gtest.h>
 
@@ -63,8 +64,9 @@ void expect_mean(const Moments& seen, double expected, double slack = 2e-6) {
   EXPECT_LE(seen.standard_error(), 1e-3 * expected);
 }
 
-/// A white wall has as radiance the share of the ceiling's light that reaches it: the form factor
-/// of opposite faces of a cube, 0.1998, or of adjacent ones, 0.2000.
+/// The ceiling emits the radiance 1. So the radiance of a white wall is the form factor between
+/// this wall and the ceiling. In a cube it is 0.1998 for opposite faces and 0.2000 for adjacent
+/// faces.
 TEST(Enclosure, OfACubeHasItsFormFactors) {
   const std::array<Wall, 6> walls = room(1, 1, 1);
   for (const auto& [receiver, factor] :
@@ -79,8 +81,8 @@ TEST(Enclosure, OfACubeHasItsFormFactors) {
   }
 }
 
-/// A light of intensity I in the middle of a sphere: the direct irradiance is I / R^2, and
-/// interreflection multiplies it by 1 / (1 - rho).
+/// A light of intensity I is in the middle of a sphere of radius R. The direct irradiance of the
+/// wall is I / R^2, and interreflection multiplies it by 1 / (1 - rho).
 TEST(Enclosure, OfASphereAroundAPointLightHasTheClosedForm) {
   SceneMaker maker;
   maker.sphere({0, 0, 0}, 2, maker.diffuse(0.5f));
@@ -91,8 +93,9 @@ TEST(Enclosure, OfASphereAroundAPointLightHasTheClosedForm) {
   EXPECT_LE(seen.standard_error(), 1e-3);
 }
 
-/// All surfaces together absorb the light's power: the sum of (1 - rho) E A over the walls of a
-/// room and the sides of a block that floats in it is the flux.
+/// Expects that all surfaces together absorb the light's flux. The surfaces are the walls of a room
+/// and the sides of a block that floats in it. The absorbed flux is the sum of (1 - rho) E A over
+/// them. `albedos`: those of the six walls, and that of the block.
 void expect_balance(const std::array<float, 7>& albedos, std::uint64_t samples) {
   SceneMaker maker;
   std::vector<std::pair<Wall, float>> surfaces;
@@ -133,7 +136,8 @@ TEST(Enclosure, OfManyAlbedosAbsorbsTheFluxOfTheLight) {
   expect_balance({0.8f, 0.7f, 0.4f, 0.5f, 0.75f, 0.45f, 0.6f}, 4096);
 }
 
-/// Returns E / L at a point with a normal, for a parallelogram in front of it: Lambert's formula.
+/// Returns E / L at a point with a normal, for a lamp that is a parallelogram in front of the
+/// point, by Lambert's formula.
 double irradiance_of(const Wall& lamp, const Vec3& point, const Vec3& normal) {
   const std::array<Vec3, 4> corners = {lamp.corner, lamp.corner + lamp.u,
                                        lamp.corner + lamp.u + lamp.v, lamp.corner + lamp.v};
@@ -149,8 +153,8 @@ double irradiance_of(const Wall& lamp, const Vec3& point, const Vec3& normal) {
 }
 
 /// Solves radiosity with finite elements: each wall has n x n patches, and the form factor from the
-/// middle of one patch to another patch is in closed form. Returns the mean radiosity of each wall;
-/// the ceiling emits 1.
+/// middle of one patch to another patch is in closed form. The ceiling emits the radiance 1.
+/// Returns the mean radiance of each wall.
 std::array<double, 6> radiosity(const std::array<Wall, 6>& walls,
                                 const std::array<float, 6>& albedos, int n) {
   std::vector<Wall> patches;

@@ -35,8 +35,9 @@ struct Seen {
 /// every scattering; a background would be found by BSDF sampling alone, which takes many times the
 /// samples. The light is a square whose side is 8e6 mean free paths; it leaves out 5e-7 of the sky.
 /// A larger square is worse, because a shadow ray ends 2^-40 of the light's size before the light.
-/// With a side of 8e9 mean free paths that is a hundredth of a mean free path. Then grazing shadow
-/// rays are flatter and longer within the medium, and the half-space is darker by 0.1 %.
+/// With a side of 8e9 mean free paths a shadow ray would end a hundredth of a mean free path before
+/// the light. Then grazing shadow rays are flatter and longer within the medium, and the half-space
+/// is darker by 0.1 %.
 std::shared_ptr<const Scene> half_space(float albedo, float density) {
   SceneMaker maker;
   const double far = 4000 / density;

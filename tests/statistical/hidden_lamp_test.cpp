@@ -26,7 +26,7 @@ void add_square(SceneMaker& maker, MaterialId material) {
   maker.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, material);
 }
 
-/// Irradiance of that square, of radiance 1, at the origin with normal +y.
+/// Irradiance at the origin with normal +y under the square of add_square(), if its radiance is 1.
 constexpr double kOfSquare = 1.740839502734;
 
 /// Adds a white diffuse patch around the origin and expects its irradiance.

@@ -19,7 +19,7 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
-/// A camera at the origin along -z, focused at 4.
+/// Returns a camera at the origin that looks along -z and is focused at the distance 4.
 PerspectiveCamera camera(double aperture) {
   return {.look_at = {0, 0, -1}, .aperture = aperture, .focus_distance = 4};
 }
@@ -57,9 +57,9 @@ void expect_value(const Moments& radiance, double expected, double relative_erro
   EXPECT_LE(radiance.standard_error(), relative_error * expected);
 }
 
-/// Returns the share of the lens from which a ball of this radius straight ahead is visible through
-/// the point of the focal plane, 4 away. The rays through this point that hit the ball are a cone,
-/// and the share is that of the cone's intersection with the lens.
+/// Returns the share of the lens from which a ball on the axis of the camera is visible through the
+/// point of the axis at the focus distance, 4. The rays through this point that hit the ball are a
+/// cone. The share is that of the cone's intersection with the lens.
 double share_of_lens(double radius, double distance, double aperture) {
   const double sine = radius / std::abs(distance - 4);
   const double on_lens = 4 * sine / std::sqrt((1 - sine) * (1 + sine));
@@ -85,6 +85,7 @@ TEST(Lens, ALightBeforeTheFocusIsADisk) {
   }
 }
 
+/// Expects that both techniques have the same mean, and that light sampling has hardly more noise.
 void expect_the_same(const SceneMaker& maker, const PerspectiveCamera& camera,
                      std::uint64_t samples = 4096) {
   // The places are the middle, the edge of a disk, a point between disks and a corner.
@@ -101,8 +102,9 @@ void expect_the_same(const SceneMaker& maker, const PerspectiveCamera& camera,
   }
 }
 
-/// Lights of all kinds in front of, in and beyond the focus, one behind a ball, among lights that
-/// the camera does not see.
+/// Returns a scene with spheres, a quad and a triangle that emit light in front of, in and beyond
+/// the focus. One of them is behind a ball. A point light and a directional light, which the camera
+/// does not see, are in the scene too.
 SceneMaker lamps() {
   SceneMaker maker;
   maker.quad({-9, -2, -30}, {18, 0, 0}, {0, 0, 40}, maker.diffuse(0.6f));

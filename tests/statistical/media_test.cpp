@@ -206,7 +206,7 @@ TEST(Media, ScatterASpotAmongOtherLightsWithoutFireflies) {
   expect_value(test::radiance_along(*maker.build(), ray, {.max_depth = 1}, 1024), expected, 1e-2);
 }
 
-/// Paths in a ball of an enormous number of mean free paths end, because the depth is limited.
+/// The ball is 2e12 mean free paths wide. Paths in it end because the depth is limited.
 TEST(Media, V3V11OpaqueBallEndsByItsDepth) {
   SceneMaker maker = white_sky();
   test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, medium(0, 1e12f)));
@@ -258,7 +258,9 @@ TEST(Media, O8ThinSlabIsNotSteppedOver) {
   test::report_hard_case("O8", "thin slab as the exponential says");
 }
 
-/// A pane whose two faces lie exactly in the boundary of an absorbing medium.
+/// A pane whose two faces lie exactly in the boundary of an absorbing medium. Each face reflects
+/// the share f = 0.04, and the medium transmits the share t. `through` and `back` are the sums over
+/// all reflections between the faces.
 TEST(Media, V9InGlassFadeBetweenItsReflections) {
   SceneMaker maker = white_sky();
   const MaterialId glass = maker.glass(1.5);
@@ -275,7 +277,9 @@ TEST(Media, V9InGlassFadeBetweenItsReflections) {
   test::report_hard_case("V9", "in a pane, within 4 SE");
 }
 
-/// A filled glass ball, viewed through its middle.
+/// A filled glass ball, viewed through its middle. The surface reflects the share f = 0.04 at each
+/// hit, and the medium transmits the share t of each crossing. The light that enters leaves on both
+/// sides; `through` is the sum over all crossings.
 TEST(Media, V9InAGlassBallFade) {
   SceneMaker maker = white_sky();
   maker.sphere({0, 0, 0}, 1, maker.glass(1.5));

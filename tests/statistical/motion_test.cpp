@@ -18,6 +18,7 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
+/// Returns an instance of a group of shapes; the shapes keep their own materials.
 Instance of_group(std::uint32_t group, const Transform& to_world) {
   Instance instance;
   instance.group = GroupId{group};
@@ -168,8 +169,9 @@ TEST(MovingLight, EmitsFromItsPositionAtTheTime) {
     }
     means.add(sum / 4096);
   }
-  // The closed form is that of an infinitely small disk. This one has 1/200 of its distance as
-  // radius, so the two may differ by some (1/200)^2 = 2.5e-5 of the value; 2e-4 is accepted.
+  // The closed form is that of an infinitely small disk. The radius of the disk here is 1/200 of
+  // its distance, so its irradiance may differ by about (1/200)^2 = 2.5e-5 of the value. A
+  // difference of 2e-4 is accepted.
   EXPECT_NEAR(means.mean() * kPi, closed_form,
               4 * kPi * means.standard_error() + 2e-4 * closed_form);
 }

@@ -57,8 +57,9 @@ TEST(PathReuse, MeansEqualPathTracingBehindFuzzyMetalAndGlass) {
   expect_equal_means(*box, rays_across(60, 440, 240), {.max_depth = 4}, 0.03);
 }
 
-// The path of a pixel that shows a black surface ends there, so it shares no vertex, and the pdf of
-// this pixel must not take light from the other pixels.
+// The path of a pixel that shows a black surface ends there, so this pixel shares no vertex. The
+// balance heuristic of the other pixels must not count the pdf of this pixel; otherwise they would
+// lose light.
 TEST(PathReuse, MeansEqualPathTracingBesideABlackSurface) {
   test::SceneMaker maker = test::cornell_box();
   maker.sphere({150, 240, 200}, 90, maker.diffuse(0.0f));

@@ -1,6 +1,6 @@
-// Compares media whose boundaries are instanced and move while the shutter is open with closed
-// forms, within 4 standard errors. An id such as V6 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// Compares media with closed forms, within 4 standard errors. The boundaries of the media are
+// instanced and move while the shutter is open. An id such as V6 in a test's name is that of a case
+// in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -64,9 +64,9 @@ TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
               (std::exp(-s) - std::exp(-3 * s)) / (2 * s));
 }
 
-// A ball moves through the ray, and the y of its centre goes from -2 to 2. The expected value is
-// the mean over y of exp(-2 s sqrt(1 - y^2)) where |y| < 1, by Simpson's rule in the angle, and of
-// 1 elsewhere.
+// A ball moves through the ray, and the y of its centre goes from -2 to 2. The ball transmits
+// exp(-2 s sqrt(1 - y^2)) while |y| < 1; otherwise the ray misses it. The expected value is the
+// mean over y. The integral over |y| < 1 is computed by Simpson's rule in the angle.
 TEST(MovingMedia, V6MovingBallAbsorbsByTheMeanOverTheShutter) {
   const double s = 0.8;
   const auto scene =

@@ -18,8 +18,9 @@ using test::SceneMaker;
 
 constexpr Vec3 kUp{0, 1, 0};
 
-/// Returns E / L at the origin with normal `n` for a polygon above the horizon: half the sum over
-/// its edges of the angle times the cosine of the edge's plane.
+/// Returns E / L at the origin with normal `n` for a polygon above the horizon, by Lambert's
+/// formula: half the sum over all edges of the angle that the edge subtends, times the cosine
+/// between `n` and the normal of the plane through the origin and the edge.
 double irradiance_of(const std::vector<Vec3>& corners, const Vec3& n) {
   double sum = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -54,7 +55,7 @@ TEST(PolygonLight, TrianglesOfAnySizeAndSlantMeetTheFormula) {
       {{-2, 1, -1}, {2, 1.5, -1}, {0.5, 1, 3}},          // large
       {{-9, 0.1, -9}, {9, 0.1, -9}, {0, 0.1, 14}},       // nearly all of the sky
       {{1, 0.05, -1}, {1, 2, 0}, {1, 0.05, 1}},          // upright, close
-      {{3, 2, 0}, {3.1, 2, 0}, {3, 2.1, 0.1}},           // small: by its area
+      {{3, 2, 0}, {3.1, 2, 0}, {3, 2.1, 0.1}},           // small, so sampled by its area
       {{-4, 0.5, 1}, {4, 0.5, 1}, {4, 0.52, 1}},         // thin
       {{0.02, 0.03, 0}, {0.5, 2, 0.7}, {-0.8, 3, 0.2}},  // a corner near the receiver
   };

@@ -1,5 +1,5 @@
-// Sampling the background through portals changes no expected value: a floor under the sky, whose
-// radiance is known, with portals that cover a part of the sky.
+// Tests that sampling the background through portals changes no expected value. The scene is a
+// floor under a sky. The portals cover a part of the sky, and the radiance of the floor is known.
 
 #include "renderlib/guiding/portals.h"
 

@@ -1,7 +1,7 @@
-// Adaptive sampling of scenes in which few paths find light: pixels that found light and pixels
-// that found none have different noise estimates, but the image is unbiased. The tests take 64
-// seeds and accept a bias of at most 3 standard errors (hard case A5 tests the same for pixels
-// without a scene).
+// Tests that adaptive sampling is unbiased in scenes in which few paths find light. There pixels
+// that found light have other noise estimates than pixels that found none. The tests take 64 seeds
+// and accept a bias of at most 3 standard errors. Hard case A5 tests adaptive sampling of Bernoulli
+// pixels, without a scene.
 
 #include <gtest/gtest.h>
 
@@ -87,7 +87,7 @@ void expect_unbiased(const SceneMaker& maker) {
     adaptive.add(rendered.mean);
     planned += rendered.planned ? 1 : 0;
   }
-  EXPECT_GT(planned, kSeeds / 4) << "adaptive sampling is hardly ever on";
+  EXPECT_GT(planned, kSeeds / 4) << "more seeds should get a plan that is not even";
   const double error = std::hypot(even.standard_error(), adaptive.standard_error());
   EXPECT_LE(std::abs(adaptive.mean() - even.mean()), 3 * error)
       << adaptive.mean() << " against " << even.mean() << ", both +- " << error;

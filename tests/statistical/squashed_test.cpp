@@ -109,7 +109,7 @@ TEST(Squashed, S12_AnAbsorbingBallTransmitsTheExponentialOfItsChord) {
         ray.origin = target;
       }
       const Vec3 d = to_object.direction(ray.direction);
-      const Vec3 o = to_object.point(target);  // not far away, where precision is lost
+      const Vec3 o = to_object.point(target);  // near the ball, because far points lose precision
       const double b = dot(o, d) / length_squared(d);
       const double half = std::sqrt(b * b + (1 - length_squared(o)) / length_squared(d));
       const double chord = i % 2 == 1 ? half - b : 2 * half;

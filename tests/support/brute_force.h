@@ -8,8 +8,9 @@
 
 namespace bandsaw::test {
 
-/// Returns Hit{}, which converts to false, if the ray hits nothing or cannot be traced (NaN, zero
-/// direction).
+/// Returns the closest hit. Of several hits at the same distance, returns the one with the lowest
+/// id. Returns Hit{}, which converts to false, if the ray hits nothing or cannot be traced (NaN,
+/// zero direction).
 Hit closest_by_brute_force(const Geometry& geometry, const Ray& ray);
 
 /// True if id, t, u and v are equal, bit for bit.

@@ -8,8 +8,9 @@
 
 namespace bandsaw::test {
 
-/// The bytes depend on the low 21 bits of their offset only: the pattern repeats after 2 MiB. The
-/// factor is 2^32 divided by the golden ratio, which spreads consecutive offsets.
+/// Returns `size` bytes. Each byte depends only on the low 21 bits of its offset, so the pattern
+/// repeats after 2 MiB. The factor is 2^32 divided by the golden ratio, which spreads consecutive
+/// offsets.
 inline std::string pattern(std::size_t size) {
   std::string bytes(size, '\0');
   for (std::size_t i = 0; i < size; ++i) {

@@ -26,7 +26,7 @@ class Process {
   ~Process();
 
   pid_t pid() const;
-  /// Does nothing if the process has ended.
+  /// Sends the signal `number`. Does nothing if the process has ended.
   void signal(int number);
 
   /// Standard output and standard error so far.
@@ -37,7 +37,8 @@ class Process {
   /// the time expired.
   bool wait_for(const std::string& text, Milliseconds timeout = std::chrono::seconds(60));
 
-  /// Waits until `holds(standard output, standard error)` is true. Returns false as above.
+  /// Waits until `holds(standard output, standard error)` is true. Returns false if the process
+  /// ended before that, or the time expired.
   bool wait_until(const std::function<bool(const std::string&, const std::string&)>& holds,
                   Milliseconds timeout = std::chrono::seconds(60));
 
@@ -58,6 +59,7 @@ struct Finished {
   std::string out;
   std::string err;
 };
+/// Runs a program to its end. The parameters are those of Process::start().
 Finished run(std::vector<std::string> argv, std::vector<std::string> environment = {});
 
 }  // namespace bandsaw::test

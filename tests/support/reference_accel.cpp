@@ -100,6 +100,7 @@ ReferenceAccel::Tree ReferenceAccel::make_tree(const std::vector<Box>& boxes) co
   return tree;
 }
 
+/// Appends the tree of the items [first, end), split at the median along the longest axis.
 void ReferenceAccel::split(Tree& tree, const std::vector<Box>& boxes, std::uint32_t first,
                            std::uint32_t end) const {
   Node node;
@@ -128,6 +129,9 @@ void ReferenceAccel::split(Tree& tree, const std::vector<Box>& boxes, std::uint3
   split(tree, boxes, middle, end);
 }
 
+/// Calls visit(item) for the items of all leaves whose boxes the ray may meet before `bound`.
+/// `bound` is a reference, because a visit may make it smaller. With brute force, calls visit(item)
+/// for all items.
 template <class Visit>
 void ReferenceAccel::visit(const Tree& tree, const TracedRay& ray, const double& bound,
                            Visit&& visit) const {
