@@ -151,7 +151,7 @@ double boxes_met(const BinaryTree& tree, const std::vector<Ray>& rays) {
 }
 
 // The ground is two triangles, a million times as wide as the mesh that stands on it.
-TEST(Tree, B6_AFineObjectOnAVastGroundKeepsItsTree) {
+TEST(Tree, B6_AVastGroundDoesNotSpoilTheTreeOfAFineObject) {
   const Mesh fine = test::icosphere(4);
   Mesh vast = fine;
   const auto first = static_cast<std::uint32_t>(vast.positions.size());

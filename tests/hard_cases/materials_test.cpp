@@ -154,7 +154,7 @@ TEST(MaterialHardCases, M11M12PathsEnd) {
 
 // Weak white furnace (Heitz 2014, section 5.3): the visible facets, each by its projected area, sum
 // up to the projected area of the surface. So the integral of G1 D max(0, o.h) / |o.z| over h is 1.
-TEST(Ggx, SeenFacetsCoverTheWholeDirection) {
+TEST(Ggx, VisibleFacetsAddUpToTheProjectedArea) {
   for (const double alpha : {0.05, 0.2, 0.5, 1.0}) {
     for (const double z : {1.0, 0.7, 0.3, 0.1}) {
       const Vec3 o{std::sqrt(1 - z * z), 0, z};

@@ -225,7 +225,7 @@ TEST(Srgb, P2P3_CodesAreRoundedAndTheCurveIsTheStandards) {
   test::at_most("P3", "curve off, in 16-bit codes", curve_error.value() * 65535, 0.5);
 }
 
-TEST(Exr, P4_HalvesAreClampedAndNeverInfinite) {
+TEST(Exr, P4_HalfFloatsAreClampedAndNeverInfinite) {
   Image image;
   image.width = 4;
   image.height = 1;

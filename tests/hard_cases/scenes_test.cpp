@@ -37,7 +37,7 @@ double radiance(const Scene& scene, double x, double y) {
   return path_radiance(scene, ray, PixelSampler(0, 1, 2), 0, {.max_depth = 1}, counts).g;
 }
 
-TEST(SmoothNormals, T13_CoarseMeshesAreShadedAlmostAsFineOnes) {
+TEST(SmoothNormals, T13_TheErrorOfSmoothNormalsIsAtMostTwiceThatOfFlatNormals) {
   const auto fine = white_ball(1000, 500, true);
   const auto smooth = white_ball(20, 10, true);
   const auto flat = white_ball(20, 10, false);

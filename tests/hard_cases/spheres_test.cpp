@@ -218,7 +218,7 @@ TEST(Sphere, S6_TheLengthOfTheDirectionDoesNotMatter) {
   test::report_hard_case("S6", "1,000 distances equal to the bit at 2^-40, 1, 2^40");
 }
 
-TEST(Sphere, S7_TinySpheresAreSolid) {
+TEST(Sphere, S7_RaysThatEnterATinySphereAlsoLeaveIt) {
   test::Random random(6);
   const int rays = tries(20'000, 1'000'000);
   for (const double radius : {1e-4, 1e-6}) {

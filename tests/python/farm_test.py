@@ -135,7 +135,7 @@ class OnAFarm(unittest.TestCase):
             list(layer.progress(0.05))
             self.assertEqual(layer.image().width, 16)
 
-    def test_a_job_is_cancelled_with_a_preview_before(self):
+    def test_a_job_has_a_preview_before_it_is_cancelled(self):
         job = self.farm.submit(CORNELL, samples=1 << 20, width=64)
         seen = None
         with self.assertRaises(bandsaw.BandsawError) as caught:
@@ -147,19 +147,19 @@ class OnAFarm(unittest.TestCase):
         self.assertEqual((seen.width, seen.height), (64, 64))
         self.assertGreater(sum(seen.mean()), 0)
 
-    def test_a_broken_scene_is_told_with_its_place(self):
+    def test_the_error_of_a_broken_scene_names_the_line_and_column(self):
         with self.assertRaises(bandsaw.Refused) as caught:
             self.farm.submit("shape { sfere {} }", files={})
         self.assertIn("1:9", str(caught.exception))
 
-    def test_a_wrong_secret_is_told(self):
+    def test_a_wrong_secret_is_reported(self):
         wrong = self.loopback.string[:-4] + "AAAA"
         with self.assertRaises(bandsaw.WrongString) as caught:
             bandsaw.Farm(wrong).check()
         self.assertIn("secret", str(caught.exception))
 
 
-    def test_an_upload_that_is_refused_early_has_its_reason(self):
+    def test_the_error_of_an_upload_that_is_refused_early_has_the_reason(self):
         refuse_early(self, self.farm)
 
     def test_a_loopback_address_may_be_a_tunnel(self):

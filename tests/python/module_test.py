@@ -38,7 +38,7 @@ class JoinStrings(unittest.TestCase):
         self.assertIsNone(bandsaw.JoinString(string("h:1")).web)
         self.assertIsNone(bandsaw.JoinString(string("h:1+8787", "plain")).certificate)
 
-    def test_wrong_ones_are_named_without_the_secret(self):
+    def test_errors_of_wrong_strings_do_not_show_the_secret(self):
         for text, word in (("", "begin"), (string().replace("-f-", "-w-", 1), "workers'"), (string()[:-1], "cut off"), (string("h"), "HOST:PORT"),
                            (string("h:0"), "port"), (string("h:1+x"), "port"), (string("h:1").replace(DIGEST, "AAA"), "cut off")):
             with self.assertRaises(bandsaw.WrongString) as caught:
@@ -104,7 +104,7 @@ class NoFarms(unittest.TestCase):
             self.assertIn("no TLS there", str(caught.exception))
             self.assertNotIn(SECRET.encode(), self.received[0])
 
-    def test_what_is_not_http_is_no_farm(self):
+    def test_a_program_that_does_not_speak_http_is_no_farm(self):
         port = self.answer_with(b"SSH-2.0-x\r\n")
         with self.assertRaises(bandsaw.NoFarm):
             bandsaw.Farm(string(f"127.0.0.1:1+127.0.0.1:{port}")).check()
@@ -122,7 +122,7 @@ class Files(unittest.TestCase):
                 file.write(text)
         return folder.name
 
-    def test_files_of_files_are_found(self):
+    def test_files_that_other_files_name_are_found(self):
         folder = self.make(**{"scene__textproto": 'model { file: "things/a.obj" } texture { image { file: "no.png" } }',
                               "things/a__obj": "mtllib a.mtl\nv 0 0 0\n", "things/a__mtl": "newmtl x\nmap_Kd -s 1 1 1 wood 1.png\n",
                               "things/wood 1__png": "p", "other__png": "o"})
@@ -181,7 +181,7 @@ class Jobs(unittest.TestCase):
     def posts(self):
         return [path for method, path in self.fake.requests if method == "POST"]
 
-    def test_an_address_of_another_program_is_not_the_last(self):
+    def test_after_the_address_of_another_program_the_next_address_is_tried(self):
         with socket.create_server(("127.0.0.1", 0)) as server:
             def serve():
                 connection, _ = server.accept()
@@ -196,7 +196,7 @@ class Jobs(unittest.TestCase):
             thread.join()
         self.assertEqual(self.farm._addresses[0][1], self.fake.port)
 
-    def test_an_address_of_another_farm_is_not_the_last(self):
+    def test_after_the_address_of_another_farm_the_next_address_is_tried(self):
         send = self.farm._send
 
         def send_or_refuse(address, *more):
@@ -234,19 +234,19 @@ class Jobs(unittest.TestCase):
         self.fake.refusals = [503]
         self.assertEqual(self.farm.submit("one", files={}).number, 1)
 
-    def test_a_full_disk_is_told_at_once(self):
+    def test_a_full_disk_is_reported_without_another_try(self):
         self.fake.refusals = [429, 429]
         with self.assertRaises(bandsaw.Refused):
             self.farm.submit("one", files={})
         self.assertEqual(self.fake.refusals, [429])
 
-    def test_an_upload_that_is_refused_early_has_its_reason(self):
+    def test_the_error_of_an_upload_that_is_refused_early_has_the_reason(self):
         self.fake.full = True
         with self.assertRaises(bandsaw.Refused) as caught:
             self.farm.submit("one", files={"large.bin": bytes(64 << 20)})
         self.assertEqual((caught.exception.status, str(caught.exception)), (429, "the disk is full"))
 
-    def test_an_error_of_the_scene_is_told(self):
+    def test_an_error_of_the_scene_is_reported(self):
         self.fake.refusals = [400]
         with self.assertRaises(bandsaw.Refused) as caught:
             self.farm.submit("one", files={})
@@ -281,7 +281,7 @@ class Jobs(unittest.TestCase):
         job = self.farm.submit("one", files={})
         self.assertEqual(len(list(job.progress(0, stop=lambda: len(self.fake.requests) > 4))), 2)
 
-    def test_a_lost_coordinator_is_told_and_then_an_error(self):
+    def test_a_lost_coordinator_is_first_a_state_and_then_an_error(self):
         job = self.farm.submit("one", files={})
         seen = []
         with self.assertRaises(bandsaw.NoFarm):
@@ -293,7 +293,7 @@ class Jobs(unittest.TestCase):
         self.assertEqual(seen[0], "running")
         self.assertEqual(set(seen[1:]), {"lost"})
 
-    def test_a_wrong_secret_is_no_lost_farm(self):
+    def test_a_wrong_secret_is_not_reported_as_a_lost_farm(self):
         with self.assertRaises(bandsaw.WrongString):
             bandsaw.Farm(self.fake.string[:-1] + "x").check()
 
@@ -435,7 +435,7 @@ class AddOn(unittest.TestCase):
         cls.files, cls.geometry, cls.noise, cls.evaluate = (importlib.import_module("bandsaw_blender." + name)
                                                             for name in ("files", "geometry", "noise", "evaluate"))
 
-    def test_exr_has_its_lines(self):
+    def test_exr_has_a_chunk_for_each_line(self):
         np = bandsaw.numpy
         pixels = np.arange(2 * 3 * 3, dtype=np.float32).reshape(2, 3, 3)
         # The file ends with two chunks, one for each line: two numbers of 4 bytes, line and size, and 36 bytes of pixels. Before them are the
@@ -529,7 +529,7 @@ class AddOn(unittest.TestCase):
         self.assertEqual(root["animations"][0]["name"], geometry.DEFORMS)
         self.assertEqual(len(data), int.from_bytes(data[8:12], "little"))
 
-    def test_hsv_and_back(self):
+    def test_conversion_to_hsv_and_back_changes_no_color(self):
         np = bandsaw.numpy
         colors = np.random.default_rng(2).uniform(0, 1, (1000, 3))
         self.assertLess(abs(self.evaluate.from_hsv(self.evaluate.to_hsv(colors)) - colors).max(), 1e-12)

@@ -129,7 +129,7 @@ constexpr Technique kAllTechniques[] = {Technique::kBoth, Technique::kLightsOnly
 
 // A small square lamp of radiance L = 100 at height h = 2, whose half side grows from 0 to a. The
 // irradiance is the mean over t of L (2 a t)^2 / h^2, with a relative error of at most (a / h)^2.
-TEST(DeformingLight, EmitsByItsAreaAtTheTime) {
+TEST(DeformingLight, EmitsInProportionToItsAreaAtEachTime) {
   constexpr float a = 0.05f;
   SceneMaker maker;
   maker.instance(changing_quad({{0, 2, 0}, {0, 2, 0}, {0, 2, 0}, {0, 2, 0}},
@@ -147,7 +147,7 @@ TEST(DeformingLight, EmitsByItsAreaAtTheTime) {
 // A lamp whose vertices are translated equals one that an instance translates.
 TEST(DeformingLight, EqualsRigidMotion) {
   const Positions corners = {{-1, 2, -1}, {1, 2, -0.5f}, {0.5f, 2.5f, 1}, {-1, 1.5f, 1}};
-  const Vec3 way = {2, 1, -0.5};
+  const Vec3 shift = {2, 1, -0.5};
   Positions moved = corners;
   for (auto& p : moved) {
     p = {p[0] + 2, p[1] + 1, p[2] - 0.5f};
@@ -157,7 +157,7 @@ TEST(DeformingLight, EqualsRigidMotion) {
   std::get<PerspectiveCamera>(deforming.scene.camera).shutter = {0, 1};
   SceneMaker rigid;
   rigid.instance(changing_quad(corners, {}), {}, rigid.lamp(1));
-  rigid.scene.geometry.frames = {{kNoFrame, {}, {Key(0, {}), Key(1, translation(way))}}};
+  rigid.scene.geometry.frames = {{kNoFrame, {}, {Key(0, {}), Key(1, translation(shift))}}};
   rigid.scene.geometry.instances[0].frame = FrameId{0};
   std::get<PerspectiveCamera>(rigid.scene.camera).shutter = {0, 1};
   for (const Technique technique : kAllTechniques) {

@@ -79,8 +79,8 @@ TEST(EnvironmentLight, L8OneTexelGivesTheLightOfTheQuadrature) {
     for (int i = 0; i < kFine; ++i) {
       const double y = row - 1.0 + 3.0 * (i + 0.5) / kFine;
       if (y > 0) {
-        const double stays = std::max(y, 0.5);
-        const double tent = std::max(0.0, 1 - std::abs(stays - row - 0.5));
+        const double clamped = std::max(y, 0.5);
+        const double tent = std::max(0.0, 1 - std::abs(clamped - row - 0.5));
         const double theta = y / kHeight * kPi;
         expected += tent * std::sin(theta) * std::cos(theta) * 3 * kPi / (kFine * kHeight);
       }
@@ -187,7 +187,7 @@ TEST(EnvironmentLight, C10LosslessObjectsAreInvisibleInAWhiteEnvironment) {
 
 TEST(DeltaLight, EachKindGivesTheClosedForm) {
   const double cosine = std::cos(0.6);
-  const Vec3 way{std::sin(0.6), cosine, 0};
+  const Vec3 to_light{std::sin(0.6), cosine, 0};
   const auto lit_by = [](const DeltaLight& light) {
     SceneMaker maker;
     maker.scene.lights = {light};
@@ -196,14 +196,15 @@ TEST(DeltaLight, EachKindGivesTheClosedForm) {
   };
   const PathOptions options{.max_depth = 1};
   const Ray ray = onto_patch(0);
-  expect_radiance(lit_by(DirectionalLight{-way, {3, 3, 3}}), ray, 3 * cosine / kPi, options, 4);
-  expect_radiance(lit_by(PointLight{way * 7, {50, 50, 50}}), ray, 50 * cosine / 49 / kPi, options,
+  expect_radiance(lit_by(DirectionalLight{-to_light, {3, 3, 3}}), ray, 3 * cosine / kPi, options,
                   4);
-  SpotLight spot{.position = way * 7, .direction = -way, .intensity = {50, 50, 50}};
+  expect_radiance(lit_by(PointLight{to_light * 7, {50, 50, 50}}), ray, 50 * cosine / 49 / kPi,
+                  options, 4);
+  SpotLight spot{.position = to_light * 7, .direction = -to_light, .intensity = {50, 50, 50}};
   expect_radiance(lit_by(spot), ray, 50 * cosine / 49 / kPi, options, 4);
   // The patch is 40 degrees off the axis of a cone of 30 to 50.
-  spot.direction = normalize(rotation(cross(way, {1, 2, 0.5}), 40).direction(-way));
-  const double off = dot(-way, spot.direction);
+  spot.direction = normalize(rotation(cross(to_light, {1, 2, 0.5}), 40).direction(-to_light));
+  const double off = dot(-to_light, spot.direction);
   spot.cos_inner = sincos_degrees(30).cos;
   spot.cos_outer = sincos_degrees(50).cos;
   const double ramp = (off - spot.cos_outer) / (spot.cos_inner - spot.cos_outer);
@@ -214,7 +215,7 @@ TEST(DeltaLight, EachKindGivesTheClosedForm) {
   expect_radiance(lit_by(spot), ray, 50 * cosine / 49 / kPi, options, 4);
 }
 
-TEST(DeltaLight, ASpotFallsOffAsItsKindSays) {
+TEST(DeltaLight, EachFalloffOfASpotHasItsClosedForm) {
   SceneMaker maker;
   add_patch(maker, 0, maker.diffuse(1));
   // The patch is 40 degrees off the axis of a cone of 30 to 50.
@@ -355,7 +356,7 @@ TEST(DeltaLight, IsZeroBelowTheHorizonOrBehindAnOccluder) {
   }
 }
 
-TEST(DeltaLight, AllKindsAreaLightsAndAnEnvironmentAddUp) {
+TEST(DeltaLight, DeltaLightsAnAreaLightAndAnEnvironmentAddUp) {
   for (const int points : {1, 40}) {  // few lights, and a light tree
     SceneMaker maker;
     set_environment(maker, half_white());

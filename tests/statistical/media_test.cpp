@@ -207,7 +207,7 @@ TEST(Media, ScatterASpotAmongOtherLightsWithoutFireflies) {
 }
 
 /// The ball is 2e12 mean free paths wide. Paths in it end because the depth is limited.
-TEST(Media, V3V11OpaqueBallEndsByItsDepth) {
+TEST(Media, V3V11PathsInAnOpaqueBallEndAtTheMaximumDepth) {
   SceneMaker maker = white_sky();
   test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, medium(0, 1e12f)));
   const auto scene = maker.build();
@@ -261,7 +261,7 @@ TEST(Media, O8ThinSlabIsNotSteppedOver) {
 /// A pane whose two faces lie exactly in the boundary of an absorbing medium. Each face reflects
 /// the share f = 0.04, and the medium transmits the share t. `through` and `back` are the sums over
 /// all reflections between the faces.
-TEST(Media, V9InGlassFadeBetweenItsReflections) {
+TEST(Media, V9InAPaneOfGlassAbsorbBetweenReflections) {
   SceneMaker maker = white_sky();
   const MaterialId glass = maker.glass(1.5);
   maker.quad({-9, 1, -9}, {0, 0, 18}, {18, 0, 0}, glass);
@@ -280,7 +280,7 @@ TEST(Media, V9InGlassFadeBetweenItsReflections) {
 /// A filled glass ball, viewed through its middle. The surface reflects the share f = 0.04 at each
 /// hit, and the medium transmits the share t of each crossing. The light that enters leaves on both
 /// sides; `through` is the sum over all crossings.
-TEST(Media, V9InAGlassBallFade) {
+TEST(Media, V9InAGlassBallAbsorbBetweenReflections) {
   SceneMaker maker = white_sky();
   maker.sphere({0, 0, 0}, 1, maker.glass(1.5));
   test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, medium(0.3f, 0)));

@@ -136,7 +136,7 @@ SceneMaker moving_lamp(const Shapes& lamp, const Key& from, const Key& to) {
 }
 
 // The mean of r^2 / (a + (b - a) t)^2 over t in [0, 1] is r^2 / (a b).
-TEST(MovingLight, EmitsFromItsPositionAtTheTime) {
+TEST(MovingLight, EmitsFromItsPositionAtEachTime) {
   Shapes ball;
   ball.spheres.push_back({{0, 0, 0}, 0.5, MaterialId{0}});
   for (const Technique technique : {Technique::kBoth, Technique::kLightsOnly}) {
