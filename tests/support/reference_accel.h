@@ -1,9 +1,9 @@
 #pragma once
 
-// A reference for tests of Accel, the renderer's BVH. It is as simple as possible: brute force, or
-// a binary tree of boxes in double, split at the median. It uses only the double-precision
-// intersection tests of renderlib/geometry. It supports spheres, quads, triangles, and meshes in
-// instances that do not move.
+// Finds the hits of rays as simply as possible, as a reference for tests of Accel, the renderer's
+// BVH. It uses brute force, or a binary tree of boxes in double that is split at the median. It
+// uses only the double-precision intersection tests of renderlib/geometry. It supports spheres,
+// quads, triangles, and meshes in instances that do not move.
 
 #include <cstdint>
 #include <optional>
@@ -28,20 +28,26 @@ class ReferenceAccel {
  private:
   struct Node {
     Box box;
-    std::uint32_t first = 0;
-    std::uint32_t count = 0;  // 0: an inner node, whose left child is the next node
-    std::uint32_t right = 0;
+    std::uint32_t first = 0;  ///< of a leaf: index of its first entry of Tree::items
+    std::uint32_t count = 0;  ///< of a leaf: number of its items; 0: an inner node
+    std::uint32_t right = 0;  ///< of an inner node: its right child; the left one is the next node
   };
   struct Tree {
     std::vector<Node> nodes;           ///< the root is the first; empty: nothing can be hit
     std::vector<std::uint32_t> items;  ///< indices of primitives, in the order of the leaves
   };
 
+  /// Returns a tree of the primitives whose boxes are neither empty nor infinite.
   Tree make_tree(const std::vector<Box>& boxes) const;
+  /// Appends the subtree of the items [first, end) to `tree`.
   void split(Tree& tree, const std::vector<Box>& boxes, std::uint32_t first,
              std::uint32_t end) const;
+  /// Calls visit(item) for each item in the leaves that the ray may meet before the distance
+  /// `bound`. A call may reduce `bound`.
   template <class Visit>
   void visit(const Tree& tree, const TracedRay& ray, const double& bound, Visit&& visit) const;
+  /// Intersects the ray with a primitive of loose_, or with all triangles of an instance. Replaces
+  /// `best` by a hit that is closer, or that is at the same distance and has a lower id.
   void meet_loose(const Ray& ray, const TracedRay& traced, std::uint32_t index, Hit& best) const;
   void meet_instance(const Ray& ray, std::uint32_t index, Hit& best) const;
 

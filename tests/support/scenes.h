@@ -39,12 +39,12 @@ class SceneMaker {
 SceneMaker cornell_box();
 
 /// Adds a closed room of 4 x 4 x 4 around the origin with walls of one material, and a camera in
-/// it.
+/// this room.
 void add_room(SceneMaker& maker, MaterialId wall);
 
 /// Makes the room of add_room with a spherical lamp of radiance 10 in its middle, inside a ball of
 /// glass of radius 0.5. `index`: refractive index of the glass; `lamp`: radius of the lamp, below
-/// 0.5; `reflectance`: of the walls.
+/// 0.5; `reflectance`: reflectance of the walls.
 SceneMaker lamp_in_glass(double index, double lamp, float reflectance = 0.5f);
 
 /// A grid of n x n squares in z = 0 over [-1, 1]^2, two triangles each, normal +z.

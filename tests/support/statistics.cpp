@@ -54,12 +54,12 @@ ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
   if (pooled_expected >= kMinExpected) {
     add_cell(pooled_count, pooled_expected);
   } else if (pooled_count > 4 * kMinExpected) {
-    // More than 20 counts where fewer than 5 are expected: practically impossible by chance.
+    // More than 20 counts where fewer than 5 are expected are practically impossible by chance.
     result.statistic = std::numeric_limits<double>::infinity();
   }
   result.degrees = std::max(1, result.degrees - 1);
-  // Wilson and Hilferty 1931: the cube root of chi-squared / k is nearly normal, with this variance
-  // and the mean 1 - variance.
+  // Wilson and Hilferty 1931: the cube root of chi-squared / k is nearly normal. Its variance is
+  // 2 / (9 k), and its mean is 1 - variance.
   const double k = result.degrees;
   const double spread = 2 / (9 * k);
   const double z = (std::cbrt(result.statistic / k) - (1 - spread)) / std::sqrt(spread);

@@ -39,11 +39,12 @@ struct ChiSquared {
   /// and Hilferty 1931).
   double p_value = 1;
 };
+/// `counts` and `expected` have one number for each cell.
 ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
                        const std::vector<double>& expected);
 
-/// Returns the level for each of `tests` independent tests such that the probability of at least
-/// one false alarm is `level` (Sidak 1967).
+/// Returns the significance level for each of `tests` independent tests. With it, the probability
+/// of at least one false alarm in all of these tests is `level` (Sidak 1967).
 double sidak(double level, std::size_t tests);
 
 }  // namespace bandsaw::test

@@ -30,7 +30,7 @@ struct WideVec {
   Wide y;
   Wide z;
   WideVec(Wide a, Wide b, Wide c) : x(a), y(b), z(c) {}
-  WideVec(const Vec3& v) : x(v.x), y(v.y), z(v.z) {}  // NOLINT: a widening, as from double
+  WideVec(const Vec3& v) : x(v.x), y(v.y), z(v.z) {}  // NOLINT: implicit, as from double
 };
 inline WideVec operator+(const WideVec& a, const WideVec& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};

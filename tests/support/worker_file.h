@@ -1,6 +1,6 @@
 #pragma once
 
-// Files that the command `bandsaw` takes for a worker program, although they cannot be run.
+// Makes files that the command `bandsaw` accepts as worker programs, although they cannot be run.
 
 #include <cstdint>
 #include <string>

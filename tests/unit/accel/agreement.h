@@ -26,12 +26,15 @@ inline Geometry scene_of(Mesh mesh) {
 
 struct Agreement {
   int rays = 0;
-  int hits = 0;
-  int different = 0;  ///< hits with another t, id, u or v, or another result of the any-hit query
+  int hits = 0;  ///< number of rays that hit something in the reference
+  /// Number of rays for which Accel found a hit with another t, id, u or v, or for which occluded()
+  /// returned another result.
+  int different = 0;
 };
 
-/// Traces `count` rays of next(). Each ray that hits is traced twice more: with an end at or near
-/// the hit, and starting at the hit.
+/// Traces `count` rays, which next() returns. Each ray that hits something is traced twice more: it
+/// then ends at or near the hit, and then it starts at the hit. The first difference makes the test
+/// fail.
 template <class Next>
 Agreement compare(const Accel& accel, const ReferenceAccel& reference, int count, Next&& next) {
   Agreement result;
@@ -42,9 +45,10 @@ Agreement compare(const Accel& accel, const ReferenceAccel& reference, int count
     result.hits += hit ? 1 : 0;
     if (!same(hit, found) || accel.occluded(ray) != static_cast<bool>(hit)) {
       if (result.different++ == 0) {
-        ADD_FAILURE() << "t " << hit.t << " or " << found.t << ", primitive " << hit.id.instance
-                      << ":" << hit.id.primitive << " or " << found.id.instance << ":"
-                      << found.id.primitive << ", occluded " << accel.occluded(ray);
+        ADD_FAILURE() << "expected t " << hit.t << " and primitive " << hit.id.instance << ":"
+                      << hit.id.primitive << ", but found t " << found.t << " and primitive "
+                      << found.id.instance << ":" << found.id.primitive << "; occluded() returned "
+                      << accel.occluded(ray);
       }
     }
     return hit;
@@ -62,7 +66,7 @@ Agreement compare(const Accel& accel, const ReferenceAccel& reference, int count
   return result;
 }
 
-/// Returns the bounding box of all corners.
+/// Returns the bounding box of all finite vertices.
 inline Box box_of(const Mesh& mesh) {
   Box box;
   for (const auto& p : mesh.positions) {
@@ -81,8 +85,9 @@ inline Vec3 inside(const Box& box, Random& random) {
   return middle + Vec3{p.x * half.x, p.y * half.y, p.z * half.z};
 }
 
-/// Returns a ray that starts in or around the mesh and aims at a corner, an edge, a face or
-/// anywhere.
+/// Returns a ray that starts in or around `box`, the bounding box of the mesh. It aims at a corner,
+/// an edge or a face of the mesh, or at any point of the box. The length of its direction is the
+/// distance to this target, or 2^-37 of it.
 inline Ray aimed_ray(const Mesh& mesh, const Box& box, Random& random) {
   const Box around = {box.lo * 2 - box.hi, box.hi * 2 - box.lo};
   const bool within = random.below(2) == 0;

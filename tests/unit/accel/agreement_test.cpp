@@ -1,6 +1,8 @@
-// Accel finds the same hits, to the bit, as brute force and as a simple BVH in double, on meshes of
-// many kinds and with any number of threads that build. An id such as B4 in a test's name is that
-// of a case in tests/hard_cases/cases.txt.
+// Tests that Accel finds the same hits as brute force and as a simple BVH in double, bit for bit.
+// The tests use meshes of many kinds, and different numbers of threads that build the BVH. An id
+// such as B4 in a test's name is that of a case in tests/hard_cases/cases.txt. "As by testing all"
+// in the reported figure of a case means: with the same result as brute force, which tests all
+// primitives.
 
 #include "tests/unit/accel/agreement.h"
 #include "tests/support/hard_case.h"
@@ -70,6 +72,8 @@ Mesh grid_soup(int count) {
   return mesh;
 }
 
+/// Adds four triangles that cannot be hit: two with a vertex that is not finite, one with a vertex
+/// that does not exist, and one with two equal vertices.
 Mesh with_bad_input(Mesh mesh) {
   const float nan = std::nanf("");
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -128,7 +132,8 @@ TEST(Agreement, EqualsABinaryTreeInDouble) {
   for (const Case& c : cases(4)) {
     SCOPED_TRACE(c.name);
     if (c.name == "beyond float" || c.name == "denormal") {
-      // floats cannot decide any test at this size, so each is repeated exactly: correct, but slow
+      // Floats cannot decide any test at this size. Accel then repeats each test in double, which
+      // is correct but slow.
       continue;
     }
     const Geometry geometry = scene_of(c.mesh);
@@ -188,9 +193,12 @@ TEST(Agreement, B4_HoldsForRaysAlongAxesAndWithinFaces) {
   report_hard_case("B4", "20,000 rays with 0, -0, 1e-30 answered as by testing all");
 }
 
+/// Returns a random point of the cube [-size, size]^3.
 Vec3 scatter(Random& random, double size) { return size * random_point(random); }
 
-/// Loose shapes of all kinds, and instances of a mesh: rotated, mirrored, stretched and small.
+/// Returns loose shapes of three kinds, and instances of a mesh that are rotated, mirrored,
+/// stretched and small. They lie around `at`, within a distance of about `size`. The scene also has
+/// equal shapes, an instance of an empty mesh, and an instance whose placement has no inverse.
 Geometry mixed_scene(const Vec3& at, double size) {
   Random random(21);
   Geometry g;

@@ -1,5 +1,5 @@
-// Tests meshes that deform. At each time, rays hit such a mesh as they hit an ordinary mesh with
-// the interpolated positions, to the bit.
+// Tests meshes that deform while the shutter is open. The hits on such a mesh at a time equal the
+// hits on a static mesh with the interpolated positions, to the bit.
 
 #include <gtest/gtest.h>
 
@@ -23,8 +23,9 @@ using test::Random;
 
 constexpr Interval kShutter = {0.25, 1.5};
 
-/// A closed mesh. Its vertices move along straight lines, except for some that do not move. It
-/// contains the ball around `at` of radius `size` / 2 at all times.
+/// Returns a closed mesh, a sphere with random radii around `at`. Its vertices move along straight
+/// lines, except for some that do not move. At all times it contains the ball around `at` with the
+/// radius `size` / 2.
 Mesh breathing(double size, const Vec3& at, int slices = 24, int stacks = 12) {
   const auto placed = [&](double spread, std::uint64_t seed) {
     return test::moved(test::scaled(test::rough_sphere(slices, stacks, spread, seed), size), at);
@@ -37,6 +38,7 @@ Mesh breathing(double size, const Vec3& at, int slices = 24, int stacks = 12) {
   return mesh;
 }
 
+/// Returns the static mesh with the positions and normals that `mesh` has at `time`.
 Mesh mesh_at(const Mesh& mesh, double time) {
   Mesh still = mesh;
   const ShutterTime now(kShutter, time);
@@ -59,7 +61,8 @@ Geometry of_mesh(Mesh mesh) {
   return g;
 }
 
-/// Returns a time in the shutter interval; for some i one of its ends or its middle.
+/// Returns a time in the shutter interval. Depending on `i`, it is an end of the interval, just
+/// before the end, the middle, or a random time.
 double time_of(int i, Random& random) {
   switch (i % 6) {
     case 0:
@@ -136,8 +139,8 @@ TEST(Deforming, HitsEqualThoseOfTheInterpolatedMesh) {
   }
 }
 
-// The deforming mesh is placed and mirrored, is in a frame that moves too, and is beside static
-// geometry.
+// The scene has many instances of the deforming mesh. Some of them are mirrored, and some are in a
+// frame that moves too. A static sphere is among them.
 TEST(Deforming, EqualsBruteForceInInstances) {
   Pool pool(1);
   Random random(3);
@@ -165,7 +168,8 @@ TEST(Deforming, EqualsBruteForceInInstances) {
   EXPECT_GT(hits, 1'000);
 }
 
-// Rays start inside and aim at corners and edges where these are at the ray's time.
+// Rays start inside the mesh. They aim at the positions that corners and edges have at the ray's
+// time.
 TEST(Deforming, DoesNotLeakAtAnyTime) {
   Pool pool(1);
   Random random(4);
@@ -202,8 +206,8 @@ TEST(Deforming, DoesNotLeakAtAnyTime) {
   EXPECT_EQ(lost(turned, {}, 1, 100'000), 0);
 }
 
-// Two meshes have the triangles of one mesh in turn. Their common edges have the same positions, so
-// no ray gets through between them.
+// The triangles of one closed mesh belong to two meshes in turn. The two meshes have the same
+// positions at their common edges, so no ray gets through between them.
 TEST(Deforming, TwoMeshesWithOneBorderDoNotLeak) {
   Pool pool(1);
   Random random(5);
@@ -227,8 +231,10 @@ TEST(Deforming, TwoMeshesWithOneBorderDoNotLeak) {
   }
 }
 
-/// Checks the boxes of all leaves, and the sizes of their packs of eight triangles. Returns the
-/// number of coordinates that were checked; 0 after a failure.
+/// Checks the boxes of all leaves, and FlatPack::size of their packs of eight triangles, at the
+/// time `now`. A box must contain its triangles, and the size must be at least each coordinate of
+/// an edge from the first corner. Returns the number of coordinates that were checked; 0 after a
+/// failure.
 std::int64_t check_boxes(const MeshTree& tree, const ShutterTime& now) {
   std::int64_t checked = 0;
   for (std::size_t n = 0; n < tree.tree.nodes.size(); ++n) {
@@ -275,8 +281,8 @@ TEST(Deforming, BoxesAndSizesHoldAtEveryTime) {
   EXPECT_GT(checked, 1'000'000);
 }
 
-// The vertices move by about the largest float, so the movement of a box, with its margin, exceeds
-// the range of floats.
+// The vertices move by about the largest float. The change of a box is larger than their movement
+// by a margin, so it exceeds the range of floats.
 TEST(Deforming, BoxesHoldIfTheirChangeOverflows) {
   for (const auto& [open, close] :
        {std::pair(-0x1.8459fep127f, 0x1.ee98p125f), std::pair(-0x1.cd5030p126f, 0x1.1957e6p127f)}) {
@@ -299,9 +305,9 @@ TEST(Deforming, BoxesHoldIfTheirChangeOverflows) {
   }
 }
 
-// A bad triangle has two equal corners, or a vertex that does not exist, that is not finite at an
-// end of the shutter interval, or that moves farther than the range of floats. Bad triangles are
-// left out and change no bit of the hits on the others.
+// A bad triangle has two equal corners or a bad vertex. A vertex is bad if it does not exist, if it
+// is not finite at an end of the shutter interval, or if it moves farther than the largest float.
+// Bad triangles are left out and change no bit of the hits on the others.
 TEST(Deforming, BadTrianglesDoNotChangeTheOthers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();

@@ -1,5 +1,5 @@
-// Traversal::kBruteForce, a BVH whose boxes are all entered, gives the same hits as the usual
-// traversal.
+// With Traversal::kBruteForce, every ray enters all boxes of the BVH. The hits are the same as
+// those of the usual traversal.
 
 #include "renderlib/accel/disable_culling.h"
 

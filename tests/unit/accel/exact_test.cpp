@@ -1,5 +1,7 @@
 // Compares Accel with brute force, to the bit, in hard cases: ties, borders, planes, extreme shapes
-// and rays. An id such as T5 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// and rays. An id such as T5 in a test's name is that of a case in tests/hard_cases/cases.txt. "As
+// by testing all" in the reported figure of a case means: with the same result as brute force,
+// which tests all primitives.
 
 #include <gtest/gtest.h>
 
@@ -23,6 +25,7 @@ Geometry of_mesh(Mesh mesh) {
   return g;
 }
 
+/// Expects that Accel finds the same hit as brute force for each ray, to the bit.
 void expect_exact(const Geometry& g, const std::vector<Ray>& rays) {
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);
@@ -30,12 +33,15 @@ void expect_exact(const Geometry& g, const std::vector<Ray>& rays) {
     const Hit truth = test::closest_by_brute_force(g, ray);
     const Hit found = accel.closest(ray);
     ASSERT_TRUE(test::same_hit(found, truth))
-        << "t " << found.t << " " << truth.t << " id " << found.id.instance << ":"
-        << found.id.primitive << " " << truth.id.instance << ":" << truth.id.primitive;
+        << "expected t " << truth.t << " and id " << truth.id.instance << ":" << truth.id.primitive
+        << ", but found t " << found.t << " and id " << found.id.instance << ":"
+        << found.id.primitive;
     ASSERT_EQ(accel.occluded(ray), static_cast<bool>(truth));
   }
 }
 
+/// Returns rays that start at random points of the cube [-spread, spread]^3. Most of them aim at a
+/// point of [-1, 1]^3, and a quarter of them have an end.
 std::vector<Ray> random_rays(int count, double spread, std::uint64_t seed) {
   test::Random random(seed);
   std::vector<Ray> rays;
@@ -48,8 +54,9 @@ std::vector<Ray> random_rays(int count, double spread, std::uint64_t seed) {
   return rays;
 }
 
-/// Rays whose components are 0, -0, tiny or 1, from points of a grid: along planes, edges and
-/// corners.
+/// Returns rays that start at points of a grid. Components of their directions are numbers such as
+/// 0, -0, 1 and 1e-12. So many of these rays lie within the planes of lattice(), or meet its edges
+/// and corners.
 std::vector<Ray> grid_rays(int count, std::uint64_t seed) {
   test::Random random(seed);
   const double parts[] = {0, -0.0, 1, -1, 1e-12, -1e-12, 0.5, 1e-320};
@@ -66,7 +73,8 @@ std::vector<Ray> grid_rays(int count, std::uint64_t seed) {
   return rays;
 }
 
-/// A lattice of axis-parallel squares, each of two triangles; many coincide.
+/// Returns axis-parallel squares of two triangles each, at random places of a grid. Many of the
+/// squares coincide.
 Mesh lattice(std::uint64_t seed) {
   test::Random random(seed);
   Mesh mesh;
@@ -96,6 +104,8 @@ TEST(AccelExact, HitsOnRandomTrianglesEqualBruteForce) {
 
 TEST(AccelExact, T5_HitsOfRaysAlongPlanesEdgesAndCornersEqualBruteForce) {
   expect_exact(of_mesh(lattice(1)), grid_rays(4000, 2));
+  // "In any place of a pack" means: the triangle that is hit may be in any of the eight lanes of a
+  // leaf.
   test::report_hard_case(
       "T5", "4,000 rays within planes answered as by testing all, in any place of a pack");
 }
@@ -153,6 +163,7 @@ TEST(AccelExact, HitsOnLooseShapesOfEveryKindEqualBruteForce) {
   expect_exact(g, random_rays(6000, 1.5, 8));
 }
 
+// Ray::from is the primitive on which the ray starts. If it is flat, it cannot be hit again.
 TEST(AccelExact, RaysThatStartOnAPrimitiveDoNotHitItAgain) {
   Geometry g = of_mesh(test::icosphere(1));
   g.quads.push_back({{-2, 0, -2}, {4, 0, 0}, {0, 0, 4}, {}});
@@ -166,8 +177,8 @@ TEST(AccelExact, RaysThatStartOnAPrimitiveDoNotHitItAgain) {
   expect_exact(g, rays);
 }
 
-// The mesh has every triangle twice, in random order, and there are two instances of it. A ray hits
-// the triangle with the lowest id.
+// The mesh has every triangle twice, in random order, and the scene has two instances of this mesh.
+// Of the triangles at the same distance, a ray hits the one with the lowest id.
 TEST(AccelExact, T7_TiesGoToTheLowestIdInAnyOrder) {
   test::Random random(11);
   const Mesh mesh = test::icosphere(2);

@@ -15,7 +15,7 @@ namespace {
 
 using Corner = std::array<double, 3>;
 
-/// Returns a number in 10^lo to 10^hi, about uniform in the exponent.
+/// Returns a number of about 10^lo to 10^hi, whose logarithm is about uniform. log2(10) is 3.32.
 double magnitude(Random& random, double lo, double hi) {
   return std::ldexp(random.uniform(1, 2), static_cast<int>(random.uniform(lo, hi) * 3.32));
 }
@@ -66,13 +66,14 @@ class TwiceRounded {
   F v_;
 };
 
-/// A triangle that may be a sliver, distant, or both, and a ray aimed at a corner, an edge, near
-/// them or anywhere.
+/// A triangle and a ray. The triangle may be a sliver, distant, or both. The ray aims at a corner,
+/// at an edge, at a point near one of these, or at any point of the triangle.
 struct Pair {
   std::array<Corner, 3> corner;
   TracedRay ray;
 };
 
+/// Returns a random pair. `in_float`: the corners are rounded to float.
 Pair adversarial_pair(Random& random, bool in_float) {
   Pair pair;
   const Vec3 at = magnitude(random, -3, 6) * random_point(random);
@@ -119,8 +120,9 @@ struct Verdicts {
   int false_sure = 0;     ///< hits of which the filter was sure, but which are none
 };
 
-/// Runs the filter and the test in double, for a ray without an end and for rays that end at the
-/// hit, just before and just after it. `reach`: bound of the coordinates.
+/// Runs the filter and the test in double, and adds their results to `verdicts`. The ray has no
+/// end, or it ends at the hit, just before the hit, or just after the hit. `reach`: bound of the
+/// absolute values of all coordinates.
 template <class Float>
 void judge(const FlatPack& pack, const Pair& pair, double reach, Verdicts& verdicts) {
   Crossing crossing;
@@ -133,7 +135,8 @@ void judge(const FlatPack& pack, const Pair& pair, double reach, Verdicts& verdi
     const bool counts = hit && t < end;
     verdicts.hits += counts ? 1 : 0;
     verdicts.sure += lanes.surely != 0 ? 1 : 0;
-    // A hit exactly at the end counts too, because a lower id may win there.
+    // A hit at exactly the end of the ray must not be rejected either: if two hits are at the
+    // same distance, the one with the lower id counts.
     verdicts.false_rejects += hit && t <= end && lanes.maybe == 0 ? 1 : 0;
     verdicts.false_sure += lanes.surely != 0 && !counts ? 1 : 0;
   }
@@ -202,8 +205,8 @@ TYPED_TEST(Filter, NeverRejectsASphereThatTheDoubleTestHits) {
   EXPECT_GT(hits, 100'000);
 }
 
-/// The ray hits a point at t = 1. Each box contains the point: inside, on a face or at a corner,
-/// and some boxes are the point alone. The ray must enter all of them.
+/// The ray reaches a point at t = 1. Each box contains this point inside, on a face or at a corner,
+/// and some boxes consist of the point alone. The ray must enter all of these boxes.
 TYPED_TEST(Filter, NeverRejectsABoxThatContainsAHit) {
   Random random(44);
   for (int i = 0; i < 500'000; ++i) {

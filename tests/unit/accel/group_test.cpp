@@ -1,5 +1,6 @@
-// Instances of groups: disks, ellipsoids, groups of all kinds. An id such as X2 in a test's name is
-// that of a case in tests/hard_cases/cases.txt.
+// Tests instances of groups, and disks. A group is a set of spheres, quads, triangles and disks
+// that several instances can place. The placement can make an ellipsoid of a sphere. An id such as
+// X2 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -37,6 +38,9 @@ Instance of_group(std::uint32_t group, const Transform& to_world) {
   return instance;
 }
 
+/// Traces `rays` random rays, which start in the cube [-3 size, 3 size]^3 and aim at a point of the
+/// cube [-size, size]^3. Expects the same hits as brute force, to the bit, and that more than a
+/// tenth of the rays hit something.
 void expect_exact(const Geometry& g, int rays, double size, std::uint64_t seed) {
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);
@@ -135,7 +139,7 @@ TEST(Group, X2_AStretchedSphereIsAnEllipsoid) {
     const Vec3 local = inverse(turn)->point(p.position);
     const Vec3 gradient = {local.x / (axes.x * axes.x), local.y / (axes.y * axes.y),
                            local.z / (axes.z * axes.z)};
-    ASSERT_NEAR(dot(local, gradient), 1, 1e-10) << "on the ellipsoid";
+    ASSERT_NEAR(dot(local, gradient), 1, 1e-10) << "the point must be on the ellipsoid";
     ASSERT_LE(length(cross(normalize(turn.direction(gradient)), p.geometric_normal)), 1e-10);
     ASSERT_GT(dot(turn.direction(gradient), p.geometric_normal), 0);
     ASSERT_LE(length(p.position - (ray.origin + hit.t * ray.direction)), 1e-11);
@@ -188,7 +192,7 @@ TEST(Group, X1_MirroredInstancesEqualMirroredShapes) {
   EXPECT_GT(hits, 2000);
 }
 
-// A ray hits the first of two coincident instances, in any order of the others.
+// A ray hits the first of 20 coincident instances.
 TEST(Group, X6_TheFirstOfCoincidentInstancesIsHit) {
   Geometry g;
   g.groups.push_back(mixed_shapes(3, 12));

@@ -1,5 +1,7 @@
-// Hard cases of BVHs (tests/hard_cases/cases.txt): nothing to hit, many equal triangles, and sizes
-// that halve a hundred times.
+// Hard cases of BVHs: an empty scene, many equal triangles, and triangles of which each is half as
+// large as the one before. An id such as B8 in a test's name is that of a case in
+// tests/hard_cases/cases.txt. "As by testing all" in the reported figure of a case means: with the
+// same result as brute force, which tests all primitives.
 
 #include <cmath>
 #include <limits>

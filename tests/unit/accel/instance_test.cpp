@@ -13,7 +13,7 @@
 namespace bandsaw {
 namespace {
 
-/// An icosphere with uvs, whose normals are its points.
+/// Returns an icosphere with uvs. The normal at a vertex is the vertex's position.
 Mesh smooth_sphere(int levels) {
   Mesh mesh = test::icosphere(levels);
   mesh.normals = mesh.positions;
@@ -30,13 +30,15 @@ Geometry placed(const Mesh& mesh, const Transform& to_world) {
   return g;
 }
 
+/// Returns a ray that starts at the distance 5 from `center` and aims at a random point of the cube
+/// of half side `spread` around `center`.
 Ray aimed(test::Random& random, const Vec3& center, double spread) {
   const Vec3 origin = center + 5 * test::random_direction(random);
   return {origin, center + spread * test::random_point(random) - origin};
 }
 
-// A mirrored instance equals a mesh mirrored explicitly with reversed winding: the outside stays
-// outside.
+// A mirrored instance equals a mesh whose vertices are mirrored and whose winding is reversed. So
+// the outside of the mesh stays outside.
 TEST(Instance, X1_AMirroredInstanceKeepsItsOutside) {
   const Mesh mesh = smooth_sphere(2);
   Mesh by_hand = mesh;
@@ -73,7 +75,8 @@ TEST(Instance, X1_AMirroredInstanceKeepsItsOutside) {
   test::report_hard_case("X1", "5,000 normals within 1e-12 of those mirrored by hand");
 }
 
-// The instance is an ellipsoid. Its shading normals point along the gradient of its equation.
+// The instance is an ellipsoid. Its shading normals point along the gradient of the ellipsoid's
+// equation.
 TEST(Instance, X2_StretchedInstancesHaveTheNormalsOfTheirShape) {
   const Vec3 axes = {1, 1, 1e-3};
   const Transform turn = rotation({1, 2, 3}, 40);
@@ -127,7 +130,7 @@ TEST(Instance, X5_DistancesAreInWorldSpaceAtEveryScale) {
     const Hit other = accel_second.closest(ray);
     ASSERT_EQ(static_cast<bool>(hit), static_cast<bool>(other));
     if (hit) {
-      ASSERT_EQ(hit.t, other.t);  // powers of two: to the bit
+      ASSERT_EQ(hit.t, other.t);  // equal to the bit, because the scales are powers of two
       ASSERT_EQ(hit.id.instance, 1u);
       ASSERT_EQ(other.id.instance, 2u);
       ASSERT_EQ(hit.id.primitive, other.id.primitive);
@@ -151,8 +154,8 @@ TEST(Instance, X6_TheFirstOfCoincidentInstancesIsHit) {
   test::report_hard_case("X6", "the first of 21 in one place in 3,000 rays");
 }
 
-// The box of a rotated instance in world space contains the instance: rays from its middle hit each
-// corner of the mesh.
+// Rays from the middle of a rotated instance through each corner of its mesh hit the mesh. They
+// could miss it if the instance's box in world space did not contain the instance.
 TEST(Instance, B11_BoxesContainTheirInstances) {
   Pool pool(1);
   test::Random random(5);
@@ -168,7 +171,7 @@ TEST(Instance, B11_BoxesContainTheirInstances) {
     for (const auto& p : mesh.positions) {
       const Vec3 corner = to_world.point({p[0], p[1], p[2]});
       const Vec3 middle = to_world.point({0, 0, 0});
-      // From the middle outwards: a closed mesh around the origin must be hit.
+      // The mesh is closed around its origin, so a ray from there must hit it.
       ASSERT_TRUE(accel.closest({middle, corner - middle}));
       ASSERT_TRUE(accel.occluded({middle, corner - middle}));
     }

@@ -1,6 +1,6 @@
-// Origins of rays that leave surfaces (geometry/surface.h): the surface is not hit again, and near
-// surfaces are not skipped. An id such as O1 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// Tests the origins of rays that leave surfaces (geometry/surface.h). Such a ray does not hit its
+// own surface again, and it does not skip a surface that is near. An id such as O1 in a test's name
+// is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@
 namespace bandsaw {
 namespace {
 
-// Rays that leave a flat mesh hit no neighbour in its plane, also if its placement squashes,
-// mirrors and moves it.
+// A ray that leaves a flat mesh hits no other triangle of this mesh, even if the placement
+// squashes, mirrors and moves the mesh.
 TEST(Offset, O1_NoRayHitsTheMeshPlaneItLeaves) {
   Mesh mesh;
   for (int i = 0; i <= 8; ++i) {
@@ -55,15 +55,15 @@ TEST(Offset, O1_NoRayHitsTheMeshPlaneItLeaves) {
       ASSERT_TRUE(hit);
       const SurfacePoint p = surface_at(g, ray, hit);
       const Hit again = accel.closest(spawn_ray(p, test::random_direction(random)));
-      // Positions are rounded to float, so the mesh is not exactly flat: a hit must be at some
-      // distance.
+      // Positions are rounded to float, so the mesh is not exactly flat. A ray may hit it again,
+      // but only at a distance that is large compared with the offset.
       ASSERT_TRUE(!again || again.t > 1e3 * p.offset) << again.t << " " << p.offset;
     }
   }
   test::report_hard_case("O1", "80,000 bounces off squashed, mirrored and moved meshes: none");
 }
 
-// A sphere nearly touches a plane. Rays that leave the plane below the sphere hit it.
+// A sphere nearly touches a plane. Rays that leave the plane below the sphere hit the sphere.
 TEST(Offset, O2_NarrowGapsAreNotSkipped) {
   Pool pool(1);
   test::Random random(3);
@@ -91,6 +91,8 @@ TEST(Offset, O2_NarrowGapsAreNotSkipped) {
   test::report_hard_case("O2", "0 skipped of 30,000, gaps 1e-4, 1e-6, 1e-9");
 }
 
+/// Returns a point on a light that belongs to no instance. `size`: the largest number from which
+/// the position was computed.
 SurfacePoint surface(const Vec3& position, const Vec3& normal, double size) {
   SurfacePoint p;
   p.position = position;

@@ -1,5 +1,6 @@
-// Bad input does not affect other geometry. An id such as Q7 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// Tests bad and unusual input: empty scenes, invalid rays, bad primitives and normals, and many
+// equal triangles. Bad primitives do not change the hits on other geometry. An id such as Q7 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
-// Spheres and boxes whose placement squashes or stretches space by many orders of magnitude: a ray
-// that leaves their surface inwards hits their other side, and one that leaves outwards does not
-// hit them again. An id such as S12 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// Tests spheres and boxes whose placement squashes or stretches space by many orders of magnitude.
+// A ray that leaves the surface inwards hits the other side from inside. A ray that leaves outwards
+// does not hit the surface again. So a ray enters and leaves in turn: its crossings alternate. An
+// id such as S12 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -61,8 +61,8 @@ Geometry placed(const Transform& to_world, bool cube) {
   return g;
 }
 
-/// Returns a direction on one side of the surface, uniform in the world or in the object's own
-/// space.
+/// Returns a random direction on the inner or outer side of the surface. It is uniform in the world
+/// or in the object's own space. If the normal is zero, it may be on any side.
 Vec3 direction_from(const SurfacePoint& p, bool inwards, const Transform& to_world,
                     Random& random) {
   Vec3 d = test::random_direction(random);
@@ -78,8 +78,8 @@ struct Lost {
   int outside = 0;  ///< rays that left outwards and hit it again
 };
 
-/// Traces rays from outside. Each continues inwards from every surface that it hits, up to 20
-/// times. At each hit, one more ray leaves outwards.
+/// Traces `rays` rays from outside. Each of them continues inwards from every surface that it hits,
+/// up to 20 times. At each hit, one more ray leaves outwards.
 Lost bounce(const Geometry& g, const Transform& to_world, int rays, std::uint64_t seed) {
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);
@@ -110,8 +110,8 @@ TEST(Squashed, S12_CrossingsOfASphereAlternate) {
   for (const Case& c : cases()) {
     const Lost lost = bounce(placed(c.to_world, false), c.to_world, kRays, 1);
     EXPECT_GT(lost.rays, 10 * kRays) << c.name;
-    EXPECT_EQ(lost.inside, 0) << c.name << ", of " << lost.rays;
-    EXPECT_EQ(lost.outside, 0) << c.name << ", of " << lost.rays;
+    EXPECT_EQ(lost.inside, 0) << c.name << ", of " << lost.rays << " rays";
+    EXPECT_EQ(lost.outside, 0) << c.name << ", of " << lost.rays << " rays";
     all.rays += lost.rays;
     all.inside += lost.inside;
     all.outside += lost.outside;
@@ -121,8 +121,8 @@ TEST(Squashed, S12_CrossingsOfASphereAlternate) {
   test::at_most("S12", "rays that meet what they leave, of " + of, all.outside, 0);
 }
 
-/// The chord from one surface of the sphere to the other, in the sphere's own space: p + t d with
-/// |p| = 1 ends at t = -2 (p.d) / (d.d).
+/// Checks the length of the chord that a ray has in a sphere. In the sphere's own space, the ray
+/// p + t d with |p| = 1 leaves the sphere at t = -2 (p.d) / (d.d).
 TEST(Squashed, S12_ChordsHaveTheirExactLength) {
   test::Worst error;
   for (const Case& c : cases()) {
@@ -139,7 +139,7 @@ TEST(Squashed, S12_ChordsHaveTheirExactLength) {
       const Ray ray = spawn_ray(p, direction_from(p, true, c.to_world, random));
       const Vec3 d = to_object.direction(ray.direction);
       const double along = -dot(p.object_position, d) / length(d);
-      if (along > 0.1) {  // grazing chords are shorter by more than the offset
+      if (along > 0.1) {  // a grazing chord is shortened by more than the offset
         error.see(std::abs(accel.closest(ray).t * length(d) - 2 * along));
       }
     }
@@ -151,12 +151,12 @@ TEST(Squashed, CrossingsOfACubeAlternate) {
   for (const Case& c : cases()) {
     const Lost lost = bounce(placed(c.to_world, true), c.to_world, 2'000, 3);
     EXPECT_GT(lost.rays, 20'000) << c.name;
-    EXPECT_EQ(lost.inside, 0) << c.name << ", of " << lost.rays;
-    EXPECT_EQ(lost.outside, 0) << c.name << ", of " << lost.rays;
+    EXPECT_EQ(lost.inside, 0) << c.name << ", of " << lost.rays << " rays";
+    EXPECT_EQ(lost.outside, 0) << c.name << ", of " << lost.rays << " rays";
   }
 }
 
-// From inside an area light all of it is visible.
+// A point inside an area light sees all of the light.
 TEST(Squashed, S12_ALightAroundTheReceiverDoesNotShadowItself) {
   int rays = 0;
   int shadows = 0;

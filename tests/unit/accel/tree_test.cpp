@@ -38,6 +38,7 @@ WideTree build_tree(absl::Span<const FloatBox> boxes) {
   });
 }
 
+/// Returns the items of all leaves that the ray enters.
 std::set<std::uint32_t> visited(const WideTree& tree, const Ray& ray) {
   const FloatRay floats(trace_setup(ray.origin, ray.direction, ray.t_max), tree.reach);
   const float bound = floats.above(ray.t_max);
@@ -99,6 +100,8 @@ TEST(Tree, ContainsEveryItemOnceInBoxesThatContainIt) {
   }
 }
 
+/// Returns 1,000 boxes with one common corner. The edges of each are half as long as those of the
+/// box before, and after 240 boxes the lengths start again.
 std::vector<FloatBox> nested_boxes() {
   std::vector<FloatBox> boxes;
   for (int i = 0; i < 1000; ++i) {
@@ -112,7 +115,8 @@ TEST(Tree, B7_IsNeverDeeperThanItsStack) {
   EXPECT_LE(build_tree(nested_boxes()).depth, kMaxTreeDepth);
   const std::vector<FloatBox> same(100000, FloatBox{{0, 0, 0}, {1, 1, 1}});
   const WideTree tree = build_tree(same);
-  EXPECT_LE(tree.depth, 18u);  // as if every node halved its items: log2 of 100,000, and one more
+  // If every node halves its items, the depth is log2 of 100,000, rounded up, and one more.
+  EXPECT_LE(tree.depth, 18u);
   EXPECT_EQ(visited(tree, {{0.5, 0.5, -1}, {0, 0, 1}}).size(), same.size());
   const std::vector<FloatBox> huge(100, FloatBox{{-3e38f, 0, 0}, {3e38f, 3e38f, 1}});
   EXPECT_LE(build_tree(huge).depth, 8u);

@@ -16,8 +16,9 @@ Vec3 corner(const Mesh& mesh, std::uint32_t i) {
   return {mesh.positions[i][0], mesh.positions[i][1], mesh.positions[i][2]};
 }
 
-/// Traces `count` rays from points around `inside`, within a cube of half side 0.3 `size`; half of
-/// them aim at corners, half at edges. Returns the number of rays that escape.
+/// Traces `count` rays that start at random points of the cube of half side 0.3 `size` around
+/// `inside`. Half of the rays aim at corners, the others at edges. Returns the number of rays that
+/// hit nothing, and so escape from the closed mesh.
 int escapes(Mesh mesh, const Vec3& inside, double size, int count, std::uint64_t seed) {
   Geometry g;
   g.meshes.push_back(std::move(mesh));

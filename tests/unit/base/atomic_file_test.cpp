@@ -83,7 +83,9 @@ TEST(AtomicFile, RefusesTargetsThatAreNoFiles) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
-// The check is made before the work whose result the file will contain.
+// A program makes this check before the work whose result the file will contain. The temporary file
+// has a longer name than the file itself, so a file's name may be too long although it has fewer
+// than 255 bytes.
 TEST(AtomicFile, ChecksBeforehandWhetherAFileCanBeWritten) {
   const test::TempDir dir;
   EXPECT_TRUE(check_can_be_written(dir / "a").ok());
@@ -106,8 +108,10 @@ TEST(AtomicFile, LeavesNoFileInAReadOnlyFolder) {
   EXPECT_EQ(files_in(dir.path()), 0u);
 }
 
-/// Writing to a file that may not grow fails in write() half-way, as on a full disk. The test runs
-/// in a child process, because the limit applies to the whole process.
+/// Tries to write a file that is larger than this process may write. write() then fails half-way,
+/// as on a full disk. Returns 0 if the error was reported, 2 if it was not, and 3 if the limit
+/// could not be set. MUST be called in a child process, because the limit applies to the whole
+/// process.
 int write_with_limit(const std::string& path) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit = {1000, 1000};

@@ -32,7 +32,8 @@ struct DoublePair {
 TEST(Compiler, Y1_KeepsTheRoundingOfNeighbouringFloats) {
   const double in[2] = {15.123456789, -3.0000000001};
   DoublePair out;
-  // The compiler must not know the numbers, otherwise it rounds them itself, and correctly.
+  // The compiler must not know the numbers. Otherwise it rounds them itself, correctly, and the
+  // test cannot fail.
   const double* volatile unknown = in;
   round_to_float(unknown, &out);
   EXPECT_EQ(out.x, 15.123456954956055);

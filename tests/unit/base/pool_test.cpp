@@ -1,5 +1,5 @@
-// The thread pool: parallel_for() calls each index once, also for several callers at once, and
-// throws what a call throws.
+// Tests the thread pool. parallel_for() calls the function once for each index, also if several
+// threads call parallel_for() at once. It throws the exception that a call of the function throws.
 
 #include "renderlib/base/pool.h"
 
@@ -81,7 +81,7 @@ TEST(Pool, ThrowsWhatACallThrows) {
   }
   std::atomic<int> sum = 0;
   pool.parallel_for(7, [&](std::int64_t i) { sum += static_cast<int>(i); });
-  EXPECT_EQ(sum, 21) << "the pool still works";
+  EXPECT_EQ(sum, 21) << "the pool must still work after an exception";
 }
 
 TEST(Pool, ThrowsOnceIfEveryCallThrows) {

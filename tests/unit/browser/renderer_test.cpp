@@ -1,7 +1,8 @@
 // The renderer in a browser's tab, called through the functions that it exports. Its pixels have
 // the same bytes as those of a native worker. It renders a band in parts of a few rows. Parts
 // should end at multiples of the row step. If the scene shares paths between pixels, the row step
-// is 16, the height of a tile; otherwise it is 1.
+// is 16, the height of a tile; otherwise it is 1. The helpers good() and error_of() expect that a
+// call succeeds or fails, and return its answer.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,7 +27,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Two instances of a mesh with an image as texture, in front of a sky.
+/// Returns a scene of two meshes, one of them with an image as texture, in front of a sky. `shift`:
+/// the camera's x.
 SceneDescription textured_meshes(float shift) {
   test::SceneMaker maker;
   maker.camera({shift, 1, 6}, {0, 0, 0}, 40);
@@ -104,7 +106,8 @@ class BrowserRendererTest : public ::testing::Test {
     return bandsaw_renderer_render(renderer_, bytes.data(), bytes.size(), first, last);
   }
 
-  /// Renders a band in parts that end at multiples of `step` rows, joined as the tab joins them.
+  /// Renders a band in parts that end at multiples of `step` rows. Returns the whole band, joined
+  /// from the parts as the tab joins them.
   BandPixels pieces(const Task& task, std::uint32_t step) {
     BandPixels joined{.band = task.band, .width = task.settings.width, .sums = {}, .counters = {}};
     const farm::Lease lease = lease_of(task);
@@ -142,8 +145,9 @@ class BrowserRendererTest : public ::testing::Test {
     return done.get_future().get().pixels;
   }
 
-  /// Expects the sums of a native worker. The counters are the same only if no part divides tiles
-  /// that share paths, because such tiles are traced by each part.
+  /// Expects that the band has the same sums as on a native worker. If the pixels of a tile share
+  /// paths and a part ends within a tile, each part traces all paths of the tile. The counters are
+  /// then higher, so they are compared only in other cases.
   void expect_same(const Task& task, const SceneDescription& scene, std::uint32_t step) {
     const BandPixels expected = native(task, scene);
     const BandPixels joined = pieces(task, step);
@@ -165,7 +169,7 @@ class BrowserRendererTest : public ::testing::Test {
             .band = band};
   }
 
-  BlobMap farm_;
+  BlobMap farm_;  ///< all blobs of the scenes, from which the tab would fetch them
   BandsawRenderer* renderer_;
   std::string row_step_;  ///< JSON, of the scene that was loaded last
 };
@@ -223,7 +227,7 @@ TEST_F(BrowserRendererTest, AFrameNeedsOnlyTheBlobsThatChanged) {
   }
   EXPECT_THAT(error_of(render(lease_of(task(manifests[0], {{0, 16}, {0, 8}})), 0, 8)),
               HasSubstr("not loaded"));
-  EXPECT_GT(load(manifests[1]), 3U) << "nothing keeps the meshes any more";
+  EXPECT_GT(load(manifests[1]), 3U) << "no scene keeps the meshes, so they must be added again";
 }
 
 TEST_F(BrowserRendererTest, ShowsTheRowsThatItRendered) {
@@ -235,7 +239,7 @@ TEST_F(BrowserRendererTest, ShowsTheRowsThatItRendered) {
   for (std::size_t i = 0; i < picture.size(); i += 4) {
     EXPECT_EQ(picture[i + 3], '\xff');
   }
-  EXPECT_NE(picture.substr(0, 3), std::string(3, '\0')) << "the sky is not black";
+  EXPECT_NE(picture.substr(0, 3), std::string(3, '\0')) << "the sky must not be black";
 }
 
 TEST_F(BrowserRendererTest, RefusesInvalidCalls) {
@@ -257,8 +261,8 @@ TEST_F(BrowserRendererTest, RefusesInvalidCalls) {
   good(render(lease, 4, 8));
 }
 
-// Any byte of a manifest, a blob or a lease may be wrong: the answer is an error or an image, and
-// the renderer still renders afterwards.
+// A manifest or a lease has a wrong byte, or its end is missing. The answer is an error or a
+// result, and the renderer still renders afterwards.
 TEST_F(BrowserRendererTest, AnswersDamagedInput) {
   const SceneDescription scene = textured_meshes(0);
   const wire::Digest manifest = add(scene);
@@ -290,7 +294,7 @@ TEST_F(BrowserRendererTest, AnswersDamagedInput) {
     const std::string lease = damage(valid.SerializeAsString());
     bandsaw_renderer_render(renderer_, lease.data(), lease.size(), 0, 2);
   }
-  EXPECT_GT(built, 0) << "some damage changes only values";
+  EXPECT_GT(built, 0) << "damage that changes only values must give a scene";
   EXPECT_LT(built, 300);
   expect_same(task(manifest, {{0, 16}, {0, 4}}), scene, 2);
 }

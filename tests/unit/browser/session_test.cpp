@@ -1,6 +1,7 @@
 // The session of a browser's tab with the coordinator, called through the functions that it
 // exports. The messages of the coordinator are made by the test. Answers are JSON or serialised
-// messages.
+// messages. The helpers good() and error_of() expect that a call succeeds or fails, and return its
+// answer.
 
 #include <gmock/gmock.h>
 #include <google/protobuf/struct.pb.h>
@@ -148,7 +149,8 @@ TEST_F(BrowserSessionTest, HandsOutALeaseAndSendsItsBand) {
   EXPECT_EQ(good(bandsaw_session_preparing(session_, task, 1000)), "");
   farm::FromWorker beat = message_of(good(bandsaw_session_heartbeat(session_)));
   EXPECT_EQ(beat.heartbeat().lease(0).prepared(), 1000U);
-  // Rows may be rendered in any order: the first bad sample is the first of the band.
+  // Rows may be rendered in any order. The session reports the bad sample whose row comes first in
+  // the band, here that of row 2.
   render(task, 1, {.rays = 5, .bad_samples = 1, .bad_x = 1, .bad_y = 3, .bad_sample = 4});
   render(task, 2, {.rays = 7, .bad_samples = 1, .bad_x = 6, .bad_y = 2, .bad_sample = 9});
   beat = message_of(good(bandsaw_session_heartbeat(session_)));
@@ -198,7 +200,8 @@ TEST_F(BrowserSessionTest, KeepsItsBandsOverAReconnect) {
   ASSERT_EQ(hello.hello().held_size(), 1);
   EXPECT_TRUE(hello.hello().held(0).finished());
   receive(welcome("e2"));
-  EXPECT_TRUE(field(receive(lease(3, 0)), "start").has_null_value()) << "it is rendered already";
+  EXPECT_TRUE(field(receive(lease(3, 0)), "start").has_null_value())
+      << "the band is rendered already, so it must not start again";
   farm::BandHeader sent;
   ASSERT_TRUE(sent.ParseFromString(good(header(task)).substr(4)));
   EXPECT_EQ(sent.lease(), 3U);
@@ -311,7 +314,7 @@ TEST_F(BrowserSessionTest, ReportsBytesThatAreNoMessage) {
   EXPECT_EQ(message_of(good(bandsaw_session_hello(session_))).hello().held_size(), 1);
 }
 
-// Any byte of a message may be wrong: the answer is orders or an error.
+// A message has a wrong byte, or its end is missing. The answer is orders in JSON, or an error.
 TEST_F(BrowserSessionTest, AnswersDamagedMessages) {
   receive(welcome("e1"));
   const std::string valid = lease(10, 0).SerializeAsString();

@@ -41,11 +41,13 @@ TEST(LensView, AllRaysThroughThePointInFocusAreInTheView) {
     const double cosine = dot(ray.direction, forward);
     EXPECT_NEAR(view->pdf(ray.direction), length_squared(direction) / (area * cosine),
                 1e-12 * view->pdf(ray.direction));
-    // Rays at the very rim of the lens are excluded.
+    // The origin is moved a little towards the middle of the lens, because rounding decides whether
+    // a ray at the very rim passes through the lens.
     const Vec3 inwards = normalize(view->focus() - (ray.origin * 0.999 + camera.position * 0.001));
     const std::optional<Vec3> from = view->on_lens(inwards);
     ASSERT_TRUE(from);
     EXPECT_LE(length(*from - (ray.origin * 0.999 + camera.position * 0.001)), 1e-13);
+    // A point that is 1,000 times as far from the middle lies beside the lens in nearly all cases.
     const Vec3 beside = camera.position + (ray.origin - camera.position) * 1000;
     EXPECT_EQ(view->on_lens(normalize(view->focus() - beside)).has_value(),
               length(beside - camera.position) <= camera.aperture / 2);

@@ -9,6 +9,7 @@ namespace {
 
 constexpr Shutter kShutter{2, 4};
 
+/// Returns a camera at (x, 0, 5) that looks along -z.
 PerspectiveCamera at(double x) {
   return {.position = {x, 0, 5}, .look_at = {x, 0, 0}, .shutter = kShutter};
 }
@@ -47,7 +48,8 @@ TEST(MovingCamera, EqualsTheStaticCamerasAtBothEnds) {
   expect_close(closing.direction, RayGenerator(last, 20, 10).ray(3.25, 8.5, 0.3, 0.8).direction);
 }
 
-// The lens' view and the ray through the lens agree at each time.
+// In the middle of the shutter interval, the lens view finds the point of the lens from which a ray
+// starts.
 TEST(MovingCamera, TheLensViewAgreesWithTheRay) {
   PerspectiveCamera first = at(0);
   first.aperture = 0.4;
@@ -79,7 +81,7 @@ TEST(MovingCamera, TheTwoStatesMustBelongTogether) {
   EXPECT_FALSE(validate_motion(at(0), OrthographicCamera{.shutter = kShutter}).ok());
   PerspectiveCamera lens = at(1);
   lens.aperture = 1;
-  EXPECT_FALSE(validate_motion(at(0), lens).ok()) << "a pinhole that becomes a lens";
+  EXPECT_FALSE(validate_motion(at(0), lens).ok()) << "a pinhole must not become a lens";
   PerspectiveCamera later = at(1);
   later.shutter = {3, 4};
   EXPECT_FALSE(validate_motion(at(0), later).ok());

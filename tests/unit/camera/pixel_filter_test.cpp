@@ -52,7 +52,7 @@ double density(Kind kind, double x, double y) {
 /// The probability of a false alarm is 1 % for the three filters together.
 TEST(PixelFilter, SamplesFollowTheDensity) {
   constexpr int kCells = 16;
-  constexpr int kFine = 32;
+  constexpr int kFine = 32;  // the density is summed at 32 x 32 points of each cell
   constexpr std::uint64_t kSamples = 200'000;
   for (const Kind kind : {Kind::kBox, Kind::kTent, Kind::kGaussian}) {
     std::vector<double> expected(kCells * kCells);
@@ -72,7 +72,8 @@ TEST(PixelFilter, SamplesFollowTheDensity) {
     std::vector<std::uint64_t> counts(kCells * kCells);
     const PixelFilter filter{kind, 2.5};
     for (std::uint64_t i = 0; i < kSamples; ++i) {
-      // One sample of each pixel: samples of one pixel are stratified, not independent.
+      // Takes one sample of each pixel, because the samples of one pixel are stratified and so are
+      // not independent.
       const Sample4 at = sample4({.seed = 9, .x = static_cast<std::uint32_t>(i), .y = 7}, 0);
       const Vec2 offset = sample(filter, at[0], at[1]) * (1 / filter.radius);
       ASSERT_LE(std::max(std::abs(offset.x), std::abs(offset.y)), 1);

@@ -1,5 +1,6 @@
 // When a command leaves a job early, for example at Ctrl-C, it prints the command that follows the
-// job again. That command repeats the files and the settings that the user asked for.
+// job again. That command repeats the files and the settings that the user asked for. The second
+// argument of come_back() is the file name that is printed if the user named no file.
 
 #include <gtest/gtest.h>
 

@@ -34,7 +34,7 @@ TEST(ContactSheet, ShowsEachFrameOnceAndCrossesOutMissingOnes) {
   // The labels have dots of 2 x 2 pixels: the digit 1 has eight dots, 2 eleven, 0 twelve, and the
   // minus three.
   const Rgb ink{0.6f, 0.6f, 0.6f};
-  const std::size_t cross = 2 * 30;
+  const std::size_t cross = 2 * 30;  // two diagonals, each with a pixel in every row of a cell
   EXPECT_NEAR(static_cast<double>(count(picture, ink)), 4 * (3 + 8 + 11 + 8 + 12) + cross, 4);
 }
 

@@ -26,7 +26,8 @@ TEST(Doctor, ACertificateIsValidInItsTime) {
   EXPECT_THAT(over.found, HasSubstr("not valid any more"));
 }
 
-// The arguments are our time before the coordinator's answer, its time, and our time after it.
+// The arguments are this machine's time before the coordinator's answer, the coordinator's time,
+// and this machine's time after the answer.
 TEST(Doctor, ClocksMayDifferALittle) {
   EXPECT_TRUE(clock_check(100, 103, 102).ok);
   const Check slow = clock_check(100, 1, 102);
@@ -76,10 +77,13 @@ TEST(Doctor, ATakenPortIsFineOnlyIfTheFarmListensThere) {
 
   EXPECT_TRUE(check_port(here, here, {here}).ok);
   EXPECT_TRUE(check_port("0.0.0.0" + port, here, {here}).ok);
-  EXPECT_TRUE(check_port(here, also_here, {also_here, here}).ok) << "the farm has all addresses";
-  EXPECT_FALSE(check_port(here, "", {here}).ok) << "the farm does not answer";
-  EXPECT_FALSE(check_port(here, also_here, {also_here}).ok) << "the farm has another address";
-  EXPECT_FALSE(check_port(here, elsewhere, {elsewhere, here}).ok) << "the farm is elsewhere";
+  EXPECT_TRUE(check_port(here, also_here, {also_here, here}).ok)
+      << "must pass, because the farm has both addresses";
+  EXPECT_FALSE(check_port(here, "", {here}).ok) << "must fail, because the farm does not answer";
+  EXPECT_FALSE(check_port(here, also_here, {also_here}).ok)
+      << "must fail, because the farm has another address";
+  EXPECT_FALSE(check_port(here, elsewhere, {elsewhere, here}).ok)
+      << "must fail, because the farm is elsewhere";
   EXPECT_FALSE(check_port("0.0.0.0" + port, elsewhere, {elsewhere, here}).ok);
   EXPECT_FALSE(check_port(here, "127.0.0.1:1", {"127.0.0.1:1"}).ok);
   close(taken);

@@ -70,7 +70,8 @@ TEST(FarmClient, RepeatsACallThatTheFarmCancelled) {
   EXPECT_TRUE(status.ok()) << status;
 }
 
-// Commands take CANCELLED for Ctrl-C: they would end instead of waiting for the farm.
+// A command ends if a call fails with CANCELLED, because Ctrl-C causes this error. With UNAVAILABLE
+// it waits for the farm.
 TEST(FarmClient, ReportsAFarmThatCancelsAllCallsAsUnavailable) {
   const CancellingFarm farm(1000);
   const absl::Status status = farm.connect()->jobs().status();

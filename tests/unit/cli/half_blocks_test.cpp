@@ -1,5 +1,6 @@
 // Images in a terminal: each character cell shows two pixels, one above the other, by the character
-// U+2580 with two colours.
+// U+2580 with two colours. The last argument of half_blocks() is the largest number of columns and
+// of lines.
 
 #include "coordinator/cli/progress/half_blocks.h"
 

@@ -1,4 +1,5 @@
-// The addresses of this machine that a join string lists.
+// The addresses of this machine that a join string lists. Workers and commands connect to a
+// coordinator with such a string.
 
 #include "coordinator/cli/serve/join_addresses.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Each has an interface, an address, and whether it is IPv6 and whether it is loopback.
+/// Each entry: interface, address, true if it is an IPv6 address, true if it is loopback.
 const std::vector<LocalAddress> kLocal = {
     {"lo", "127.0.0.1", false, true},      {"docker0", "172.17.0.1", false, false},
     {"eth0", "192.168.1.5", false, false}, {"lo", "::1", true, true},

@@ -1,5 +1,5 @@
-// Tests which join string is written to its file when a secret is renewed, with and without a
-// running coordinator.
+// Tests the join string that rotate_secret() writes to its file after it has renewed the secret. If
+// a coordinator runs, the last argument of rotate_secret() is the coordinator's join string.
 
 #include "coordinator/cli/serve/join_files.h"
 

@@ -1,5 +1,6 @@
 // A local render without a coordinator: the ranges of samples that it takes one after the other
-// until its stop rule holds, and its progress.
+// until its stop rule holds, and its progress. The arguments of LocalPlan::next() are the number of
+// samples per pixel that are done, the estimated error (-1: unknown), and the seconds so far.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -76,7 +77,7 @@ TEST(LocalMeter, ReportsTheProgressOfARender) {
   spec.stop = StopAtSamples{64};
   LocalMeter meter(spec, {0, 5}, 2, {.steady_s = 100, .cpu_s = 7});
   meter.reached(1600);
-  meter.reached(800);
+  meter.reached(800);  // lower than before, so it is ignored
   meter.passed(32, ErrorEstimate{.relative_rmse = 0.5}, {.steady_s = 101, .cpu_s = 9});
   const Progress progress = meter.progress({.steady_s = 102, .cpu_s = 11});
   EXPECT_EQ(progress.threads, 2);

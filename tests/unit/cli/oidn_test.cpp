@@ -1,6 +1,6 @@
-// Tests the names of the files of --denoise, and --denoise=oidn, which uses the library
-// OpenImageDenoise. A stand-in replaces the library: it computes (color + albedo) / 2 + normal / 4
-// (tests/support/oidn).
+// Tests --denoise=oidn, which uses the library OpenImageDenoise, and the file names of --denoise. A
+// stand-in (tests/support/oidn) replaces the library. For images that are 13 pixels wide it fails
+// with the error "an unlucky width". For others it computes (color + albedo) / 2 + normal / 4.
 
 #include "coordinator/cli/image/oidn.h"
 
@@ -41,7 +41,7 @@ TEST(Oidn, AMissingLibraryIsAnErrorWithACure) {
   const absl::Status missing = Oidn::load("/nowhere/libOpenImageDenoise.so.2").status();
   EXPECT_TRUE(absl::IsUnavailable(missing));
   EXPECT_THAT(std::string(missing.message()), HasSubstr("install it, or use --denoise"));
-  // This library exists, but is another one.
+  // This library exists, but it is not OpenImageDenoise.
   EXPECT_THAT(std::string(Oidn::load("libm.so.6").status().message()),
               HasSubstr("lacks functions"));
 }
@@ -55,8 +55,8 @@ TEST(Oidn, TheReportSaysThatBitsMayDiffer) {
               testing::ElementsAre("a.raw.png"));
 }
 
-// --denoise also writes the image as rendered, to q.raw.png for the output q.png. It would replace
-// the clean image if q.raw.png were an output too.
+// For the output q.png, --denoise also writes the image as rendered to q.raw.png. If q.raw.png were
+// an output too, the image as rendered and a clean image would have the same file.
 TEST(Clean, NoOutputMayBeTheFileOfTheImageAsRendered) {
   const test::TempDir folder;
   const auto check = [&](const std::vector<std::string>& names, Denoiser denoiser) {

@@ -1,5 +1,5 @@
-// The display of a job's progress: lines in a pipe, a line that is redrawn in a terminal, JSON, and
-// a small picture.
+// The display of a job's progress: lines in a pipe, lines that are redrawn in a terminal, JSON, and
+// a small picture. The second argument of update() is the time in seconds.
 
 #include "coordinator/cli/progress/progress_display.h"
 
@@ -93,7 +93,7 @@ TEST(ProgressDisplay, ATerminalIsRedrawnInPlaceAndLeftClean) {
             "   anna      2 threads     10/s   rows 0–4\x1b[K\n\x1b[J");
   screen.out.clear();
   display.update(sample(0.5), 1.05);
-  EXPECT_EQ(screen.out, "") << "sooner than anybody could see";
+  EXPECT_EQ(screen.out, "") << "must not be redrawn after only 50 ms";
   display.update(sample(0.5), 2);
   EXPECT_THAT(screen.out, StartsWith("\r\x1b[2A 50 %"));
   screen.out.clear();

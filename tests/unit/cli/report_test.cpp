@@ -127,7 +127,8 @@ TEST_F(ReportFiles, NeverReplaceOtherFiles) {
   const auto asked = report_files({scene}, {folder_ / "a.png"});
   EXPECT_EQ(asked.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(asked.status().message()), HasSubstr("--report none"));
-  EXPECT_FALSE(write_reports("x", {scene}).ok()) << "it came while the image was rendered";
+  EXPECT_FALSE(write_reports("x", {scene}).ok())
+      << "a file that came during the render must be kept";
   EXPECT_EQ(std::filesystem::file_size(scene), 13u);
   std::filesystem::create_directory(folder_ / "b.json");
   EXPECT_THAT(*report_files({}, {folder_ / "b.png"}), ElementsAre(folder_ / "b.report.json"));
@@ -139,7 +140,8 @@ TEST_F(ReportFiles, APictureBesideAModelIsNotTakenForARender) {
   EXPECT_TRUE(check_default_output("cube.textproto", picture).ok());
   EXPECT_TRUE(check_default_output("cube.obj", folder_ / "other.png").ok());
   ASSERT_TRUE(write_reports(report_text({finished(), "", {}}), {folder_ / "cube.json"}).ok());
-  EXPECT_TRUE(check_default_output("cube.obj", picture).ok()) << "an earlier render";
+  EXPECT_TRUE(check_default_output("cube.obj", picture).ok())
+      << "its report shows that it is a render";
 }
 
 TEST_F(ReportFiles, ReplaceAnEarlierReport) {

@@ -1,5 +1,5 @@
 // `bandsaw stitch`, which combines part files (some rows or some samples of an image) into the
-// image.
+// image. A band is given as {samples, rows}; both are half-open ranges.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

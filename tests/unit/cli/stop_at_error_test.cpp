@@ -1,6 +1,6 @@
 // Jobs that run until the error that is estimated from their own film reaches the target. Their
-// samples are random numbers of known mean, so the true error is known: it must meet the target in
-// 19 of 20 jobs.
+// samples are random numbers of known mean, so the true error is known. The true error must be at
+// most the target in 19 of 20 jobs.
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,8 @@ class NoisyImage {
       variance_ += deviation * deviation / kPixels;
     }
   }
-  /// Number of samples per pixel that reach the target on average.
+  /// Number of samples per pixel with which the root mean square error is expected to be the
+  /// target.
   double ideal_samples() const { return variance_ / (kTarget * kTarget); }
 
   /// Returns the sums of these samples, with new random errors.
@@ -98,7 +99,7 @@ static_assert(kGrid.width % kTileSide == 0 && kGrid.height % kTileSide == 0);
 
 struct Stopped {
   double error = 0;  ///< true error
-  double cost = 0;   ///< samples over the ideal number of a job that is not adaptive
+  double cost = 0;   ///< samples per pixel, divided by NoisyImage::ideal_samples()
 };
 
 double true_error(const Image& image) {
@@ -139,9 +140,10 @@ constexpr int kJobs = 400;
 
 struct Jobs {
   int met = 0;      ///< number of jobs whose true error is at most the target
-  double cost = 0;  ///< mean over the jobs
+  double cost = 0;  ///< mean of Stopped::cost over the jobs
 };
 
+/// Runs kJobs jobs. The parameters are those of run().
 Jobs of_many(Errors errors, bool adaptive, bool with_margin) {
   Random random(1);
   Jobs jobs;

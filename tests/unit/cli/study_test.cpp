@@ -65,7 +65,8 @@ TEST(Study, SamplesArePowersOfFourUpToTheMaximum) {
 TEST(Study, WithoutATechniqueTheErrorIsLargerAndTheMeanIsUnbiased) {
   const StudyOfScene study =
       study_of(*test::cornell_box().build(), {.samples = 64, .seeds = 6, .reference = 2048});
-  ASSERT_EQ(study.lines.size(), std::size(kMethods) - 1);  // guiding does not pay here
+  // Guiding does not pay here, so there is no line without guiding.
+  ASSERT_EQ(study.lines.size(), std::size(kMethods) - 1);
   const double best = line(study, Method::kFull).points.back().relative_rmse;
   for (const Method method : {Method::kNoLights, Method::kIndependent}) {
     EXPECT_GT(line(study, method).points.back().relative_rmse, best) << method_name(method);
@@ -86,7 +87,7 @@ TEST(Study, WithoutATechniqueTheErrorIsLargerAndTheMeanIsUnbiased) {
 // All visible light has passed through glass. Paths from the camera rarely find it, but photons do.
 TEST(Study, WhereGuidingPaysThereIsALineWithoutIt) {
   test::SceneMaker maker = test::lamp_in_glass(1.5, 0.05);
-  maker.camera({0, 0, 1}, {0, 0, 2}, 60);  // a wall; the lamp is behind the camera
+  maker.camera({0, 0, 1}, {0, 0, 2}, 60);  // sees a wall; the lamp is behind the camera
   const StudyOfScene study =
       study_of(*maker.build(), {.samples = 16, .seeds = 2, .reference = 256});
   ASSERT_EQ(study.lines.size(), std::size(kMethods));

@@ -23,7 +23,7 @@ class Videos : public testing::Test {
     if (!std::filesystem::exists(kFfmpeg) || !std::filesystem::exists(kFfprobe)) {
       GTEST_SKIP() << "ffmpeg is not installed";
     }
-    outlive_reader();
+    outlive_reader();  // ignores SIGPIPE
   }
   const test::TempDir folder_;
 };
@@ -48,7 +48,7 @@ TEST_F(Videos, HaveTheColorsThatTheirTagsState) {
     EXPECT_EQ(tags.out, "tv,bt709,bt709,bt709\n") << name << tags.err;
     const test::Finished frame = test::run({kFfmpeg, "-v", "error", "-i", file, "-frames:v", "1",
                                             "-f", "rawvideo", "-pix_fmt", "yuv420p", "-"});
-    // A frame has a byte of luma for each pixel, then two planes of colours with a byte for each
+    // A frame has a byte of luma for each pixel, then two planes of colours with a byte for every
     // four pixels.
     ASSERT_EQ(frame.out.size(), 64u * 36 * 3 / 2) << name << frame.err;
     for (const std::size_t at : {std::size_t{0}, std::size_t{34 * 64 + 62}}) {

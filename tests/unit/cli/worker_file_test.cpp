@@ -19,7 +19,8 @@ using test::fitting_mark;
 using test::worker_file;
 using testing::HasSubstr;
 
-/// Returns the error for a file that is to be the worker for this architecture.
+/// Returns the error for a file with these bytes that is offered as the worker program for
+/// `machine`; "no error" if the file is accepted.
 std::string error_of(const std::string& bytes, Machine machine = Machine::kAarch64) {
   const auto program = checked_worker_program(bytes, machine);
   return program.ok() ? "no error" : std::string(program.status().message());
@@ -93,7 +94,7 @@ TEST(WorkerProgram, IsRefusedIfItsVersionIsIncompatible) {
   EXPECT_THAT(error_of(worker_file(EM_AARCH64, mark)), HasSubstr("but this farm needs protocol "));
 }
 
-// The version is sent in an HTTP header.
+// The version is sent in an HTTP header, so it must be printable text.
 TEST(WorkerProgram, TheVersionIsText) {
   for (const std::string& version :
        {std::string(), std::string("1\r\nX-Evil: 1"), std::string(24, '1')}) {
