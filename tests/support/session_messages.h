@@ -11,16 +11,16 @@ namespace bandsaw::test {
 /// manifest's digest is all zeros. `id` is that of the lease. The job 7 is arbitrary.
 inline farm::ToWorker lease(std::uint64_t id, std::uint32_t first_row, std::uint64_t job = 7) {
   farm::ToWorker message;
-  farm::Lease* l = message.mutable_lease();
-  l->set_lease(id);
-  l->set_job(job);
-  l->set_manifest_sha256(wire::Digest().raw());
-  l->mutable_settings()->set_width(8);
-  l->mutable_settings()->set_height(80);
-  l->mutable_settings()->set_max_depth(4);
-  l->mutable_band()->set_last_sample(16);
-  l->mutable_band()->set_first_row(first_row);
-  l->mutable_band()->set_last_row(first_row + 2);
+  farm::Lease* content = message.mutable_lease();
+  content->set_lease(id);
+  content->set_job(job);
+  content->set_manifest_sha256(wire::Digest().raw());
+  content->mutable_settings()->set_width(8);
+  content->mutable_settings()->set_height(80);
+  content->mutable_settings()->set_max_depth(4);
+  content->mutable_band()->set_last_sample(16);
+  content->mutable_band()->set_first_row(first_row);
+  content->mutable_band()->set_last_row(first_row + 2);
   return message;
 }
 

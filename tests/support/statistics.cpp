@@ -61,8 +61,8 @@ ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
   // Wilson and Hilferty 1931: the cube root of chi-squared / k is nearly normal. Its variance is
   // 2 / (9 k), and its mean is 1 - variance.
   const double k = result.degrees;
-  const double spread = 2 / (9 * k);
-  const double z = (std::cbrt(result.statistic / k) - (1 - spread)) / std::sqrt(spread);
+  const double variance = 2 / (9 * k);
+  const double z = (std::cbrt(result.statistic / k) - (1 - variance)) / std::sqrt(variance);
   result.p_value = 0.5 * std::erfc(z / std::sqrt(2.0));
   return result;
 }

@@ -78,7 +78,7 @@ inline Box box_of(const Mesh& mesh) {
 }
 
 /// Returns a random point of the box.
-inline Vec3 inside(const Box& box, Random& random) {
+inline Vec3 random_point_in(const Box& box, Random& random) {
   const Vec3 p = random_point(random);
   const Vec3 half = 0.5 * (box.hi - box.lo);
   const Vec3 middle = box.lo + half;
@@ -91,7 +91,7 @@ inline Vec3 inside(const Box& box, Random& random) {
 inline Ray aimed_ray(const Mesh& mesh, const Box& box, Random& random) {
   const Box around = {box.lo * 2 - box.hi, box.hi * 2 - box.lo};
   const bool within = random.below(2) == 0;
-  const Vec3 origin = inside(within ? box : around, random);
+  const Vec3 origin = random_point_in(within ? box : around, random);
   const auto& triangle =
       mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
   const auto corner = [&](std::size_t i) {
@@ -100,7 +100,7 @@ inline Ray aimed_ray(const Mesh& mesh, const Box& box, Random& random) {
   };
   const double s = random.uniform();
   const double t = random.uniform() * (1 - s);
-  Vec3 target = inside(box, random);
+  Vec3 target = random_point_in(box, random);
   switch (random.below(4)) {
     case 0:
       target = corner(0);

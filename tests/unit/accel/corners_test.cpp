@@ -48,12 +48,12 @@ TEST(Corners, EqualThoseOfTheMesh) {
                   mesh.positions[mesh.triangles[hit.id.primitive][c]][k]);
       }
     }
-    const SurfacePoint near_at_hand = surface_at(geometry, ray, hit);
+    const SurfacePoint from_corners = surface_at(geometry, ray, hit);
     hit.corners = nullptr;
     const SurfacePoint looked_up = surface_at(geometry, ray, hit);
-    ASSERT_EQ(near_at_hand.position, looked_up.position);
-    ASSERT_EQ(near_at_hand.geometric_normal, looked_up.geometric_normal);
-    ASSERT_EQ(near_at_hand.offset, looked_up.offset);
+    ASSERT_EQ(from_corners.position, looked_up.position);
+    ASSERT_EQ(from_corners.geometric_normal, looked_up.geometric_normal);
+    ASSERT_EQ(from_corners.offset, looked_up.offset);
   }
   EXPECT_GT(of_meshes, 500);
   EXPECT_GT(loose, 500);

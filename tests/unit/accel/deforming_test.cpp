@@ -26,7 +26,7 @@ constexpr Interval kShutter = {0.25, 1.5};
 /// Returns a closed mesh, a sphere with random radii around `at`. Its vertices move along straight
 /// lines, except for some that do not move. At all times it contains the ball around `at` with the
 /// radius `size` / 2.
-Mesh breathing(double size, const Vec3& at, int slices = 24, int stacks = 12) {
+Mesh deforming_sphere(double size, const Vec3& at, int slices = 24, int stacks = 12) {
   const auto placed = [&](double spread, std::uint64_t seed) {
     return test::moved(test::scaled(test::rough_sphere(slices, stacks, spread, seed), size), at);
   };
@@ -109,7 +109,7 @@ TEST(Deforming, HitsEqualThoseOfTheInterpolatedMesh) {
   for (const double offset : {0.0, 1e4}) {
     for (const double size : {1.0, 1e-3}) {
       const Vec3 at = offset * Vec3{1, -0.5, 0.3};
-      const Geometry g = of_mesh(breathing(size, at));
+      const Geometry g = of_mesh(deforming_sphere(size, at));
       const Accel accel = Accel::build(g, pool);
       for (int when = 0; when < 24; ++when) {
         const double time = time_of(when, random);
@@ -144,7 +144,7 @@ TEST(Deforming, HitsEqualThoseOfTheInterpolatedMesh) {
 TEST(Deforming, EqualsBruteForceInInstances) {
   Pool pool(1);
   Random random(3);
-  Geometry g = of_mesh(breathing(0.2, {}, 12, 6));
+  Geometry g = of_mesh(deforming_sphere(0.2, {}, 12, 6));
   g.spheres.push_back({{0, 0, 0}, 0.4, {}});
   g.frames.push_back({kNoFrame, {}, {Key(0, {}), Key(2, rotation({1, 2, 0}, 80))}});
   for (int i = 0; i < 24; ++i) {
@@ -189,14 +189,14 @@ TEST(Deforming, DoesNotLeakAtAnyTime) {
     }
     return escaped;
   };
-  EXPECT_EQ(lost(breathing(1, {}), {}, 1, 100'000), 0);
-  EXPECT_EQ(lost(breathing(1, {}, 200, 12), {}, 1, 100'000), 0) << "needles";
+  EXPECT_EQ(lost(deforming_sphere(1, {}), {}, 1, 100'000), 0);
+  EXPECT_EQ(lost(deforming_sphere(1, {}, 200, 12), {}, 1, 100'000), 0) << "needles";
   for (const double offset : {1e3, 1e5}) {
     const Vec3 at = {offset, offset / 7, -offset};
-    EXPECT_EQ(lost(breathing(1, at), at, 1, 50'000), 0) << offset;
+    EXPECT_EQ(lost(deforming_sphere(1, at), at, 1, 50'000), 0) << offset;
   }
   for (const double scale : {0x1p-40, 1e-6, 0x1p40}) {
-    EXPECT_EQ(lost(breathing(scale, {}), {}, scale, 20'000), 0) << scale;
+    EXPECT_EQ(lost(deforming_sphere(scale, {}), {}, scale, 20'000), 0) << scale;
   }
   // The vertices cross the whole mesh, because the sphere turns by a right angle.
   Mesh turned = test::icosphere(3);
@@ -211,7 +211,7 @@ TEST(Deforming, DoesNotLeakAtAnyTime) {
 TEST(Deforming, TwoMeshesWithOneBorderDoNotLeak) {
   Pool pool(1);
   Random random(5);
-  const Mesh whole = breathing(1, {});
+  const Mesh whole = deforming_sphere(1, {});
   Geometry g = of_mesh(whole);
   g.meshes.push_back(whole);
   for (std::size_t part = 0; part < 2; ++part) {
@@ -266,13 +266,13 @@ std::int64_t check_boxes(const MeshTree& tree, const ShutterTime& now) {
   return checked;
 }
 
-TEST(Deforming, BoxesAndSizesHoldAtEveryTime) {
+TEST(Deforming, BoxesAndPackSizesAreValidAtEveryTime) {
   Random random(6);
   std::int64_t checked = 0;
   for (int scene = 0; scene < 30; ++scene) {
     const double size = std::pow(10, random.uniform(-3, 3));
     const Vec3 at = std::pow(10, random.uniform(-2, 4)) * test::random_direction(random);
-    const MeshTree tree = build_mesh_tree(breathing(size, at), nullptr);
+    const MeshTree tree = build_mesh_tree(deforming_sphere(size, at), nullptr);
     ASSERT_TRUE(tree.deforms());
     for (int i = 0; i < 20; ++i) {
       checked += check_boxes(tree, ShutterTime(kShutter, time_of(i, random)));
@@ -283,7 +283,7 @@ TEST(Deforming, BoxesAndSizesHoldAtEveryTime) {
 
 // The vertices move by about the largest float. The change of a box is larger than their movement
 // by a margin, so it exceeds the range of floats.
-TEST(Deforming, BoxesHoldIfTheirChangeOverflows) {
+TEST(Deforming, BoxesAreValidIfTheirChangeOverflows) {
   for (const auto& [open, close] :
        {std::pair(-0x1.8459fep127f, 0x1.ee98p125f), std::pair(-0x1.cd5030p126f, 0x1.1957e6p127f)}) {
     Mesh mesh;
@@ -312,7 +312,7 @@ TEST(Deforming, BadTrianglesDoNotChangeTheOthers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
   const float most = std::numeric_limits<float>::max();
-  const Mesh good = breathing(1, {});
+  const Mesh good = deforming_sphere(1, {});
   Mesh bad = good;
   const auto first = static_cast<std::uint32_t>(bad.positions.size());
   bad.positions.insert(bad.positions.end(), {{nan, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, -most, 0}});
@@ -339,7 +339,7 @@ TEST(Deforming, BadTrianglesDoNotChangeTheOthers) {
 
 TEST(Deforming, SurfacePointsEqualThoseOfTheInterpolatedMesh) {
   Random random(8);
-  Mesh mesh = breathing(1, {});
+  Mesh mesh = deforming_sphere(1, {});
   mesh.normals = mesh.positions;
   mesh.normals_at_close = mesh.positions_at_close;
   for (const auto& p : mesh.positions) {

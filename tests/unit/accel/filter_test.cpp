@@ -228,7 +228,7 @@ TYPED_TEST(Filter, NeverRejectsABoxThatContainsAHit) {
   }
 }
 
-TEST(Filters, AreTheSameForEveryFloat8) {
+TEST(Filters, GiveTheSameResultsWithEveryFloat8) {
   Random random(43);
   for (int i = 0; i < 50'000; ++i) {
     const Pair pair = adversarial_pair(random, true);

@@ -57,8 +57,9 @@ void expect_exact(const Geometry& g, int rays, double size, std::uint64_t seed) 
     }
     ++hits;
     // Checks a second ray, which starts at the hit, and the next hit along the first ray.
-    const Ray on{ray.origin + expected.t * ray.direction, ray.direction, kInfinity, expected.id};
-    ASSERT_TRUE(test::same_hit(test::closest_by_brute_force(g, on), accel.closest(on)));
+    const Ray second{ray.origin + expected.t * ray.direction, ray.direction, kInfinity,
+                     expected.id};
+    ASSERT_TRUE(test::same_hit(test::closest_by_brute_force(g, second), accel.closest(second)));
     const Hit next = accel.closest_after(ray, expected);
     ASSERT_TRUE(!next || next.t > expected.t || (next.t == expected.t && next.id > expected.id));
   }

@@ -50,22 +50,22 @@ TEST(Instance, X1_AMirroredInstanceKeepsItsOutside) {
     std::swap(t[1], t[2]);
   }
   const Geometry mirrored = placed(mesh, scaling({-1, 1, 1}));
-  const Geometry turned = placed(by_hand, {});
+  const Geometry reference = placed(by_hand, {});
   Pool pool(1);
   const Accel accel = Accel::build(mirrored, pool);
-  const Accel accel_turned = Accel::build(turned, pool);
+  const Accel accel_reference = Accel::build(reference, pool);
   test::Random random(1);
   for (int i = 0; i < 5000; ++i) {
     const Ray ray = aimed(random, {}, 0.8);
     const Hit hit = accel.closest(ray);
-    const Hit hit_turned = accel_turned.closest(ray);
-    ASSERT_EQ(static_cast<bool>(hit), static_cast<bool>(hit_turned));
+    const Hit hit_reference = accel_reference.closest(ray);
+    ASSERT_EQ(static_cast<bool>(hit), static_cast<bool>(hit_reference));
     if (!hit) {
       continue;
     }
     const SurfacePoint p = surface_at(mirrored, ray, hit);
-    const SurfacePoint q = surface_at(turned, ray, hit_turned);
-    ASSERT_NEAR(hit.t, hit_turned.t, 1e-15 * 5);
+    const SurfacePoint q = surface_at(reference, ray, hit_reference);
+    ASSERT_NEAR(hit.t, hit_reference.t, 1e-15 * 5);
     ASSERT_LE(length(p.geometric_normal - q.geometric_normal), 1e-12);
     ASSERT_LE(length(p.shading_normal - q.shading_normal), 1e-12);
     ASSERT_GT(dot(p.geometric_normal, p.position), 0.9);
@@ -105,8 +105,8 @@ TEST(Instance, X2_StretchedInstancesHaveTheNormalsOfTheirShape) {
     const Vec3 local = inverse(turn)->direction(n);
     const Vec3 gradient = normalize(turn.direction(
         {local.x / (axes.x * axes.x), local.y / (axes.y * axes.y), local.z / (axes.z * axes.z)}));
-    const bool same = dot(gradient, p.geometric_normal) > 0;
-    ASSERT_LE(length((same ? gradient : -gradient) - p.shading_normal), 1e-9);
+    const bool aligned = dot(gradient, p.geometric_normal) > 0;
+    ASSERT_LE(length((aligned ? gradient : -gradient) - p.shading_normal), 1e-9);
     ASSERT_LE(length(p.position - n), 1e-14);
   }
   EXPECT_GT(hits, 1000);

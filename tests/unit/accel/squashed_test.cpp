@@ -29,16 +29,17 @@ struct Case {
 
 std::vector<Case> cases() {
   const Transform turn = rotation({1, 2, 3}, 40);
-  const Transform away = translation({3, -2, 1}) * turn;
+  const Transform turn_and_move = translation({3, -2, 1}) * turn;
   std::vector<Case> all;
   for (const double by : {1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
-    const std::string text = std::to_string(std::log10(by)).substr(0, 3);
-    all.push_back({"squashed, 10^" + text, scaling({1, by, 1})});
-    all.push_back({"squashed and turned, 10^" + text, away * scaling({1, by, 1})});
-    all.push_back({"turned and squashed, 10^" + text, away * scaling({1, by, -1}) * turn});
-    all.push_back({"a needle, 10^" + text, away * scaling({by, 1, by}) * turn});
-    all.push_back({"small, 10^" + text, turn * scaling({1e-4, by * 1e-4, 2e-4})});
-    all.push_back({"stretched, 1 / 10^" + text, turn * scaling({1, 1 / by, 1})});
+    const std::string exponent = std::to_string(std::log10(by)).substr(0, 3);
+    all.push_back({"squashed, 10^" + exponent, scaling({1, by, 1})});
+    all.push_back({"squashed and turned, 10^" + exponent, turn_and_move * scaling({1, by, 1})});
+    all.push_back(
+        {"turned and squashed, 10^" + exponent, turn_and_move * scaling({1, by, -1}) * turn});
+    all.push_back({"a needle, 10^" + exponent, turn_and_move * scaling({by, 1, by}) * turn});
+    all.push_back({"small, 10^" + exponent, turn * scaling({1e-4, by * 1e-4, 2e-4})});
+    all.push_back({"stretched, 1 / 10^" + exponent, turn * scaling({1, 1 / by, 1})});
   }
   return all;
 }
@@ -116,14 +117,14 @@ TEST(Squashed, S12_CrossingsOfASphereAlternate) {
     all.inside += lost.inside;
     all.outside += lost.outside;
   }
-  const std::string of = std::to_string(all.rays);
-  test::at_most("S12", "rays lost inside, of " + of, all.inside, 0);
-  test::at_most("S12", "rays that meet what they leave, of " + of, all.outside, 0);
+  const std::string count = std::to_string(all.rays);
+  test::at_most("S12", "rays lost inside, of " + count, all.inside, 0);
+  test::at_most("S12", "rays that meet what they leave, of " + count, all.outside, 0);
 }
 
 /// Checks the length of the chord that a ray has in a sphere. In the sphere's own space, the ray
 /// p + t d with |p| = 1 leaves the sphere at t = -2 (p.d) / (d.d).
-TEST(Squashed, S12_ChordsHaveTheirExactLength) {
+TEST(Squashed, S12_ChordsAreCloseToTheirExactLength) {
   test::Worst error;
   for (const Case& c : cases()) {
     const Geometry g = placed(c.to_world, false);

@@ -111,7 +111,7 @@ std::vector<FloatBox> nested_boxes() {
   return boxes;
 }
 
-TEST(Tree, B7_IsNeverDeeperThanItsStack) {
+TEST(Tree, B7_IsNeverDeeperThanTheTraversalStack) {
   EXPECT_LE(build_tree(nested_boxes()).depth, kMaxTreeDepth);
   const std::vector<FloatBox> same(100000, FloatBox{{0, 0, 0}, {1, 1, 1}});
   const WideTree tree = build_tree(same);

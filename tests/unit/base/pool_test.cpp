@@ -23,7 +23,7 @@ TEST(Pool, CallsEachIndexOnce) {
   }
 }
 
-TEST(Pool, HasNothingToDoForAnEmptyRange) {
+TEST(Pool, MakesNoCallForAnEmptyRange) {
   Pool pool(1);
   pool.parallel_for(0, [](std::int64_t) { FAIL(); });
   pool.parallel_for(-3, [](std::int64_t) { FAIL(); });
@@ -66,7 +66,7 @@ TEST(Pool, FinishesOneRangeWhileAnotherIsHeldUp) {
   slow.join();
 }
 
-TEST(Pool, ThrowsWhatACallThrows) {
+TEST(Pool, ThrowsTheExceptionOfACall) {
   Pool pool(3);
   std::vector<std::atomic<int>> calls(1000);
   const auto body = [&](std::int64_t i) {

@@ -193,9 +193,9 @@ TEST_F(BrowserRendererTest, MeshesAndTexturesGiveTheBytesOfANativeWorker) {
   EXPECT_EQ(row_step_, "{\"row_step\":1}");
   for (const Integrator integrator :
        {Integrator::kPath, Integrator::kDirect, Integrator::kNormals, Integrator::kPathGuided}) {
-    Task of = task(manifest, {{16, 32}, {5, 30}});
-    of.settings.integrator = integrator;
-    expect_same(of, scene, 7);
+    Task band_task = task(manifest, {{16, 32}, {5, 30}});
+    band_task.settings.integrator = integrator;
+    expect_same(band_task, scene, 7);
   }
 }
 

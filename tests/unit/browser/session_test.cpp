@@ -294,9 +294,9 @@ TEST(BrowserSession, RefusesWrongArguments) {
       {make(id, "n", "\x01"), "build"},
       {make(id, "n", "b", 0), "cores"},
       {make(id, "n", "b", 5000), "cores"}};
-  for (const auto& [session, what] : sessions) {
-    EXPECT_THAT(error_of(bandsaw_session_answer(session)), HasSubstr(what));
-    EXPECT_THAT(error_of(bandsaw_session_hello(session)), HasSubstr(what));
+  for (const auto& [session, argument] : sessions) {
+    EXPECT_THAT(error_of(bandsaw_session_answer(session)), HasSubstr(argument));
+    EXPECT_THAT(error_of(bandsaw_session_hello(session)), HasSubstr(argument));
     bandsaw_session_delete(session);
   }
 }

@@ -29,7 +29,7 @@ PerspectiveCamera camera(double fov) {
   return camera;
 }
 
-TEST(Camera, TheMiddleLooksAheadAndTheEdgesAreHalfTheAngleOff) {
+TEST(Camera, TheMiddleRayIsStraightAndTopAndBottomRaysAreAtHalfTheAngle) {
   const RayGenerator rays(camera(90), 200, 100);
   expect_near(rays.ray(100, 50, 0, 0).direction, {0, 0, -1}, 1e-15);
   const double s = std::sqrt(0.5);
@@ -64,7 +64,7 @@ TEST(Camera, C3_ExtremeAnglesGiveFiniteUnitDirections) {
   test::report_hard_case("C3", "unit directions at 1e-6 and 179.9 degrees");
 }
 
-TEST(Camera, C2C3_CamerasThatCannotMakeRaysAreRefusedWithTheField) {
+TEST(Camera, C2C3_CamerasThatCannotMakeRaysAreRefusedWithTheNameOfTheField) {
   const auto message = [](auto change) {
     PerspectiveCamera c = camera(40);
     change(c);
@@ -84,20 +84,20 @@ TEST(Camera, C2C3_CamerasThatCannotMakeRaysAreRefusedWithTheField) {
   test::report_hard_case("C3", "0 and 180 degrees refused");
 }
 
-TEST(Camera, OrthographicPixelsAreSceneUnitsExactly) {
-  const OrthographicCamera study{
+TEST(Camera, OrthographicRaysStartAtExactPixelPositions) {
+  const OrthographicCamera upright{
       .position = {250, 250, 0}, .look_at = {250, 250, -1}, .height = 500};
-  const RayGenerator up(study, 500, 500);
-  OrthographicCamera mirrored = study;
+  const RayGenerator upright_rays(upright, 500, 500);
+  OrthographicCamera mirrored = upright;
   mirrored.up = {0, -1, 0};
   mirrored.mirrored = true;
-  const RayGenerator down(mirrored, 500, 500);
+  const RayGenerator mirrored_rays(mirrored, 500, 500);
   for (const double x : {0.0, 0.5, 17.25, 249.5, 499.5}) {
     for (const double y : {0.0, 3.5, 250.0, 499.75}) {
-      EXPECT_EQ(up.ray(x, y, 0.3, 0.9).origin, (Vec3{x, 500 - y, 0}));
-      EXPECT_EQ(up.ray(x, y, 0.3, 0.9).direction, (Vec3{0, 0, -1}));
-      EXPECT_EQ(down.ray(x, y, 0.3, 0.9).origin, (Vec3{x, y, 0}));
-      EXPECT_EQ(down.ray(x, y, 0.3, 0.9).direction, (Vec3{0, 0, -1}));
+      EXPECT_EQ(upright_rays.ray(x, y, 0.3, 0.9).origin, (Vec3{x, 500 - y, 0}));
+      EXPECT_EQ(upright_rays.ray(x, y, 0.3, 0.9).direction, (Vec3{0, 0, -1}));
+      EXPECT_EQ(mirrored_rays.ray(x, y, 0.3, 0.9).origin, (Vec3{x, y, 0}));
+      EXPECT_EQ(mirrored_rays.ray(x, y, 0.3, 0.9).direction, (Vec3{0, 0, -1}));
     }
   }
 }

@@ -54,7 +54,7 @@ TEST(LensView, AllRaysThroughThePointInFocusAreInTheView) {
   }
 }
 
-TEST(LensView, HasTheDensityOfItsSolidAngle) {
+TEST(LensView, TheMeanOfTheInversePdfIsTheSolidAngle) {
   const PerspectiveCamera camera = lens();
   const RayGenerator rays(camera, 60, 40);
   const auto view = rays.lens_view(30, 20);

@@ -76,7 +76,7 @@ TEST(MovingCamera, ParallelRaysKeepUnitDirections) {
   EXPECT_NEAR(length(rays.ray(1, 2, 0, 0, 0.5).direction), 1, 1e-12);
 }
 
-TEST(MovingCamera, TheTwoStatesMustBelongTogether) {
+TEST(MovingCamera, MotionsBetweenIncompatibleCamerasAreRefused) {
   EXPECT_TRUE(validate_motion(at(0), at(1)).ok());
   EXPECT_FALSE(validate_motion(at(0), OrthographicCamera{.shutter = kShutter}).ok());
   PerspectiveCamera lens = at(1);

@@ -19,7 +19,7 @@ namespace {
 
 using Kind = PixelFilter::Kind;
 
-TEST(PixelFilter, TheDefaultIsThePixelItselfToTheBit) {
+TEST(PixelFilter, TheDefaultAddsTheRandomNumberToThePixelExactly) {
   for (std::uint64_t i = 0; i < 1000; ++i) {
     const Sample4 at = sample4({.seed = 1, .x = 3, .y = 4, .sample = i}, kGroupCamera);
     for (const std::uint32_t x : {0u, 1u, 1000u, 65535u}) {
@@ -28,7 +28,7 @@ TEST(PixelFilter, TheDefaultIsThePixelItselfToTheBit) {
   }
 }
 
-TEST(PixelFilter, C6_TheLastNumberBelowOneStaysInThePixel) {
+TEST(PixelFilter, C6_TheLastRandomNumberBelowOneStaysInThePixel) {
   const double last = 1 - 0x1p-32;
   for (const double x : {0.0, 65535.0, 1048575.0}) {
     EXPECT_EQ(std::floor(x + 0.5 + sample(PixelFilter{}, last, 0).x), x);

@@ -271,7 +271,7 @@ TEST(CommandLine, HelpAndVersionAreTexts) {
   EXPECT_THAT(parsed<ShowText>("--version").text, HasSubstr("bandsaw 0."));
 }
 
-TEST(CommandLine, WrongUseIsOneLineThatNamesTheWord) {
+TEST(CommandLine, AnErrorIsOneLineThatNamesTheWrongWord) {
   expect_wrong("", "no command");
   expect_wrong("rendr a.textproto", "'rendr'; did you mean render?");
   expect_wrong("xyzzy", "bandsaw --help");
@@ -372,7 +372,7 @@ TEST(CommandLine, RenderTakesEachKernelOfThisMachine) {
   }
 }
 
-TEST(CommandLine, TheNearestWordIsNamed) {
+TEST(CommandLine, AnErrorNamesTheNearestKnownWord) {
   expect_wrong("rendr a.glb", "did you mean render?");
   expect_wrong("render a.glb --sample 4", "did you mean --samples?");
   expect_wrong("render a.glb --integrator pth", "did you mean path?");

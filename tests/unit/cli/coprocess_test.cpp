@@ -52,7 +52,7 @@ TEST(Coprocess, IsKilledIfItDoesNotAnswer) {
 }
 
 /// The child closes its streams and does not exit, so waiting for its output would never end.
-TEST(Coprocess, IsKilledIfItClosesItsStreamsAndStays) {
+TEST(Coprocess, IsKilledIfItClosesItsStreamsAndDoesNotExit) {
   const auto child = shell("exec </dev/null >/dev/null; while :; do sleep 1; done");
   const ChildOutcome outcome = end_of(child->exchange("1", 0.3, nullptr));
   EXPECT_EQ(outcome.end, ChildOutcome::End::kTimedOut);

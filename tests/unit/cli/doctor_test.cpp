@@ -54,7 +54,7 @@ TEST(Doctor, ADiskNeedsFreeSpace) {
   EXPECT_THAT(full.found, HasSubstr("only 0.1 GB"));
 }
 
-TEST(Doctor, AMissingFolderIsCheckedByItsParent) {
+TEST(Doctor, AMissingFolderIsReportedAsNotYetExisting) {
   const test::TempDir folder;
   EXPECT_THAT(check_data_folder(folder / "a/b").found, HasSubstr("does not exist yet"));
 }

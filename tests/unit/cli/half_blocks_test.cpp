@@ -35,7 +35,7 @@ std::string plain(const std::string& line) {
   return out;
 }
 
-TEST(HalfBlocks, TwoPixelsAreACharacterTheUpperOneInTheForeground) {
+TEST(HalfBlocks, TheUpperPixelIsTheForegroundAndTheLowerOneTheBackground) {
   const Image image{2, 2, {kWhite, kRed, kBlack, kRed}};
   EXPECT_THAT(half_blocks(image, {}, {80, 24}),
               ElementsAre("\x1b[38;2;255;255;255m\x1b[48;2;0;0;0m▀"
@@ -62,7 +62,7 @@ TEST(HalfBlocks, FitsTheSpaceAndKeepsItsAspectRatio) {
   EXPECT_THAT(half_blocks(Image{}, {}, {80, 24}), IsEmpty());
 }
 
-TEST(HalfBlocks, ACellIsTheMeanLightWithTheGivenDisplay) {
+TEST(HalfBlocks, ACellShowsTheMeanLightWithTheGivenDisplay) {
   const Image image{2, 4, {kWhite, kBlack, kBlack, kWhite, kRed, kRed, kRed, kRed}};
   // Half of the light is code 188 of sRGB (IEC 61966-2-1).
   EXPECT_THAT(half_blocks(image, {}, {1, 1}),
@@ -73,7 +73,7 @@ TEST(HalfBlocks, ACellIsTheMeanLightWithTheGivenDisplay) {
   EXPECT_THAT(half_blocks(broken, {}, {1, 1})[0], HasSubstr("38;2;0;0;0"));
 }
 
-TEST(HalfBlocks, AColourIsWrittenOnce) {
+TEST(HalfBlocks, AnUnchangedColourIsWrittenOnce) {
   const Image image{3, 1, {kRed, kRed, kRed}};
   EXPECT_THAT(half_blocks(image, {}, {80, 24}), ElementsAre("\x1b[38;2;255;0;0m▀▀▀\x1b[0m"));
 }

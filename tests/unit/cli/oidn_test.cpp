@@ -37,7 +37,7 @@ TEST(Oidn, ReportsTheLibrarysErrors) {
               HasSubstr("an unlucky width"));
 }
 
-TEST(Oidn, AMissingLibraryIsAnErrorWithACure) {
+TEST(Oidn, TheErrorForAMissingLibraryNamesARemedy) {
   const absl::Status missing = Oidn::load("/nowhere/libOpenImageDenoise.so.2").status();
   EXPECT_TRUE(absl::IsUnavailable(missing));
   EXPECT_THAT(std::string(missing.message()), HasSubstr("install it, or use --denoise"));

@@ -69,7 +69,7 @@ TEST(ProgressText, UnknownValuesAreNotShown) {
   EXPECT_EQ(plain_line(progress), " 62 % · 48 Msamples · 0 workers");
 }
 
-TEST(ProgressText, NinetyNineAndAHalfPercentIsNotDone) {
+TEST(ProgressText, AnUnfinishedJobNeverShowsOneHundredPercent) {
   Progress progress = some_progress();
   progress.job.fraction = 0.9999;
   EXPECT_THAT(plain_line(progress), HasSubstr(" 99 %"));
@@ -142,7 +142,7 @@ TEST(ProgressText, TheCostIsShownWithThePartsOfTheError) {
   EXPECT_EQ(cost_line(progress), "256 samples a pixel · 8 M rays");
 }
 
-TEST(ProgressText, DroppedPrimitivesAreReported) {
+TEST(ProgressText, CutOffPathsAndDroppedPrimitivesAreReported) {
   Progress progress = some_progress();
   EXPECT_THAT(left_out_line(progress), IsEmpty());
   progress.job.samples_done = 1000;

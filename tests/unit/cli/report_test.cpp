@@ -112,7 +112,7 @@ class ReportFiles : public testing::Test {
   test::TempDir folder_;
 };
 
-TEST_F(ReportFiles, AreBesideTheImagesOnce) {
+TEST_F(ReportFiles, ImagesOfTheSameNameShareOneReport) {
   EXPECT_THAT(*report_files({}, {folder_ / "a.png", folder_ / "a.exr", folder_ / "b.x.png"}),
               ElementsAre(folder_ / "a.json", folder_ / "b.x.json"));
   EXPECT_THAT(*report_files({"none"}, {folder_ / "a.png"}), IsEmpty());
@@ -134,7 +134,7 @@ TEST_F(ReportFiles, NeverReplaceOtherFiles) {
   EXPECT_THAT(*report_files({}, {folder_ / "b.png"}), ElementsAre(folder_ / "b.report.json"));
 }
 
-TEST_F(ReportFiles, APictureBesideAModelIsNotTakenForARender) {
+TEST_F(ReportFiles, APictureBesideAModelIsReplacedOnlyIfItHasAReport) {
   const std::string picture = write("cube.png", "a texture");
   EXPECT_EQ(check_default_output("cube.obj", picture).code(), absl::StatusCode::kInvalidArgument);
   EXPECT_TRUE(check_default_output("cube.textproto", picture).ok());

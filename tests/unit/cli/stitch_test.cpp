@@ -35,14 +35,14 @@ TEST(StitchCoverage, MissingRowsAreAllNamed) {
   EXPECT_THAT(error_of(coverage), HasSubstr("rows 0:2, 4:7, 9:10 are in no part"));
 }
 
-TEST(StitchCoverage, ARowInTwoPartsNamesBoth) {
+TEST(StitchCoverage, TheErrorForARowInTwoPartsNamesBothParts) {
   StitchCoverage coverage(10);
   ASSERT_TRUE(coverage.add("top.band", {{0, 16}, {0, 6}}).ok());
   const absl::Status status = coverage.add("bottom.band", {{0, 16}, {5, 10}});
   EXPECT_EQ(status.message(), "row 5 is in both top.band and bottom.band: leave one out");
 }
 
-TEST(StitchCoverage, DifferentNumbersOfSamplesNameBothParts) {
+TEST(StitchCoverage, TheErrorForDifferentNumbersOfSamplesNamesBothParts) {
   StitchCoverage coverage(10);
   ASSERT_TRUE(coverage.add("top.band", {{0, 16}, {0, 5}}).ok());
   ASSERT_TRUE(coverage.add("bottom.band", {{0, 32}, {5, 10}}).ok());

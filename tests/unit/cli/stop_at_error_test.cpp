@@ -144,7 +144,7 @@ struct Jobs {
 };
 
 /// Runs kJobs jobs. The parameters are those of run().
-Jobs of_many(Errors errors, bool adaptive, bool with_margin) {
+Jobs run_many(Errors errors, bool adaptive, bool with_margin) {
   Random random(1);
   Jobs jobs;
   for (int i = 0; i < kJobs; ++i) {
@@ -157,29 +157,29 @@ Jobs of_many(Errors errors, bool adaptive, bool with_margin) {
 
 // For 400 jobs, the standard error of a share of 95 % is 1.1 %. The cost is above 1 because of the
 // margin, and because a job stops at checkpoints only.
-TEST(StopAtError, NineteenOfTwentyImagesAreAtTheirTarget) {
-  const Jobs even = of_many(Errors::kOwn, false, true);
-  EXPECT_GE(even.met, 0.95 * kJobs);
-  EXPECT_LE(even.cost, 1.7);
-  EXPECT_GE(of_many(Errors::kOwn, true, true).met, 0.95 * kJobs);
+TEST(StopAtError, NineteenOfTwentyImagesMeetTheirTarget) {
+  const Jobs jobs = run_many(Errors::kOwn, false, true);
+  EXPECT_GE(jobs.met, 0.95 * kJobs);
+  EXPECT_LE(jobs.cost, 1.7);
+  EXPECT_GE(run_many(Errors::kOwn, true, true).met, 0.95 * kJobs);
 }
 
 TEST(StopAtError, ImagesWhosePixelsSharePathsMeetTheirTarget) {
-  const Jobs even = of_many(Errors::kShared, false, true);
-  EXPECT_GE(even.met, 0.95 * kJobs);
-  EXPECT_LE(even.cost, 1.7);
+  const Jobs jobs = run_many(Errors::kShared, false, true);
+  EXPECT_GE(jobs.met, 0.95 * kJobs);
+  EXPECT_LE(jobs.cost, 1.7);
 }
 
 TEST(StopAtError, ImagesWithRareBrightPathsMeetTheirTarget) {
-  const Jobs even = of_many(Errors::kFew, false, true);
-  EXPECT_GE(even.met, 0.95 * kJobs);
-  EXPECT_LE(even.cost, 2);
+  const Jobs jobs = run_many(Errors::kFew, false, true);
+  EXPECT_GE(jobs.met, 0.95 * kJobs);
+  EXPECT_LE(jobs.cost, 2);
 }
 
 // The margin is needed because a job tends to stop when its estimate is too low.
 TEST(StopAtError, ManyImagesMissTheirTargetWithoutAMargin) {
-  EXPECT_LE(of_many(Errors::kOwn, false, false).met, 0.8 * kJobs);
-  EXPECT_LE(of_many(Errors::kShared, false, false).met, 0.8 * kJobs);
+  EXPECT_LE(run_many(Errors::kOwn, false, false).met, 0.8 * kJobs);
+  EXPECT_LE(run_many(Errors::kShared, false, false).met, 0.8 * kJobs);
 }
 
 }  // namespace

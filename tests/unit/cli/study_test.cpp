@@ -73,11 +73,11 @@ TEST(Study, WithoutATechniqueTheErrorIsLargerAndTheMeanIsUnbiased) {
   }
   for (const Method method : {Method::kFull, Method::kNoMis, Method::kNoLights, Method::kAdaptive,
                               Method::kIndependent}) {
-    const StudyLine& of = line(study, method);
-    ASSERT_EQ(of.points.size(), 4u);
-    EXPECT_LT(*slope_of(of), -0.3) << method_name(method);
+    const StudyLine& tested = line(study, method);
+    ASSERT_EQ(tested.points.size(), 4u);
+    EXPECT_LT(*slope_of(tested), -0.3) << method_name(method);
     // The image has 64 pixels, so its mean has an eighth of the error of the reference's pixels.
-    const StudyPoint& last = of.points.back();
+    const StudyPoint& last = tested.points.back();
     EXPECT_LT(std::abs(last.bias), 4 * last.bias_error + 2 * study.reference_error / 8)
         << method_name(method);
   }
@@ -100,8 +100,8 @@ TEST(Study, WhereGuidingPaysThereIsALineWithoutIt) {
 TEST(Study, StoppingPerPixelLosesRareLight) {
   const StudyOfScene study =
       study_of(*rare_light(), {.samples = 256, .seeds = 2, .reference = 4096});
-  const StudyPoint& fair = line(study, Method::kIndependent).points.back();
-  EXPECT_LT(std::abs(fair.bias), 0.1);
+  const StudyPoint& without_stops = line(study, Method::kIndependent).points.back();
+  EXPECT_LT(std::abs(without_stops.bias), 0.1);
   for (const StudyPoint& point : line(study, Method::kPixelStops).points) {
     EXPECT_LT(point.bias, -0.25);
     EXPECT_LT(point.samples, 256);

@@ -95,7 +95,7 @@ TEST(WorkerProgram, IsRefusedIfItsVersionIsIncompatible) {
 }
 
 // The version is sent in an HTTP header, so it must be printable text.
-TEST(WorkerProgram, TheVersionIsText) {
+TEST(WorkerProgram, AVersionThatIsNoTextIsRefused) {
   for (const std::string& version :
        {std::string(), std::string("1\r\nX-Evil: 1"), std::string(24, '1')}) {
     wire::WorkerMark mark = fitting_mark();
