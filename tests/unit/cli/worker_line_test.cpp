@@ -36,7 +36,8 @@ class WorkerLine : public ::testing::Test {
       write(absl::StrCat("program-", other_machine_name(machine)), program(machine));
       digests_[machine] = wire::sha256(program(machine));
     }
-    // Copies the file that the last part of the URL names: curl --noproxy '*' -fsS URL -o FILE.
+    // A stand-in for curl, which is called as `curl --noproxy '*' -fsS URL -o FILE`. It records the
+    // URL, and copies the program that the last part of the URL names to FILE.
     write("bin/curl", "#!/bin/sh\necho \"$4\" >>" + folder_.path() + "/downloaded\ncp \"" +
                           folder_.path() + "/program-${4##*/}\" \"$6\"\n");
   }
@@ -60,6 +61,8 @@ class WorkerLine : public ::testing::Test {
   WorkerDigests digests_;
 };
 
+// An architecture has two names, for example aarch64 and arm64. The line
+// accepts both as the output of `uname -m`.
 TEST_F(WorkerLine, EachArchitectureGetsItsProgramByEitherName) {
   for (const Machine machine : kMachines) {
     for (const absl::string_view name : {machine_name(machine), other_machine_name(machine)}) {

@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20;
 
+/// Returns the image with uniform noise in [-strength / 2, strength / 2). The noise of a pixel is
+/// the same in all channels and independent of other pixels.
 Image noisy(const Image& image, float strength, std::uint64_t seed) {
   Random random(seed);
   Image out = image;
@@ -31,8 +33,8 @@ TEST(Bias, NoiseAloneIsNotBias) {
   EXPECT_EQ(test.suspicious_blocks, 0u);
 }
 
-// Every pixel lacks 0.001: a hundredth of the range of its noise, and a fifth of a per cent of the
-// light, whose mean is 1/2.
+// Every pixel is darker by 0.001. This is a hundredth of the range of the noise, and a fifth of a
+// per cent of the mean of the image, which is 1/2.
 TEST(Bias, ABiasOfAHundredthOfTheNoiseIsFound) {
   Image darker = noisy(waves(512, 512), 0.1F, kSeed);
   for (Rgb& pixel : darker.pixels) {
@@ -86,10 +88,11 @@ TEST(Bias, GroupsThatShareTheirNoiseAreNotBias) {
     }
     alarms += test_bias(shared, image).suspicious_blocks > 0 ? 1 : 0;
   }
-  EXPECT_LE(alarms, 12);  // as above
+  EXPECT_LE(alarms, 12);  // 4 expected; more than 12 has a probability below 1e-3
 }
 
-// One of 33 columns is too bright by half. It is alone in the last column of blocks.
+// One of 33 columns is 1.5 times as bright as in the reference. The last column of blocks has only
+// this column of pixels, but its pixels do not count more than others.
 TEST(Bias, EveryPixelCountsAlike) {
   Image image = uniform(33, 32, 1);
   for (std::uint32_t y = 0; y < 32; ++y) {

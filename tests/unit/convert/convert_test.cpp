@@ -110,7 +110,7 @@ JobView full_job() {
 }
 
 // Converts a job to a message, back to a job, and to a message again. The two messages differ if
-// job_view_of() forgets a field. The next test finds the fields that to_message() forgets.
+// job_view_of() forgets a field. EveryFieldOfAJobIsSet finds the fields that to_message() forgets.
 TEST(Convert, JobsRoundTrip) {
   const JobView job = full_job();
   const farm::JobStatus message = to_message(job);

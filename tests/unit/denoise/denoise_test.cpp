@@ -133,7 +133,8 @@ TEST(Denoise, TellsItsErrorWithoutAReference) {
     const Denoised clean = denoised(input);
     const Image truth = image_of(ramp);
     EXPECT_NEAR(clean.total.rmse_raw / rmse(input.mean, truth), 1, 0.05) << seed;
-    // The estimate is a difference of two numbers that are much larger.
+    // The estimate is a difference of two numbers that are much larger. So the tolerance is a share
+    // of the noise, not of the estimate: 5 % of its variance, 0.05^2.
     const double estimate = clean.total.rmse_clean;
     EXPECT_LT(estimate, rmse(input.mean, truth) / 2) << seed;
     EXPECT_LT(std::abs(estimate * estimate - std::pow(rmse(clean.image, truth), 2)),
@@ -212,8 +213,8 @@ TEST(Denoise, ValuesThatAreNotFiniteStayAndHarmNoOthers) {
   EXPECT_TRUE(std::isfinite(clean.total.rmse_clean));
 }
 
-// In red the parts are 1.1e30 and 0.9e30, so the error of their mean is 0.1e30. The mean of all
-// channels is 1e30 / 3, and the mean of the squared errors is (0.1e30)^2 / 3.
+// In red the two parts of the samples are 1.1e30 and 0.9e30, so the error of their mean is 0.1e30.
+// The mean of all channels is 1e30 / 3, and the mean of the squared errors is (0.1e30)^2 / 3.
 TEST(Denoise, PixelsTooBrightForTheFiltersStayAndCountInTheError) {
   DenoiseInput input = noisy(flat, 0, 13);
   for (std::size_t i = 0; i < input.mean.pixels.size(); ++i) {
@@ -251,8 +252,8 @@ TEST(Denoise, AcceptsPartsOfDifferentSizes) {
   const Denoised clean = denoised(input);
   const Image truth = image_of([](auto, auto) { return gray(0.5f); });
   EXPECT_NEAR(clean.total.rmse_raw / rmse(input.mean, truth), 1, 0.1);
-  // The factor is smaller than in other tests: grey noise is equal in all channels, so the patches
-  // of two pixels are compared less precisely.
+  // The error falls by a smaller factor than in other tests. Grey noise is equal in all channels,
+  // so the patches of two pixels are compared less precisely.
   EXPECT_LT(rmse(clean.image, truth), rmse(input.mean, truth) / 3);
 }
 
@@ -267,8 +268,9 @@ TEST(Denoise, HasTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-// The image is denoised in strips of rows. There are no seams between them: a pixel depends only on
-// its strip and the margin of rows around it, and not on where the strips begin.
+// The image is denoised in strips of rows, each together with a margin of rows around the strip.
+// The filters reach no farther than this margin. So a pixel does not depend on where the strips
+// begin, and there are no seams between strips.
 TEST(Denoise, HasTheSameBitsForAnyHeightOfTheStrips) {
   const DenoiseInput input = noisy(
       [](std::uint32_t x, std::uint32_t y) { return gray(x / 13 % 2 == y / 9 % 2 ? 0.2f : 0.8f); },

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t kSide = 128;
 
+/// Approximately normal: the sum of twelve uniform numbers.
 float gaussian(test::Random& random) {
   double sum = -6;
   for (int i = 0; i < 12; ++i) {
@@ -22,7 +23,7 @@ float gaussian(test::Random& random) {
   return static_cast<float>(sum);
 }
 
-/// Adds a constant, the bias, to the mean of three pixels in a row.
+/// The filter: returns the mean of each pixel and its left and right neighbours, plus `bias`.
 Image filtered(const Image& image, float bias) {
   Image out = image;
   for (std::uint32_t y = 0; y < kSide; ++y) {
@@ -34,15 +35,16 @@ Image filtered(const Image& image, float bias) {
   return out;
 }
 
-// The noise of a pixel has the deviation 0.1, that of the mean of three pixels 0.1 / sqrt(3). The
-// image has 3 x 16,384 values, so their root mean square is known to 0.5 %. The tolerance is ten
-// times that.
+// The noise of a pixel has the standard deviation 0.1. The mean of three pixels has the standard
+// deviation 0.1 / sqrt(3). The image has 3 x 16,384 values, so their root mean square is known to
+// 0.5 %. The tolerance is ten times as large.
 TEST(Halves, TellErrorAndBiasOfALinearFilter) {
   test::Random random(3);
   const float share = 0.25f;
   const Image truth{kSide, kSide, std::vector<Rgb>(kSide * kSide, gray(1))};
   DenoiseInput input{truth, truth, std::vector<float>(kSide * kSide, share), truth, truth};
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    // Returns the mean of the samples of a part; `part` is its share in all samples.
     const auto of_part = [&](float part) {
       const float deviation = 0.1f / std::sqrt(part);
       return Rgb{1 + deviation * gaussian(random), 1 + deviation * gaussian(random),
@@ -65,7 +67,7 @@ TEST(Halves, TellErrorAndBiasOfALinearFilter) {
   EXPECT_NEAR(clean.total.mean, 1, 0.01);
 }
 
-// The parts are 1.1 and 0.9, so the error of their mean is 0.1.
+// The two parts of the samples are 1.1 and 0.9, so the error of their mean is 0.1.
 TEST(Halves, LeaveOutPixelsThatAreNotFinite) {
   const Image mean{kSide, kSide, std::vector<Rgb>(kSide * kSide, gray(1))};
   const Image first{kSide, kSide, std::vector<Rgb>(kSide * kSide, gray(1.1f))};

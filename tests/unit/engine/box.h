@@ -1,7 +1,7 @@
 #pragma once
 
 // Passes values from a callback, which runs on another thread, to the test that waits for them. A
-// wait of a minute aborts the test.
+// wait of more than a minute aborts the test.
 
 #include <chrono>
 #include <functional>
@@ -22,14 +22,14 @@ class Box {
     value_ = std::move(value);
     changed_.notify_all();
   }
-  /// Waits until the newest value satisfies the condition, and returns a copy of it.
+  /// Waits until the newest value satisfies `fits`, and returns a copy of this value.
   T wait(const std::function<bool(const T&)>& fits = [](const T&) { return true; })
       EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     wait_until(fits);
     return *value_;
   }
-  /// Waits for a value and removes it, so that it belongs to the caller alone
+  /// Waits for a value, removes it and returns it. So the value belongs to the caller alone
   /// (coordinator/engine/answer.h says why that matters).
   T take() EXCLUDES(mutex_) {
     MutexLock lock(mutex_);

@@ -48,7 +48,8 @@ class CollectorTest : public testing::Test {
     return digest;
   }
 
-  // Stores a package for each name; they all share the blobs of one scene.
+  /// Stores a package with this name, and returns the digest of its manifest. All packages share
+  /// the blobs of one scene.
   DigestHex package(const std::string& name) {
     BlobMap blobs;
     PackageInfo info;
@@ -60,7 +61,7 @@ class CollectorTest : public testing::Test {
     return put(manifest, kNow - 100 * kDay).hex();
   }
 
-  /// Stores a result of this size, of a job that ended at the time `at`.
+  /// Stores a result of `bytes` bytes, of a job that ended at the time `at`.
   void result(JobId job, std::size_t bytes, double at) {
     ASSERT_TRUE(make_folder(folder_.job(job)).ok());
     std::ofstream(folder_.result(job)) << std::string(bytes, 'x');
@@ -149,7 +150,8 @@ TEST_F(CollectorTest, NeverRemovesBlobsOfKnownJobs) {
   const auto refs = package_blobs(manifest);
   ASSERT_TRUE(refs.ok()) << refs.status();
   for (const BlobRef& blob : *refs) {
-    EXPECT_TRUE(blobs_->has(blob.digest)) << "shared with the package that went";
+    EXPECT_TRUE(blobs_->has(blob.digest))
+        << "a blob that package one shares with the removed package two must stay";
   }
 }
 
@@ -166,7 +168,7 @@ TEST_F(CollectorTest, RemovesNothingWhileAManifestCannotBeRead) {
   EXPECT_TRUE(blobs_->has(other));
   ASSERT_TRUE(std::filesystem::remove(path));
   collector({}).sweep({{1, false, {one}, {}}}, kNow);
-  EXPECT_FALSE(blobs_->has(other)) << "a scene that is gone needs nothing";
+  EXPECT_FALSE(blobs_->has(other)) << "a job whose manifest is missing needs no blobs";
 }
 
 TEST_F(CollectorTest, KeepsRecentlySentOrRequestedBlobs) {
@@ -192,7 +194,8 @@ TEST_F(CollectorTest, RemovesFoldersOfForgottenJobs) {
   collector({}).sweep({{2, true, {}, {}}}, kNow);
   EXPECT_FALSE(std::filesystem::exists(folder_.job(1)));
   EXPECT_TRUE(std::filesystem::exists(folder_.job(2)));
-  EXPECT_TRUE(std::filesystem::exists(folder_.job(3))) << "it may have been added meanwhile";
+  EXPECT_TRUE(std::filesystem::exists(folder_.job(3)))
+      << "a job with an id above all known ids may be new";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The band log of an unfinished job is damaged on disk, which is detected while the coordinator
-// runs, or when it is restarted.
+// The band log of an unfinished job is damaged on disk. The damage is detected while the
+// coordinator runs, or when it is restarted, and the lost bands are rendered again.
 
 #include <gtest/gtest.h>
 
@@ -48,6 +48,7 @@ class DamagedLog : public testing::TestWithParam<Damage> {
     farm_.engine().quarantine(worker, false, [&](absl::Status status) { said.put(status); });
     return said.take();
   }
+  /// Calls `what`, such as Engine::pause, for the job, and returns the status of the answer.
   absl::Status tell(void (Engine::*what)(JobId, std::function<void(absl::StatusOr<JobView>)>),
                     JobId job) {
     Box<absl::Status> said;
@@ -95,7 +96,8 @@ class DamagedLog : public testing::TestWithParam<Damage> {
   void expect_right_image(JobId job) {
     const JobView view = farm_.wait_final(job);
     ASSERT_EQ(view.state, JobState::kDone) << view.reason;
-    EXPECT_EQ(view.samples_done, std::uint64_t{20} * 14 * kSamples) << "nothing is counted twice";
+    EXPECT_EQ(view.samples_done, std::uint64_t{20} * 14 * kSamples)
+        << "no sample must be lost or counted twice";
     const absl::StatusOr<StoredResult> result = farm_.result(job);
     ASSERT_TRUE(result.ok()) << result.status();
     EXPECT_EQ(result->image.pixels, farm_.local(kSamples).pixels);

@@ -135,7 +135,7 @@ TEST_F(EngineTest, ABrowserMaySendBandsOnlyForABrowserThatHasJoined) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 8}});
   EXPECT_EQ(farm_.put(job, top, 0, true).status().code(), absl::StatusCode::kFailedPrecondition)
-      << "nobody has joined";
+      << "no browser has joined";
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);
 }
 
@@ -149,10 +149,11 @@ TEST_F(EngineTest, ARepeatedBandIsADuplicateOrUnwantedIfTheJobIsOver) {
   EXPECT_EQ(*farm_.put(job, rendered({.samples = {0, 8}, .rows = {10, 14}})), BandOutcome::kStored);
   expect_done(job, 8);
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kUnwanted);
-  EXPECT_EQ(*farm_.put(job + 1, top), BandOutcome::kUnwanted) << "no such job";
+  EXPECT_EQ(*farm_.put(job + 1, top), BandOutcome::kUnwanted) << "there is no such job";
 }
 
-// The work hash, of the scene and the settings, shows that a band is of another job.
+// The work hash is computed from the scene and the settings. It shows whether a band was rendered
+// for another job.
 TEST_F(EngineTest, ABandOfAnEarlierJobWithTheSameIdIsUnwanted) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 7}});
@@ -190,7 +191,8 @@ TEST_F(EngineTest, ACancelledJobIsFinalAndItsBandsAreGone) {
   farm_.stop();
   ASSERT_TRUE(farm_.start().ok());
   EXPECT_FALSE(std::filesystem::exists(bands));
-  EXPECT_EQ(farm_.wait_final(job).state, JobState::kCancelled) << "also in the next life";
+  EXPECT_EQ(farm_.wait_final(job).state, JobState::kCancelled)
+      << "the job must still be cancelled after a restart";
 }
 
 TEST_F(EngineTest, WatchingAnUnknownJobIsNotFound) {

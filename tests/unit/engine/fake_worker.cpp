@@ -41,7 +41,7 @@ class FakeWorker::Link : public WorkerLink {
     stopped_ = true;
     changed_.notify_all();
   }
-  /// Returns false if the worker was stopped.
+  /// Waits for a lease and removes it from the queue. Returns false if the worker was stopped.
   bool next(action::Lease& lease) {
     MutexLock lock(mutex_);
     while (leases_.empty() && !stopped_) {

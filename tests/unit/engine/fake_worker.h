@@ -22,19 +22,20 @@ class FakeWorker {
   /// Called on the worker's thread with the engine's answer to each band.
   using Answered = std::function<void(const Band&, const absl::StatusOr<BandOutcome>&)>;
 
-  /// Renders `scene`, whatever the job. `name`: at most 32 characters; also names its process.
+  /// The worker renders `scene` for every job. `name`: at most 32 characters. The id of the
+  /// worker's process is made from `name`.
   FakeWorker(std::shared_ptr<const Scene> scene, std::string name, Answered answered = nullptr);
   /// Ends the session and the thread.
   ~FakeWorker();
 
   /// Begins a session. Ends an earlier one first. `engine` MUST outlive the session.
   void join(Engine& engine);
-  /// Ends the session, after the present band; further leases are lost.
+  /// Ends the session after the present band. The worker's other leases are lost.
   void leave();
 
-  /// Returns all bands that were leased to it.
+  /// Returns all bands that were leased to the worker, in all sessions.
   std::vector<Band> leased() const;
-  /// Returns why the last session was refused; empty: it was not.
+  /// Returns why the last session was refused, or an empty text if it was not refused.
   std::string refused() const;
 
  private:

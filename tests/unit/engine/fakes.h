@@ -39,7 +39,7 @@ class FakeClock : public Clock {
 /// files over a restart. Thread-safe.
 class JournalDisk {
  public:
-  /// Appends fail until `mend`.
+  /// Appends and rewrites fail until `mend`.
   void break_it() EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     broken_ = true;
@@ -49,7 +49,7 @@ class JournalDisk {
     broken_ = false;
     breaks_after_ = -1;
   }
-  /// After `appends` more appends, all further ones fail until `mend`.
+  /// After `appends` more appends, all later appends fail until `mend`.
   void break_after(int appends) EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     breaks_after_ = appends;

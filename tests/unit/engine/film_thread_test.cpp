@@ -1,6 +1,7 @@
 // The film's thread, which adds stored bands to the images of jobs and makes previews, error
 // estimates and results. A film can be built again from the band log, for example without the bands
-// of a worker that returned wrong pixels; only then is damage of the log found.
+// of a worker that returned wrong pixels. Damage of the log is found only when a film is built
+// again.
 
 #include "coordinator/engine/film_thread.h"
 
@@ -131,7 +132,8 @@ TEST_F(FilmThreadTest, ReportsEachPassOnceWhenItIsComplete) {
   EXPECT_TRUE(scheduler_.merged.empty());
   ASSERT_TRUE(add({0, 16}, {5, 8}).ok());
   EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 32}));
-  EXPECT_GT(scheduler_.errors.back(), 0) << "two halves are there";
+  EXPECT_GT(scheduler_.errors.back(), 0)
+      << "the error must be known once the film has two halves of the samples";
 }
 
 TEST_F(FilmThreadTest, BandsOfAWorkerCanBeRetracted) {
@@ -142,7 +144,9 @@ TEST_F(FilmThreadTest, BandsOfAWorkerCanBeRetracted) {
   wrong.process = 7;
   ASSERT_TRUE(thread_.add(1, std::move(wrong), {{0, 4}}).ok());
   ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
-  ASSERT_TRUE(add({16, 32}, {0, 8}).ok()) << "nodes that met are one sum in the film";
+  // With this band, the film has one sum of the samples [0, 32) for each row. The wrong band cannot
+  // be subtracted from these sums, so retract() must build the film again.
+  ASSERT_TRUE(add({16, 32}, {0, 8}).ok());
   EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 32}));
   thread_.retract(1, 7);
   EXPECT_EQ(scheduler_.merged.size(), 2u);
@@ -160,7 +164,8 @@ TEST_F(FilmThreadTest, DamagedBandsAreLeftOutAndReported) {
   damage(sound.offset + 300);  // in the pixels of this record
   sound.process = 5;
   ASSERT_TRUE(thread_.add(1, std::move(sound), {{4, 6}, {6, 8}}).ok());
-  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16})) << "it was added from memory";
+  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16}))
+      << "the band must be added from memory";
   thread_.retract(1, 7);  // no band is of process 7, but the film is built again from the log
   EXPECT_EQ(scheduler_.failed, 0);
   ASSERT_EQ(scheduler_.damaged.size(), 2u);
@@ -179,7 +184,7 @@ TEST_F(FilmThreadTest, AnotherBandAtTheSameOffsetIsDamage) {
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   IncomingBand other = logged({0, 16}, {4, 8});
   IncomingBand wrong = logged({0, 16}, {4, 8});
-  wrong.pixels.sums[7] += 1;  // valid in the log, but not the pixels that were added
+  wrong.pixels.sums[7] += 1;  // the record in the log is valid, but has other pixels
   wrong.offset = other.offset;
   ASSERT_TRUE(thread_.add(1, std::move(wrong), {{4, 8}}).ok());
   thread_.retract(1, 7);
@@ -193,7 +198,8 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsMadeOnTheNextRequest) {
   ASSERT_TRUE(remove_file(folder_.bands(1)).ok());
   thread_.request_image(1, 16);
   EXPECT_TRUE(store_.images.empty());
-  ASSERT_EQ(scheduler_.damaged.size(), 1u) << "what lies beyond is not needed any more";
+  ASSERT_EQ(scheduler_.damaged.size(), 1u)
+      << "only the band with samples of the image must be reported";
   BandLogReport report;
   log_.emplace(*BandLog::open(
       folder_.job(1), folder_.bands(1), [](BandRecord, std::uint64_t) {}, report));
@@ -239,7 +245,8 @@ TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
   EXPECT_TRUE(store_.images.empty());
   ASSERT_TRUE(add({0, 16}, {7, 8}).ok());
   ASSERT_EQ(store_.images.size(), 1u);
-  EXPECT_FALSE(store_.samples.has_value()) << "all pixels have as many";
+  EXPECT_FALSE(store_.samples.has_value())
+      << "no numbers of samples are needed, because all pixels have the same number";
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
@@ -271,12 +278,12 @@ TEST_F(FilmThreadTest, BandsRefusedByAFullDiskAreAddedLater) {
     EXPECT_FALSE(thread_.add(1, std::move(second), {{4, 8}}).ok());
     thread_.request_image(1, 16);
     EXPECT_GE(scheduler_.failed, 2);
-    EXPECT_EQ(store_.troubles, scheduler_.failed) << "the store tests the disk";
+    EXPECT_EQ(store_.troubles, scheduler_.failed) << "the store must be asked to test the disk";
   }
   EXPECT_TRUE(scheduler_.merged.empty());
   thread_.retry();
   EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 16}))
-      << "the pass, and the finished image";
+      << "the pass must be reported, and again with the finished image";
   ASSERT_EQ(store_.images.size(), 1u);
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
@@ -309,6 +316,7 @@ TEST_F(FilmThreadTest, APreviewShowsPresentRowsAndTheirWorkers) {
   EXPECT_EQ(whole.height, 8u);
   EXPECT_EQ(whole.at(3, 1), Rgb());
   EXPECT_EQ(whole.at(3, 4), local(16)[4 * 6 + 3]);
+  // Every third row: rows 0, 3 and 6.
   const Image thirds = *thread_.preview(1, 3);
   EXPECT_EQ(thirds.height, 3u);
   EXPECT_EQ(thirds.at(3, 1), whole.at(3, 3));

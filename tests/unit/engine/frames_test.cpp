@@ -76,7 +76,7 @@ TEST(EngineFrames, EachFrameHasItsImageAfterARestartAndIsRenderedOnce) {
     ASSERT_TRUE(result.ok()) << result.status();
     EXPECT_EQ(result->image.pixels, farm.local(kSamples).pixels);
     if (done.contains(frame.number)) {
-      EXPECT_EQ(done[frame.number], frame.job) << "it is rendered again";
+      EXPECT_EQ(done[frame.number], frame.job) << "a frame that was done must keep its job";
     }
   }
   const auto jobs =

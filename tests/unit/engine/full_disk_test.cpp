@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 class FullDiskTest : public testing::Test {
  protected:
-  /// The engine's time stands still unless a test moves it; the journal is in memory.
+  /// The engine's time stands still unless a test advances it. The journal is in memory.
   FullDiskTest() {
     EngineDependencies dependencies;
     dependencies.clock = std::make_unique<FakeClock>(time_);
@@ -79,6 +79,7 @@ TEST_F(FullDiskTest, ARetryEndsTheJobWhenThereIsRoom) {
 
 TEST_F(FullDiskTest, AResultThatCannotBeWrittenIsWrittenLater) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
+  // A folder with the name of the file to which the result is written first.
   const std::string in_the_way =
       farm_.folder() + "/jobs/" + std::to_string(job) + "/result.incoming";
   ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
@@ -173,7 +174,7 @@ TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
   EXPECT_THAT(
       farm.wait_until(job, [](const JobView& v) { return v.state == JobState::kPaused; }).reason,
       HasSubstr("disk is full"));
-  EXPECT_GT(farm.view(job).fraction, 0.1) << "what is in the log is known";
+  EXPECT_GT(farm.view(job).fraction, 0.1) << "the bands in the log must be known";
   JobSpec another = spec;
   another.request_id = "a job that is new";
   const absl::Status refused = farm.submit(another).status();
@@ -231,7 +232,7 @@ TEST(BrokenJournal, ARestartContinuesAfterAFailureOfAnyAppend) {
     const absl::StatusOr<JobId> job = farm.submit(spec);
     ASSERT_TRUE(job.ok()) << job.status();
     if (first.ok()) {
-      EXPECT_EQ(*job, *first) << "what was acknowledged is known";
+      EXPECT_EQ(*job, *first) << "an acknowledged job must be known after the restart";
     }
     FakeWorker worker(farm.scene(), "two");
     worker.join(farm.engine());

@@ -1,5 +1,6 @@
-// A coordinator that receives thousands of jobs forgets the oldest that are over: old jobs are
-// collected every ten minutes, and also after a thousand new jobs. Here five final jobs are kept.
+// A coordinator that receives thousands of jobs forgets its oldest final jobs. Old jobs are
+// collected every ten minutes, and also after a thousand new jobs. Here the coordinator keeps five
+// final jobs.
 
 #include <gtest/gtest.h>
 
@@ -71,8 +72,9 @@ class KeepTest : public ::testing::Test {
 };
 
 TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
-  EXPECT_TRUE(
-      jobs().empty());  // the first collection is done, and its time is the start of the interval
+  // After this call the first collection is done. The next collection is due ten minutes or a
+  // thousand jobs later.
+  EXPECT_TRUE(jobs().empty());
   const std::vector<JobId> over = submit(990);
   cancel(over);
   EXPECT_EQ(jobs().size(), 990u);
@@ -81,7 +83,7 @@ TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
   for (int asked = 0; asked < 1'000'000 && is_known(over.front()); ++asked) {
   }
   const std::vector<JobView> left = jobs();
-  ASSERT_EQ(left.size(), 25u) << "five that are over, twenty that are not";
+  ASSERT_EQ(left.size(), 25u) << "five final jobs and twenty running ones must be left";
   EXPECT_EQ(std::count_if(left.begin(), left.end(),
                           [](const JobView& job) { return is_final(job.state); }),
             5);

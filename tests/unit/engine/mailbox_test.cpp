@@ -50,7 +50,8 @@ TEST(Mailbox, WaitingTasksAreDroppedAndAnsweredAtStop) {
   EXPECT_EQ(box.take().code(), absl::StatusCode::kUnavailable);
   box.put(absl::OkStatus());
   mailbox.post([a = answer()]() mutable { a(1); });
-  EXPECT_EQ(box.take().code(), absl::StatusCode::kUnavailable) << "too late";
+  EXPECT_EQ(box.take().code(), absl::StatusCode::kUnavailable)
+      << "a task that is posted after the stop must be answered, too";
 }
 
 TEST(Answer, IsCalledOnce) {
@@ -72,7 +73,7 @@ TEST(MemoryBudget, IsReturnedWhenAShareEnds) {
   EXPECT_TRUE(budget.take(20));
   MemoryBudget::Share moved = *std::move(most);
   most.reset();
-  EXPECT_FALSE(budget.take(30)) << "it moved, it did not end";
+  EXPECT_FALSE(budget.take(30)) << "a share that was moved must keep its bytes";
   moved = {};
   EXPECT_TRUE(budget.take(100));
 }
@@ -85,7 +86,7 @@ TEST(MemoryBudget, FollowsTheSizeOfAShare) {
   EXPECT_EQ(budget.left(), 70);
   share->resize(120);
   EXPECT_FALSE(budget.take(1));
-  MemoryBudget::Share().resize(50);  // a share of no budget
+  MemoryBudget::Share().resize(50);  // a share without a budget
   share.reset();
   EXPECT_EQ(budget.left(), 100);
 }

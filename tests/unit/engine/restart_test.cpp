@@ -36,6 +36,7 @@ long rendered_again(const std::vector<Band>& leased, const std::vector<Band>& ac
 /// The bands that were answered with kStored.
 class Acknowledged {
  public:
+  /// Returns the callback of a worker that records its acknowledged bands here.
   FakeWorker::Answered hook() {
     return [this](const Band& band, const absl::StatusOr<BandOutcome>& outcome) {
       if (outcome.ok() && *outcome == BandOutcome::kStored) {
@@ -105,8 +106,8 @@ TEST(Restart, AFinishedJobKeepsItsResult) {
   EXPECT_EQ(rendered_by(), by_one);
 }
 
-/// Starts the farm and a job, which becomes `job`, and stops the farm when a worker has rendered a
-/// tenth of it.
+/// Starts the farm and a job, and sets `job` to its id. Stops the farm when a worker has rendered a
+/// tenth of the job.
 void render_a_tenth(TestFarm& farm, JobId& job) {
   ASSERT_TRUE(farm.start().ok());
   job = farm.begin(StopAtSamples{.samples = kJobSamples});
@@ -134,7 +135,8 @@ TEST(Restart, DamagedBandsAreRenderedAgain) {
   expect_local_image(farm, job, kJobSamples);
 }
 
-/// Appends the last record of a band log again, with other pixels, as a result of this process.
+/// Appends the last record of a band log again, with other pixels, as a result of the worker
+/// process `process`.
 void append_contradiction(const std::string& job_folder, std::uint64_t process) {
   std::optional<BandRecord> last;
   BandLogReport report;
@@ -148,6 +150,8 @@ void append_contradiction(const std::string& job_folder, std::uint64_t process) 
   ASSERT_TRUE(log->sync().ok());
 }
 
+// The log has two results of one band, which differ. Worker two renders the band again, and its
+// result shows which of the two is wrong.
 TEST(Restart, ASecondResultOnDiskIsCompared) {
   constexpr std::uint64_t kWrong = 12'345;
   TestFarm farm;
@@ -171,7 +175,8 @@ TEST(Restart, ASecondResultOnDiskIsCompared) {
                     quarantined = quarantined || (one != nullptr && one->process == kWrong);
                   })
                   .ok());
-  EXPECT_TRUE(quarantined) << "the second machine agrees with the first";
+  EXPECT_TRUE(quarantined)
+      << "worker two agrees with worker one, so the other process must be quarantined";
 }
 
 /// Runs a coordinator and two workers in this process, a child of the test. Writes each

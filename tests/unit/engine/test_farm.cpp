@@ -19,7 +19,8 @@ TestFarm::TestFarm() : maker_(test::cornell_box()), scene_(maker_.build()) {
 
 absl::Status TestFarm::start(EngineDependencies dependencies, const Keep& keep) {
   engine_.reset();
-  // Fake workers send no heartbeats; nothing here depends on the speed of the machine.
+  // Fake workers send no heartbeats. The timeouts are so long that no test depends on the speed of
+  // the machine.
   absl::StatusOr<std::unique_ptr<Engine>> engine = Engine::start({.data_folder = folder_,
                                                                   .heartbeat_timeout_s = 1e6,
                                                                   .progress_timeout_s = 1e6,

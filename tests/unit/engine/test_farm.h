@@ -25,12 +25,13 @@ class TestFarm {
 
   /// Sends the blobs of the scene and returns the manifest's digest.
   DigestHex send_package();
+  /// Sends the package, and returns the specification of a job with this stop rule.
   JobSpec spec(StopRule stop);
   absl::StatusOr<JobId> submit(const JobSpec& spec);
   /// Sends the package and submits a job; ends the test if that fails.
   JobId begin(StopRule stop);
   JobView view(JobId job);
-  /// Waits until the job's state satisfies the condition; `wait_final`: until the job is final.
+  /// Waits until the job satisfies `fits`. `wait_final` waits until the job is final.
   JobView wait_until(JobId job, const std::function<bool(const JobView&)>& fits);
   JobView wait_final(JobId job);
   absl::StatusOr<StoredResult> result(JobId job, FinishedPart part = FinishedPart::kImage);
@@ -46,7 +47,7 @@ class TestFarm {
 
   std::shared_ptr<const Scene> scene() const { return scene_; }
   const RenderSettings& settings() const { return settings_; }
-  /// Renders the same image without an engine.
+  /// Renders the image of a job with this number of samples without an engine.
   Image local(std::uint64_t samples) const;
 
  private:

@@ -21,7 +21,7 @@ class WatchersTest : public testing::Test {
         now_);
   }
   /// Runs `count` steps of a hundredth of a second. `news`: the job changes in each step.
-  /// `hold_final`: its final state is not durable yet.
+  /// `hold_final`: the final state of the job is not durable yet.
   void pass(int count, bool news, bool hold_final = false) {
     for (int i = 0; i < count; ++i) {
       now_ += 0.01;
@@ -107,7 +107,7 @@ TEST_F(WatchersTest, AWatcherThatReturnsFalseIsRemoved) {
   EXPECT_GE(told_.size(), 5u);
   const std::size_t before = told_.size();
   pass(11, true);
-  EXPECT_LE(told_.size() - before, 2u) << "one watcher is left";
+  EXPECT_LE(told_.size() - before, 2u) << "only one watcher must be left";
 }
 
 TEST_F(WatchersTest, AnUnknownJobIsNotFound) {

@@ -1,6 +1,6 @@
 // The features of a scene (scene_features.h) are flags such as "has moving shapes". A flag that is
-// not set only skips work that would change nothing: every scene of the gallery has the same bits
-// with its own features and with all features.
+// not set only skips work that would change nothing. So every scene of the gallery is rendered to
+// the same bits with its own features and with all features.
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,8 @@ class GalleryFeatures : public testing::Test {
     return {*std::move(description), package->info()};
   }
 
-  // The sums of a block of samples of a small picture.
+  // Renders 16 samples of each pixel of a small picture, and returns the sums. `forced`: features
+  // that are set in addition to those of the scene.
   std::vector<double> sums(const Loaded& scene, Integrator integrator,
                            const SceneFeatures& forced) {
     const auto built = Scene::build(scene.description, pool_, forced);

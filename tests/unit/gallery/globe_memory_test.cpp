@@ -34,7 +34,8 @@ std::string scene_in(const TempDir& folder, std::uint32_t rows) {
   return folder / scene;
 }
 
-// Returns the peak resident memory of this process since the last call of forget_peak().
+// Returns the peak resident memory of this process since the last call of forget_peak(), in bytes.
+// 0: the peak is unknown.
 std::uint64_t peak_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -44,6 +45,7 @@ std::uint64_t peak_bytes() {
   }
   return 0;
 }
+// Starts a new measurement of the peak. Returns false if this fails.
 bool forget_peak() {
   std::ofstream file("/proc/self/clear_refs");
   file << "5" << std::flush;
@@ -78,6 +80,7 @@ TEST(GlobeMemory, IsAtMostAFifthAboveTheTexels) {
   const std::string small = scene_in(folder, 512);
   const std::string large = scene_in(folder, 2048);
   const auto texels = [](std::uint64_t rows) { return rows * 2 * rows * 3; };
+  // The memory that a render needs besides the texels.
   const std::uint64_t base = peak_of_render(small) - texels(512);
   const std::uint64_t taken = peak_of_render(large) - base;
   RecordProperty("bytes_over_texel_bytes",

@@ -18,6 +18,7 @@ Codes map_of(std::uint32_t rows, int threads = 2) {
   return globe_map(rows, pool);
 }
 
+/// Returns the sRGB code of a channel of the texel (x, y) of a map with `rows` rows.
 int code(const Codes& map, std::uint32_t rows, std::uint32_t x, std::uint32_t y, int channel) {
   return map[(std::size_t{y} * 2 * rows + x) * 3 + static_cast<std::size_t>(channel)];
 }
@@ -27,11 +28,12 @@ TEST(Globe, IsTheSameFromAnyNumberOfThreads) {
   EXPECT_EQ(map_of(64).size(), 64u * 128 * 3);
 }
 
-// The first and last columns are neighbours on the sphere: they differ no more than any two
-// neighbours.
+// The first and last columns are neighbours on the sphere. Their difference is at most the largest
+// difference of two other neighbouring columns.
 TEST(Globe, HasNoSeam) {
   constexpr std::uint32_t kRows = 256;
   const Codes map = map_of(kRows);
+  // Returns the sum of the differences of two columns.
   const auto step = [&](std::uint32_t x, std::uint32_t next) {
     long sum = 0;
     for (std::uint32_t y = 0; y < kRows; ++y) {
@@ -48,6 +50,8 @@ TEST(Globe, HasNoSeam) {
   EXPECT_LE(step(2 * kRows - 1, 0), widest);
 }
 
+// A texel is ice if its red is high. A texel is sea if its blue is more than twice its red. The
+// middle row, which is the equator, has 256 texels.
 TEST(Globe, HasIceAtThePolesAndSeaAndLandBetween) {
   constexpr std::uint32_t kRows = 128;
   const Codes map = map_of(kRows);
@@ -61,8 +65,8 @@ TEST(Globe, HasIceAtThePolesAndSeaAndLandBetween) {
   EXPECT_LT(sea, 240);
 }
 
-// Four texels of the larger map cover one texel of the smaller map. Their mean is close to it;
-// details that only the larger map has make a small difference.
+// Four texels of the larger map cover one texel of the smaller map. Their mean is close to the
+// texel of the smaller map. Details that only the larger map has make a small difference.
 TEST(Globe, IsTheSamePlanetAtEverySize) {
   constexpr std::uint32_t kRows = 128;
   const Codes small = map_of(kRows);

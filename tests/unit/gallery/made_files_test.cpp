@@ -19,6 +19,7 @@
 namespace bandsaw::gallery {
 namespace {
 
+/// Returns the bytes of a file of the gallery in the repository.
 std::string kept(const std::string& name) {
   std::ifstream file(std::string(BANDSAW_GALLERY) + "/" + name, std::ios::binary);
   EXPECT_TRUE(file.good()) << name;
@@ -58,6 +59,8 @@ struct Obj {
   std::vector<std::vector<std::size_t>> faces;
 };
 
+/// Reads the points, normals and faces of a Wavefront OBJ file. The number of a corner's point is
+/// also the number of its normal.
 Obj parse(const std::string& text) {
   Obj obj;
   std::istringstream lines(text);
@@ -121,7 +124,8 @@ TEST(Lathe, TurnsClosedMeshesWithNormalsOutwards) {
 }
 
 // A cone turned in n steps has n faces at its foot and n at its side. The edge of the foot is
-// sharp, so the foot's normals point down.
+// sharp, so the foot's normals point down, and foot and side have points of their own. Each has two
+// rings of n + 1 points; the points of the side begin at 18.
 TEST(Lathe, KeepsSharpEdges) {
   const Obj cone = parse(lathe_obj(std::array<Vec2, 3>{{{0, 0}, {1, 0}, {0, 1}}}, 8));
   EXPECT_EQ(cone.faces.size(), 16u);

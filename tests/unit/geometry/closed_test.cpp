@@ -13,7 +13,7 @@ namespace {
 TEST(Closed, ACubeIsClosedAlsoWithSplitCorners) {
   Mesh cube = unit_cube();
   EXPECT_EQ(open_edges(cube), 0u);
-  // Every triangle has its own corners, as in files; -0 equals 0.
+  // Every triangle has its own corners, as in files. Some zeros are -0, which equals 0.
   Mesh split;
   for (auto& triangle : cube.triangles) {
     for (std::uint32_t& corner : triangle) {

@@ -28,6 +28,7 @@ TEST(Disk, ADiskThatFacesUpHasAxesAlongXAndMinusZ) {
   const DiskAxes axes = axes_of({{0, 0, 0}, {0, 1, 0}, 1, {}});
   EXPECT_EQ(axes.u, (Vec3{1, 0, 0}));
   EXPECT_EQ(axes.v, (Vec3{0, 0, -1}));
+  // For every disk, u, v and the normal are right-handed.
   Random random(1);
   for (int i = 0; i < 1000; ++i) {
     const Disk disk = random_disk(random);
@@ -52,7 +53,8 @@ TEST(Disk, IsNotClippedByItsBoxIfTheNormalIsNearlyAlongAnAxis) {
   }
 }
 
-// A hit is within the rim and on the ray; the decision is exact except close to the rim.
+// A hit is within the rim and on the ray. Whether the disk is hit is decided exactly, except close
+// to the rim.
 TEST(Disk, IsHitWithinItsRim) {
   Random random(2);
   int hits = 0;
@@ -79,6 +81,7 @@ TEST(Disk, IsHitWithinItsRim) {
     }
     const Wide t = dot(center - o, n) / slope;
     const WideVec p = o + d * t - center;
+    // Negative inside the rim, positive outside.
     const double out = static_cast<double>(dot(p, p)) / (disk.radius * disk.radius) - 1;
     const double slack = 1e-9 * (1 + max_abs(disk.center) / disk.radius);
     if (t <= 0 || std::abs(out) < slack) {
@@ -100,8 +103,10 @@ TEST(Disk, IsMissedWithinItsPlane) {
   const Disk disk = {{1, 2, 3}, {0, 1, 0}, 2, {}};
   Crossing c;
   EXPECT_FALSE(intersect(trace_setup({-5, 2, 3}, {1, 0, 0}, kInfinity), disk, c));
-  EXPECT_FALSE(intersect(trace_setup({1, 2, 3}, {0, 1, 0}, kInfinity), disk, c)) << "starts on it";
-  EXPECT_FALSE(intersect(trace_setup({1, 4, 3}, {0, -1, 0}, 1), disk, c)) << "ends before it";
+  EXPECT_FALSE(intersect(trace_setup({1, 2, 3}, {0, 1, 0}, kInfinity), disk, c))
+      << "the ray starts on the disk";
+  EXPECT_FALSE(intersect(trace_setup({1, 4, 3}, {0, -1, 0}, 1), disk, c))
+      << "the ray ends before the disk";
   EXPECT_TRUE(intersect(trace_setup({1, 4, 3}, {0, -1, 0}, 3), disk, c));
   EXPECT_EQ(c.t, 2);
 }

@@ -34,8 +34,8 @@ TEST(Triangle, ReturnsTheWeightsOfItsSecondAndThirdCorner) {
   EXPECT_EQ(inside->v, 0.25);
   EXPECT_EQ(hit({2, 0, 0}, {0, 0, 1}, t)->u, 1);
   EXPECT_EQ(hit({0, 4, 0}, {0, 0, 1}, t)->v, 1);
-  EXPECT_EQ(hit({0.5, 1, 5}, {0, 0, -1}, t)->t, 4);  // both sides
-  EXPECT_FALSE(hit({0.5, 1, 2}, {0, 0, 1}, t));      // behind
+  EXPECT_EQ(hit({0.5, 1, 5}, {0, 0, -1}, t)->t, 4);  // both sides can be hit
+  EXPECT_FALSE(hit({0.5, 1, 2}, {0, 0, 1}, t));      // the triangle is behind the ray
   EXPECT_FALSE(hit({1.5, 3, 0}, {0, 0, 1}, t));
 }
 
@@ -73,7 +73,8 @@ TEST(Triangle, SharedEdgesDoNotLeak) {
     const Vec3 target = lerp(a, b, random.uniform(0.01, 0.99));
     const bool left = hit(origin, target - origin, Triangle{a, b, c, {}}).has_value();
     const bool right = hit(origin, target - origin, Triangle{b, a, d, {}}).has_value();
-    // If both are on the same side of the edge as seen by the ray, it may miss both.
+    // If c and d are on the same side of the edge as seen along the ray, the ray may miss both
+    // triangles.
     const Vec3 across = cross(b - a, target - origin);
     if (dot(across, c - a) * dot(across, d - a) < -1e-6 * length_squared(across)) {
       ASSERT_TRUE(left || right) << offset;

@@ -16,6 +16,7 @@ namespace {
 
 using test::Random;
 
+/// Returns the largest difference of two entries of the matrices.
 double difference(const Transform& a, const Transform& b) {
   double most = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -42,6 +43,7 @@ TEST(Quaternions, InterpolateEvenlyAlongTheShorterArc) {
   Random random(2);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 axis = test::random_direction(random);
+    // The rotation from `a` to `b`, in degrees.
     const double whole = i == 0 ? 1e-12 : random.uniform(-179, 179);
     const Transform start = rotation(test::random_direction(random), random.uniform(0, 360));
     const Quaternion a = quaternion(start);
@@ -53,7 +55,7 @@ TEST(Quaternions, InterpolateEvenlyAlongTheShorterArc) {
   }
 }
 
-// Many small rotations equal the whole rotation.
+// 360 rotations by one degree about the same axis are the identity.
 TEST(Transforms, X7_ManySmallRotationsDoNotDrift) {
   Transform sum;
   for (int i = 0; i < 360; ++i) {
@@ -105,7 +107,7 @@ TEST(Frames, InterpolateScaleAndTranslationLinearly) {
   EXPECT_EQ(motion_at(frame, 8), frame.keys[1].at);
 }
 
-// Mirrored keys interpolate the rotation as without mirroring.
+// The rotation between mirrored keys is interpolated as between keys that are not mirrored.
 TEST(Frames, MirroredKeysRotateLikeOthers) {
   const Transform mirror = scaling({-1, 1, 1});
   const Frame frame = {kNoFrame, {}, {Key(0, mirror), Key(1, rotation({0, 1, 0}, 90) * mirror)}};
@@ -116,7 +118,8 @@ TEST(Frames, MoveWithinFramesThatMove) {
   const std::vector<Frame> frames = {
       {kNoFrame, translation({0, 1, 0}), {Key(0, {}), Key(1, rotation({0, 0, 1}, 90))}},
       {FrameId{0}, translation({2, 0, 0}), {Key(0, {}), Key(1, translation({1, 0, 0}))}}};
-  // At half time, the origin is 2.5 away from (0, 1, 0), in a direction 45 degrees up.
+  // At half time, the origin of the inner frame is 2.5 away from (0, 1, 0), in a direction 45
+  // degrees up.
   const double s = 2.5 * std::sqrt(0.5);
   EXPECT_LE(length(frame_at(frames, FrameId{1}, 0.5).point({}) - Vec3{s, 1 + s, 0}), 1e-15);
 }

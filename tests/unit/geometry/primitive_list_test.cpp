@@ -39,11 +39,13 @@ Geometry geometry() {
 
 TEST(PrimitiveList, HasThePrimitivesOfTheMaterialsInOrder) {
   const Geometry all = geometry();
+  // Each bit says whether the primitives of one material are wanted.
   for (unsigned bits = 0; bits < 16; ++bits) {
     std::vector<bool> wanted;
     for (unsigned material = 0; material < 4; ++material) {
       wanted.push_back((bits >> material & 1) != 0);
     }
+    // Pairs of instance and primitive. Instance 0 is the loose shapes.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> expected;
     for (std::uint32_t i = 0; i < all.spheres.size(); ++i) {
       if (wanted[index_of(all.spheres[i].material)]) {

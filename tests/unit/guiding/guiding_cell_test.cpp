@@ -81,7 +81,8 @@ TEST(GuidingCones, LeavesTheShareOfHiddenBallsToTheBsdf) {
   EXPECT_NEAR(GuidingCones({.paths = &cell}, {}, kUp).share(), 0.5, 1e-7);
   // Seen from a surface that faces down, all balls lie below it.
   EXPECT_EQ(GuidingCones({.paths = &cell}, {}, -kUp).share(), 0);
-  // Inside of a ball its light may come from anywhere.
+  // The point is inside of ball 0, whose light may come from any direction. Ball 2 lies below the
+  // surface, so only ball 1, whose weight is 0.3, can be sampled.
   EXPECT_NEAR(GuidingCones({.paths = &cell}, {1, 0, 2.1}, kUp).share(), 0.5 * 0.3, 1e-7);
 }
 
@@ -91,6 +92,8 @@ TEST(GuidingCones, WithoutCellsGuidesNothing) {
   EXPECT_EQ(GuidingCones({}, {}, kUp).pdf(kUp), 0);
 }
 
+// Directions are sampled towards the photons' cell with the share of its irradiance in the
+// irradiance of both cells, but at least 1/8 and at most 1/2.
 TEST(GuidingShares, PhotonsGetTheShareOfTheirLight) {
   GuidingCell paths = three_balls();
   GuidingCell photons = three_balls();

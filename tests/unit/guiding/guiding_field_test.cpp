@@ -11,8 +11,8 @@
 namespace bandsaw {
 namespace {
 
-/// Records on the floor z = 0 of [0, 10]^2, lit from above its corner, and on its underside, lit
-/// from below.
+/// Returns records on both sides of the floor z = 0 over [0, 10]^2. The upper side is lit from
+/// above one of its corners, and the lower side from below this corner.
 std::vector<GuidingRecord> two_sides(std::uint64_t count) {
   std::vector<GuidingRecord> records;
   const PixelSampler sampler(1, 2, 3);

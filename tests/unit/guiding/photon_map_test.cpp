@@ -19,7 +19,8 @@ constexpr Vec3 kAbove{0, 0, 1};
 /// The argument `share_on_surface` of PhotonMap: the whole disk of each photon lies on the surface.
 double whole(const StoredPhoton&) { return 1; }
 
-/// Photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4.
+/// Returns photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4. So 10/13 of
+/// the photons are there.
 std::vector<StoredPhoton> on_floor(std::uint64_t count) {
   std::vector<StoredPhoton> photons;
   const PixelSampler sampler(1, 2, 3);
@@ -74,11 +75,11 @@ TEST(PhotonMap, FindsThePhotonsThatAnExhaustiveSearchFinds) {
   }
 }
 
-/// The sum of the power, and the mean of the radius by power.
 struct Totals {
-  double power = 0;
-  double radius = 0;
+  double power = 0;   ///< sum of the powers
+  double radius = 0;  ///< mean of the radii, weighted by power
 };
+/// Returns the totals of the photons whose x is in [from, to).
 Totals totals_of(const PhotonMap& map, double from = 0, double to = 1) {
   Totals sum;
   for (const StoredPhoton& photon : map.photons()) {
@@ -91,8 +92,8 @@ Totals totals_of(const PhotonMap& map, double from = 0, double to = 1) {
   return sum;
 }
 
-// The mean over many places of the estimate is the density of the photons, which is ten times as
-// high where x < 1/4. The disks are smaller there accordingly. The photons are spread evenly in
+// The mean of the estimate over many places is the density of the photons. The density is ten times
+// as high where x < 1/4, so the disks are smaller in this part. The photons are spread evenly in
 // each part, so there is little noise.
 TEST(PhotonMap, EstimatesTheDensityAndAdaptsTheDisks) {
   Pool pool(1);
@@ -106,17 +107,19 @@ TEST(PhotonMap, EstimatesTheDensityAndAdaptsTheDisks) {
       const double x = dense ? 0.05 + 0.15 * at[0] : 0.4 + 0.4 * at[0];
       moments.add(irradiance(map, {x, 0.2 + 0.6 * at[1], 0}));
     }
+    // The quarter has the weight 10 / 4 and the rest 3 / 4; 3.25 is their sum.
     const double expected = kPhotons * (dense ? 10 : 1) / 3.25;
     EXPECT_NEAR(moments.mean(), expected, 0.02 * expected);
     EXPECT_LT(moments.variance(), 0.15 * 0.15 * expected * expected);
   }
   EXPECT_NEAR(totals_of(map).power, kPhotons, 1e-3 * kPhotons);
-  EXPECT_LT(map.size(), kPhotons / 2);  // in even places one photon replaces several
+  EXPECT_LT(map.size(), kPhotons / 2);  // where photons are even, one replaces several
   const double ratio = totals_of(map, 0.25).radius / totals_of(map, 0, 0.25).radius;
   EXPECT_GT(ratio, 2);
   EXPECT_LT(ratio, 5);
 }
 
+// Only the quarter of the floor where x < 1/4 has photons.
 TEST(PhotonMap, KeepsAnEdgeOfLight) {
   std::vector<StoredPhoton> photons = on_floor(100'000);
   std::erase_if(photons, [](const StoredPhoton& photon) { return photon.position[0] > 0.25f; });

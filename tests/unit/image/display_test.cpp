@@ -25,7 +25,7 @@ TEST(Display, AStopIsTwiceTheLight) {
 TEST(Display, FilmicRisesFromBlackToWhite) {
   const Display filmic{.tone = Tone::kFilmic};
   EXPECT_EQ(shown({0, -2, std::numeric_limits<float>::infinity()}, filmic), (Rgb{0, 0, 1}));
-  // The values at 0.18 and 1, by the formula in exact arithmetic.
+  // The expected values were computed by the formula (image/display.h) in exact arithmetic.
   EXPECT_NEAR(shown(gray(0.18f), filmic).r, 0.266895, 1e-5);
   EXPECT_NEAR(shown(gray(1), filmic).r, 2.54 / 3.16, 1e-6);
   float before = 0;

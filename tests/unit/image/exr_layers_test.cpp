@@ -48,6 +48,7 @@ std::map<std::string, ReadChannel> channels_of(const std::vector<std::byte>& fil
 }
 
 const Image kImage{2, 1, {{1, 2, 3}, {4, 5, 6}}};
+/// "albedo" is a layer of colours, and "depth" is a layer of one number per pixel.
 const Layers kLayers = {{"albedo", {2, 1, {{0.25f, 0.5f, 0.75f}, {1, 0, 0}}}, false},
                         {"depth", {2, 1, {gray(1e6f), gray(3)}}, true}};
 

@@ -1,4 +1,4 @@
-// Reduction of an image by whole factors: each pixel is the mean of a cell.
+// Reduction of an image by whole factors. Each pixel of the result is the mean of a cell of pixels.
 
 #include "renderlib/image/shrink.h"
 
@@ -7,6 +7,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns an image whose red values count the pixels from 0.
 Image numbered(std::uint32_t width, std::uint32_t height) {
   Image image{.width = width, .height = height, .pixels = {}};
   for (std::uint32_t i = 0; i < width * height; ++i) {

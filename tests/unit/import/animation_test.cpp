@@ -13,12 +13,12 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
+/// Returns a curve of single numbers. A cubic curve has three values for each key: the tangent
+/// before the key, the value at the key, and the tangent after the key.
 Curve numbers(std::vector<double> times, std::vector<double> values, Interpolation interpolation) {
   return {std::move(times), std::move(values), 1, interpolation};
 }
 
-// A cubic curve has three values for each key: the tangent before it, its value, and the tangent
-// after it.
 TEST(Curve, RestsBeforeTheFirstKeyAndAfterTheLast) {
   for (const Interpolation kind :
        {Interpolation::kLinear, Interpolation::kStep, Interpolation::kSmooth}) {
@@ -53,9 +53,10 @@ TEST(Curve, SmoothReproducesAParabolaBetweenInnerKeys) {
 }
 
 TEST(Curve, RotationsTurnAtConstantSpeedAlongTheShortestArc) {
+  // The sine and cosine of 45 degrees, half of a quarter turn.
   const double half = std::sqrt(0.5);
-  // From no rotation to a quarter turn about y; the second quaternion is negated, which is the same
-  // rotation.
+  // From no rotation to a quarter turn about y. The second quaternion is negated. A quaternion and
+  // its negative are the same rotation.
   const Curve curve({0, 1}, {0, 0, 0, 1, 0, -half, 0, -half}, 4, Interpolation::kLinear);
   const Transform third = rotation(curve.rotation_at(1.0 / 3));
   const Transform expected = rotation({0, 1, 0}, 30);
@@ -76,9 +77,9 @@ TEST(Curve, KnowsWhereItRests) {
   EXPECT_TRUE(curve.rests(-1, 0.9));
   EXPECT_TRUE(curve.rests(2, 9));
   EXPECT_FALSE(curve.rests(0.5, 1.5));
-  EXPECT_TRUE(curve.rests(1.5, 1.5)) << "an instant";
+  EXPECT_TRUE(curve.rests(1.5, 1.5)) << "an interval of length 0";
   EXPECT_FALSE(numbers({0, 1}, {0, 5, 1, 0, 5, 0}, Interpolation::kCubic).rests(0, 1))
-      << "equal keys with tangents";
+      << "the keys are equal, but their tangents are not 0";
 }
 
 // The keys at 1 and 2 have the same value. Between them the curve is not constant, because the

@@ -40,8 +40,8 @@ inline std::string encoded_vertices(const std::string& bytes, std::size_t stride
   return out;
 }
 
-/// Adds an accessor over vertices that are encoded by meshopt. `members`: its component type and
-/// its type. Returns its index.
+/// Adds an accessor over vertices that are encoded by meshopt. `members`: the accessor's component
+/// type and type. Returns the index of the accessor.
 inline std::size_t add_attribute(GltfWriter& file, const std::string& bytes, std::size_t stride,
                                  const Json& members, const char* filter = "NONE") {
   const std::size_t count = bytes.size() / stride;
@@ -128,8 +128,8 @@ inline std::string draco_stream(const WavySquare& square, int bits, bool edgebre
   return std::string(out.data(), out.size());
 }
 
-/// Returns a file of one mesh in this Draco stream, of which it claims these numbers of vertices
-/// and indices.
+/// Returns a file of one mesh, which is stored as this Draco stream. `vertices` and `indices` are
+/// the numbers that the file states, right or wrong.
 inline GltfWriter with_draco(const std::string& stream, std::size_t vertices, std::size_t indices) {
   GltfWriter file;
   const auto accessor = [&](Json members, std::size_t count) {
@@ -147,6 +147,7 @@ inline GltfWriter with_draco(const std::string& stream, std::size_t vertices, st
   file.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
   return file;
 }
+/// Returns a file of the square as a Draco stream. The parameters are those of draco_stream().
 inline GltfWriter with_draco(const WavySquare& square, int bits, bool edgebreaker) {
   return with_draco(draco_stream(square, bits, edgebreaker), square.vertices(),
                     square.indices.size());

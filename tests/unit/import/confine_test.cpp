@@ -31,9 +31,9 @@ struct Folders {
   TempDir other;
 };
 
-// Runs `act` in a confined process. Returns that process's exit code: the result of `act`; 200 if
-// it could not be confined; 1000 + the number of the signal that ended it. The limits are 8 GiB of
-// memory, 60 s of CPU time and files of 1 MiB.
+// Runs `act` in a confined child process, and returns its result. Returns 200 if the process could
+// not be confined, and 1000 + the number of the signal if a signal ended the process. The limits
+// are 8 GiB of memory, 60 s of CPU time and files of 1 MiB.
 int confined(const Folders& folders, const std::function<int()>& act) {
   const pid_t pid = fork();
   if (pid == 0) {
@@ -45,6 +45,7 @@ int confined(const Folders& folders, const std::function<int()>& act) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
 }
 
+// Returns 0 if the file can be opened, otherwise the error number.
 int opens(const std::string& path, int flags) {
   return open(path.c_str(), flags, 0600) >= 0 ? 0 : errno;
 }

@@ -28,13 +28,16 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
+/// Returns the choice of an exposure that begins at frame / fps seconds. `shutter` is the share of
+/// a frame's time in which the shutter is open.
 ImportChoices exposure(double frame, double fps, double shutter) {
   ImportChoices choices;
   choices.frame = FrameChoice{frame, fps, shutter};
   return choices;
 }
 
-/// A quad at node 0, whose corners may follow bones.
+/// Returns a file of the quad [x0, x1] x [y0, y1] at node 0. Tests may let its corners follow
+/// bones.
 GltfWriter quad(float x0, float x1, float y0, float y1) {
   GltfWriter file;
   file.attributes() = {
@@ -43,7 +46,8 @@ GltfWriter quad(float x0, float x1, float y0, float y1) {
   return file;
 }
 
-/// Adds an animation with one linear channel.
+/// Adds a linear channel to the animation "act", which is made if there is none. `path` is the
+/// property of the node that moves.
 void animate(GltfWriter& file, int node, const char* path, const std::vector<float>& times,
              const std::vector<float>& values, int components) {
   if (!file.root.contains("animations")) {
@@ -56,7 +60,8 @@ void animate(GltfWriter& file, int node, const char* path, const std::vector<flo
       {{"input", file.add(times, 1)}, {"output", file.add(values, components)}});
 }
 
-/// All corners follow the bone at node 1, which is turned by `degrees` about z in the first second.
+/// Returns a file of a quad whose corners all follow the bone at node 1. The bone is turned by
+/// `degrees` about z in the first second.
 GltfWriter swinging_quad(double degrees, float x0, float x1, float y0, float y1) {
   GltfWriter file = quad(x0, x1, y0, y1);
   file.attributes()["JOINTS_0"] = file.add<std::uint8_t>(std::vector<std::uint8_t>(16, 0), 4);
@@ -119,7 +124,8 @@ TEST_F(DeformingModel, HasItsVerticesAtBothEndsOfTheExposure) {
   file.primitive()["targets"] =
       Json::array({{{"POSITION", file.add<float>({0, 0, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 3)}}});
   animate(file, 0, "weights", {0, 1}, {0, 1}, 1);
-  // From a quarter to half of a second: turned by 22.5 and by 45 degrees.
+  // The exposure lasts from a quarter to half of a second. The quad is turned by 22.5 degrees at
+  // its begin and by 45 degrees at its end.
   const ImportedScene imported = read(file, exposure(1, 4, 1));
   EXPECT_THAT(imported.info.warnings, IsEmpty());
   ASSERT_THAT(imported.scene.geometry.meshes, SizeIs(1));
@@ -139,7 +145,7 @@ TEST_F(DeformingModel, HasItsVerticesAtBothEndsOfTheExposure) {
   expect_turned(mesh.positions_at_close, mesh.normals_at_close, 45, 4);
 }
 
-// Three nodes of one mesh: the weights of the first and the last are animated.
+// Three nodes have the same mesh. The weights of the first and of the last node are animated.
 TEST_F(DeformingModel, EachNodeOfAMeshHasItsOwnWeights) {
   GltfWriter file = quad(0, 1, 0, 1);
   file.primitive()["targets"] =
@@ -195,9 +201,8 @@ TEST_F(DeformingModel, AMorphTargetInLinearMotionIsALinearRamp) {
       Json::array({{{"POSITION", file.add<float>({0, 0, 0, 10, 0, 0, 10, 0, 0, 0, 0, 0}, 3)}}});
   animate(file, 0, "weights", {0, 1}, {0, 1}, 1);
   const std::vector<Moments> found = pixels(file, 0, 0, kWidth, 1);
-  const auto integral = [](double x) {  // of clamp(x, 0, 10) / 10
-    return x < 0 ? 0 : x < 10 ? x * x / 20 : x - 5;
-  };
+  // The integral of clamp(x, 0, 10) / 10 up to x.
+  const auto integral = [](double x) { return x < 0 ? 0 : x < 10 ? x * x / 20 : x - 5; };
   for (int x = 0; x < kWidth; ++x) {
     const double expected = 1 - (integral(x + 1 - 5) - integral(x - 5));
     const Moments& pixel = found[static_cast<std::size_t>(x)];
@@ -205,9 +210,10 @@ TEST_F(DeformingModel, AMorphTargetInLinearMotionIsALinearRamp) {
   }
 }
 
-// A bar that swings by the angle a about the joint at the origin. Its vertices move straight, so at
-// the share t of the exposure it is the image of the bar under (1 - t) I + t R(a), whose
-// determinant is (1 - t)^2 + t^2 + 2 t (1 - t) cos a; the mean over t is (2 + cos a) / 3.
+// A bar swings by the angle a about the joint at the origin. Its vertices move along straight
+// lines. So at the share t of the exposure, the map (1 - t) I + t R(a) has been applied to the bar.
+// The determinant of this map is (1 - t)^2 + t^2 + 2 t (1 - t) cos a, and its mean over t is
+// (2 + cos a) / 3.
 TEST_F(DeformingModel, ASwingingBarCoversTheMeanOfItsArea) {
   constexpr double kAngle = 75;
   constexpr double kArea = 8 * 2;
@@ -223,8 +229,8 @@ TEST_F(DeformingModel, ASwingingBarCoversTheMeanOfItsArea) {
   const double expected = kArea * (2 + turn.cos) / 3;
   EXPECT_NEAR(sum, expected, 4 * std::sqrt(variance));
   EXPECT_LT(std::sqrt(variance), 5e-3 * expected);
-  // The expected value of a pixel is the share of its points and of the times t for which the
-  // point, mapped back, is in the bar.
+  // The expected value of a pixel is the share of the pairs of a point of the pixel and a time t
+  // for which the inverse of the map at t takes the point into the bar.
   constexpr int kParts = 48;
   for (int y = 0; y < 14; ++y) {
     for (int x = 0; x < 14; ++x) {
@@ -232,7 +238,7 @@ TEST_F(DeformingModel, ASwingingBarCoversTheMeanOfItsArea) {
       for (int part = 0; part < kParts * kParts * kParts; ++part) {
         const auto middle = [&](int n) { return (n % kParts + 0.5) / kParts; };
         const double t = middle(part);
-        const double c = 1 - t + t * turn.cos;  // the map is c, -s; s, c
+        const double c = 1 - t + t * turn.cos;  // the rows of the map are (c, -s) and (s, c)
         const double s = t * turn.sin;
         const double px = x - 3 + middle(part / kParts);
         const double py = 14 - 3 - y - middle(part / kParts / kParts);

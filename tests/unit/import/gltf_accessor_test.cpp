@@ -85,6 +85,7 @@ TYPED_TEST(Quantised, PositionsAndUvsAreTheirIntegers) {
     file.root["extensionsUsed"] = {"KHR_mesh_quantization"};
     file.root["extensionsRequired"] = {"KHR_mesh_quantization"};
     const Mesh read = this->mesh(file);
+    // The integer that stands for 1, and the number for which the least integer stands.
     const float one = normalized ? static_cast<float>(most) : 1;
     const float lowest = normalized && least != 0 ? -1 : static_cast<float>(least);
     EXPECT_THAT(
@@ -148,8 +149,9 @@ TEST_F(GltfAccessors, SparseAccessorsAndThoseWithoutAViewAreFilled) {
   EXPECT_THAT(flat(mesh(file).positions), ElementsAre(1, 1, 1, 3, 0, 0, 0, 3, 0));
 }
 
-// One bone lifts by 2. The second vertex depends on it with a weight of 1/5 of a byte's range, the
-// other vertices on a bone that does not move. A joint of weight 0 may have any index.
+// Joint 1 lifts by 2, and joint 0 does not move. The second vertex follows joint 1 with the weight
+// 51, which is 1/5 of a byte's range, and the other vertices follow joint 0 alone. A joint of
+// weight 0 may have any index.
 TEST_F(GltfAccessors, SkinsMayHaveWeightsOfBytes) {
   GltfWriter file;
   file.attributes() = {
@@ -205,6 +207,7 @@ TEST_P(DamagedGltf, IsOneClearError) {
   EXPECT_THAT(std::string(imported.status().message()), HasSubstr(GetParam().error));
 }
 
+// Sets a member of an object, or inserts an element into a list (the operation "add" of RFC 6902).
 #define REPLACE(path, value) R"({"op": "add", "path": ")" path R"(", "value": )" value "}"
 INSTANTIATE_TEST_SUITE_P(
     All, DamagedGltf,

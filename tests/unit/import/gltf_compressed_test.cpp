@@ -138,8 +138,8 @@ TEST(Meshopt, FilteredNormalsAndPositionsAreWithinTheirPrecision) {
         add_attribute(file, exponential(square.positions, 15), 12, kFloats3, "EXPONENTIAL");
     file.root["buffers"][0]["byteLength"] = file.bytes.size();
     const Mesh mesh = mesh_of(read(file, folder));
-    // A step of the octahedral map moves a unit vector by at most 2 steps; one more step is allowed
-    // for the rounding of the decoded values.
+    // A change of one step in the octahedral map moves a unit vector by at most 2 steps. One more
+    // step is allowed for the rounding of the decoded values.
     const double step = 3.0 / (wide ? 32767 : 127);
     // Assimp 5.4 has the vertices in the order in which triangles use them.
     std::set<std::size_t> found;
@@ -157,7 +157,7 @@ TEST(Meshopt, FilteredNormalsAndPositionsAreWithinTheirPrecision) {
   }
 }
 
-// Our decoders of the filters differ from the library's by at most one unit.
+// The decoders in meshopt_filters.h differ from the library's decoders by at most one unit.
 TEST(Meshopt, FiltersAreThoseOfTheLibraryUpToItsRounding) {
   test::Random random(3);
   std::vector<float> unit;
@@ -172,6 +172,7 @@ TEST(Meshopt, FiltersAreThoseOfTheLibraryUpToItsRounding) {
     }
   }
   const std::size_t count = unit.size() / 4;
+  // Expects that the 16-bit numbers of two buffers differ by at most 1.
   const auto near_16 = [](const std::string& a, const std::string& b) {
     for (std::size_t at = 0; at < a.size(); at += 2) {
       std::int16_t x = 0;
@@ -277,8 +278,8 @@ TEST(Draco, QuantisedMeshesAreWithinTheirPrecision) {
       ASSERT_EQ(mesh.triangles.size(), plain.triangles.size());
       const auto found = sorted_vertices(mesh, kSide);
       ASSERT_EQ(found.size(), expected.size());
-      // Tolerances: half a step of the largest extent, which is 1, for positions and uvs; one step
-      // of the octahedral map, whose extent is 2, for normals.
+      // Positions and uvs may be off by half a step of the largest extent, which is 1. Normals may
+      // be off by one step of the octahedral map, whose extent is 2.
       const double step = 0.51 / ((1 << bits) - 1);
       for (std::size_t i = 0; i < found.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -297,8 +298,8 @@ TEST(Draco, AQuantisedMeshIsRenderedWithinItsBound) {
   const auto plain = seen(read(square.plain(), folder));
   const auto quantised = seen(read(with_draco(square, 14, true), folder));
   ASSERT_EQ(plain.size(), quantised.size());
-  // The layer shows 0.5 + 0.5 n. The normals are off by at most 4 / 2^14. Those of neighbouring
-  // vertices differ by less than 1/12, and a hit may move by 1 / 2^14 of the square.
+  // The layer shows 0.5 + 0.5 n. The normals are off by at most 4 / 2^14. The normals of
+  // neighbouring vertices differ by less than 1/12, and a hit may move by 1 / 2^14 of the square.
   for (std::size_t i = 0; i < plain.size(); ++i) {
     EXPECT_NEAR(plain[i].r, quantised[i].r, 4.0 / (1 << 14)) << i;
     EXPECT_NEAR(plain[i].g, quantised[i].g, 4.0 / (1 << 14)) << i;

@@ -21,14 +21,15 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Index of refraction 1, so rays pass straight; white light becomes (0.25, 0.5, 1) over a length
-/// of 2.
+/// The index of refraction is 1, so rays pass straight. White light becomes (0.25, 0.5, 1) over a
+/// length of 2.
 constexpr char kGlass[] = R"({"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
   "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1},
     "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2,
       "attenuationColor": [0.25, 0.5, 1]}}})";
 
-/// The cube [-1, 1]^3, each face with vertices of its own; without its last face it is open.
+/// Returns the cube [-1, 1]^3, each face with vertices of its own. `open`: the last face is
+/// missing.
 GltfWriter cube(bool open = false) {
   std::vector<float> positions;
   std::vector<std::uint16_t> indices;
@@ -181,7 +182,8 @@ TEST(GltfCoat, ItsNormalMapUsesItsOwnUvs) {
     return most;
   };
   EXPECT_LT(difference(seen(true, 1), seen(false, 1)), 1e-4);
-  EXPECT_GT(difference(seen(true, 1), seen(true, 0)), 1e-2) << "the sets differ";
+  EXPECT_GT(difference(seen(true, 1), seen(true, 0)), 1e-2)
+      << "a map that uses the other set of uvs must change the picture";
 }
 
 }  // namespace

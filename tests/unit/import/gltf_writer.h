@@ -116,12 +116,13 @@ class GltfWriter {
            "JSON" + json + number(binary.size()) + std::string("BIN\0", 4) + binary;
   }
 
+  /// Writes the file and imports it.
   absl::StatusOr<ImportedScene> import(const TempDir& folder, const std::string& name = "m.gltf") {
     return import_scene(write(folder, name));
   }
 
   Json root;          ///< the JSON of the file
-  std::string bytes;  ///< its buffer
+  std::string bytes;  ///< the buffer of the file
 };
 
 /// A square of 2 n^2 triangles over [0, 1]^2 that is bent to a wave, as input for encoders.

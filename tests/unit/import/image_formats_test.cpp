@@ -1,4 +1,4 @@
-// One tiny file of each image format, written according to its specification.
+// The decoding of one tiny file of each image format, written according to its specification.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -97,8 +97,8 @@ TEST(ImageFormats, AnHdrNumberIsAMantissaTimesItsExponent) {
 }
 
 // The functions below make files of OpenEXR 2. Numbers have 32 bits, the least significant byte
-// first. After the magic number come attributes, each with a name, a type, a size and a value; then
-// the offset of each row or tile in the file (64 bits); then the rows or tiles.
+// first. After the magic number come attributes, each with a name, a type, a size and a value. They
+// are followed by the offset of each row or tile in the file (64 bits), and by the rows or tiles.
 
 /// Returns the bytes of a number.
 std::string word(std::int32_t value) {
@@ -175,7 +175,7 @@ TEST(ImageFormats, ExrRowsMayBeStoredFromTheBottom) {
   }
 }
 
-// The image has 2 x 3 texels in two tiles. A tile has 2 x 2 texels; the lower one is cut to a row.
+// The image has 2 x 3 texels in two tiles. A tile has 2 x 2 texels; the lower tile is cut to a row.
 TEST(ImageFormats, ExrTilesMayBeStoredFromTheBottom) {
   const std::string tiles =
       attribute("tiles", "tiledesc", word(2) + word(2) + std::string(1, '\0'));
@@ -237,7 +237,7 @@ TEST(ImageFormats, APngMayNameOneTransparentColour) {
       bytes({0x1f, 0xad, 0x24, 0xf8}) + end;
   EXPECT_TRUE(image_has_alpha(grey));
   EXPECT_THAT(codes(decode_alpha(grey).value()), ElementsAre(255, 0));
-  EXPECT_FALSE(image_has_alpha(rgb_header)) << "cut off";
+  EXPECT_FALSE(image_has_alpha(rgb_header)) << "a file that ends after its header has no alpha";
 }
 
 }  // namespace

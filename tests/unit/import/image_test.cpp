@@ -30,7 +30,7 @@ Image ramp(std::uint32_t width, std::uint32_t height) {
   return image;
 }
 
-// A Radiance file of one colour, each row run-length encoded.
+// Returns a Radiance file of the colour (2, 1, 0.5), each row run-length encoded.
 std::string radiance(std::uint32_t width, std::uint32_t height) {
   std::string file = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) + " +X " +
                      std::to_string(width) + "\n";
@@ -117,8 +117,8 @@ TEST(DecodeImage, ADeepPnmFileIsAnError) {
   }
 }
 
-// For such files, stb_image alone leaves the missing pixels uninitialized, or never ends if the
-// header is cut.
+// For such files, stb_image alone leaves the missing pixels uninitialized. If the header is cut, it
+// does not terminate.
 TEST(DecodeImage, AFileWithoutItsLastPixelsIsAnError) {
   std::string runs;
   for (int i = 0; i < 50; ++i) {
@@ -137,7 +137,8 @@ TEST(DecodeImage, AFileWithoutItsLastPixelsIsAnError) {
         HasSubstr("truncated"));
   }
   const std::string whole = bmp();
-  EXPECT_TRUE(decode_image(whole.substr(0, whole.size() - 3), warnings).ok()) << "no padding";
+  EXPECT_TRUE(decode_image(whole.substr(0, whole.size() - 3), warnings).ok())
+      << "the padding of the last row may be missing";
 }
 
 TEST(DecodeImage, ChangedBytesDoNotCrash) {

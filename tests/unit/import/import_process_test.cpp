@@ -1,5 +1,5 @@
-// The import in a confined process of its own: the same bytes as the library gives, and one clear
-// error for whatever goes wrong.
+// The import in a confined process of its own gives the same bytes as the library, and one clear
+// error if anything goes wrong.
 
 #include "coordinator/cli/scene/import_process.h"
 
@@ -69,7 +69,8 @@ TEST(ImportProcess, LeavesNothingBehind) {
   EXPECT_EQ(entries(scratch.path()), 0u);
 }
 
-/// Returns a glTF file with a triangle at a moving node and one whose morph target moves it.
+/// Writes a glTF file with two triangles, and returns its path. The node of the first triangle
+/// moves, and a morph target deforms the second triangle.
 std::string moving_model(const TempDir& folder) {
   test::GltfWriter file;
   file.attributes() = {{"POSITION", file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}};
@@ -176,7 +177,9 @@ TEST(ImportProcess, ForwardsTheImportersError) {
   EXPECT_FALSE(import_in_process(folder.path(), limits()).ok());
 }
 
-// A hostile archive may have taken control of the importer.
+// The list of an archive's files may have lines "made NAME" for files that the importer wrote, and
+// no lines "found NAME" for files that were there before. A hostile archive may have taken control
+// of the importer, so the list is checked.
 TEST(ImportProcess, AListOfAnArchiveThatNamesFoundFilesIsRefused) {
   const TempDir folder;
   const std::string program =

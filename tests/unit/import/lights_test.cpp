@@ -75,7 +75,8 @@ light { spot { position: [0, 5, 0] direction: [3, 0, 0] intensity { rgb: [1, 1, 
   EXPECT_NEAR(spot.cos_outer, 0.5, 1e-15);
   EXPECT_EQ(std::get<SpotLight>(lights[3]).direction, (Vec3{1, 0, 0}));
   EXPECT_NEAR(std::get<SpotLight>(lights[3]).cos_outer, std::sqrt(0.5), 1e-15);
-  EXPECT_TRUE(is_black(imported->scene.background.top)) << "no default sky beside lights";
+  EXPECT_TRUE(is_black(imported->scene.background.top))
+      << "a scene with lights must have no default sky";
 }
 
 TEST_F(SceneLights, ProjectImages) {
@@ -96,7 +97,7 @@ light { spot { position: [0, 0, 5] look_at: [0, 0, 0] intensity { rgb: [1, 1, 1]
   EXPECT_EQ(down.image.up, (Vec3{0, 0, -1}));
   EXPECT_EQ(down.intensity, (Rgb{1, 2, 3}));
   EXPECT_NEAR(down.image.half_height, 1, 1e-15);
-  EXPECT_NEAR(down.image.half_width, 2, 1e-15) << "of the image, 8 x 4";
+  EXPECT_NEAR(down.image.half_width, 2, 1e-15) << "the aspect must be that of the image, 8 x 4";
   const auto& mirrored = std::get<ProjectorLight>(lights[1]);
   EXPECT_EQ(mirrored.image.right, (Vec3{-1, 0, 0}));
   EXPECT_NEAR(mirrored.image.half_width / mirrored.image.half_height, 3, 1e-15);
@@ -209,7 +210,7 @@ TEST_F(SceneLights, AnEnvironmentThatIsGivenBesideTheSceneReplacesItsBackground)
 }
 
 // L9 is the id of this hard case in tests/hard_cases/cases.txt. Negative and NaN texels become 0,
-// infinite and too large ones become the largest valid value.
+// and infinite or too large texels become the largest valid value.
 TEST(RepairLight, L9InvalidTexelsAreRepairedAndCounted) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   const float values[] = {1, -1, std::nanf(""), 7, kInf, 2e30f, -kInf, 0};
@@ -223,7 +224,7 @@ TEST(RepairLight, L9InvalidTexelsAreRepairedAndCounted) {
   }
   EXPECT_EQ(repair_light(image), 0u);
   ImageTexture bad = test::float_image(2, 2, [&](auto, auto) { return kInf; });
-  EXPECT_EQ(repair_light(bad), 4u) << "nothing is left, but nothing is infinite either";
+  EXPECT_EQ(repair_light(bad), 4u) << "all texels must be repaired, even if none is valid";
   test::report_hard_case("L9", "repaired and counted");
 }
 
@@ -262,12 +263,14 @@ TEST(ModelLights, GltfLightsHaveTheirUnitsAndStandAtTheirNodes) {
   EXPECT_NEAR(sun.irradiance.g, 1.5, 1e-6);
   const auto& bulb = std::get<PointLight>(lights[1]);
   EXPECT_EQ(bulb.position, (Vec3{1, 2, 3}));
-  EXPECT_EQ(bulb.intensity, (Rgb{40, 40, 40})) << "a node's scale leaves it as it is";
+  EXPECT_EQ(bulb.intensity, (Rgb{40, 40, 40}))
+      << "the scale of a node must not change the intensity";
   const auto& spot = std::get<SpotLight>(lights[2]);
   EXPECT_LE(length(spot.direction - Vec3{-1, 0, 0}), 1e-6);
   EXPECT_NEAR(spot.cos_inner, std::cos(0.3), 1e-6);
   EXPECT_NEAR(spot.cos_outer, std::cos(0.6), 1e-6);
-  EXPECT_TRUE(is_black(imported->scene.background.top)) << "it brings its own light";
+  EXPECT_TRUE(is_black(imported->scene.background.top))
+      << "a model with lights must have no default sky";
 }
 
 TEST(ModelLights, ALightAtSeveralNodesEmitsFromEach) {
@@ -279,7 +282,7 @@ TEST(ModelLights, ALightAtSeveralNodesEmitsFromEach) {
   };
   replace(R"({"light": 2})", R"({"light": 1})");
   replace(R"("name": "c")", R"("name": "b")");
-  replace(R"("name": "t")", R"("name": "b")");  // no third light, although a node has that name
+  replace(R"("name": "t")", R"("name": "b")");  // a node of this name without a light
   const auto imported = import_scene(write_text(folder, "m.gltf", text));
   ASSERT_TRUE(imported.ok()) << imported.status();
   const auto& lights = imported->scene.lights;
