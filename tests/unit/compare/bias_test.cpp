@@ -93,7 +93,7 @@ TEST(Bias, GroupsThatShareTheirNoiseAreNotBias) {
 
 // One of 33 columns is 1.5 times as bright as in the reference. The last column of blocks has only
 // this column of pixels, but its pixels do not count more than others.
-TEST(Bias, EveryPixelCountsAlike) {
+TEST(Bias, EveryPixelHasTheSameWeight) {
   Image image = uniform(33, 32, 1);
   for (std::uint32_t y = 0; y < 32; ++y) {
     image.pixels[std::size_t{33} * y + 32] = gray(1.5F);

@@ -67,7 +67,7 @@ TEST(ErrorMetrics, AnImageOfOnePixelIsNotTrimmedAway) {
   EXPECT_GT(metrics.relative_mse, 0.9);
 }
 
-TEST(ErrorMetrics, WithoutAFinitePixelNothingIsKnown) {
+TEST(ErrorMetrics, MetricsAreNanIfNoPixelIsFinite) {
   const ErrorMetrics metrics = error_metrics(uniform(3, 2, std::nanf("")), uniform(3, 2, 1));
   EXPECT_EQ(metrics.not_finite, 18u);
   EXPECT_TRUE(std::isnan(metrics.rmse));
@@ -75,7 +75,7 @@ TEST(ErrorMetrics, WithoutAFinitePixelNothingIsKnown) {
   EXPECT_FALSE(metrics.identical);
 }
 
-TEST(ErrorMetrics, ABlackReferenceGivesNoRatio) {
+TEST(ErrorMetrics, RelativeRmseOfABlackReferenceIsInfiniteOrZero) {
   EXPECT_EQ(error_metrics(uniform(1, 1, 1), uniform(1, 1, 0)).relative_rmse,
             std::numeric_limits<double>::infinity());
   EXPECT_EQ(error_metrics(uniform(1, 1, 0), uniform(1, 1, 0)).relative_rmse, 0);

@@ -30,7 +30,7 @@ TEST(Perceived, LabOfThePrimariesHasThePublishedValues) {
   expect_near(lab(xyz_over_white({0, 0, 1})), {32.30, 79.19, -107.86}, 0.05);
 }
 
-TEST(Perceived, RoundTrips) {
+TEST(Perceived, ConvertingToOpponentColoursAndBackKeepsTheColour) {
   const Rgb color{0.1F, 0.7F, 0.4F};
   expect_near(linear_of(xyz_of_opponents(opponents(xyz_over_white(color)))),
               {color.r, color.g, color.b}, 1e-12);

@@ -46,7 +46,7 @@ TEST(Convert, StopRulesRoundTrip) {
   }
 }
 
-TEST(Convert, WrongStopRulesAreRefusedByTheirField) {
+TEST(Convert, TheErrorOfAnInvalidStopRuleNamesTheField) {
   farm::StopRule none;
   EXPECT_THAT(stop_rule_of(none).status().message(), HasSubstr("exactly one"));
   farm::StopRule adaptive;

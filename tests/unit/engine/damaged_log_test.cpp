@@ -26,9 +26,9 @@ void do_damage(const std::string& file, Damage damage) {
     case Damage::kFlippedByte: {
       std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
       bytes.seekg(500);
-      const int there = bytes.get();
+      const int old_byte = bytes.get();
       bytes.seekp(500);
-      bytes.put(static_cast<char>(there ^ 4));
+      bytes.put(static_cast<char>(old_byte ^ 4));
       break;
     }
     case Damage::kCutTail:
@@ -126,10 +126,10 @@ TEST_P(DamagedLog, BandsRenderedAgainSurviveARestart) {
   ASSERT_NO_FATAL_FAILURE(do_damage(farm_.bands_file(job), GetParam()));
   ASSERT_NO_FATAL_FAILURE(find_damage(job));
   render_some(job, "some");
-  const std::uint64_t there = farm_.view(job).samples_done;
+  const std::uint64_t samples_before = farm_.view(job).samples_done;
   farm_.stop();
   ASSERT_TRUE(farm_.start().ok());
-  EXPECT_EQ(farm_.view(job).samples_done, there);
+  EXPECT_EQ(farm_.view(job).samples_done, samples_before);
   render_the_rest(job);
 }
 

@@ -67,7 +67,7 @@ TEST_F(EngineTest, ManyWorkersThatJoinAndLeaveRenderTheSameImage) {
   EXPECT_GT(stored, 0);
 }
 
-TEST_F(EngineTest, AnErrorRuleEndsAtThePassThatReachesIt) {
+TEST_F(EngineTest, AnErrorRuleEndsTheJobAtAPassThatReachesTheError) {
   FakeWorker worker(farm_.scene(), "one");
   worker.join(farm_.engine());
   const JobId job = farm_.begin(StopAtError{.relative_rmse = 0.2, .max_samples = 4096});
@@ -78,7 +78,7 @@ TEST_F(EngineTest, AnErrorRuleEndsAtThePassThatReachesIt) {
   EXPECT_EQ(farm_.result(job)->image.pixels, farm_.local(view.samples_per_pixel).pixels);
 }
 
-TEST_F(EngineTest, ATimeRuleEndsAtACompletePass) {
+TEST_F(EngineTest, ATimeRuleEndsTheJobAtACompletePass) {
   FakeWorker worker(farm_.scene(), "one");
   FakeWorker other(farm_.scene(), "other");
   worker.join(farm_.engine());
@@ -89,7 +89,7 @@ TEST_F(EngineTest, ATimeRuleEndsAtACompletePass) {
   EXPECT_EQ(farm_.result(job)->image.pixels, farm_.local(view.samples_per_pixel).pixels);
 }
 
-TEST_F(EngineTest, TheSameRequestIsTheSameJob) {
+TEST_F(EngineTest, ARepeatedRequestReturnsTheSameJob) {
   const JobSpec spec = farm_.spec(StopAtSamples{.samples = 8});
   EXPECT_EQ(*farm_.submit(spec), *farm_.submit(spec));
 }
@@ -119,7 +119,7 @@ TEST_F(EngineTest, SettingsOutOfRangeAreRefused) {
   EXPECT_EQ(farm_.submit(bad).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
-TEST_F(EngineTest, ANameThatIsNotCleanIsRefused) {
+TEST_F(EngineTest, ANameWithControlCharactersOrBadUtf8IsRefused) {
   JobSpec spec = farm_.spec(StopAtSamples{.samples = 8});
   for (const std::string name : {"two\nlines", "\x1b[31mred", "half of an \xc3"}) {
     spec.name = name;
@@ -163,7 +163,7 @@ TEST_F(EngineTest, ABandOfAnEarlierJobWithTheSameIdIsUnwanted) {
   EXPECT_EQ(*farm_.put(job, top, work_hash(spec.manifest, spec.settings)), BandOutcome::kStored);
 }
 
-TEST_F(EngineTest, ABandThatIsNotOfTheJobIsRefused) {
+TEST_F(EngineTest, ABandThatDoesNotFitTheImageIsRefused) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   BandPixels band = rendered({.samples = {0, 8}, .rows = {0, 2}});
   band.sums.pop_back();

@@ -58,13 +58,13 @@ class RecordedStore : public StoreInbox {
   void drop_bands(JobId) override {}
   void drop_job(JobId) override {}
   void collect(std::vector<KeptJob>) override {}
-  void test_disk_until_writable() override { ++troubles; }
+  void test_disk_until_writable() override { ++disk_tests; }
 
   std::vector<Image> images;
   std::optional<Image> samples;
   std::vector<RowsBy> attribution;
   int reopened = 0;
-  int troubles = 0;
+  int disk_tests = 0;
 };
 
 class FilmThreadTest : public testing::Test {
@@ -250,12 +250,13 @@ TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
-TEST_F(FilmThreadTest, AnAdaptiveJobHasTheNumberOfSamplesOfEachPixel) {
+TEST_F(FilmThreadTest, TheResultOfAnAdaptiveJobHasTheNumberOfSamplesOfEachPixel) {
   thread_.add_job(1, settings_, true);
-  TileSamples even(settings_.width, {0, 8});
-  even.set(0, {16, 32});
+  // In the second pass, only the even half of the tile takes samples.
+  TileSamples even_half(settings_.width, {0, 8});
+  even_half.set(0, {16, 32});
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
-  ASSERT_TRUE(thread_.add(1, logged({16, 32}, {0, 8}, even), {{0, 8}}).ok());
+  ASSERT_TRUE(thread_.add(1, logged({16, 32}, {0, 8}, even_half), {{0, 8}}).ok());
   thread_.request_image(1, 32);
   ASSERT_TRUE(store_.samples.has_value());
   ASSERT_EQ(store_.samples->pixels.size(), 48u);
@@ -278,7 +279,7 @@ TEST_F(FilmThreadTest, BandsRefusedByAFullDiskAreAddedLater) {
     EXPECT_FALSE(thread_.add(1, std::move(second), {{4, 8}}).ok());
     thread_.request_image(1, 16);
     EXPECT_GE(scheduler_.failed, 2);
-    EXPECT_EQ(store_.troubles, scheduler_.failed) << "the store must be asked to test the disk";
+    EXPECT_EQ(store_.disk_tests, scheduler_.failed) << "the store must be asked to test the disk";
   }
   EXPECT_TRUE(scheduler_.merged.empty());
   thread_.retry();
@@ -317,9 +318,9 @@ TEST_F(FilmThreadTest, APreviewShowsPresentRowsAndTheirWorkers) {
   EXPECT_EQ(whole.at(3, 1), Rgb());
   EXPECT_EQ(whole.at(3, 4), local(16)[4 * 6 + 3]);
   // Every third row: rows 0, 3 and 6.
-  const Image thirds = *thread_.preview(1, 3);
-  EXPECT_EQ(thirds.height, 3u);
-  EXPECT_EQ(thirds.at(3, 1), whole.at(3, 3));
+  const Image every_third_row = *thread_.preview(1, 3);
+  EXPECT_EQ(every_third_row.height, 3u);
+  EXPECT_EQ(every_third_row.at(3, 1), whole.at(3, 3));
   const std::vector<RowsBy> by_anna = {{{2, 5}, "anna"}};
   EXPECT_EQ(thread_.rendered_by(1), by_anna);
   thread_.drop(1);

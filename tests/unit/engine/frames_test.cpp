@@ -85,7 +85,7 @@ TEST(EngineFrames, EachFrameHasItsImageAfterARestartAndIsRenderedOnce) {
   EXPECT_THAT(std::string(farm.result(id).status().message()), HasSubstr("has frames"));
 }
 
-TEST(EngineFrames, ASceneWhoseBlobsAreMissingIsRefusedWithTheFrame) {
+TEST(EngineFrames, TheErrorOfASceneWithMissingBlobsNamesTheFrame) {
   TestFarm farm;
   ASSERT_TRUE(farm.start().ok());
   const JobId id = begin(farm, 2);

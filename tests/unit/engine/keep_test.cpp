@@ -75,12 +75,12 @@ TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
   // After this call the first collection is done. The next collection is due ten minutes or a
   // thousand jobs later.
   EXPECT_TRUE(jobs().empty());
-  const std::vector<JobId> over = submit(990);
-  cancel(over);
+  const std::vector<JobId> cancelled = submit(990);
+  cancel(cancelled);
   EXPECT_EQ(jobs().size(), 990u);
   submit(20);
   // Waits until the collection at the thousandth job has removed the oldest job.
-  for (int asked = 0; asked < 1'000'000 && is_known(over.front()); ++asked) {
+  for (int asked = 0; asked < 1'000'000 && is_known(cancelled.front()); ++asked) {
   }
   const std::vector<JobView> left = jobs();
   ASSERT_EQ(left.size(), 25u) << "five final jobs and twenty running ones must be left";
@@ -88,7 +88,7 @@ TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
                           [](const JobView& job) { return is_final(job.state); }),
             5);
   EXPECT_TRUE(std::all_of(left.begin(), left.end(),
-                          [&](const JobView& job) { return job.id >= over[985]; }));
+                          [&](const JobView& job) { return job.id >= cancelled[985]; }));
 }
 
 }  // namespace

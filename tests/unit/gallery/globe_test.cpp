@@ -43,11 +43,11 @@ TEST(Globe, HasNoSeam) {
     }
     return sum;
   };
-  long widest = 0;
+  long largest = 0;
   for (std::uint32_t x = 0; x + 1 < 2 * kRows; ++x) {
-    widest = std::max(widest, step(x, x + 1));
+    largest = std::max(largest, step(x, x + 1));
   }
-  EXPECT_LE(step(2 * kRows - 1, 0), widest);
+  EXPECT_LE(step(2 * kRows - 1, 0), largest);
 }
 
 // A texel is ice if its red is high. A texel is sea if its blue is more than twice its red. The

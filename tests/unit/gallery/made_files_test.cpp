@@ -32,7 +32,7 @@ std::string text(const std::vector<std::byte>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-TEST(MadeFiles, AreThoseOfTheRepository) {
+TEST(MadeFiles, EqualTheFilesOfTheRepository) {
   EXPECT_TRUE(kept("vase.obj") == vase());
   EXPECT_TRUE(kept("pawn.obj") == pawn());
   EXPECT_TRUE(kept("lamp_foot.obj") == lamp_foot());

@@ -28,7 +28,7 @@ TEST(Closed, ACubeIsClosedAlsoWithSplitCorners) {
 }
 
 // If corners at the same place move apart before the shutter closes, they leave a hole.
-TEST(Closed, ADeformingMeshIsClosedIfItIsClosedAtBothEnds) {
+TEST(Closed, ADeformingMeshIsClosedIfItIsClosedAtShutterOpenAndClose) {
   Mesh cube = unit_cube();
   cube.positions_at_close = cube.positions;
   cube.positions_at_close[3] = {2, 3, 0.5f};

@@ -62,10 +62,10 @@ TEST(Disk, IsHitWithinItsRim) {
   for (int i = 0; i < 200'000; ++i) {
     const Disk disk = random_disk(random);
     const DiskAxes axes = axes_of(disk);
-    const double far = random.uniform(0.5, 1.5);
+    const double distance_in_radii = random.uniform(0.5, 1.5);
     const double turn = random.uniform(0, 2 * kPi);
-    const Vec3 target =
-        disk.center + disk.radius * far * (std::cos(turn) * axes.u + std::sin(turn) * axes.v);
+    const Vec3 target = disk.center + disk.radius * distance_in_radii *
+                                          (std::cos(turn) * axes.u + std::sin(turn) * axes.v);
     const Vec3 origin = disk.center + disk.radius * 10 * test::random_point(random);
     const TracedRay ray = trace_setup(origin, target - origin, kInfinity);
     Crossing c;
@@ -99,7 +99,7 @@ TEST(Disk, IsHitWithinItsRim) {
   EXPECT_GT(misses, 50'000);
 }
 
-TEST(Disk, IsMissedWithinItsPlane) {
+TEST(Disk, IsMissedByRaysInItsPlaneAndRaysThatDoNotReachIt) {
   const Disk disk = {{1, 2, 3}, {0, 1, 0}, 2, {}};
   Crossing c;
   EXPECT_FALSE(intersect(trace_setup({-5, 2, 3}, {1, 0, 0}, kInfinity), disk, c));

@@ -62,12 +62,13 @@ TEST(GuidingCones, SamplesHaveThePdf) {
     ASSERT_NEAR(length(direction), 1, 1e-12);
     ASSERT_GT(cones.pdf(direction), 0);
     const Vec3 other = sample_sphere(numbers[1], numbers[2]);
-    const auto octant = [](const Vec3& d) {
+    const auto class_of = [](const Vec3& d) {
       return (d.x > 0.4 ? 1u : 0u) + (d.y > 0.1 ? 2u : 0u) + (d.z > 0.6 ? 4u : 0u);
     };
-    for (std::size_t cell_number = 0; cell_number < 8; ++cell_number) {
-      sampled[cell_number].add(octant(direction) == cell_number ? 1 / cones.pdf(direction) : 0);
-      uniform[cell_number].add(octant(other) == cell_number && cones.pdf(other) > 0 ? 4 * kPi : 0);
+    for (std::size_t class_number = 0; class_number < 8; ++class_number) {
+      sampled[class_number].add(class_of(direction) == class_number ? 1 / cones.pdf(direction) : 0);
+      uniform[class_number].add(class_of(other) == class_number && cones.pdf(other) > 0 ? 4 * kPi
+                                                                                        : 0);
     }
   }
   for (std::size_t i = 0; i < 8; ++i) {
@@ -94,7 +95,7 @@ TEST(GuidingCones, WithoutCellsGuidesNothing) {
 
 // Directions are sampled towards the photons' cell with the share of its irradiance in the
 // irradiance of both cells, but at least 1/8 and at most 1/2.
-TEST(GuidingShares, PhotonsGetTheShareOfTheirLight) {
+TEST(GuidingShares, TheShareOfPhotonsFollowsTheirLight) {
   GuidingCell paths = three_balls();
   GuidingCell photons = three_balls();
   photons.moment = 100;
@@ -154,7 +155,7 @@ TEST(FitCell, ScalesPhotonsByTheirAreaAndAveragesPaths) {
   EXPECT_NEAR(fit_cell(light_of_disk(GuidingRecord::Kind::kPath, 0.1, 200)).irradiance, 1, 1e-5);
 }
 
-TEST(FitCell, LeavesEvenLightToTheBsdf) {
+TEST(FitCell, LeavesUniformLightMostlyToTheBsdf) {
   std::vector<GuidingRecord> records = light_of_disk(GuidingRecord::Kind::kPath, 0.1, 500);
   const PixelSampler sampler(1, 1, 1);
   for (std::uint64_t i = 0; i < records.size(); ++i) {
@@ -167,7 +168,7 @@ TEST(FitCell, LeavesEvenLightToTheBsdf) {
   EXPECT_LE(cell.share, 0.125f);
 }
 
-TEST(FitCell, NeedsSomeRecordsWithLight) {
+TEST(FitCell, TooFewRecordsWithLightGiveNoBalls) {
   EXPECT_EQ(fit_cell({}).count, 0u);
   EXPECT_EQ(fit_cell(light_of_disk(GuidingRecord::Kind::kPath, 0.1, 7)).count, 0u);
   std::vector<GuidingRecord> dark = light_of_disk(GuidingRecord::Kind::kPath, 0.1, 100);

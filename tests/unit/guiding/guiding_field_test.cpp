@@ -47,7 +47,7 @@ TEST(GuidingTree, IsEmptyWithoutRecords) {
   EXPECT_EQ(tree.find({}, {0, 0, 1}), nullptr);
 }
 
-TEST(GuidingTree, HoldsManyRecordsAtOnePoint) {
+TEST(GuidingTree, ManyRecordsAtOnePointGiveAtMostTwoCells) {
   std::vector<GuidingRecord> records = two_sides(1000);
   for (GuidingRecord& record : records) {
     record.position = {1, 2, 3};

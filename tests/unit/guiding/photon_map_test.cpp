@@ -130,7 +130,7 @@ TEST(PhotonMap, KeepsAnEdgeOfLight) {
   EXPECT_EQ(irradiance(map, {0.3, 0.5, 0}), 0);
 }
 
-TEST(PhotonMap, TheFactorScalesTheDisks) {
+TEST(PhotonMap, TheRadiusFactorScalesTheDisks) {
   Pool pool(1);
   const PhotonMap one(on_floor(30'000), 1, 0, pool, whole);
   const PhotonMap half(on_floor(30'000), 0.5, 0, pool, whole);

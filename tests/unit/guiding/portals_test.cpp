@@ -54,7 +54,7 @@ TEST(Portals, SamplesHaveThePdfOfTheirDirection) {
   }
 }
 
-TEST(Portals, HaveTheSolidAngleOfAClosedForm) {
+TEST(Portals, PdfOfACubeFaceIsTheClosedForm) {
   // A face of a cube around the point is a sixth of all directions.
   const Portals face(std::vector<Portal>{{{1, -1, -1}, {0, 2, 0}, {0, 0, 2}}});
   EXPECT_NEAR(face.pdf({}, {1, 0, 0}), 6 / (4 * kPi), 1e-12);

@@ -17,7 +17,7 @@ TEST(Display, TheDefaultChangesNothing) {
   EXPECT_EQ(shown(any, {}), any);
 }
 
-TEST(Display, AStopIsTwiceTheLight) {
+TEST(Display, OneStopDoublesTheLight) {
   EXPECT_EQ(shown({0.25f, 1, 0}, {.exposure = 2}), (Rgb{1, 4, 0}));
   EXPECT_EQ(shown({0.25f, 1, 0}, {.exposure = -1}), (Rgb{0.125f, 0.5f, 0}));
 }

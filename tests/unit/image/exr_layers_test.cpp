@@ -52,7 +52,7 @@ const Image kImage{2, 1, {{1, 2, 3}, {4, 5, 6}}};
 const Layers kLayers = {{"albedo", {2, 1, {{0.25f, 0.5f, 0.75f}, {1, 0, 0}}}, false},
                         {"depth", {2, 1, {gray(1e6f), gray(3)}}, true}};
 
-TEST(ExrLayers, StandBesideTheImageUnderTheirNames) {
+TEST(ExrLayers, AreStoredBesideTheImageUnderTheirNames) {
   const auto channels = channels_of(encode_exr(kImage, false, kLayers).value());
   ASSERT_EQ(channels.size(), 7u);
   EXPECT_THAT(channels.at("R").values, ElementsAre(1, 4));

@@ -19,7 +19,7 @@ Curve numbers(std::vector<double> times, std::vector<double> values, Interpolati
   return {std::move(times), std::move(values), 1, interpolation};
 }
 
-TEST(Curve, RestsBeforeTheFirstKeyAndAfterTheLast) {
+TEST(Curve, IsConstantBeforeTheFirstKeyAndAfterTheLast) {
   for (const Interpolation kind :
        {Interpolation::kLinear, Interpolation::kStep, Interpolation::kSmooth}) {
     const Curve curve = numbers({1, 3}, {10, 20}, kind);
@@ -30,7 +30,7 @@ TEST(Curve, RestsBeforeTheFirstKeyAndAfterTheLast) {
   }
 }
 
-TEST(Curve, LinearIsStraightAndStepHolds) {
+TEST(Curve, LinearInterpolatesAndStepKeepsTheLastValue) {
   EXPECT_THAT(numbers({1, 3}, {10, 20}, Interpolation::kLinear).at(1.5), ElementsAre(12.5));
   EXPECT_THAT(numbers({1, 3}, {10, 20}, Interpolation::kStep).at(2.999), ElementsAre(10));
 }
@@ -72,7 +72,7 @@ TEST(Curve, AZeroQuaternionIsNoRotation) {
   EXPECT_EQ(curve.rotation_at(0), Quaternion{});
 }
 
-TEST(Curve, KnowsWhereItRests) {
+TEST(Curve, RestsWhereItsValueDoesNotChange) {
   const Curve curve = numbers({0, 1, 2, 3}, {5, 5, 6, 6}, Interpolation::kLinear);
   EXPECT_TRUE(curve.rests(-1, 0.9));
   EXPECT_TRUE(curve.rests(2, 9));

@@ -50,7 +50,7 @@ int opens(const std::string& path, int flags) {
   return open(path.c_str(), flags, 0600) >= 0 ? 0 : errno;
 }
 
-TEST(Confine, LeavesNoNetworkNoProgramsAndNoProcesses) {
+TEST(Confine, ForbidsNetworkProgramsNewProcessesAndSignalsToOthers) {
   const Folders folders;
   EXPECT_EQ(confined(folders, [] { return socket(AF_INET, SOCK_STREAM, 0) < 0 ? errno : 0; }),
             EPERM);
@@ -86,7 +86,7 @@ TEST(Confine, StillAllowsThreadsAndMemory) {
             'x');
 }
 
-TEST(Confine, LimitsCoreDumpsFilesAndTime) {
+TEST(Confine, ForbidsCoreDumpsAndLimitsCpuTime) {
   const Folders folders;
   EXPECT_EQ(confined(folders,
                      [] {

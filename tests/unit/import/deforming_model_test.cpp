@@ -194,7 +194,7 @@ TEST_F(DeformingModel, TrianglesThatAreNotFiniteAtEitherEndAreLeftOut) {
 
 // A morph target moves the right edge of a half-plane by ten pixels, so the coverage is a linear
 // ramp.
-TEST_F(DeformingModel, AMorphTargetInLinearMotionIsALinearRamp) {
+TEST_F(DeformingModel, TheCoverageOfAMorphTargetInLinearMotionIsALinearRamp) {
   constexpr int kWidth = 24;
   GltfWriter file = quad(-100, 5, -9, 9);
   file.primitive()["targets"] =

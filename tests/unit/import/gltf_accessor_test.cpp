@@ -133,7 +133,7 @@ TEST_F(GltfAccessors, AnExactQuantisationChangesNoBit) {
   EXPECT_EQ(a.triangles, b.triangles);
 }
 
-TEST_F(GltfAccessors, SparseAccessorsAndThoseWithoutAViewAreFilled) {
+TEST_F(GltfAccessors, SparseAccessorsReplaceElementsOfAViewOrOfZeros) {
   GltfWriter file;
   const std::size_t places = file.view(test::bytes_of<std::uint8_t>({1, 2}));
   const std::size_t values = file.view(test::bytes_of<float>({3, 0, 0, 0, 3, 0}));
@@ -190,7 +190,7 @@ struct Damage {
 
 class DamagedGltf : public ::testing::TestWithParam<Damage> {};
 
-TEST_P(DamagedGltf, IsOneClearError) {
+TEST_P(DamagedGltf, GivesAnErrorThatNamesTheFault) {
   const TempDir folder;
   GltfWriter file = WavySquare(2).plain();
   file.root["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
@@ -293,7 +293,7 @@ TEST_F(GltfAccessors, JsonThatIsBrokenOrTooDeepIsRefused) {
 
 // In glTF 1.0 the lists are JSON objects whose keys are names. Some programs write the version as a
 // number.
-TEST_F(GltfAccessors, TheFirstVersionIsStillRead) {
+TEST_F(GltfAccessors, FilesOfGltf1AreRead) {
   write_text(folder_, "f.bin", test::bytes_of(kTriangle));
   for (const std::string version : {"\"1.0\"", "1"}) {
     const auto imported = import_scene(write_text(

@@ -158,7 +158,7 @@ TEST(Meshopt, FilteredNormalsAndPositionsAreWithinTheirPrecision) {
 }
 
 // The decoders in meshopt_filters.h differ from the library's decoders by at most one unit.
-TEST(Meshopt, FiltersAreThoseOfTheLibraryUpToItsRounding) {
+TEST(Meshopt, FiltersDecodeLikeTheLibraryWithinOneUnit) {
   test::Random random(3);
   std::vector<float> unit;
   for (int i = 0; i < 4000; ++i) {
@@ -209,7 +209,7 @@ TEST(Meshopt, FiltersAreThoseOfTheLibraryUpToItsRounding) {
   EXPECT_EQ(ours, theirs);
 }
 
-TEST(Meshopt, DamagedViewsAreOneClearError) {
+TEST(Meshopt, TheErrorOfADamagedViewNamesTheFault) {
   const TempDir folder;
   const GltfWriter sound = with_meshopt(WavySquare(), false, 2);
   const auto message = [&](const char* member, const Json& value, std::size_t view = 0) {
@@ -307,7 +307,7 @@ TEST(Draco, AQuantisedMeshIsRenderedWithinItsBound) {
   }
 }
 
-TEST(Draco, DamagedStreamsAreOneClearError) {
+TEST(Draco, TheErrorOfADamagedStreamNamesTheFault) {
   const TempDir folder;
   const WavySquare square;
   const std::string stream = draco_stream(square, 12, true);

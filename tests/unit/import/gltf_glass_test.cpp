@@ -83,7 +83,7 @@ TEST(GltfVolume, AClosedMeshIsGlassThatAbsorbs) {
 
 // A scene places the cube, whose depth is 2. White light that passes through it gets the colour
 // that the file gives for a length of 2.
-TEST(GltfVolume, WhiteLightHasTheColourAfterTheDistance) {
+TEST(GltfVolume, WhiteLightGetsTheColourThatTheFileGives) {
   const TempDir folder;
   cube().write(folder, "m.gltf");
   const auto imported = import_scene(

@@ -60,7 +60,7 @@ TEST(DecodeImage, KeepsEightBitTexels) {
   EXPECT_THAT(warnings, ::testing::IsEmpty());
 }
 
-TEST(DecodeImage, ExpandsGrey) {
+TEST(DecodeImage, ExpandsGreyToThreeChannels) {
   std::vector<std::string> warnings;
   const auto image = decode_image(std::string("P5 2 1 255\n") + "\x10\x20", warnings);
   ASSERT_TRUE(image.ok()) << image.status();
@@ -108,7 +108,7 @@ std::string bmp() {
   return std::string(header, sizeof header) + std::string(50 * 12, '\x50');
 }
 
-TEST(DecodeImage, ADeepPnmFileIsAnError) {
+TEST(DecodeImage, APnmFileOf16BitsIsAnError) {
   std::vector<std::string> warnings;
   for (const std::string& whole : {std::string("P6 3 50 65535\n") + std::string(900, '\x50'),
                                    std::string("P5 3 50 65535\n") + std::string(300, '\x50')}) {
@@ -259,7 +259,7 @@ TEST(DecodePicture, GivesBackAnExrOfHalvesToElevenBits) {
   }
 }
 
-TEST(DecodePicture, AnExrIsATextureToo) {
+TEST(DecodePicture, AnExrIsReadAsATexture) {
   std::vector<std::string> warnings;
   const Image image = varied(5, 4);
   const auto read = decode_image(text_of(encode_image(image, ImageFormat::kExr).value()), warnings);

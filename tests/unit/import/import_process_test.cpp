@@ -138,7 +138,7 @@ TEST(ImportSession, TellsWhyAFrameCannotBeImported) {
             absl::StatusCode::kNotFound);
 }
 
-TEST(ImportProcess, ReadsAnEnvironmentFromAnywhere) {
+TEST(ImportProcess, ReadsAnEnvironmentFromAnyFolder) {
   const std::string scene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
   const TempDir elsewhere;
   std::filesystem::copy_file(std::string(BANDSAW_GALLERY) + "/evening.hdr", elsewhere / "e.hdr");
@@ -180,7 +180,7 @@ TEST(ImportProcess, ForwardsTheImportersError) {
 // The list of an archive's files may have lines "made NAME" for files that the importer wrote, and
 // no lines "found NAME" for files that were there before. A hostile archive may have taken control
 // of the importer, so the list is checked.
-TEST(ImportProcess, AListOfAnArchiveThatNamesFoundFilesIsRefused) {
+TEST(ImportProcess, AnArchivesListWithAFileThatTheImporterDidNotWriteIsRefused) {
   const TempDir folder;
   const std::string program =
       write_text(folder, "importer.sh", "#!/bin/sh\necho 'found s.textproto' > \"$3/list\"\n");
@@ -270,7 +270,7 @@ TEST(ImportProcess, AFileThatNeedsTooMuchMemoryIsAnError) {
   EXPECT_THAT(std::string(picture.status().message()), StartsWith("sky.pgm: needs more memory"));
 }
 
-TEST(ImportProcess, AModelThatClaimsTooMuchIsOneClearError) {
+TEST(ImportProcess, AModelThatStatesTooManyVerticesIsAnError) {
   if (test::kSanitized) {
     GTEST_SKIP() << "a sanitizer wants more address space than the limit";
   }
@@ -344,7 +344,7 @@ TEST(RunChild, ReportsHowAChildEnded) {
   EXPECT_FALSE(run_child({"/no/such/program"}, 1, nullptr).ok());
 }
 
-TEST(RunChild, GivesTheChildSignalsThatItsParentIgnores) {
+TEST(RunChild, AChildDoesNotIgnoreTheSignalsThatItsParentIgnores) {
   struct sigaction before {};
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;

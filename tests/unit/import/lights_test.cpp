@@ -56,7 +56,7 @@ class SceneLights : public ::testing::Test {
   TempDir folder_;
 };
 
-TEST_F(SceneLights, ReadsEveryKind) {
+TEST_F(SceneLights, ReadsEveryKindOfLight) {
   const auto imported = read(R"(
 light { directional { direction: [0, -2, 0] irradiance { rgb: [1, 2, 3] } } }
 light { point { position: [1, 2, 3] intensity { rgb: [4, 5, 6] } } }
@@ -292,7 +292,7 @@ TEST(ModelLights, ALightAtSeveralNodesEmitsFromEach) {
   EXPECT_EQ(std::get<PointLight>(lights[2]).position, (Vec3{0, 5, 0}));
 }
 
-TEST(ModelLights, RangesAreLeftOutAndNamed) {
+TEST(ModelLights, RangesOfLightsAreLeftOutWithAWarning) {
   const TempDir folder;
   std::string text = gltf_with_lights();
   text.insert(text.find("\"intensity\": 40"), "\"range\": 7, ");
