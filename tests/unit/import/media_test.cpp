@@ -16,6 +16,7 @@ using test::TempDir;
 using test::write_text;
 using ::testing::HasSubstr;
 
+/// Begins each scene file.
 const std::string kHead = R"(camera { position: [0, 1, 5] look_at: [0, 0, 0] }
 material { name: "glass" dielectric { } }
 medium { name: "smoke" absorption { rgb: [1, 2, 3] } scattering { rgb: [4, 5, 6] } density: 0.5 }
@@ -23,17 +24,19 @@ medium { name: "milk" albedo { rgb: [1, 0.75, 0.5] } density: 8 anisotropy: 0.3
   emission { rgb: [0, 0, 1] } }
 )";
 
-/// A cube without its top, which kLid adds, as OBJ.
+/// OBJ text of a cube without its top. kLid adds the top.
 const std::string kCube =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
     "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\n";
 const std::string kLid = "f 5 6 8 7\n";
 
+/// Imports a scene file of kHead and `text`. The models closed.obj, open.obj and turned.obj are in
+/// its folder.
 absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   const TempDir folder;
   write_text(folder, "closed.obj", kCube + kLid);
   write_text(folder, "open.obj", kCube);
-  // The mesh is inside out.
+  // The normals of this mesh point inwards.
   write_text(folder, "turned.obj",
              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\n"
              "f 2 4 3\n");

@@ -61,7 +61,7 @@ TEST(MitsubaPly, ReadsAttributesOfVerticesAndFaces) {
   EXPECT_THAT(mesh->attributes[0].values, ElementsAre(5, 6, 7, 8));
   EXPECT_EQ(mesh->attributes[1].name, "face_color");
   EXPECT_THAT(mesh->attributes[1].values, ElementsAre(0.1f, 0.2f, 0.3f, 0.1f, 0.2f, 0.3f))
-      << "once for each triangle of the polygon";
+      << "each triangle of the polygon must have the values of the face";
 }
 
 TEST(MitsubaPly, ReadsBothByteOrders) {
@@ -99,8 +99,8 @@ TEST(MitsubaPly, ClaimsAreCheckedBeforeMemoryIsTaken) {
   EXPECT_THAT(message(read_ply("solid", false)), HasSubstr("is not a PLY file"));
 }
 
-/// Returns a *.serialized file of one triangle whose header claims this number of vertices.
-/// `flags`: 0x1000 means single precision.
+/// Returns a *.serialized file of one triangle. `vertices`: the number of vertices that the header
+/// claims; `last_index`: the third vertex of the triangle; `flags`: 0x1000 means single precision.
 std::string serialized(std::uint64_t vertices, std::uint32_t last_index = 2,
                        std::uint32_t flags = 0x1000) {
   std::string inside;
@@ -158,7 +158,8 @@ TEST(MitsubaSerialized, DamageIsNamed) {
 }
 
 TEST(MitsubaMesh, NormalsAreWeightedByAngles) {
-  // A corner of a cube: the three faces meet at right angles, whatever their triangles are.
+  // Vertex 0 is the corner of a cube, where three faces meet at right angles. The normal must not
+  // depend on the number of triangles of a face, which is 2 for one of the faces.
   PlyMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}};
   mesh.triangles = {{0, 4, 1}, {0, 2, 4}, {0, 3, 2}, {0, 1, 3}};

@@ -62,12 +62,15 @@ std::string rectangle(const std::string& bsdf) {
   return "<shape type=\"rectangle\">" + bsdf + "</shape>";
 }
 
+// The default lens has a focal length of 50 mm on a film of 36 x 24 mm. The diagonal of the image,
+// which has 768 x 576 pixels, has the angle of the diagonal of this film. The width of the image is
+// 4/3 of its height, so the diagonal is sqrt(1 + 16/9) times the height.
 TEST_F(MitsubaScene, TheDefaultLensIsThatOf50mm) {
   EXPECT_NEAR(
       scene("").camera().vertical_fov(),
       2 * std::atan(std::sqrt(36.0 * 36 + 24 * 24) / 100 / std::sqrt(1 + 16.0 / 9)) * 180 / M_PI,
       1e-9)
-      << "on the diagonal of 768 x 576";
+      << "the vertical angle of 768 x 576 pixels";
 }
 
 TEST_F(MitsubaScene, CropsBecomeWindows) {
@@ -97,6 +100,7 @@ TEST_F(MitsubaScene, AMirroredSensorIsMirrored) {
   EXPECT_TRUE(converted->scene.camera().mirrored());
 }
 
+// In Mitsuba, a max_depth of -1 means no limit. It becomes the maximum, 1024.
 TEST_F(MitsubaScene, DepthCountsVertices) {
   const auto depth = [&](const std::string& value) {
     return scene("<integrator type=\"path\"><integer name=\"max_depth\" value=\"" + value +
@@ -296,8 +300,8 @@ TEST_F(MitsubaScene, AConductorWithoutAMetalIsAMirror) {
   EXPECT_EQ(metal("0.6.0", "").eta().rgb(0), copper.eta().rgb(0)) << "the default of version 0.6";
 }
 
-/// The expected values are the linear RGB of the same tables under equal energy, as the renderer
-/// Tungsten lists them.
+/// The expected values are those that the renderer Tungsten lists. They are the linear RGB of the
+/// same spectral tables under light of equal energy.
 TEST(MitsubaMetals, HaveTheirPublishedColours) {
   struct Published {
     const char* name;
@@ -318,8 +322,8 @@ TEST(MitsubaMetals, HaveTheirPublishedColours) {
     const auto metal = mitsuba::metal_of(published.name);
     ASSERT_TRUE(metal.ok()) << metal.status();
     const auto expect_near = [&](float ours, float theirs) {
-      // Our tables have a value for every 30 nm, so the edges in the spectra of copper and gold are
-      // not sharper than that.
+      // Our tables have one value for every 30 nm. So they blur the sharp edges in the spectra of
+      // copper and gold.
       EXPECT_NEAR(ours, theirs, std::max(0.015f * theirs, 0.02f)) << published.name;
     };
     for (const auto& [ours, theirs] :
@@ -366,7 +370,8 @@ TEST_F(MitsubaScene, ACheckerboardBeginsAtTheTop) {
   const scene::CheckerTexture& flat = from.material(0).diffuse().texture().checker();
   EXPECT_THAT(flat.size(), ElementsAre(0.1, 0.1));
   EXPECT_NEAR(flat.even().color().rgb(0), 0.4, 1e-7);
-  // On the sphere v is counted from the other end of the ten rows, where the other colour is.
+  // On the sphere, v counts the ten rows from the other end, where the first cell has the other
+  // colour.
   EXPECT_NEAR(from.material(1).diffuse().texture().checker().even().color().rgb(0), 0.2, 1e-7);
 }
 
@@ -420,8 +425,8 @@ TEST_F(MitsubaScene, AreaLightsEmitToOneSide) {
   EXPECT_TRUE(from.material(0).emission_one_sided());
 }
 
-/// Mitsuba's rows are points of latitude, ours are bands: the image that is made must not be
-/// blurred by that.
+/// In Mitsuba's environment maps a row of pixels is a circle of latitude. In ours it is a band of
+/// latitudes. The conversion must not blur the image.
 TEST_F(MitsubaScene, EnvironmentsStaySharp) {
   const Image rows{1, 3, {gray(0), gray(1), gray(0)}};
   const auto bytes = encode_image(rows, ImageFormat::kExr);
@@ -435,8 +440,9 @@ TEST_F(MitsubaScene, EnvironmentsStaySharp) {
   const auto image = decode_picture(made->second);
   ASSERT_TRUE(image.ok()) << image.status();
   const std::size_t half = image->height / 2;
-  EXPECT_GT((image->pixels[half - 1].g + image->pixels[half].g) / 2, 0.95f) << "the equator";
-  EXPECT_LT(image->pixels.front().g, 0.05f) << "the pole";
+  EXPECT_GT((image->pixels[half - 1].g + image->pixels[half].g) / 2, 0.95f)
+      << "the equator must stay bright";
+  EXPECT_LT(image->pixels.front().g, 0.05f) << "the pole must stay dark";
 }
 
 TEST_F(MitsubaScene, RectanglesKeepTheirNormal) {
@@ -478,7 +484,7 @@ TEST_F(MitsubaScene, MediaHaveTheirCoefficients) {
   EXPECT_EQ(from.shape(0).material(), "");
 }
 
-/// Mitsuba continues the outermost numbers to the faces of the grid.
+/// In Mitsuba, the outermost values of a grid continue to the faces of the grid.
 TEST_F(MitsubaScene, GridsReachTheirFaces) {
   write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
   const auto text = [](const std::string& wrap) {

@@ -42,6 +42,7 @@ std::string write_cameras(const TempDir& folder, const std::string& name) {
   return write_text(folder, name, text);
 }
 
+/// Position and field of view of an imported camera.
 struct Seen {
   Vec3 from;
   int degrees = 0;  ///< vertical field of view, rounded
@@ -56,11 +57,13 @@ class ModelCameraNames : public ::testing::Test {
  protected:
   ModelCameraNames() { write_cameras(folder_, "m.gltf"); }
 
+  /// Returns the camera that `name` selects in `file`.
   Seen by(const std::string& name, const std::string& file = "m.gltf") {
     const auto imported = import_scene(folder_ / file, {.camera = name});
     EXPECT_TRUE(imported.ok()) << imported.status();
     return imported.ok() ? seen(*imported) : Seen{};
   }
+  /// Returns the message of the error if `name` selects a camera in `file`.
   std::string error(const std::string& name, const std::string& file = "m.gltf") {
     return std::string(import_scene(folder_ / file, {.camera = name}).status().message());
   }
@@ -70,7 +73,8 @@ class ModelCameraNames : public ::testing::Test {
 TEST_F(ModelCameraNames, ACameraOfTwoNodesStandsAtBoth) {
   EXPECT_EQ(by("left"), (Seen{{-1, 0, 3}, 60}));
   EXPECT_EQ(by("right"), (Seen{{1, 0, 3}, 60}));
-  EXPECT_EQ(by(""), (Seen{{-1, 0, 3}, 60})) << "the first node's";
+  EXPECT_EQ(by(""), (Seen{{-1, 0, 3}, 60}))
+      << "without a name, the camera of the first node is used";
 }
 
 TEST_F(ModelCameraNames, ItsOwnNameOrItsNodesNameSelectsIt) {
@@ -102,7 +106,8 @@ TEST_F(ModelCameraNames, TwoModelsOfASceneAreDistinguishedByTheirFiles) {
 model { file: "m.gltf" } model { file: "m.gltf" translate: [0, 0, 50] }
 model { file: "n.gltf" translate: [100, 0, 0] })");
   EXPECT_EQ(by("n.gltf/left", "s.textproto"), (Seen{{99, 0, 3}, 60}));
-  EXPECT_EQ(by("m.gltf/left", "s.textproto"), (Seen{{-1, 0, 3}, 60})) << "the first place's";
+  EXPECT_EQ(by("m.gltf/left", "s.textproto"), (Seen{{-1, 0, 3}, 60}))
+      << "the camera of the first placement is used";
   EXPECT_THAT(error("left", "s.textproto"),
               HasSubstr("several cameras are called \"left\"; there are \"m.gltf/left\""));
 }

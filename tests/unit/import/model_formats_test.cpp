@@ -1,5 +1,5 @@
-// Materials of the older formats, textures whose file names differ from those in the model, and the
-// up axis.
+// The import of OBJ, PLY, STL, COLLADA and FBX models: their materials, textures whose file names
+// differ from those in the model, vertex colours, lights and the up axis.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST_F(Obj, AHighlightBecomesRoughness) {
   const MetallicRoughness m = layers("Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 98\nillum 2\n");
   EXPECT_NEAR(m.roughness.factor, std::pow(0.02, 0.25), 1e-6);
   EXPECT_EQ(m.metallic.factor, 0);
-  EXPECT_NEAR(m.index_of_refraction, 1.5, 1e-6) << "no more than glass reflects";
+  EXPECT_NEAR(m.index_of_refraction, 1.5, 1e-6) << "without Ni, the index is at most that of glass";
   EXPECT_EQ(layers("Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 98\nNi 2\nillum 2\n").index_of_refraction,
             2);
 }
@@ -82,7 +82,8 @@ TEST_F(Obj, AnOpacityMapIsReadFromItsBrightness) {
   EXPECT_EQ(m.alpha.value.factor, 1);
 }
 
-/// Returns a TGA file of a black texel and, to the right of it, a white one, with these alphas.
+/// Returns a TGA file of two texels with these alphas. The left texel is black, the right texel is
+/// white.
 std::string tga_with_alpha(char alpha_of_black, char alpha_of_white) {
   const char header[18] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 32, 0x28};
   const char texels[8] = {0, 0, 0, alpha_of_black, '\xff', '\xff', '\xff', alpha_of_white};
@@ -138,7 +139,8 @@ TEST_F(Obj, ABumpMapThatHoldsNormalsIsANormalMap) {
   EXPECT_THAT(read("Kd 1 1 1\nmap_Bump h.ppm\n").info.warnings, IsEmpty());
 }
 
-// Heights that rise by 51 codes per texel to the right: slopes of 0.2, with -bm 2 of 0.4.
+// The heights rise by 51 of 255 codes per texel to the right. So the slope is 0.2. With the option
+// -bm 2 it is 0.4.
 TEST_F(Obj, ABumpMapOfHeightsIsTheirSlope) {
   write_text(folder_, "h.pgm", std::string("P5 3 1 255\n") + '\x0a' + '\x3d' + '\x70');
   const auto middle = [&](const std::string& bump) {
@@ -213,7 +215,7 @@ TEST_F(Obj, VertexColoursAreSrgb) {
   EXPECT_EQ(mesh.colors[1][1], static_cast<float>(srgb_decode(0.5)));
   const auto& surface = std::get<Diffuse>(imported->scene.materials.at(0).kind);
   EXPECT_EQ(evaluate(imported->scene.textures, surface.reflectance, {}), (Rgb{1, 1, 1}))
-      << "the grey of an OBJ file without materials does not dim them";
+      << "the default grey of a file without materials must not dim the vertex colours";
 }
 
 TEST_F(Obj, VertexColoursAreIgnoredIfTheSceneReplacesTheMaterial) {
@@ -332,8 +334,8 @@ TEST(Fbx, UpAxisIsConverted) {
   EXPECT_NEAR(lowest, 0, 1e-6);
 }
 
-/// Returns an ASCII FBX file of a square on y = 0 and a light above it, of brightness 4, with the
-/// given properties.
+/// Returns an ASCII FBX file of a square on y = 0 and a light above it. The intensity of the light
+/// is 4 (400 in the file). `properties`: further lines of the light's properties.
 std::string fbx_light(const std::string& properties) {
   return R"(; FBX 7.4.0 project file
 FBXHeaderExtension:  {
@@ -412,7 +414,8 @@ TEST(Fbx, TheConesOfASpotLightAreHalfItsAngles) {
   EXPECT_NEAR(spot.cos_outer, std::sqrt(0.5), 1e-6);
 }
 
-// Assimp makes the falloff of such a light infinite.
+// The light has a quadratic decay that starts at the distance 0. Assimp gives such a light an
+// infinite falloff.
 TEST(Fbx, AQuadraticDecayThatStartsAtZeroIsNotBlack) {
   const auto imported = import_fbx_light(R"(
 			P: "LightType", "enum", "", "",0

@@ -98,7 +98,8 @@ TEST_F(Gltf, EveryParameterHasItsTextureAndItsNumber) {
   EXPECT_EQ(whole.alpha.value.factor, 0.75);
   EXPECT_EQ(m.coat.factor, 0.5);
   EXPECT_EQ(m.coat_roughness.factor, 0.25);
-  EXPECT_EQ(m.coat.texture, m.roughness.texture) << "the same image under the same use";
+  EXPECT_EQ(m.coat.texture, m.roughness.texture)
+      << "parameters that use an image in the same way must share a texture";
   ASSERT_TRUE(m.coat_normal.has_value());
   EXPECT_EQ(m.coat_normal_scale, 2);
   EXPECT_EQ(m.transmission.factor, 0.75);
@@ -139,8 +140,8 @@ TEST_F(Gltf, TexturesAreTurnedScaledAndMovedAboutTheTopLeftCorner) {
   EXPECT_NEAR(length(at(1, 1) - Vec3{0.5, 0.5, 0}), 0, 1e-12);
 }
 
-// Assimp may number materials in the order in which nodes use them, which in this file is not the
-// order of the file.
+// Assimp may number materials in the order in which nodes use them. In this test that order differs
+// from the order of the file.
 TEST_F(Gltf, EachMaterialHasItsOwnExtensionsWhateverTheOrderOfUse) {
   write_text(folder_, "o.bin", floats({0, 0, 0, 1, 0, 0, 0, 1, 0}));
   const auto imported = import_scene(write_text(folder_, "o.gltf", R"({"asset": {"version": "2.0"},
@@ -179,7 +180,7 @@ TEST_F(Gltf, EachTextureHasItsOwnSetOfUvs) {
   EXPECT_EQ(image(imported, whole.emission.radiance.texture).uv_set, base);
   const Mesh& mesh = imported.scene.geometry.meshes[0];
   const auto& uvs = base == UvSet::kFirst ? mesh.uvs : mesh.uvs2;
-  EXPECT_EQ(uvs[1][0], 0.5f) << "the base colour's are the file's second set";
+  EXPECT_EQ(uvs[1][0], 0.5f) << "the base colour must have the file's second set of uvs";
   EXPECT_EQ((base == UvSet::kFirst ? mesh.uvs2 : mesh.uvs)[1][0], 1);
 }
 
@@ -272,7 +273,8 @@ TEST_F(Gltf, AGlossinessMaterialKeepsItsAlpha) {
   EXPECT_EQ(imported.scene.materials.at(0).alpha.value.factor, 0.75);
 }
 
-// The diffuse texture and all factors are those of the extension, which are not used.
+// The material has pbrMetallicRoughness and the extension pbrSpecularGlossiness. The diffuse
+// texture and the factors of the extension are not used.
 TEST_F(Gltf, AMaterialOfTwoDescriptionsIsReadByItsMetallicRoughness) {
   GltfTriangle file;
   file.textures = R"({"source": 0})";
@@ -323,9 +325,9 @@ TEST_F(Gltf, UnreadableDataIsRefused) {
   EXPECT_TRUE(import_scene(file.write(folder_, "t.gltf")).ok());
 }
 
-// A skinned triangle: one bone, which its node lifts by 2 and whose inverse bind matrix lowers it
-// by 1, and a morph target of weight 0.5 that moves the second vertex along z. The mesh's own node
-// has no effect.
+// A triangle has a skin with one bone. The node of the bone lifts it by 2, and the inverse bind
+// matrix lowers it by 1. A morph target of weight 0.5 moves the second vertex along z. The
+// translation of the mesh's own node has no effect.
 TEST_F(Gltf, StandsInItsRestPose) {
   const std::vector<float> lowered{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1};
   const std::string joints = std::string(12, '\0');
@@ -358,7 +360,7 @@ TEST_F(Gltf, StandsInItsRestPose) {
   EXPECT_THAT(imported->info.warnings, Contains(HasSubstr("1 scenes beside the default one")));
 }
 
-// Two triangles with a bone each; both bones have one name.
+// Two triangles have one bone each. Both bones have the same name.
 TEST_F(Gltf, BonesOfOneNameAreDistinguished) {
   const std::string joints = std::string(12, '\0');
   write_text(folder_, "s.bin",
@@ -386,8 +388,8 @@ TEST_F(Gltf, BonesOfOneNameAreDistinguished) {
   EXPECT_THAT(meshes[1].positions[0], ElementsAre(0, 0, 7));
 }
 
-// Nodes of one mesh: two with a skin each, one without a skin, and one with the first skin, which
-// would place the same triangle again.
+// Four nodes share one mesh. The first two have a skin each, and the third has none. The fourth has
+// the first skin again. It would place the same triangle a second time, so it is left out.
 TEST_F(Gltf, EachSkinPosesTheMeshThatItShares) {
   GltfWriter file;
   file.add_skinned_triangle();
@@ -411,7 +413,8 @@ TEST_F(Gltf, EachSkinPosesTheMeshThatItShares) {
   EXPECT_EQ(first_vertex(2), (Vec3{5, 0, 0}));
 }
 
-// Weights of a node replace those of its mesh. Nodes of equal weights share the mesh.
+// The weights of a node replace the weights of its mesh. Nodes with equal weights share one
+// imported mesh.
 TEST_F(Gltf, MorphTargetsHaveTheWeightsOfTheNode) {
   GltfWriter file;
   file.attributes()["POSITION"] = file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);

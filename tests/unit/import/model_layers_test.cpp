@@ -1,5 +1,5 @@
-// A textured model seen head-on with one pixel per texel: its albedo layer equals the image to the
-// 8-bit code, its normal layer equals the normal map.
+// A textured model is seen from the front with one pixel per texel. The albedo layer must equal the
+// image to the 8-bit code, and the normal layer must equal the normal map.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ using test::write_text;
 constexpr std::uint32_t kWidth = 7;
 constexpr std::uint32_t kHeight = 5;
 
-/// Returns random 8-bit codes. If they are those of `normals`, the normals point upwards.
+/// Returns random 8-bit codes, three for each texel. With `normals`, they are the codes of normals
+/// that point upwards (+z).
 std::string codes(bool normals) {
   test::Random random(9);
   std::string bytes;
@@ -28,6 +29,7 @@ std::string codes(bool normals) {
   return bytes;
 }
 
+/// Returns the layer of this integrator for the model, one pixel for each texel.
 Image seen(const TempDir& folder, const std::string& model, Integrator integrator) {
   const auto imported = import_scene(write_text(
       folder, "s.textproto",
@@ -39,6 +41,7 @@ Image seen(const TempDir& folder, const std::string& model, Integrator integrato
   return test::layer(*imported, kWidth, kHeight, integrator);
 }
 
+/// Writes q.obj and q.gltf, the same textured square in both formats.
 void write_models(const TempDir& folder) {
   const std::string head = absl::StrCat("P6 ", kWidth, " ", kHeight, " 255\n");
   write_text(folder, "color.ppm", head + codes(false));
@@ -82,7 +85,7 @@ TEST_P(ModelLayers, AreTheImagesOfTheModel) {
     const auto along = [&](std::size_t c) {
       return 2 * static_cast<unsigned char>(bent[3 * i + c]) / 255.0 - 1;
     };
-    // x is scaled by 1.4; the uvs are not.
+    // The model is scaled by 1.4 along x, but its uvs are not. The normal is that of the map.
     const Vec3 n = normalize({along(0), along(1), along(2)});
     EXPECT_NEAR(2 * normals.pixels[i].r - 1, n.x, 1e-5);
     EXPECT_NEAR(2 * normals.pixels[i].g - 1, n.y, 1e-5);

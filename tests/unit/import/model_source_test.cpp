@@ -1,5 +1,6 @@
-// A textured model by other authors, which the test parses a second time from its text. Its albedo
-// layer is the texel at the uv of the hit times Kd; its normal layer shows the normals of the file.
+// Compares layers of a textured model by other authors with values that the test computes from its
+// own reading of the OBJ and MTL files. The albedo layer must be the texel at the uv of the hit
+// times Kd. The normal layer must show the normals of the file.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,8 @@ struct Look {
   ImageTexture image;
 };
 
-/// Returns the bilinear interpolation of four texels of an image that repeats; v = 0 is its bottom.
+/// Returns the bilinear interpolation of the four texels around (u, v). The image repeats. Its
+/// bottom is at v = 0.
 Vec3 looked_up(const ImageTexture& image, double u, double v) {
   const double x = (u - std::floor(u)) * image.width - 0.5;
   const double y = (1 - (v - std::floor(v))) * image.height - 0.5;
@@ -65,6 +67,7 @@ struct Obj {
   std::map<std::string, Look> looks;
 };
 
+/// Reads Kd and map_Kd of each material. `folder` ends with a slash.
 std::map<std::string, Look> read_mtl(const std::string& folder, const std::string& name) {
   std::map<std::string, Look> looks;
   std::istringstream lines(read_whole_file(folder + name, 1 << 20).value());
@@ -88,6 +91,8 @@ std::map<std::string, Look> read_mtl(const std::string& folder, const std::strin
   return looks;
 }
 
+/// Reads an OBJ file whose faces are triangles with corners of the form v/vt/vn. `folder` ends with
+/// a slash.
 Obj read_obj(const std::string& folder, const std::string& name) {
   Obj obj;
   std::vector<Vec3> v;
@@ -128,7 +133,8 @@ struct Hit {
   Vec3 normal;
 };
 
-/// Returns the nearest hit at (x, y) for a viewer who looks along -z; std::nullopt: there is none.
+/// Returns the nearest hit at (x, y) for a viewer who looks along -z, or std::nullopt if there is
+/// none.
 /// `doubtful` is set to true if the hit is at an edge, or if two surfaces are equally near.
 std::optional<Hit> hit_at(const Obj& obj, double x, double y, bool& doubtful) {
   std::optional<Hit> nearest;
@@ -138,6 +144,7 @@ std::optional<Hit> hit_at(const Obj& obj, double x, double y, bool& doubtful) {
     const Corner& a = corners[0];
     const Corner& b = corners[1];
     const Corner& c = corners[2];
+    // Returns twice the signed area of the triangle of `from`, `to` and (x, y).
     const auto side = [&](const Vec3& from, const Vec3& to) {
       return (to.x - from.x) * (y - from.y) - (to.y - from.y) * (x - from.x);
     };
@@ -153,6 +160,7 @@ std::optional<Hit> hit_at(const Obj& obj, double x, double y, bool& doubtful) {
     if (!(least > -1e-4)) {
       continue;
     }
+    // Interpolates an attribute of the corners at (x, y).
     const auto at = [&](const auto& of) { return of(a) * wa + of(b) * wb + of(c) * wc; };
     const double z = at([](const Corner& k) { return k.position; }).z;
     if (nearest && z < nearest->z - 1e-3) {
@@ -196,13 +204,13 @@ TEST(ModelSource, TheSpidersLayersAreItsTexelsAndNormals) {
       }
       ++compared;
       const std::size_t i = row * kWidth + column;
-      // Codes times Kd are rounded to codes again: an error of half a code, which is at most 0.0045
-      // of linear light.
+      // A texel times Kd is rounded to an 8-bit code again. The error is half a code, which is at
+      // most 0.0045 in linear light.
       const Rgb& seen = albedo.pixels[i];
       EXPECT_LE(max_abs(Vec3{seen.r, seen.g, seen.b} - hit->albedo), 0.0046)
           << "at " << column << ", " << row;
       const Rgb& n = normals.pixels[i];
-      // Normals are shown on the side that faces the viewer.
+      // Normals are shown on the side that faces the viewer, so their sign is not compared.
       EXPECT_GE(std::abs(dot(Vec3{2.0 * n.r - 1, 2.0 * n.g - 1, 2.0 * n.b - 1}, hit->normal)),
                 1 - 1e-4)
           << "at " << column << ", " << row;

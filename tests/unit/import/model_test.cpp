@@ -102,7 +102,7 @@ TEST(Model, ReadsObjWithItsMaterialsAndTextures) {
   for (const Texture& texture : imported->scene.textures) {
     images += std::holds_alternative<ImageTexture>(texture) ? 1u : 0u;
   }
-  EXPECT_EQ(images, 4u) << "the fifth is of a material that nothing uses";
+  EXPECT_EQ(images, 4u) << "the fifth image belongs to a material that nothing uses";
   const auto box = import_scene(test_model("OBJ/box.obj"));
   ASSERT_TRUE(box.ok()) << box.status();
   EXPECT_EQ(triangles(*box), 12u);
@@ -163,7 +163,7 @@ TEST(Model, MakesDiffuseAndEmissiveOfObjMaterials) {
   const auto& image = std::get<ImageTexture>(
       scene.textures[index_of(std::get<Diffuse>(scene.materials[2].kind).reflectance)]);
   EXPECT_EQ(image.width, 2u);
-  EXPECT_TRUE(is_black(scene.background.top)) << "it has a lamp";
+  EXPECT_TRUE(is_black(scene.background.top)) << "a model with a lamp must have a black background";
 }
 
 TEST(Model, MultipliesATextureWithItsColour) {
@@ -241,8 +241,9 @@ TEST(Model, AModelAloneIsFramedWholeAndFillsThePicture) {
   const Vec3 across = rays.ray(301, 200, 0, 0).direction - rays.ray(299, 200, 0, 0).direction;
   for (const auto& p : imported->scene.geometry.meshes[0].positions) {
     const Vec3 to = Vec3{p[0], p[1], p[2]} - camera.position;
-    ASSERT_GT(dot(to, centre), 0) << "in front of the camera";
+    ASSERT_GT(dot(to, centre), 0) << "all vertices must be in front of the camera";
     const Vec3 seen = to / dot(to, centre);
+    // The column of the image in which the vertex is seen, in pixels.
     const double x = 300 + 2 * dot(seen, normalize(across)) / length(across);
     left = std::min(left, x);
     right = std::max(right, x);

@@ -66,6 +66,7 @@ TEST(Pbrt, TheAngleIsThatOfTheShorterSide) {
       "Camera \"perspective\" \"float fov\" 90\n"
       "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 200\n"
       "WorldBegin");
+  // The width of 100 pixels has 90 degrees, so the height has twice atan 2, which is 63.43 degrees.
   EXPECT_NEAR(scene.camera().vertical_fov(), 2 * 63.43494882292201, 1e-9);
 }
 
@@ -136,7 +137,7 @@ TEST(Pbrt, AProjectedImageStandsUpright) {
   const auto plain = projector("");
   EXPECT_THAT(plain.look_at(), ElementsAre(0, 0, 1));
   EXPECT_THAT(plain.up(), ElementsAre(0, 1, 0));
-  EXPECT_TRUE(plain.mirrored()) << "its right is +x; cross(z, y) is -x";
+  EXPECT_TRUE(plain.mirrored()) << "the right of the image is +x, but cross(z, y) is -x";
   EXPECT_FALSE(projector("Scale -1 1 1").mirrored());
   const auto turned = projector("Scale 1 -1 1");
   EXPECT_THAT(turned.up(), ElementsAre(0, -1, 0));
@@ -356,7 +357,8 @@ TEST(Pbrt, AClampedImageKeepsItsDarkParts) {
               "Shape \"sphere\"");
   ASSERT_TRUE(converted.ok()) << converted.status();
   EXPECT_THAT(converted->warnings, ElementsAre());
-  ASSERT_EQ(converted->scene.texture_size(), 2) << "the second is used twice";
+  ASSERT_EQ(converted->scene.texture_size(), 2)
+      << "both materials must use the one limited texture";
   EXPECT_EQ(converted->scene.texture(1).image().file(), "s_files/limited_1.exr");
   ASSERT_EQ(converted->scene.material_size(), 2);
   const std::string& name = converted->scene.texture(1).name();
@@ -380,7 +382,8 @@ TEST(Pbrt, ATextureThatCannotBeClampedIsScaledWithAWarning) {
 
 TEST(Pbrt, AFloatTextureOfAnImageWithAlphaIsItsAlpha) {
   const TempDir dir;
-  // A TGA of 2 x 1 texels, blue, green, red, alpha: white with alpha 0 and with alpha 128.
+  // Returns a TGA file of two white texels with these alphas. The bytes of a texel are blue, green,
+  // red and alpha.
   const auto tga = [](const std::string& alphas) {
     std::string file("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\x20\x28", 18);
     for (const char alpha : alphas) {
@@ -477,7 +480,7 @@ TEST(Pbrt, ClaimsAreCheckedBeforeMemoryIsTaken) {
   write_text(dir, "a.ply",
              "ply\nformat binary_little_endian 1.0\nelement vertex 900000000\nproperty float x\n"
              "property float y\nproperty float z\nend_header\n1234");
-  // The converter reads this file, not the importer, because the shape emits.
+  // The shape emits light. So the converter, not the importer, reads this file.
   EXPECT_THAT(
       std::string(convert(dir,
                           "WorldBegin\nAreaLightSource \"diffuse\"\nShape \"plymesh\" "
@@ -514,7 +517,8 @@ TEST(Pbrt, MediaFillClosedShapes) {
   EXPECT_EQ(scene.shape(0).material(), "");
 }
 
-// The first byte of -0.0025 is a line break, which Assimp took for a part of the header.
+// The mesh becomes a binary PLY file, in which the first byte of -0.0025 is a line break. Assimp
+// skips a line break after the header, although a number may begin with such a byte.
 TEST(Pbrt, ANumberMayBeginWithALineBreak) {
   const TempDir dir;
   const std::string path = write_text(

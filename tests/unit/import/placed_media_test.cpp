@@ -1,4 +1,5 @@
-// Media whose boundaries are in groups, are placed and move: checks the length of rays inside them.
+// Tests media whose boundaries are in groups, are placed by instances, and move. Each test compares
+// the lengths of rays inside the medium with the expected lengths.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,13 +18,14 @@ using test::TempDir;
 using test::write_text;
 using ::testing::HasSubstr;
 
-constexpr double kDensity = 0.25;
+constexpr double kDensity = 0.25;  // absorption of the smoke per unit of length
 const std::string kHead = R"(
 material { name: "glass" dielectric { } }
 material { name: "white" diffuse { color { rgb: [1, 1, 1] } } }
 medium { name: "smoke" absorption { rgb: [0.25, 0.25, 0.25] } }
 medium { name: "air" }
 )";
+/// A camera whose shutter is open from time 0 to time 1.
 const std::string kOpenFor1 =
     "camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 0 shutter_close: 1 }\n";
 
@@ -44,14 +46,14 @@ std::shared_ptr<const Scene> scene_of(const std::string& text) {
   return *scene;
 }
 
-/// Returns the length inside the medium of a ray that begins outside of it.
+/// Returns the length of the part of a ray that is inside the smoke. The ray begins outside.
 double smoke_along(const Scene& scene, const Vec3& origin, const Vec3& direction, double time = 0) {
   std::uint64_t rays = 0;
   const Ray ray{.origin = origin, .direction = direction, .time = time};
   return -std::log(double{media_transmittance(scene, ray, NumberStream(0), rays).g}) / kDensity;
 }
 
-constexpr double kError = 4e-6;  // of a length, because the transmittance is a float
+constexpr double kError = 4e-6;  // tolerance of a length; the transmittance is a float
 
 TEST(PlacedMedia, TheDensityDoesNotDependOnThePlacement) {
   const auto scene = scene_of(kOpenFor1 + R"(
@@ -61,8 +63,8 @@ instance { of: "box"  scale: 2  translate: [10, 0, 0] }
 instance { of: "box"  scale: [-4, 1, 1]  translate: [10, 10, 0]  material: "glass" }
 instance { of: "turned"  scale: [1, 1, -5]  translate: [10, 20, 0] }
 )");
-  // Boxes of 2 x 4 x 6 from (10, 0, 0); then 4 x 2 x 3, mirrored; then 3 x 2 x 5, rotated and
-  // mirrored.
+  // The instances are a box of 2 x 4 x 6 at (10, 0, 0), a mirrored box of 4 x 2 x 3 at
+  // (10, 10, 0), and a rotated and mirrored box of 3 x 2 x 5 at (10, 20, 0).
   EXPECT_NEAR(smoke_along(*scene, {0, 1, 1}, {1, 0, 0}), 2, kError);
   EXPECT_NEAR(smoke_along(*scene, {11, -9, 1}, {0, 1, 0}), 4 + 2, kError);
   EXPECT_NEAR(smoke_along(*scene, {11, 1, -9}, {0, 0, 1}), 6, kError);
@@ -110,7 +112,7 @@ shape { sphere { center: [9, 0, 0] radius: 1 } interior: "smoke" velocity: [0, -
     const double chord = std::abs(aside) < 1 ? 2 * std::sqrt(1 - aside * aside) : 0;
     EXPECT_NEAR(smoke_along(*scene, {9, -0.5, -9}, {0, 0, 1}, time), chord, kError) << time;
   }
-  // With a shutter of zero duration, the scene is that of the moment.
+  // With a shutter of zero duration, the scene stands still as it is at that time.
   const auto moment = scene_of(
       "camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 0.75 shutter_close: 0.75 }" +
       shapes);

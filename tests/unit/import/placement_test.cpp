@@ -46,7 +46,7 @@ instance { of: "pair" material: "red" rotate { axis: [0, 1, 0] degrees: 90 } })"
   ASSERT_TRUE(two.ok()) << two.status();
   const Geometry& g = two->scene.geometry;
   ASSERT_EQ(g.instances.size(), 2u);
-  ASSERT_EQ(g.groups.size(), 1u) << "they share their shapes";
+  ASSERT_EQ(g.groups.size(), 1u) << "the instances must share one group";
   EXPECT_EQ(g.groups[0].disks[0].normal, (Vec3{0, 1, 0}));
   EXPECT_EQ(g.instances[0].to_world, translation({1, 2, 3}) * scaling({2, 2, 2}));
   EXPECT_EQ(material_of(g, g.instances[0], 0), MaterialId{0});
@@ -199,8 +199,8 @@ TEST(Placement, C8_AShutterThatClosesBeforeItOpensIsRefused) {
               HasSubstr("camera.shutter_close: must not be before shutter_open, 2, is 1"));
 }
 
-/// A triangle and two cameras: one with a vertical field of view of 45 degrees and an aspect ratio
-/// of 2, and an orthographic one.
+/// A glTF file with a triangle and two cameras. "front" has a vertical field of view of 45 degrees
+/// and an aspect ratio of 2. "plan" is orthographic.
 const char kCameras[] = R"({
 "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
 "nodes": [{"mesh": 0},
@@ -225,19 +225,21 @@ TEST(ModelCamera, IsUsedByItsName) {
       "camera { use: \"front\" shutter_close: 1 } model { file: \"m.gltf\" translate: [0, 0, 1] }");
   ASSERT_TRUE(front.ok()) << front.status();
   const auto& perspective = std::get<PerspectiveCamera>(front->scene.camera);
-  EXPECT_NEAR(perspective.vertical_fov, 45, 1e-4) << "yfov, whatever the aspect";
+  EXPECT_NEAR(perspective.vertical_fov, 45, 1e-4)
+      << "the angle is yfov, whatever the aspect ratio is";
   EXPECT_EQ(perspective.position, (Vec3{0, 0, 4}));
   EXPECT_EQ(perspective.shutter, (Shutter{0, 1}));
 
   const auto plan = scene("camera { use: \"plan\" } model { file: \"m.gltf\" scale: 3 }");
   ASSERT_TRUE(plan.ok()) << plan.status();
   const auto& flat = std::get<OrthographicCamera>(plan->scene.camera);
-  EXPECT_NEAR(flat.height, 12, 1e-5) << "2 ymag, scaled";
+  EXPECT_NEAR(flat.height, 12, 1e-5) << "the height is 2 ymag times the scale 3";
   EXPECT_LE(length(normalize(flat.look_at - flat.position) - Vec3{0, -1, 0}), 1e-6);
 
   const auto alone = import_scene(folder / "m.gltf");
   ASSERT_TRUE(alone.ok()) << alone.status();
-  EXPECT_TRUE(std::holds_alternative<PerspectiveCamera>(alone->scene.camera)) << "the first";
+  EXPECT_TRUE(std::holds_alternative<PerspectiveCamera>(alone->scene.camera))
+      << "the first camera must be used";
 }
 
 // Each number is in range, but a worker would refuse their product.

@@ -138,6 +138,7 @@ TEST(SceneFile, HasADefaultBackgroundUnlessItHasLights) {
   EXPECT_FALSE(is_black(unlit->scene.background.top));
 }
 
+/// A scene with a mistake, and the beginning of the message of its error.
 struct Wrong {
   std::string name;
   std::string text;  ///< after kHead, which has two lines

@@ -22,6 +22,7 @@ absl::StatusOr<ImportedScene> import_material(const std::string& material) {
                      material + " }"));
 }
 
+/// Returns the part of the material that is special to its kind.
 template <class Kind>
 Kind material(const std::string& text) {
   const auto imported = import_material(text);
@@ -63,6 +64,7 @@ TEST(SceneMaterial, GltfHasATextureForEachNumber) {
   EXPECT_EQ(m.coat_normal_scale, 0.5);
 }
 
+/// Returns the whole material, with the fields that all kinds have.
 Material whole(const std::string& text) {
   const auto imported = import_material(text);
   EXPECT_TRUE(imported.ok()) << imported.status();
@@ -126,6 +128,7 @@ TEST(SceneMaterial, AMixtureIsOfMaterialsBeforeIt) {
   EXPECT_EQ(mix.b, MaterialId{1});
 }
 
+/// A material with a mistake, and a part of the message of its error.
 struct Wrong {
   std::string material;
   std::string message;

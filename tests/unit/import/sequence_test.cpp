@@ -50,8 +50,8 @@ class Sequence : public ::testing::Test {
     }
     return imported.ok() ? *std::move(imported) : ImportedScene();
   }
-  /// Expects that the package has the same bytes if other frames were imported with the same memory
-  /// before.
+  /// Expects that the package has the same bytes if other frames were imported before with the same
+  /// ImportMemory.
   static void expect_the_same_after_other_frames(const std::string& path,
                                                  const ImportChoices& choices,
                                                  const ImportedScene& fresh) {
@@ -95,7 +95,7 @@ TEST_F(Sequence, TracksSetFieldsInTheMiddleOfTheExposure) {
             key { time: 0 value: [0, 1, 0] } key { time: 4 value: [8, 1, 0] } }
     track { field: "material[\"lamp\"].emissive.radiance.rgb" interpolation: INTERPOLATION_STEP
             key { time: 0 value: [1, 2, 3] } key { time: 2.1 value: [4, 5, 6] } })";
-  // Frame 20 is at time 2; the exposure is from 2 to 2.5.
+  // Frame 20 is at time 2. The exposure lasts from 2 to 2.5.
   const ImportedScene imported = read_text(text, frame(20));
   const auto& light = std::get<PointLight>(imported.scene.lights.at(0));
   expect_near(light.position, {4.5, 1, 0});
@@ -115,7 +115,7 @@ TEST_F(Sequence, TheCameraMovesDuringTheExposure) {
   expect_near(view_of(*imported.scene.camera_at_close).position, {2.5, 0, 5});
   EXPECT_DOUBLE_EQ(std::get<PerspectiveCamera>(*imported.scene.camera_at_close).vertical_fov, 32.5);
   EXPECT_TRUE(read_text(text, frame(20, 10, 0.0)).scene.camera_at_close == std::nullopt)
-      << "a shutter that does not open";
+      << "a camera must not move if the shutter does not open";
 }
 
 TEST_F(Sequence, FpsAndShutterOfTheUserReplaceThoseOfTheScene) {
@@ -152,7 +152,7 @@ GltfWriter two_nodes() {
   return file;
 }
 
-/// The same with a camera at node 1. The node is named "eye".
+/// The file of two_nodes() with a camera at node 1. The node is named "eye".
 GltfWriter with_camera() {
   GltfWriter file = two_nodes();
   file.root["cameras"] =
@@ -162,6 +162,8 @@ GltfWriter with_camera() {
   return file;
 }
 
+/// Adds to `animation` the keys of one property of a node. `path`: the property, as glTF names it;
+/// `values`: `components` numbers for each time.
 void add_channel(GltfWriter& file, Json& animation, int node, const char* path,
                  const std::vector<float>& times, const std::vector<float>& values, int components,
                  const char* interpolation = "LINEAR") {
@@ -243,7 +245,7 @@ TEST_F(Sequence, MeshesAndImagesThatDoNotChangeAreShared) {
   ImportMemory memory;
   const auto first = import_scene(path, frame(0), &memory);
   ASSERT_TRUE(first.ok()) << first.status();
-  std::filesystem::remove(path);  // it is not read again
+  std::filesystem::remove(path);  // The second import must not read the file again.
   write_text(folder_, "m.gltf", "");
   const auto second = import_scene(path, frame(5), &memory);
   ASSERT_TRUE(second.ok()) << second.status();
@@ -274,7 +276,7 @@ TEST_F(Sequence, AnAnimationIsChosenByName) {
   choices.animation = "run";
   EXPECT_THAT(std::string(import_scene(path, choices).status().message()),
               HasSubstr("m.gltf: has no animation \"run\"; there are \"walk\", \"jump\""));
-  // In a scene file each model names its own.
+  // In a scene file each model names its own animation.
   const ImportedScene both = read_text(std::string(kScene) + R"(
     model { file: "m.gltf" animation: "walk" } model { file: "m.gltf" animation: "jump" })",
                                        {});
@@ -333,7 +335,8 @@ TEST_F(Sequence, TheFramingCameraRests) {
               view_of(read(path, frame(20)).scene.camera).position);
 }
 
-/// Two nodes, of which the one with the mesh has a scale of 0 until `shown`, in seconds.
+/// The file of two_nodes(), in which the node with the mesh has a scale of 0 until the time
+/// `shown`, in seconds.
 GltfWriter hidden_until(float shown) {
   GltfWriter file = two_nodes();
   Json pop = empty_animation("pop");
@@ -353,7 +356,7 @@ TEST_F(Sequence, AnAnimationMayHideAllMeshes) {
   const Vec3 eye = view_of(shown.scene.camera).position;
   expect_near(view_of(hidden.scene.camera).position, eye);
   EXPECT_GT(eye.z, 7);
-  // Beside other objects, and alone in a scene file without a camera.
+  // The model may also be hidden beside other objects, and alone in a scene file without a camera.
   const ImportedScene both =
       read_text(std::string(kScene) + R"(model { file: "m.gltf" })", frame(0));
   EXPECT_THAT(both.scene.geometry.instances, IsEmpty());

@@ -1,5 +1,5 @@
-// *.vol and *.vdb files, and media of scene files that use them: valid ones are read exactly,
-// broken ones are one clear error.
+// *.vol and *.vdb files, and media of scene files that use them. Valid files are read exactly, and
+// a broken file gives one clear error.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -143,6 +143,7 @@ std::string write_vdb(const TempDir& folder, const openvdb::GridPtrVec& grids,
   return folder / name;
 }
 
+/// Returns an empty grid with this name.
 template <class Grid>
 typename Grid::Ptr named(const std::string& name,
                          openvdb::GridClass kind = openvdb::GRID_FOG_VOLUME) {
@@ -321,8 +322,8 @@ instance { of: "g" scale: [2, 2, 2] }
   EXPECT_EQ(fire.grids.temperature_offset, 300);
   EXPECT_EQ(fire.grids.blackbody, BlackbodyScale::kPeak);
   EXPECT_EQ(media.grids[index_of(fire.grids.albedo->grid)].filter, VolumeGrid::Filter::kNearest);
-  // The boundaries are the loose sphere and four boxes. Each box has a frame, and the space of its
-  // medium is that of the scene file.
+  // The boundaries are the sphere and four boxes. Each box has a frame. So the medium of a box is
+  // in the space in which the scene file gives the box, before the box is placed.
   const Geometry& boundaries = media.boundaries;
   EXPECT_EQ(boundaries.spheres.size(), 1u);
   ASSERT_EQ(boundaries.instances.size(), 4u);

@@ -1,4 +1,5 @@
-// WebP images, made by the library's own encoder: as textures by themselves and of glTF files.
+// Tests how WebP images are read, alone and as textures of glTF files. The encoder of the WebP
+// library makes the images.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,6 +23,7 @@ using ::testing::IsEmpty;
 constexpr int kWidth = 13;
 constexpr int kHeight = 7;
 
+/// Returns random 8-bit codes for an image with this number of channels.
 std::vector<std::uint8_t> codes(std::size_t channels) {
   test::Random random(5);
   std::vector<std::uint8_t> out;
@@ -31,6 +33,7 @@ std::vector<std::uint8_t> codes(std::size_t channels) {
   return out;
 }
 
+/// Returns a WebP file with exactly these pixels, RGB or RGBA.
 std::string lossless(const std::vector<std::uint8_t>& pixels, bool has_alpha) {
   std::uint8_t* out = nullptr;
   const std::size_t size =
@@ -61,8 +64,8 @@ TEST(Webp, LosslessImagesKeepTheirTexels) {
 }
 
 TEST(Webp, AlphaIsLeftOutOfTheColourAndReadByItself) {
-  // The encoder keeps the colour of transparent texels only if it is told to; none of these is
-  // fully transparent.
+  // By default the encoder does not keep the colour of fully transparent texels. So no texel of
+  // this image is fully transparent.
   std::vector<std::uint8_t> rgba = codes(4);
   std::vector<std::uint8_t> rgb;
   std::vector<std::uint8_t> alpha;
@@ -83,7 +86,7 @@ TEST(Webp, AlphaIsLeftOutOfTheColourAndReadByItself) {
   EXPECT_EQ(texels(*read), alpha);
 }
 
-// A smooth ramp at quality 90, which has an error of a few codes.
+// The image is a smooth ramp, encoded with quality 90. Its error is a few 8-bit codes.
 TEST(Webp, LossyImagesAreNearTheirTexels) {
   constexpr int kSide = 64;
   std::vector<std::uint8_t> ramp;
@@ -118,8 +121,8 @@ TEST(Webp, DamagedAndAnimatedImagesAreErrors) {
               HasSubstr("is an animated WebP image"));
 }
 
-// EXT_texture_webp: the WebP image is used even if the texture has another source: as a file,
-// within the buffer, and as a data URI.
+// With EXT_texture_webp the WebP image is used even if the texture has another source. The image is
+// a file, a part of the buffer, or a data URI.
 TEST(Webp, TexturesOfGltfFilesMayBeWebp) {
   const TempDir folder;
   const std::string webp = lossless(codes(3), false);

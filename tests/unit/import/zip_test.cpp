@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Returns a number in little-endian order.
+/// Returns the lowest `bytes` bytes of the number in little-endian order.
 std::string little(std::uint64_t value, int bytes) {
   std::string out;
   for (int i = 0; i < bytes; ++i) {
@@ -21,9 +21,9 @@ std::string little(std::uint64_t value, int bytes) {
   return out;
 }
 
-/// Returns an archive with one file, "hello", stored without compression. `attributes`: Unix mode
-/// in the upper 16 bits; `claimed`: the size that the archive claims; `entries`: how often its
-/// directory lists the file.
+/// Returns an archive with one file, which is called `name`. The file holds "hello" without
+/// compression. `attributes`: Unix mode in the upper 16 bits; `claimed`: the size of the file that
+/// the archive claims; `entries`: how often the directory of the archive lists the file.
 std::string archive(const std::string& name, std::uint32_t attributes = 0,
                     std::uint32_t claimed = 5, int entries = 1) {
   const std::string data = "hello";
@@ -45,6 +45,8 @@ std::string archive(const std::string& name, std::uint32_t attributes = 0,
          little(directory, 4) + little(0, 2);
 }
 
+/// Opens the archive and reads its first file. Returns the message of the error, which is empty if
+/// both succeed.
 std::string error_of(const std::string& bytes) {
   const auto opened = ZipArchive::open(bytes);
   if (!opened.ok()) {
@@ -84,7 +86,7 @@ TEST(Zip, DamageIsAnError) {
   }
 }
 
-// The last argument is the largest size of the result.
+// The last argument of inflate() is the maximum size of the result.
 TEST(Inflate, DamagedDataAndBombsAreErrors) {
   EXPECT_FALSE(inflate("\x1f\x8b\x08", DeflateKind::kGzip, 100).ok());
   EXPECT_FALSE(inflate("", DeflateKind::kRaw, 100).ok());
@@ -106,7 +108,7 @@ TEST(Spectrum, DaylightIsWhiteAndAConstantIsGrey) {
   }
 }
 
-// Chromaticity of illuminant A, (0.44757, 0.40745), which is defined as that of 2856 K.
+// Illuminant A is defined as a black body of 2856 K. Its chromaticity is (0.44757, 0.40745).
 TEST(Spectrum, ABlackBodyHasItsColour) {
   const auto rgb = spectrum::light_rgb(spectrum::blackbody(2856));
   const double x = 0.4124564 * rgb[0] + 0.3575761 * rgb[1] + 0.1804375 * rgb[2];
@@ -128,7 +130,8 @@ TEST(Spectrum, MetalsHaveTheirColours) {
     }
     return out;
   };
-  // Brass at 500 nm and silver at 550 nm in the tables of Querry and of Palik; rutile at 589 nm.
+  // Brass at 500 nm in the table of Querry, silver at 551 nm in the table of Palik, and rutile at
+  // 589 nm.
   EXPECT_NEAR(spectrum::named("metal-CuZn-eta")->at(500), 0.686, 1e-3);
   EXPECT_NEAR(spectrum::named("metal-CuZn-k")->at(500), 2.250, 1e-3);
   EXPECT_NEAR(spectrum::named("metal-Ag-eta")->at(551), 0.125, 2e-3);

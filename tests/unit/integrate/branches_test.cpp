@@ -16,7 +16,8 @@ using test::SceneMaker;
 
 const Ray kDown{.origin = {0.1, 3, 0.2}, .direction = {0, -1, 0}};
 
-/// A floor and a wall under a non-uniform sky, seen through a pane if `behind_glass`.
+/// A floor and a wall under a non-uniform sky. With `behind_glass`, they are seen through a ball of
+/// glass.
 SceneMaker corner(bool behind_glass) {
   SceneMaker maker;
   const MaterialId gray = maker.diffuse({0.7f, 0.5f, 0.6f});
@@ -34,6 +35,7 @@ Rgb sample_of(const Scene& scene, std::uint64_t sample, std::uint32_t branches,
   return path_radiance(scene, kDown, PixelSampler(1, 2, 3), sample, {.branches = branches}, counts);
 }
 
+// Branch i of sample s is the path without branches of sample s * branches + i.
 TEST(Branches, EqualPathsWithTheirSampleNumbers) {
   const auto scene = corner(false).build();
   PathCounts whole;
@@ -52,7 +54,8 @@ TEST(Branches, EqualPathsWithTheirSampleNumbers) {
   EXPECT_EQ(whole.rays, parts.rays - 100 * (1 + 3));
 }
 
-/// Moments over one sample of each of many pixels, which are independent.
+/// Returns the moments of the radiance over many pixels, with one sample in each. The pixels are
+/// independent.
 test::Moments moments_of(const Scene& scene, std::uint64_t sample, std::uint32_t branches) {
   test::Moments moments;
   PathCounts counts;
@@ -70,8 +73,8 @@ TEST(Branches, HaveTheMeanOfUnsplitPaths) {
     const test::Moments four = moments_of(*scene, 7, 4);
     const double deviation = std::hypot(one.standard_error(), four.standard_error());
     EXPECT_LE(std::abs(one.mean() - four.mean()), 4 * deviation) << behind_glass;
-    // Four stratified branches have less variance than four independent samples; the choice of
-    // reflection at the glass is shared by all branches.
+    // Four stratified branches have less variance than four independent samples. Behind glass the
+    // gain is smaller, because all branches share the choice of reflection at the glass.
     EXPECT_LT(four.variance(), (behind_glass ? 0.7 : 0.25) * one.variance());
   }
 }

@@ -1,7 +1,7 @@
 // Compares caustics from photon maps with closed forms, and checks that maps and path tracing
 // divide the light exactly between them. Photons are traced from lamps to casters, the surfaces of
-// metal and glass, and arrive at receivers, the surfaces with wide lobes. Light that takes this way
-// is estimated from the maps, and paths leave it out.
+// metal and glass, and arrive at receivers, the surfaces with wide lobes. The light of these
+// photons is estimated from the maps, and path tracing leaves it out.
 
 #include "renderlib/integrate/caustics.h"
 
@@ -30,9 +30,10 @@ using test::add_room;
 using test::lamp_in_glass;
 using test::SceneMaker;
 
+/// The stop flag of a computation that is not stopped.
 const std::atomic<bool> kGoOn = false;
 
-/// Makes the map of this number; the maps of an image have different photons.
+/// Makes the map with this number. The maps of an image have different photons.
 std::shared_ptr<const TracedMaps> map_of(const Scene& scene, const Casters& casters,
                                          std::uint32_t number, std::uint64_t photons,
                                          int threads = 2) {
@@ -109,8 +110,9 @@ TEST(Caustics, MeetTheClosedFormOfALampAboveAMirror) {
   expect_radiance(*scene, {-3, -1, 3}, expected);
 }
 
-// All light of a small lamp in the middle of a ball meets the glass at right angles; 4 % of it is
-// reflected back to the lamp. The rest of the power arrives at the walls.
+// All light of a small lamp in the middle of a ball meets the glass at right angles. The glass
+// reflects 4 % of it back to the lamp. The rest of the power arrives at the walls. The power of the
+// lamp is pi times its radiance times its area.
 TEST(Caustics, TheWallsReceiveThePowerOfTheLampInGlass) {
   const auto scene = lamp_in_glass(1.5, 0.02).build();
   const Casters casters(*scene);
@@ -120,6 +122,7 @@ TEST(Caustics, TheWallsReceiveThePowerOfTheLampInGlass) {
     const TracedPhotons traced = trace_photons(
         *scene, casters, {.seed = 1, .map = i, .photons = kPhotons, .first = 0, .last = kPhotons});
     power.add(traced.power);
+    // The solid angle of the lamp, seen from the glass at the distance 0.5.
     EXPECT_NEAR(traced.power_by_angle / traced.power, kPi * 0.02 * 0.02 / 0.25, 1e-3);
   }
   const double expected = 0.96 * 10 * kPi * 4 * kPi * 0.02 * 0.02;
@@ -160,7 +163,8 @@ TEST(Caustics, APartlyTransparentWallReceivesThePowerOfAnOpaqueOne) {
   }
 }
 
-// The disks of all photons together have the power of the photons, up to the edges of the room.
+// Near an edge of the room, a part of a photon's disk lies beyond the surface. The map corrects the
+// power of such photons, so the disks on a surface have together the power that arrived there.
 TEST(Caustics, NoPowerIsLostAtEdges) {
   const auto scene = lamp_in_glass(1.5, 0.02).build();
   const Casters casters(*scene);
@@ -180,6 +184,7 @@ TEST(Caustics, NoPowerIsLostAtEdges) {
   // arrive at the floor.
   const double expected = 0.96 * 10 * kPi * 4 * kPi * 0.02 * 0.02 / 6;
   EXPECT_NEAR(sum, expected, 0.05 * expected);
+  // The map has divided the power of each photon by its share on the surface.
   double raw = 0;
   double lost = 0;
   for (const StoredPhoton& photon : map->caustics.photons()) {
@@ -254,9 +259,9 @@ TEST(Caustics, TheShareOnTheSurfaceIgnoresTransparentSurfaces) {
   EXPECT_EQ(share_on_surface(*maker.build(), photon), 1);
 }
 
-// With an empty map, paths bring just the light that is not left to the photons. In a room whose
-// lamp is in glass there is no such light, because all light passes the glass before it meets a
-// surface of the room.
+// With an empty map, paths find only the light that is not left to the photons. In a room whose
+// lamp is in glass no light remains, because all light passes the glass before it meets a surface
+// of the room.
 TEST(Caustics, PathsLeaveOutJustTheLightOfThePhotons) {
   const auto scene = lamp_in_glass(1.5, 0.2).build();
   const Casters casters(*scene);

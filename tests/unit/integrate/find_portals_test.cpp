@@ -1,5 +1,5 @@
-// Tests how the openings through which the sky lights a room are found from the rays that surfaces
-// scatter.
+// Portals are the openings through which the sky lights a room. Tests that portals are found from
+// the rays that surfaces scatter.
 
 #include "renderlib/integrate/find_portals.h"
 
@@ -30,6 +30,7 @@ struct Axes {
   Vec3 x = {1, 0, 0};
   Vec3 y = {0, 1, 0};
   Vec3 z = {0, 0, 1};
+  /// Returns a vector of the room in world coordinates.
   Vec3 operator()(const Vec3& p) const { return x * p.x + y * p.y + z * p.z; }
 };
 
@@ -122,7 +123,7 @@ TEST(FindPortals, LeavesWideOpeningsToTheBsdf) {
 }
 
 TEST(FindPortals, FindsNoneWhereRaysEscapeHereAndThere) {
-  // As through the leaves of a tree, every tenth ray escapes, wherever it goes.
+  // Every tenth ray escapes, whatever its direction is, as between the leaves of a tree.
   std::vector<ScatteredRay> rays = rays_of_room({}, {}, 20000);
   for (std::size_t i = 0; i < rays.size(); i += 10) {
     rays[i].escapes = true;

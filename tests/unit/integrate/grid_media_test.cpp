@@ -23,6 +23,7 @@ GridId add_grid(SceneMaker& maker, VolumeGrid grid) {
   return GridId{static_cast<std::uint32_t>(maker.scene.media.grids.size() - 1)};
 }
 
+/// Returns the medium with its coefficients multiplied by the density of this grid.
 Medium varying(Medium medium, GridId density) {
   medium.grids.density = GridUse{density, 1};
   return medium;
@@ -35,6 +36,7 @@ VolumeGrid lumps() {
   });
 }
 
+/// A grid of one density in the box from -1 to 1.
 VolumeGrid constant(float density) {
   VolumeGrid grid = test::grid_of({16, 16, 16}, {-1, -1, -1}, {1, 1, 1},
                                   [density](auto, auto, auto) { return density; });
@@ -42,7 +44,8 @@ VolumeGrid constant(float density) {
   return grid;
 }
 
-/// Adds the box from -1 to 1, placed by a frame with these keys.
+/// Adds the box from -1 to 1, filled with this medium. A frame with this placement and these keys
+/// places the box and its medium.
 void fill_placed(SceneMaker& maker, MediumId inside, const Transform& placement,
                  std::vector<Key> keys = {Key(0, {})}) {
   test::fill_box(maker, {-1, -1, -1}, {1, 1, 1}, inside);
@@ -54,6 +57,7 @@ void fill_placed(SceneMaker& maker, MediumId inside, const Transform& placement,
 
 constexpr std::size_t kPixels = 6000;
 
+/// Returns the radiance along the ray of one sample in this pixel.
 Rgb one(const Scene& scene, const Ray& ray, std::uint32_t pixel, const PathOptions& options = {}) {
   PathCounts counts;
   return path_radiance(scene, ray, PixelSampler(5, pixel, 3), pixel, options, counts);
@@ -68,6 +72,7 @@ Moments mean(const Scene& scene, const Ray& ray, const PathOptions& options = {}
   return moments;
 }
 
+/// Returns the distance of the two means, in standard errors.
 double z(const Moments& a, const Moments& b) {
   return std::abs(a.mean() - b.mean()) / std::hypot(a.standard_error(), b.standard_error());
 }
@@ -153,8 +158,8 @@ TEST(GridMedia, DirectEqualsPathsOfOneScattering) {
   EXPECT_LT(z(mean(*scene, kAhead, {.local = true}), mean(*scene, kAhead, {.max_depth = 1})), 4);
 }
 
-/// Expects nearly the same value for each pixel: the numbers are the same, and rounding may change
-/// the outcome of a collision only rarely.
+/// Expects that the two rays have the same value in nearly all pixels. Their random numbers are the
+/// same, and rounding changes the outcome of a collision only rarely.
 void expect_same(const Scene& a, const Ray& ray_a, const Scene& b, const Ray& ray_b) {
   int differ = 0;
   Moments seen;
@@ -176,7 +181,7 @@ TEST(GridMedia, AMovedGridIsTheSameGridElsewhere) {
   test::fill_box(in_place, {-1, -1, -1}, {1, 1, 1},
                  test::add(in_place, varying(kSmoke, add_grid(in_place, lumps()))));
   const auto there = in_place.build();
-  // Turned about the vertical axis, which keeps the background.
+  // The grid is turned about the vertical axis, about which the background is symmetric.
   const Transform placement = translation({3, 0, -2}) * rotation({0, 1, 0}, 90);
   const Ray moved{.origin = placement.point(kAhead.origin),
                   .direction = placement.direction(kAhead.direction)};
@@ -185,11 +190,12 @@ TEST(GridMedia, AMovedGridIsTheSameGridElsewhere) {
   const MediumId smoke = test::add(placed, varying(kSmoke, add_grid(placed, lumps())));
   fill_placed(placed, smoke, placement);
   const auto here = placed.build();
-  // Directions after scattering are drawn in a frame that does not turn with the scene, so the
-  // paths differ; their means are the same.
+  // Directions after scattering are sampled in a frame that does not turn with the scene. So the
+  // paths differ, but their means are the same.
   EXPECT_LT(z(mean(*there, kAhead), mean(*here, moved)), 4);
-  EXPECT_GT(z(mean(*there, kAhead), mean(*here, kAhead)), 4) << "it is not where it was";
-  // A grid whose own map holds the placement gives the same.
+  EXPECT_GT(z(mean(*there, kAhead), mean(*here, kAhead)), 4)
+      << "the placed grid must not be at its old place";
+  // A grid whose own transform contains the placement gives the same values.
   SceneMaker mapped;
   lit(mapped);
   VolumeGrid grid = lumps();
@@ -206,7 +212,7 @@ TEST(GridMedia, ScalingAGridKeepsItsCoefficients) {
   const Medium absorbs{.absorption = gray(0.3f)};
   fill_placed(small, test::add(small, varying(absorbs, add_grid(small, constant(1)))),
               scaling({1, 1, 0.25}));
-  // Through 2 x 0.25 units; distances are measured in the world.
+  // The ray passes 2 x 0.25 units of the medium, because distances are measured in world space.
   EXPECT_NEAR(mean(*small.build(), kAhead).mean(), std::exp(-0.3 * 0.5), 1e-5);
 }
 
@@ -223,7 +229,7 @@ TEST(GridMedia, EachInstanceHasTheSharedMediumInItsOwnPlace) {
   const MediumId dark = test::add(maker, varying({.absorption = gray(1)}, add_grid(maker, half)));
   fill_placed(maker, dark, translation({-5, 0, 0}));
   fill_placed(maker, dark, translation({5, 0, 0}) * scaling({-1, 1, 1}));
-  // A sphere in the world: its medium's space is the world's.
+  // The sphere has no frame, so its medium is in world space.
   test::fill_sphere(maker, {0, 0, 0}, 1, dark);
   const auto scene = maker.build();
   const auto seen = [&](double x) {
@@ -248,7 +254,8 @@ TEST(GridMedia, TheLastOfOverlappingBoundariesCounts) {
   fill_placed(maker, dark, {});
   fill_placed(maker, dark, translation({0.5, 0, 0.5}));
   const auto scene = maker.build();
-  // At x = 0.3 the first has density 10, the second 6; the second is from z = -0.5 to 1.5.
+  // At x = 0.3 the density is 10 in the first box and 6 in the second. The second box reaches from
+  // z = -0.5 to z = 1.5.
   const Moments seen = mean(*scene, {.origin = {0.3, 0, 5}, .direction = {0, 0, -1}});
   EXPECT_LT(std::abs(seen.z(std::exp(-0.1 * (6 * 2 + 10 * 0.5)))), 4);
 }

@@ -1,5 +1,6 @@
-// The pilot: a few thousand paths, from which the integrator `path` estimates how much less
-// variance guiding and photon maps would give, and decides whether it uses them.
+// Tests the pilot of the integrator `path`. The pilot traces a few thousand paths. From them it
+// estimates how much variance guiding and photon maps would save, and decides whether the
+// integrator uses them.
 
 #include "renderlib/integrate/guiding_gain.h"
 
@@ -14,6 +15,7 @@
 namespace bandsaw {
 namespace {
 
+/// The stop flag of a computation that is not stopped.
 const std::atomic<bool> kGoOn = false;
 constexpr std::uint32_t kWidth = 24;
 constexpr std::uint32_t kHeight = 16;
@@ -46,7 +48,7 @@ std::shared_ptr<const Scene> wall_lit_through_glass(double lamp) {
 
 // A direction that is sampled by the cosine reaches a lamp of solid angle w in front of the wall
 // with probability w / pi. All directions that reach it carry the same light. So the second moment
-// is pi / w times the squared mean.
+// is pi / w times the squared mean, and the variance is pi / w - 1 times the squared mean.
 TEST(GuidingGain, OfPhotonsMeetsTheClosedForm) {
   for (const double lamp : {0.05, 0.1, 0.2, 0.3, 0.4}) {
     const double solid_angle = kPi * lamp * lamp / 4;

@@ -1,5 +1,5 @@
-// Path guiding samples directions from which much light comes, as training paths have found. Tests
-// the training, and that guiding changes no expected value. The training also traces photons by way
+// Path guiding samples the directions from which training paths found much light. Tests the
+// training, and that guiding changes no expected value. The training also traces photons by way
 // of casters, the surfaces of metal and glass that may cast caustics.
 
 #include <gtest/gtest.h>
@@ -26,7 +26,8 @@ std::shared_ptr<const TrainedGuiding> trained(const Scene& scene, int threads = 
   return train_guiding(scene, {64, 64, 8}, {pool, stop});
 }
 
-/// Moments of one sample of each of many pixels along `ray`.
+/// Returns the moments of the radiance along `ray` over `count` pixels, with one sample in each.
+/// `field`: guides the paths; nullptr means no guiding.
 test::Moments moments_of(const Scene& scene, const Ray& ray, const GuidingField* field,
                          std::uint32_t count, std::uint32_t max_depth = 8) {
   test::Moments moments;

@@ -1,7 +1,7 @@
 // Compares indirect light from photon maps with a closed form, and checks that paths with maps have
 // the same expected value as paths without. A receiver is a surface with wide lobes. At the second
-// receiver of a path, the light that other receivers sent there is estimated from photons, and the
-// path ends at the next receiver.
+// receiver of a path, the light that arrives from other receivers is estimated from photons. The
+// path ends at the third receiver.
 
 #include "renderlib/integrate/indirect_photons.h"
 
@@ -27,6 +27,7 @@ namespace {
 using test::add_room;
 using test::SceneMaker;
 
+/// The stop flag of a computation that is not stopped.
 const std::atomic<bool> kGoOn = false;
 
 /// Returns the sources of photon maps of indirect light and, where possible, of caustics.
@@ -102,8 +103,8 @@ struct Case {
   std::uint32_t maps = 12;
 };
 
-/// A room whose lamp lights only a spot of its ceiling, so that many photons start at each point
-/// there.
+/// A room whose lamp lights only a spot of the ceiling. So many photons start at each point of the
+/// spot.
 SceneMaker room_with_a_spot() {
   SceneMaker maker;
   add_room(maker, maker.diffuse(0.6f));
@@ -212,7 +213,8 @@ TEST(IndirectPhotons, EndWithoutAbsorption) {
 }
 
 // A pane divides the room. The light that passes it does not count as scattered, so with two
-// scatterings nearly all photons arrive at a wall; a few meet the lamp, or the pane reflects them.
+// scatterings nearly all photons arrive at a wall. A few photons meet the lamp or are reflected by
+// the pane.
 TEST(IndirectPhotons, PassAPaneThatDoesNotCountAsAScattering) {
   SceneMaker maker;
   add_room(maker, maker.diffuse(0.6f));
@@ -275,7 +277,8 @@ TEST(IndirectPhotons, AreUsedWhereTheyPay) {
   add_room(bright, bright.diffuse(0.2f));
   bright.quad({-1, -1, 1.9}, {0, 2, 0}, {2, 0, 0}, bright.lamp(10));
   EXPECT_FALSE(are_used(bright));
-  // A room on a large plain: hardly any of the points at which photons may start is in the room.
+  // The room stands on a large plain. Hardly any of the points at which photons may start are in
+  // the room.
   SceneMaker lost = uplit_room();
   lost.quad({-200, -200, -10}, {400, 0, 0}, {0, 400, 0}, MaterialId{0});
   EXPECT_FALSE(are_used(lost));
@@ -300,8 +303,8 @@ TEST(IndirectPhotons, AreLeftToPathsWherePhotonsWouldNotFollowThem) {
   EXPECT_FALSE(possible(lamp_only));
 }
 
-// A point of two quads of areas 1 and 3 lies on the second with probability 3/4, and its pdf is
-// 1/4.
+// A random point of two quads with the areas 1 and 3 lies on the second quad with probability 3/4.
+// Its pdf is 1/4.
 TEST(SurfaceSampler, IsUniformByArea) {
   SceneMaker maker;
   const MaterialId wall = maker.diffuse(0.5f);

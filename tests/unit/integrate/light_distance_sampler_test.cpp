@@ -16,8 +16,9 @@ namespace {
 
 constexpr double kLength = 6;
 
-/// Returns the integral of f over the segment. Steps are small near a light source at distance 3
-/// along the segment.
+/// Returns the integral of f(distance) over the segment [0, kLength]. A light source is at the
+/// distance `aside` from the middle of the segment. Steps have equal angles seen from the source,
+/// so they are small near it.
 double integral(double aside, const std::function<double(double)>& f) {
   constexpr int kSteps = 20000;
   const double low = std::atan(-3 / aside);
@@ -31,13 +32,15 @@ double integral(double aside, const std::function<double(double)>& f) {
   return sum;
 }
 
+/// The variance of one sample over the square of the mean, for each way to sample distances.
 struct Spread {
-  double flown;   ///< variance of one sample over the square of the mean
-  double angles;  ///< the same of equiangular distances
-  double both;    ///< the same of the mixture
+  double flown;   ///< free flight
+  double angles;  ///< equiangular sampling
+  double both;    ///< the mixture of both strategies
 };
 
-/// Variances for the light of a small source at distance `aside` from the middle of a segment.
+/// Returns the variances for the light of a small source at the distance `aside` from the middle of
+/// the segment. `sigma`: scattering coefficient of the medium.
 Spread spread(float sigma, double aside) {
   const Medium smoke = test::medium(0, sigma);
   const FreeFlight flight(smoke, gray(1), kLength);

@@ -1,5 +1,6 @@
-// The segments of a ray inside media, compared with the shapes that contain each point. An id such
-// as V6 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// Tests the segments of a ray that are inside media. The medium of a segment is compared with the
+// shapes that contain the points of the segment. An id such as V6 in a test's name is that of a
+// case in tests/hard_cases/cases.txt.
 
 #include "renderlib/integrate/medium_traversal.h"
 
@@ -64,7 +65,7 @@ Ray random_ray(test::Random& random, double spread) {
   return {.origin = {x, y, z}, .direction = sample_sphere(u, random.uniform())};
 }
 
-/// Overlapping, nested and disjoint balls of five media; rays begin anywhere.
+/// The balls of five media overlap, are nested or are disjoint. Rays begin anywhere.
 TEST(MediumTraversal, V6V7_InOverlapsTheMediumNamedLastCounts) {
   test::Random random(1);
   for (int round = 0; round < 40; ++round) {
@@ -120,8 +121,8 @@ Mesh corner_prism() {
   return mesh;
 }
 
-/// A ray may enter and leave a non-convex mesh several times; boxes and mirrored placements are
-/// closed shapes like others.
+/// A ray may enter and leave a non-convex mesh several times. Boxes and shapes with mirrored
+/// placements are closed shapes like others.
 TEST(MediumTraversal, V6_SegmentsAreInsideMeshes) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 1));
@@ -156,7 +157,7 @@ TEST(MediumTraversal, AClearMediumDisplacesOthers) {
   EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, NumberStream(0), rays).g, std::exp(-4.0f));
 }
 
-/// More crossings than the traversal stores in its first pass along the ray.
+/// The ray has more crossings than the traversal stores in its first pass along the ray.
 TEST(MediumTraversal, FindsEachOfManyBallsInARow) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(0.125f, 0));
@@ -173,7 +174,7 @@ TEST(MediumTraversal, FindsEachOfManyBallsInARow) {
                   std::exp(-7 * 0.125f));
 }
 
-/// Many shapes of one medium around one point.
+/// Many shapes of one medium contain the same points.
 TEST(MediumTraversal, ACloudOfBallsIsTheirUnion) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
@@ -194,8 +195,8 @@ TEST(MediumTraversal, ACloudOfBallsIsTheirUnion) {
   }
 }
 
-/// A mesh of two overlapping cubes is their union, from every direction; also if faces of both are
-/// coplanar.
+/// A mesh of two overlapping cubes is the union of the cubes, from every direction. The same holds
+/// if faces of both cubes are coplanar.
 TEST(MediumTraversal, OverlappingPartsOfOneMeshAreOne) {
   for (const Vec3& by : {Vec3{0.5, 0.5, 0.5}, Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0.5}}) {
     SceneMaker maker;
@@ -224,7 +225,7 @@ TEST(MediumTraversal, OverlappingPartsOfOneMeshAreOne) {
   }
 }
 
-/// Rays through the edges and corners that the triangles of a face share.
+/// The rays pass through the edges and corners that the triangles of a face share.
 TEST(MediumTraversal, SharedEdgesAreCrossedOnce) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
@@ -240,7 +241,8 @@ TEST(MediumTraversal, SharedEdgesAreCrossedOnce) {
   }
 }
 
-/// Many media one after the other; the outermost is left last.
+/// The ray passes many balls one after the other. Each has a medium of its own, and a large ball of
+/// mist is around all of them.
 TEST(MediumTraversal, FindsEachOfManyMediaInARow) {
   SceneMaker maker;
   const MediumId mist = test::add(maker, test::medium(0.125f, 0));
@@ -255,7 +257,7 @@ TEST(MediumTraversal, FindsEachOfManyMediaInARow) {
               -40 * (2 * 0.25 + 0.125), 1e-4);
 }
 
-/// A ray that touches an edge, in the plane of the diagonal, crosses nothing.
+/// A ray touches an edge of the box without entering the box, so it crosses nothing.
 TEST(MediumTraversal, ATouchedEdgeIsNotCrossed) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
@@ -269,7 +271,7 @@ TEST(MediumTraversal, ATouchedEdgeIsNotCrossed) {
   }
 }
 
-/// Two overlapping shapes of one medium are one: the medium is not denser there.
+/// Overlapping shapes of one medium are one shape. The medium is not denser where they overlap.
 TEST(MediumTraversal, OverlapsOfOneMediumAreNotDenser) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));

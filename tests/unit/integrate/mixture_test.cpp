@@ -20,8 +20,10 @@ using test::light_along;
 using test::Moments;
 using test::SceneMaker;
 
+/// Half the width of large floors and sheets.
 constexpr double kFar = 100;
 
+/// Texture 0 is white, so that factors alone define a material.
 SceneMaker with_sky(float radiance) {
   SceneMaker maker;
   maker.texture(ConstantTexture{{1, 1, 1}});
@@ -31,6 +33,7 @@ SceneMaker with_sky(float radiance) {
 
 const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
 
+/// Adds a wall in the plane z = 0.
 void wall(SceneMaker& maker, MaterialId material) {
   maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, material);
 }
@@ -41,7 +44,7 @@ TEST(Mixture, ShowsEachPartWithItsProbability) {
   const MaterialId gray = maker.diffuse(0.5f);
   const TextureId quarter = maker.texture(ConstantTexture{{0.25f, 0.25f, 0.25f}});
   const MaterialId inner = maker.material(Mix{black, gray, quarter});
-  // 1/4 of (1/4 of 0.5) and 3/4 of 0.5.
+  // The reflectance is 1/4 of (1/4 of 0.5) plus 3/4 of 0.5.
   wall(maker, maker.material(Mix{gray, inner, quarter}));
   const Moments sum = light_along(maker, kAhead, 20000);
   EXPECT_NEAR(sum.mean(), 0.75 * 0.5 + 0.25 * 0.125, 4 * sum.standard_error());

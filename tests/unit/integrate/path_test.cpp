@@ -24,8 +24,8 @@ Rgb trace(const Scene& scene, const Ray& ray, std::uint64_t sample, const PathOp
 
 const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
 
-/// Checks that every sample of the ray has this value, for every technique: nothing except the path
-/// is random.
+/// Expects each sample of the ray to have the value `expected`, with each technique. Paths may be
+/// random, but their value must not be.
 void expect_always(const Scene& scene, const Ray& ray, double expected, double tolerance,
                    std::uint32_t max_depth = 64) {
   for (const Technique technique :
@@ -78,7 +78,7 @@ TEST(Path, LosslessGlassAndMirrorsAreInvisibleInAUniformSky) {
   }
 }
 
-/// A lamp of radiance 8 behind panes that reflect nothing and pass half of the light, in a row.
+/// A lamp of radiance 8 behind a row of `count` panes.
 std::shared_ptr<const Scene> behind_panes(int count, const ThinDielectric& pane) {
   SceneMaker maker;
   const MaterialId material{static_cast<std::uint32_t>(maker.scene.materials.size())};
@@ -91,7 +91,7 @@ std::shared_ptr<const Scene> behind_panes(int count, const ThinDielectric& pane)
 }
 
 TEST(Path, AFreePassageDoesNotCountTowardsTheDepth) {
-  constexpr double kIndex = 1.00001;  // of a pane that reflects nothing in float
+  constexpr double kIndex = 1.00001;  // so close to 1 that a pane reflects nothing in float
   const ThinDielectric counted{kIndex, {0, 0, 0}, gray(0.5f)};
   const ThinDielectric free{kIndex, {0, 0, 0}, gray(0.5f), true};
   expect_always(*behind_panes(2, counted), kAhead, 2, 1e-6, 2);
@@ -107,7 +107,8 @@ TEST(Path, AFreePassageDoesNotCountTowardsTheDepth) {
   expect_always(*mirrored.build(), kAhead, 2, 1e-6, 1);
   const ThinDielectric clear{kIndex, {0, 0, 0}, gray(1), true};
   EXPECT_NEAR(trace(*behind_panes(900, clear), kAhead, 0, {.max_depth = 1}).g, 8, 1e-5);
-  EXPECT_EQ(trace(*behind_panes(1100, clear), kAhead, 0, {.max_depth = 1}).g, 0) << "it ends";
+  EXPECT_EQ(trace(*behind_panes(1100, clear), kAhead, 0, {.max_depth = 1}).g, 0)
+      << "the path must end";
 }
 
 TEST(Path, ATinyGlassSphereAndAThinPaneAreEnteredAndLeft) {
@@ -137,8 +138,8 @@ TEST(Path, RadianceInGlassScalesWithTheSquaredIndex) {
 }
 
 TEST(Path, MaxDepthLimitsTheNumberOfScatterings) {
-  // Two mirrors face each other; every reflection halves the light of a source around the corner.
-  // The ray is reflected three times before it hits the source.
+  // Two mirrors face each other. Every reflection halves the light of a source at their side. The
+  // ray is reflected three times before it hits the source.
   SceneMaker maker;
   const MaterialId mirror = maker.metal(0.5f, 0);
   maker.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, mirror);

@@ -1,5 +1,6 @@
-// The integrators other than `path`: normals, depth, albedo, ambient occlusion and direct light;
-// and the guides of the denoiser, images of albedo and of normal and distance (`shape`).
+// Tests the integrators other than `path`: normals, depth, albedo, ambient occlusion and direct
+// light. Tests also the guides of the denoiser: an image of the albedo, and an image of the normal
+// and the distance (`shape`).
 
 #include "renderlib/integrate/sample_value.h"
 
@@ -23,7 +24,8 @@ Rgb value(const SceneMaker& maker, Integrator integrator, const Ray& ray,
                       {.max_depth = 16, .local = integrator == Integrator::kDirect}, counts);
 }
 
-/// Checks the mean within 4 standard errors: a false-alarm rate of 6e-5 for each check.
+/// Expects the mean of many pixels to be `expected` within 4 standard errors, and returns the mean.
+/// A false alarm has the probability 6e-5.
 double mean(const SceneMaker& maker, Integrator integrator, const Ray& ray, double expected) {
   const auto scene = maker.build();
   test::Moments moments;
@@ -180,7 +182,7 @@ TEST(SampleValue, DirectIsIrradianceAndAmbientTerm) {
   maker.sphere({0, 0, 4}, 2, maker.lamp(3));
   maker.scene.local_shading.ambient = gray(0.25f);
   const Ray below{.origin = {0, 0, 1}, .direction = {0, 0, -1}};
-  // Irradiance pi L (r / d)^2 times albedo / pi, and albedo times the ambient radiance.
+  // The irradiance pi L (r / d)^2 times albedo / pi, plus the albedo times the ambient radiance.
   mean(maker, Integrator::kDirect, below, 0.5 * 3 * 0.25 + 0.5 * 0.25);
 }
 
