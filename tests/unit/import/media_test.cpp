@@ -80,7 +80,7 @@ model { file: "closed.obj" interior: "smoke" translate: [9, 0, 0] boundary_only:
   EXPECT_EQ(boundaries.meshes.size(), 2u);  // the cube of all boxes, and the file's mesh
 }
 
-TEST(MediaFile, ABoxWithAMaterialAndAnInteriorIsBoth) {
+TEST(MediaFile, ABoxWithAMaterialAndAnInteriorIsASurfaceAndABoundary) {
   const auto imported = import_text(
       R"(shape { box { min: [0, 0, 0] max: [1, 1, 1] } material: "glass" interior: "milk" })");
   ASSERT_TRUE(imported.ok()) << imported.status();

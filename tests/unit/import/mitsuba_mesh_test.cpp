@@ -90,7 +90,7 @@ TEST(MitsubaPly, ReadsBothByteOrders) {
   }
 }
 
-TEST(MitsubaPly, ClaimsAreCheckedBeforeMemoryIsTaken) {
+TEST(MitsubaPly, CountsAreCheckedBeforeMemoryIsAllocated) {
   EXPECT_THAT(message(read_ply("ply\nformat binary_little_endian 1.0\n"
                                "element vertex 1000000000000\nproperty float x\nend_header\n",
                                false)),
@@ -170,7 +170,7 @@ TEST(MitsubaMesh, NormalsAreWeightedByAngles) {
   }
 }
 
-TEST(MitsubaMesh, TrianglesFollowTheirNormals) {
+TEST(MitsubaMesh, TrianglesAreOrientedByTheirNormals) {
   PlyMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.normals.assign(3, {0, 0, -1});

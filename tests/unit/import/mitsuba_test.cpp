@@ -65,7 +65,7 @@ std::string rectangle(const std::string& bsdf) {
 // The default lens has a focal length of 50 mm on a film of 36 x 24 mm. The diagonal of the image,
 // which has 768 x 576 pixels, has the angle of the diagonal of this film. The width of the image is
 // 4/3 of its height, so the diagonal is sqrt(1 + 16/9) times the height.
-TEST_F(MitsubaScene, TheDefaultLensIsThatOf50mm) {
+TEST_F(MitsubaScene, TheDefaultLensHasAFocalLengthOf50mm) {
   EXPECT_NEAR(
       scene("").camera().vertical_fov(),
       2 * std::atan(std::sqrt(36.0 * 36 + 24 * 24) / 100 / std::sqrt(1 + 16.0 / 9)) * 180 / M_PI,
@@ -101,7 +101,7 @@ TEST_F(MitsubaScene, AMirroredSensorIsMirrored) {
 }
 
 // In Mitsuba, a max_depth of -1 means no limit. It becomes the maximum, 1024.
-TEST_F(MitsubaScene, DepthCountsVertices) {
+TEST_F(MitsubaScene, MaxDepthIsOneLessThanInMitsuba) {
   const auto depth = [&](const std::string& value) {
     return scene("<integrator type=\"path\"><integer name=\"max_depth\" value=\"" + value +
                  "\"/></integrator>")
@@ -228,7 +228,7 @@ TEST_F(MitsubaScene, ReferencesAreResolved) {
   EXPECT_THAT(error(paper + paper), HasSubstr("id \"paper\" is also at s.xml:3"));
 }
 
-TEST_F(MitsubaScene, CyclesAndExplosionsOfReferencesAreRefused) {
+TEST_F(MitsubaScene, CyclesAndTooManyReferencesAreRefused) {
   EXPECT_THAT(error("<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf>"),
               HasSubstr("refers to itself"));
   std::string text = "<bsdf type=\"diffuse\" id=\"b0\"/>";
@@ -239,7 +239,7 @@ TEST_F(MitsubaScene, CyclesAndExplosionsOfReferencesAreRefused) {
   EXPECT_THAT(error(text), HasSubstr("has more than 10000 parts"));
 }
 
-TEST_F(MitsubaScene, MaterialsHaveTheirFields) {
+TEST_F(MitsubaScene, FieldsOfMaterialsAreConverted) {
   const auto material = [&](const std::string& bsdf) {
     const scene::Scene from = scene(rectangle(bsdf));
     return from.material_size() > 0 ? from.material(from.material_size() - 1) : scene::Material();
@@ -399,7 +399,7 @@ TEST_F(MitsubaScene, TexturesKeepTheirPlacement) {
   EXPECT_THAT(image.uv_offset(), ElementsAre(0.5, 0.75));
 }
 
-TEST_F(MitsubaScene, LightsHaveTheirFields) {
+TEST_F(MitsubaScene, FieldsOfLightsAreConverted) {
   const scene::Scene from = scene(R"(
 <emitter type="point"><point name="position" x="1" y="2" z="3"/>
   <rgb name="intensity" value="4"/></emitter>
@@ -485,7 +485,7 @@ TEST_F(MitsubaScene, MediaHaveTheirCoefficients) {
 }
 
 /// In Mitsuba, the outermost values of a grid continue to the faces of the grid.
-TEST_F(MitsubaScene, GridsReachTheirFaces) {
+TEST_F(MitsubaScene, GridsAreClampedAtTheirFaces) {
   write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
   const auto text = [](const std::string& wrap) {
     return "<medium type=\"heterogeneous\" id=\"smoke\"><volume name=\"sigma_t\" "
@@ -550,7 +550,7 @@ TEST_F(MitsubaScene, IsImportedAsASceneFile) {
   EXPECT_TRUE(import_scene(folder_ / "s.xml", strict).ok());
 }
 
-TEST_F(MitsubaScene, FilesAroundTheSceneNeedTheirFolder) {
+TEST_F(MitsubaScene, FilesOutsideTheFolderOfTheSceneNeedAWiderFolder) {
   std::filesystem::create_directory(folder_ / "scenes");
   std::filesystem::create_directory(folder_ / "common");
   write_text(folder_, "common/ball.xml",

@@ -77,7 +77,7 @@ TEST_F(ModelCameraNames, ACameraOfTwoNodesStandsAtBoth) {
       << "without a name, the camera of the first node is used";
 }
 
-TEST_F(ModelCameraNames, ItsOwnNameOrItsNodesNameSelectsIt) {
+TEST_F(ModelCameraNames, ACameraIsSelectedByItsNameOrByTheNameOfItsNode) {
   EXPECT_EQ(by("tower"), (Seen{{0, 5, 9}, 30}));
   EXPECT_EQ(by("narrow"), by("tower"));
   EXPECT_EQ(by("far"), (Seen{{0, 6, 9}, 15}));

@@ -64,7 +64,7 @@ TEST_F(Obj, ADisabledHighlightGivesDiffuse) {
   }
 }
 
-TEST_F(Obj, OpacityIsAlphaAndZeroIsTakenAsAMistake) {
+TEST_F(Obj, OpacityBecomesAlphaAndAnOpacityOfZeroIsIgnored) {
   const Material glass = material("Kd 0.5 0.5 0.5\nd 0.25\n");
   EXPECT_EQ(glass.alpha.mode, AlphaMode::kBlend);
   EXPECT_EQ(glass.alpha.value.factor, 0.25);
@@ -178,7 +178,7 @@ TEST_F(Obj, ReadsThePbrNumbersOfNewerFiles) {
   EXPECT_EQ(m.coat_roughness.factor, 0.125);
 }
 
-TEST_F(Obj, FindsATextureBesideItByAnyOfItsNames) {
+TEST_F(Obj, FindsATextureBesideTheModelThoughItsPathDiffers) {
   write_text(folder_, "My Stone.PPM", test::small_ppm());
   for (const char* name :
        {"My Stone.PPM", "my stone.ppm", "My%20Stone.PPM", "C:\\art\\stones\\My Stone.ppm",

@@ -233,7 +233,7 @@ TEST_F(Gltf, UnsupportedMaterialFeaturesAreNamedOncePerFile) {
   EXPECT_THAT(read(file).info.warnings, IsEmpty());
 }
 
-TEST_F(Gltf, AnUnlitMaterialIsDiffuseAndNamed) {
+TEST_F(Gltf, AnUnlitMaterialBecomesDiffuseWithAWarning) {
   GltfTriangle file;
   file.more = R"("extensionsUsed": ["KHR_materials_unlit"],)";
   file.materials = R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1]},
@@ -328,7 +328,7 @@ TEST_F(Gltf, UnreadableDataIsRefused) {
 // A triangle has a skin with one bone. The node of the bone lifts it by 2, and the inverse bind
 // matrix lowers it by 1. A morph target of weight 0.5 moves the second vertex along z. The
 // translation of the mesh's own node has no effect.
-TEST_F(Gltf, StandsInItsRestPose) {
+TEST_F(Gltf, ASkinnedMeshStandsInItsRestPose) {
   const std::vector<float> lowered{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1};
   const std::string joints = std::string(12, '\0');
   std::string weights = floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});

@@ -227,7 +227,7 @@ TEST(Model, AModelWithNothingLeftIsAnErrorWithTheReason) {
               HasSubstr("points and lines are left out"));
 }
 
-TEST(Model, AModelAloneIsFramedWholeAndFillsThePicture) {
+TEST(Model, TheDefaultCameraShowsTheWholeModelAndTheModelFillsTheImage) {
   const TempDir folder;
   const auto imported = import_scene(
       write_text(folder, "box.obj",

@@ -61,7 +61,7 @@ TEST(Pbrt, CamerasAreMirroredUnlessTheTransformFlipsThem) {
   EXPECT_FALSE(flipped.camera().mirrored());
 }
 
-TEST(Pbrt, TheAngleIsThatOfTheShorterSide) {
+TEST(Pbrt, TheFieldOfViewIsThatOfTheShorterSide) {
   const auto scene = scene_of(
       "Camera \"perspective\" \"float fov\" 90\n"
       "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 200\n"
@@ -70,7 +70,7 @@ TEST(Pbrt, TheAngleIsThatOfTheShorterSide) {
   EXPECT_NEAR(scene.camera().vertical_fov(), 2 * 63.43494882292201, 1e-9);
 }
 
-TEST(Pbrt, ACropWindowIsAWindow) {
+TEST(Pbrt, ACropWindowBecomesTheWindowOfTheCamera) {
   const auto scene = scene_of(
       "Camera \"perspective\" \"float fov\" 90\nFilm \"rgb\" \"integer xresolution\" 100 "
       "\"integer yresolution\" 100 \"float cropwindow\" [0.5 1 0 0.25]\nWorldBegin");
@@ -244,7 +244,7 @@ TEST(Pbrt, AShearedShapeMovesAboutItsOrigin) {
   EXPECT_NEAR(scene.instance(0).key(1).rotate(0).degrees(), 90, 1e-9);
 }
 
-TEST(Pbrt, AShearThatGrowsStandsStillWithAWarning) {
+TEST(Pbrt, AShapeWithAGrowingShearStandsStillWithAWarning) {
   const std::string text =
       "WorldBegin\nActiveTransform EndTime\n"
       "ConcatTransform [1 0 0 0  0.5 1 0 0  0 0 1 0  0 0 0 1]\nActiveTransform All\n"
@@ -425,7 +425,7 @@ TEST(Pbrt, FeaturesWithoutACounterpartAreNamed) {
               ElementsAre(HasSubstr("s.pbrt:1: the white balance")));
 }
 
-TEST(Pbrt, UnknownThingsAreWarningsWithTheirLines) {
+TEST(Pbrt, UnknownNamesAndMissingFilesGiveWarningsWithTheirLines) {
   EXPECT_THAT(warnings_of("WorldBegin\n\nShape \"sphere\" \"float radios\" 2"),
               ElementsAre(HasSubstr("s.pbrt:3: the parameter \"float radios\"")));
   EXPECT_THAT(warnings_of("WorldBegin\nMaterial \"hair\"\nShape \"sphere\""),
@@ -449,7 +449,7 @@ TEST(Pbrt, ErrorsNameTheLine) {
       HasSubstr("the index 9 is that of no point"));
 }
 
-TEST(Pbrt, TruncatedScenesAreOneError) {
+TEST(Pbrt, TruncatedScenesGiveAnErrorOrAWarning) {
   EXPECT_EQ(error_of("WorldBegin\nShape \"sphere\" \"float radius\" [ 1"),
             "s.pbrt:2: the values of \"float radius\" have no end ]");
   EXPECT_EQ(error_of("WorldBegin\nShape \"sph"), "s.pbrt:2: the string has no end on its line");
@@ -470,7 +470,7 @@ TEST(Pbrt, TransformsMustBeFiniteAndRegular) {
               HasSubstr("LookAt needs a direction"));
 }
 
-TEST(Pbrt, ClaimsAreCheckedBeforeMemoryIsTaken) {
+TEST(Pbrt, CountsAreCheckedBeforeMemoryIsAllocated) {
   const std::string grid =
       "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 4096 \"integer ny\" "
       "4096 \"integer nz\" 160 \"float density\" [1 2 3]\nWorldBegin\nMediumInterface \"m\" \"\"\n"

@@ -54,7 +54,7 @@ instance { of: "pair" material: "red" rotate { axis: [0, 1, 0] degrees: 90 } })"
   EXPECT_EQ(material_of(g, g.instances[1], 0), MaterialId{1});
 }
 
-TEST(Placement, GroupsWithinGroupsAreMultiplied) {
+TEST(Placement, NestedGroupsMultiplyTheirCopies) {
   const auto nested = import_text(R"(
 group { name: "row" instance { of: "pair" translate: [1, 0, 0] at { } at { translate: [5, 0, 0] } } }
 group { name: "field" instance { of: "row" scale: [1, 1, -1] } instance { of: "row" } }

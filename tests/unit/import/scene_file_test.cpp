@@ -310,7 +310,7 @@ TEST(SceneFile, CannotReadOutsideItsFolderThroughALink) {
               HasSubstr("\"link.ppm\" lies outside of the scene's folder"));
 }
 
-TEST(SceneFile, ReadsAnImageOnceForEachUse) {
+TEST(SceneFile, UsesOfOneImageFileShareItsTexels) {
   const TempDir folder;
   write_text(folder, "small.ppm", test::small_ppm());
   const auto imported = import_scene(write_text(folder, "s.textproto", kHead + R"(

@@ -88,7 +88,7 @@ TEST(SceneMaterial, EveryKindHasThePropertiesOfTheSurface) {
   EXPECT_EQ(bumped.relief.height_scale, -0.5);
 }
 
-TEST(SceneMaterial, ReadsWhatOtherRenderersHave) {
+TEST(SceneMaterial, ReadsTheKindsOfOtherRenderers) {
   const auto plastic = material<Plastic>("plastic { surface { alpha_texture" + kNoise +
                                          "} index_of_refraction: 1.9 nonlinear: true }");
   EXPECT_EQ(plastic.surface.alpha_u, 1);
@@ -118,7 +118,7 @@ TEST(SceneMaterial, ReadsWhatOtherRenderersHave) {
       0.75);
 }
 
-TEST(SceneMaterial, AMixtureIsOfMaterialsBeforeIt) {
+TEST(SceneMaterial, AMixtureRefersToMaterialsBeforeIt) {
   const auto imported = import_material(
       "diffuse {} } material { name: \"n\" plastic {} } material { name: \"x\" mix { a: \"m\" b: "
       "\"n\" }");

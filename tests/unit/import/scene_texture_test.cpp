@@ -63,7 +63,7 @@ TEST(SceneTexture, CheckersAreReadWithTheirTextures) {
   EXPECT_EQ(color(imported, inner.odd), (Rgb{0, 0, 0}));
 }
 
-TEST(SceneTexture, NoiseHasItsDefaultsAndItsNumbers) {
+TEST(SceneTexture, NoiseHasDefaultsAndReadsItsFields) {
   const auto plain = import_diffuse("noise { }");
   ASSERT_TRUE(plain.ok()) << plain.status();
   EXPECT_EQ(texture_of<NoiseTexture>(plain).octaves, 7u);
@@ -83,7 +83,7 @@ TEST(SceneTexture, NoiseHasItsDefaultsAndItsNumbers) {
   EXPECT_EQ(noise.space, Space::kObject);
 }
 
-TEST(SceneTexture, NamedTexturesAreUsedAndNotRepeated) {
+TEST(SceneTexture, UsesOfANamedTextureShareIt) {
   const auto imported = import_text(R"(
 texture { name: "veins" noise { kind: KIND_TURBULENCE } }
 texture { name: "fire" ramp { texture { use: "veins" } stop { at: 0.5 color: [1, 0, 0] } steps: true } }
@@ -156,7 +156,7 @@ TEST(SceneTexture, ErrorsNamePlaceAndField) {
       HasSubstr("texture[1].name: \"a\" is the name of another texture"));
 }
 
-TEST(SceneTexture, AModelUnderAMaterialOfTheSceneKeepsItsSecondUvs) {
+TEST(SceneTexture, AModelWithAMaterialOfTheSceneKeepsItsSecondUvs) {
   if (!test::have_test_models()) {
     GTEST_SKIP() << "package assimp-testmodels is not installed";
   }

@@ -199,7 +199,7 @@ TEST_F(Sequence, NodesOfGltfAreWhereTheirAnimationPutsThem) {
 }
 
 // During the exposure a node moves by its own keys, in the frame of its moving parent.
-TEST_F(Sequence, MovingNodesAreFramesDuringTheExposure) {
+TEST_F(Sequence, NodesMoveWithTheirParentsDuringTheExposure) {
   GltfWriter file = two_nodes();
   Json walk = empty_animation("walk");
   add_channel(file, walk, 0, "translation", {0, 0.5, 1}, {0, 0, 0, 10, 0, 0, 10, 10, 0}, 3);
@@ -308,7 +308,7 @@ TEST_F(Sequence, ACameraMovesWithTheKeysOfItsModel) {
   EXPECT_FALSE(read_text(text, frame(1, 4, 0.0)).scene.camera_at_close.has_value());
 }
 
-TEST_F(Sequence, AWindowHoldsWhileAUsedCameraMoves) {
+TEST_F(Sequence, ACameraOfAModelKeepsItsWindowWhileItMoves) {
   GltfWriter file = with_camera();
   Json walk = empty_animation("walk");
   add_channel(file, walk, 0, "translation", {0, 1}, {0, 0, 5, 4, 0, 5}, 3);
@@ -325,7 +325,7 @@ TEST_F(Sequence, AWindowHoldsWhileAUsedCameraMoves) {
 }
 
 // The camera that frames a model does not follow its animation.
-TEST_F(Sequence, TheFramingCameraRests) {
+TEST_F(Sequence, TheDefaultCameraDoesNotFollowTheAnimation) {
   GltfWriter file = two_nodes();
   Json walk = empty_animation("walk");
   add_channel(file, walk, 0, "translation", {0, 1}, {0, 0, 0, 9, 0, 0}, 3);
@@ -364,14 +364,14 @@ TEST_F(Sequence, AnAnimationMayHideAllMeshes) {
               IsEmpty());
 }
 
-TEST_F(Sequence, AModelWithoutAnAnimationMustHaveAPlacement) {
+TEST_F(Sequence, AModelOfScaleZeroWithoutAnAnimationIsRefused) {
   GltfWriter file = two_nodes();
   file.root["nodes"][1]["scale"] = {0, 0, 0};
   EXPECT_THAT(std::string(import_scene(file.write(folder_, "m.gltf")).status().message()),
               HasSubstr("holds no triangle that can be rendered"));
 }
 
-TEST_F(Sequence, ACameraThatFramesTheModelOfASceneFileHasItsShutter) {
+TEST_F(Sequence, TheDefaultCameraOfASceneFileHasTheChosenShutter) {
   two_nodes().write(folder_, "m.gltf");
   const ImportedScene imported = read_text(R"(model { file: "m.gltf" })", frame(30, 60, 0.25));
   const Shutter shutter = shutter_of(imported.scene.camera);

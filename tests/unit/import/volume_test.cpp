@@ -75,7 +75,7 @@ TEST(VolFile, IsReadExactly) {
   EXPECT_EQ(read_grid->to_unit_box.point({3, 2, 1}), (Vec3{1, 1, 1}));
 }
 
-TEST(VolFile, HasThreeEncodingsAndThreeChannels) {
+TEST(VolFile, ReadsThreeEncodingsAndThreeChannels) {
   std::string bytes = Vol{.encoding = 3, .cells = {2, 1, 1}, .numbers = {}}.bytes();
   bytes += "\x33\xff";
   auto grid = read(bytes);
@@ -154,7 +154,7 @@ typename Grid::Ptr named(const std::string& name,
 }
 
 /// Returns a grid of 500 voxels, scaled by 0.25 and moved.
-openvdb::FloatGrid::Ptr blob(const std::string& name) {
+openvdb::FloatGrid::Ptr sparse_grid(const std::string& name) {
   auto grid = named<openvdb::FloatGrid>(name);
   auto access = grid->getAccessor();
   for (int i = 0; i < 500; ++i) {
@@ -167,15 +167,15 @@ openvdb::FloatGrid::Ptr blob(const std::string& name) {
 
 TEST(VdbFile, IsReadWithTheValuesAndPlacementOfTheLibrary) {
   const TempDir folder;
-  const auto grid = blob("density");
-  const std::string path = write_vdb(folder, {grid, blob("other")});
+  const auto grid = sparse_grid("density");
+  const std::string path = write_vdb(folder, {grid, sparse_grid("other")});
   const auto read_grid = read_volume(path, "", "density");
   ASSERT_TRUE(read_grid.ok()) << read_grid.status();
   ASSERT_TRUE(check_grid(read_grid->grid).ok()) << check_grid(read_grid->grid).status();
   const GridReader reader(read_grid->grid);
   const Transform to_cells = *inverse(read_grid->grid.to_medium);
   const auto access = grid->getConstAccessor();
-  int some = 0;
+  int positive = 0;
   for (int x = -30; x < 10; ++x) {
     for (int y = 25; y < 45; ++y) {
       for (int z = -5; z < 20; ++z) {
@@ -183,11 +183,11 @@ TEST(VdbFile, IsReadWithTheValuesAndPlacementOfTheLibrary) {
         const float value = access.getValue({x, y, z});
         ASSERT_NEAR(reader.value(to_cells.point({at.x(), at.y(), at.z()})), value, 1e-5)
             << x << " " << y << " " << z;
-        some += value > 0 ? 1 : 0;
+        positive += value > 0 ? 1 : 0;
       }
     }
   }
-  EXPECT_GT(some, 100);
+  EXPECT_GT(positive, 100);
 }
 
 TEST(VdbFile, TilesVectorsDoublesAndHalvesAreRead) {
@@ -242,7 +242,7 @@ TEST(VdbFile, AnUnsupportedGridIsOneClearError) {
       vdb_error({openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(4, {0, 0, 0}, 1)}, ""),
       HasSubstr("is a level set: distances to a surface. Convert it to a fog volume"));
   EXPECT_THAT(vdb_error({named<openvdb::BoolGrid>("density")}), HasSubstr("is of type Tree_bool"));
-  EXPECT_THAT(vdb_error({blob("heat"), blob("smoke")}),
+  EXPECT_THAT(vdb_error({sparse_grid("heat"), sparse_grid("smoke")}),
               HasSubstr("has no grid called \"density\"; it has \"heat\", \"smoke\""));
   auto bad = named<openvdb::FloatGrid>("density");
   bad->getAccessor().setValue({1, 2, -3}, std::numeric_limits<float>::quiet_NaN());
@@ -255,7 +255,7 @@ TEST(VdbFile, AnUnsupportedGridIsOneClearError) {
   huge->getAccessor().setValue({0, 0, 0}, 1);
   huge->getAccessor().setValue({9000, 9000, 9000}, 1);
   EXPECT_THAT(vdb_error({huge}), HasSubstr("bricks of 8 x 8 x 8 voxels, at most"));
-  auto flat = blob("density");
+  auto flat = sparse_grid("density");
   flat->setTransform(openvdb::math::Transform::createFrustumTransform(
       openvdb::BBoxd({0, 0, 0}, {10, 10, 10}), 0.5, 10));
   EXPECT_THAT(vdb_error({flat}), HasSubstr("not affine"));
@@ -280,7 +280,7 @@ absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   negative.numbers[2] = -1;
   write_text(folder, "negative.vol", negative.bytes());
   write_text(folder, "cut.vol", Vol{}.bytes().substr(0, 50));
-  write_vdb(folder, {blob("density")}, "b.vdb");
+  write_vdb(folder, {sparse_grid("density")}, "b.vdb");
   return import_scene(write_text(folder, "s.textproto", kHead + text));
 }
 
@@ -337,7 +337,7 @@ instance { of: "g" scale: [2, 2, 2] }
   EXPECT_EQ(frame_at(boundaries.frames, boundaries.instances[3].frame, 0), scaling({2, 2, 2}));
 }
 
-TEST(SceneVolumes, AGridOfTheSamePlaceIsStoredOnce) {
+TEST(SceneVolumes, AGridThatIsUsedTwiceWithOnePlacementIsStoredOnce) {
   const auto imported = import_text(R"(
 medium { name: "a" density_grid { file: "a.vol" grid: "" scale: 2 } scattering { rgb: [1, 1, 1] } }
 medium { name: "b" density_grid { file: "a.vol" } scattering { rgb: [1, 1, 1] } }

@@ -228,7 +228,7 @@ TEST(Caustics, TheShareOnTheSurfaceIsOneHalfAtAnEdge) {
 // The photons are at all distances up to the radius from a straight edge. Their mean share is 1
 // minus the integral of x f(x) over [0, 1], where f(x) = 8 / (3 pi) (1 - x^2)^(3/2) is the kernel's
 // density at the distance x of a line from the centre: 1 - 8 / (15 pi).
-TEST(Caustics, TheMeanShareOnTheSurfaceIsRightNearAnEdge) {
+TEST(Caustics, TheMeanShareOnTheSurfaceMeetsTheClosedFormNearAnEdge) {
   SceneMaker maker;
   maker.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, maker.diffuse(0.5f));
   maker.camera({3, 3, 3}, {0, 0, 0}, 60);
@@ -405,7 +405,7 @@ TEST(Caustics, ComeFromMapsForSmallLampsOnly) {
             nullptr);
 }
 
-TEST(Caustics, AreLeftToPathsWherePhotonsWouldNotFollowThem) {
+TEST(Caustics, HaveNoMapsWithoutCastersOrWithNestedGlassOrHiddenLamps) {
   const auto possible = [](SceneMaker maker) {
     const auto scene = maker.build();
     return can_have_caustic_maps(*scene, Casters(*scene));

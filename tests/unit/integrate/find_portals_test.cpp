@@ -122,7 +122,7 @@ TEST(FindPortals, LeavesWideOpeningsToTheBsdf) {
   EXPECT_TRUE(portals_of(rays_of_room({ceiling}, {}, 20000)).empty());
 }
 
-TEST(FindPortals, FindsNoneWhereRaysEscapeHereAndThere) {
+TEST(FindPortals, FindsNoneIfRaysEscapeInAllDirections) {
   // Every tenth ray escapes, whatever its direction is, as between the leaves of a tree.
   std::vector<ScatteredRay> rays = rays_of_room({}, {}, 20000);
   for (std::size_t i = 0; i < rays.size(); i += 10) {

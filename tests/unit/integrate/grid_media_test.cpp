@@ -64,7 +64,7 @@ Rgb one(const Scene& scene, const Ray& ray, std::uint32_t pixel, const PathOptio
 }
 
 /// Returns the moments of the green channel.
-Moments mean(const Scene& scene, const Ray& ray, const PathOptions& options = {}) {
+Moments moments_of(const Scene& scene, const Ray& ray, const PathOptions& options = {}) {
   Moments moments;
   for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
     moments.add(one(scene, ray, pixel, options).g);
@@ -127,7 +127,8 @@ TEST(GridMedia, AConstantDensityIsAHomogeneousMedium) {
     for (const std::uint32_t depth : {0u, 1u, 8u}) {
       for (const bool local : {false, true}) {
         const PathOptions options{.max_depth = depth, .local = local};
-        EXPECT_LT(z(mean(*a, ray, options), mean(*b, ray, options)), 4) << depth << " " << local;
+        EXPECT_LT(z(moments_of(*a, ray, options), moments_of(*b, ray, options)), 4)
+            << depth << " " << local;
       }
     }
   }
@@ -141,10 +142,10 @@ TEST(GridMedia, EachTechniqueReachesTheSameMean) {
       maker, {-1, -1, -1}, {1, 1, 1},
       test::add(maker, varying({.absorption = gray(0.1f), .scattering = gray(0.4f)}, grid)));
   const auto scene = maker.build();
-  const Moments both = mean(*scene, kAhead);
+  const Moments both = moments_of(*scene, kAhead);
   EXPECT_GT(both.mean(), 0.01);
-  EXPECT_LT(z(both, mean(*scene, kAhead, {.technique = Technique::kLightsOnly})), 4);
-  EXPECT_LT(z(both, mean(*scene, kAhead, {.technique = Technique::kScatteringOnly})), 4);
+  EXPECT_LT(z(both, moments_of(*scene, kAhead, {.technique = Technique::kLightsOnly})), 4);
+  EXPECT_LT(z(both, moments_of(*scene, kAhead, {.technique = Technique::kScatteringOnly})), 4);
 }
 
 // The medium does not emit, because media do not light each other in `direct`.
@@ -155,7 +156,9 @@ TEST(GridMedia, DirectEqualsPathsOfOneScattering) {
   const Medium smoke{.absorption = {0, 0.1f, 1}, .scattering = gray(0.4f)};
   test::fill_box(maker, {-1, -1, -1}, {1, 1, 1}, test::add(maker, varying(smoke, grid)));
   const auto scene = maker.build();
-  EXPECT_LT(z(mean(*scene, kAhead, {.local = true}), mean(*scene, kAhead, {.max_depth = 1})), 4);
+  EXPECT_LT(
+      z(moments_of(*scene, kAhead, {.local = true}), moments_of(*scene, kAhead, {.max_depth = 1})),
+      4);
 }
 
 /// Expects that the two rays have the same value in nearly all pixels. Their random numbers are the
@@ -174,13 +177,13 @@ void expect_same(const Scene& a, const Ray& ray_a, const Scene& b, const Ray& ra
 
 const Medium kSmoke{.absorption = gray(0.1f), .scattering = gray(0.4f)};
 
-TEST(GridMedia, AMovedGridIsTheSameGridElsewhere) {
+TEST(GridMedia, AMovedGridLooksTheSameAlongAMovedRay) {
   const auto lit = [](SceneMaker& maker) { maker.background(gray(0.2f), gray(1)); };
   SceneMaker in_place;
   lit(in_place);
   test::fill_box(in_place, {-1, -1, -1}, {1, 1, 1},
                  test::add(in_place, varying(kSmoke, add_grid(in_place, lumps()))));
-  const auto there = in_place.build();
+  const auto in_place_scene = in_place.build();
   // The grid is turned about the vertical axis, about which the background is symmetric.
   const Transform placement = translation({3, 0, -2}) * rotation({0, 1, 0}, 90);
   const Ray moved{.origin = placement.point(kAhead.origin),
@@ -189,11 +192,11 @@ TEST(GridMedia, AMovedGridIsTheSameGridElsewhere) {
   lit(placed);
   const MediumId smoke = test::add(placed, varying(kSmoke, add_grid(placed, lumps())));
   fill_placed(placed, smoke, placement);
-  const auto here = placed.build();
+  const auto placed_scene = placed.build();
   // Directions after scattering are sampled in a frame that does not turn with the scene. So the
   // paths differ, but their means are the same.
-  EXPECT_LT(z(mean(*there, kAhead), mean(*here, moved)), 4);
-  EXPECT_GT(z(mean(*there, kAhead), mean(*here, kAhead)), 4)
+  EXPECT_LT(z(moments_of(*in_place_scene, kAhead), moments_of(*placed_scene, moved)), 4);
+  EXPECT_GT(z(moments_of(*in_place_scene, kAhead), moments_of(*placed_scene, kAhead)), 4)
       << "the placed grid must not be at its old place";
   // A grid whose own transform contains the placement gives the same values.
   SceneMaker mapped;
@@ -203,7 +206,7 @@ TEST(GridMedia, AMovedGridIsTheSameGridElsewhere) {
   const MediumId same = test::add(mapped, varying(kSmoke, add_grid(mapped, grid)));
   test::fill_mesh(mapped, unit_cube(), placement * translation({-1, -1, -1}) * scaling({2, 2, 2}),
                   same);
-  expect_same(*here, moved, *mapped.build(), moved);
+  expect_same(*placed_scene, moved, *mapped.build(), moved);
 }
 
 TEST(GridMedia, ScalingAGridKeepsItsCoefficients) {
@@ -213,7 +216,7 @@ TEST(GridMedia, ScalingAGridKeepsItsCoefficients) {
   fill_placed(small, test::add(small, varying(absorbs, add_grid(small, constant(1)))),
               scaling({1, 1, 0.25}));
   // The ray passes 2 x 0.25 units of the medium, because distances are measured in world space.
-  EXPECT_NEAR(mean(*small.build(), kAhead).mean(), std::exp(-0.3 * 0.5), 1e-5);
+  EXPECT_NEAR(moments_of(*small.build(), kAhead).mean(), std::exp(-0.3 * 0.5), 1e-5);
 }
 
 TEST(GridMedia, EachInstanceHasTheSharedMediumInItsOwnPlace) {
@@ -256,7 +259,7 @@ TEST(GridMedia, TheLastOfOverlappingBoundariesCounts) {
   const auto scene = maker.build();
   // At x = 0.3 the density is 10 in the first box and 6 in the second. The second box reaches from
   // z = -0.5 to z = 1.5.
-  const Moments seen = mean(*scene, {.origin = {0.3, 0, 5}, .direction = {0, 0, -1}});
+  const Moments seen = moments_of(*scene, {.origin = {0.3, 0, 5}, .direction = {0, 0, -1}});
   EXPECT_LT(std::abs(seen.z(std::exp(-0.1 * (6 * 2 + 10 * 0.5)))), 4);
 }
 
@@ -278,7 +281,7 @@ TEST(GridMedia, AGridMovesWithItsBoundary) {
   expect_same(*moving, ray, *still, ray);
   Ray early = ray;
   early.time = 0.1;
-  EXPECT_GT(z(mean(*moving, ray), mean(*moving, early)), 4);
+  EXPECT_GT(z(moments_of(*moving, ray), moments_of(*moving, early)), 4);
 }
 
 TEST(GridMedia, ShadowsOfAGridFollowTheClosedForm) {
@@ -298,7 +301,7 @@ TEST(GridMedia, ShadowsOfAGridFollowTheClosedForm) {
   test::fill_box(maker, {-1, 1, -1}, {1, 3, 1}, test::add(maker, dark));
   const auto scene = maker.build();
   const Ray below{.origin = {0.3, 0.5, 0.2}, .direction = {0, -1, 0}};
-  const Moments seen = mean(*scene, below, {.max_depth = 1});
+  const Moments seen = moments_of(*scene, below, {.max_depth = 1});
   EXPECT_LT(std::abs(seen.z(std::exp(-0.5 * 2 * sum / 64) / 3.14159265358979)), 4);
 }
 
@@ -319,9 +322,9 @@ TEST(GridMedia, FireLightsItsSurroundings) {
   const auto b = glow.build();
   for (const Ray& ray :
        {kAhead, Ray{.origin = {0, 0, 4}, .direction = normalize(Vec3{0, -1, -1})}}) {
-    const Moments seen = mean(*a, ray);
+    const Moments seen = moments_of(*a, ray);
     EXPECT_GT(seen.mean(), 0.01);
-    EXPECT_LT(z(seen, mean(*b, ray)), 4);
+    EXPECT_LT(z(seen, moments_of(*b, ray)), 4);
   }
 }
 

@@ -137,7 +137,7 @@ TEST(GuidingGain, NoIndirectPhotonsAreTracedWhereDirectLightHasTheNoise) {
 }
 
 // Light sampling finds the light of a lamp under the ceiling, but not the light of a lamp in glass.
-TEST(GuidingGain, DecidesWhatTheIntegratorPathDoes) {
+TEST(GuidingGain, DecidesWhetherTheIntegratorPathIsGuided) {
   const auto easy = test::cornell_box().build();
   EXPECT_EQ(pixels_of(*easy, Integrator::kPath).sums,
             pixels_of(*easy, Integrator::kPathPlain).sums);

@@ -93,7 +93,7 @@ TEST(Guiding, KeepsTheRadianceOfAFurnace) {
   EXPECT_LE(std::abs(with.z(2)), 4) << with.mean();
 }
 
-TEST(Guiding, ChangesNoMeanWherePathsAreShared) {
+TEST(Guiding, ChangesNoMeanWithPathReuse) {
   const auto scene = lamp_in_glass(1.5, 0.2, 0.7f).build();
   ASSERT_TRUE(scene->reuses_paths());
   const auto guiding = trained(*scene);

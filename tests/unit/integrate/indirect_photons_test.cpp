@@ -149,15 +149,15 @@ std::vector<Case> cases() {
 
 // This test makes ten comparisons.
 TEST(IndirectPhotons, ChangeNoMean) {
-  for (const Case& of : cases()) {
-    SCOPED_TRACE(of.name);
-    const auto scene = of.maker.build();
-    const PhotonSources sources = sources_of(*scene, of.max_depth);
+  for (const Case& tested : cases()) {
+    SCOPED_TRACE(tested.name);
+    const auto scene = tested.maker.build();
+    const PhotonSources sources = sources_of(*scene, tested.max_depth);
     ASSERT_TRUE(sources.surfaces);
     const Ray ray{.origin = {0, 0, 1.9}, .direction = normalize(Vec3{1.2, 1, -1.5})};
     test::expect_same_mean(*scene, sources, ray,
-                           {.max_depth = of.max_depth,
-                            .maps = of.maps,
+                           {.max_depth = tested.max_depth,
+                            .maps = tested.maps,
                             .paths = 4096,
                             .photons = 1 << 15,
                             .max_deviation = 0.05});
@@ -284,7 +284,7 @@ TEST(IndirectPhotons, AreUsedWhereTheyPay) {
   EXPECT_FALSE(are_used(lost));
 }
 
-TEST(IndirectPhotons, AreLeftToPathsWherePhotonsWouldNotFollowThem) {
+TEST(IndirectPhotons, HaveNoMapsWithNestedGlassOrHiddenLampsOrWithoutReceivers) {
   const auto possible = [](const SceneMaker& maker) {
     const auto scene = maker.build();
     return surfaces_of_indirect_light(*scene, Casters::none(*scene)).has_value();

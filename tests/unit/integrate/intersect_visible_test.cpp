@@ -52,10 +52,10 @@ SceneMaker white_sky() {
 TEST(Alpha, CoplanarBlendedSurfacesAreHitOneAfterTheOther) {
   for (const int layers : {1, 2, 5}) {
     SceneMaker maker = white_sky();
-    const MaterialId half = maker.material(blended(0.25));
+    const MaterialId faint = maker.material(blended(0.25));
     for (int i = 0; i < layers; ++i) {
-      maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, half);
-      maker.triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, half);
+      maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, faint);
+      maker.triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, faint);
     }
     const Ray ray{.origin = {0.1, 0.2, 3}, .direction = {0, 0, -1}};
     // The path sees black if a surface is present, except for the reflection at the surface.
@@ -185,8 +185,9 @@ TEST(SeeThrough, DeltaLightsAreVisibleThroughRoughTransmission) {
     ASSERT_TRUE(point);
     const Bsdf bsdf =
         bsdf_at(scene->material(point->material), scene->textures(), *point, -ray.direction);
-    const Vec3 way = Vec3{0.3, 0.1, -2};
-    const double expected = evaluate(bsdf, normalize(way)).value.g * 4 / length_squared(way);
+    const Vec3 to_light = Vec3{0.3, 0.1, -2};
+    const double expected =
+        evaluate(bsdf, normalize(to_light)).value.g * 4 / length_squared(to_light);
     EXPECT_GT(expected, 0.01);
     const Moments seen = light_along(maker, ray, 64);
     EXPECT_NEAR(seen.mean(), expected, 1e-6 * expected);
@@ -208,9 +209,9 @@ TEST(NestedGlass, M9_TheHigherPriorityRefractsInOverlaps) {
     slab(0, 1, glass);
     // Only a narrow strip emits. The refracted ray meets this strip.
     maker.background({0, 0, 0}, {0, 0, 0});
-    const double s0 = std::sqrt(0.5);
-    const double tan_water = (s0 / 1.33) / std::sqrt(1 - s0 * s0 / 1.33 / 1.33);
-    const double tan_glass = (s0 / 1.5) / std::sqrt(1 - s0 * s0 / 2.25);
+    const double sine = std::sqrt(0.5);
+    const double tan_water = (sine / 1.33) / std::sqrt(1 - sine * sine / 1.33 / 1.33);
+    const double tan_glass = (sine / 1.5) / std::sqrt(1 - sine * sine / 2.25);
     const double x = tan_water + tan_glass + 1;
     maker.quad({x - 1e-6, -1, -1}, {2e-6, 0, 0}, {0, 0, 2}, maker.lamp(1));
     const Ray ray{.origin = {-1, 3, 0}, .direction = normalize({1, -1, 0})};

@@ -29,12 +29,12 @@ using Inside = std::function<int(const Vec3&)>;
 void expect_walk(const Scene& scene, const Ray& ray, double length, const Inside& inside) {
   std::uint64_t rays = 0;
   MediumTraversal walk(scene, ray, length, rays);
-  std::vector<MediumSegment> stretches;
-  while (const auto stretch = walk.next()) {
-    ASSERT_LT(stretch->begin, stretch->end);
-    ASSERT_GE(stretch->begin, stretches.empty() ? 0 : stretches.back().end);
-    ASSERT_LE(stretch->end, length);
-    stretches.push_back(*stretch);
+  std::vector<MediumSegment> segments;
+  while (const auto segment = walk.next()) {
+    ASSERT_LT(segment->begin, segment->end);
+    ASSERT_GE(segment->begin, segments.empty() ? 0 : segments.back().end);
+    ASSERT_LE(segment->end, length);
+    segments.push_back(*segment);
   }
   constexpr int kPoints = 400;
   const double far = std::min(length, 30.0);
@@ -47,9 +47,9 @@ void expect_walk(const Scene& scene, const Ray& ray, double length, const Inside
       continue;
     }
     int found = -1;
-    for (const MediumSegment& stretch : stretches) {
-      if (t >= stretch.begin && t < stretch.end) {
-        found = static_cast<int>(stretch.medium - scene.media().media.data());
+    for (const MediumSegment& segment : segments) {
+      if (t >= segment.begin && t < segment.end) {
+        found = static_cast<int>(segment.medium - scene.media().media.data());
       }
     }
     ASSERT_EQ(found, expected) << t;

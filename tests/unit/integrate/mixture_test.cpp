@@ -67,7 +67,7 @@ TEST(Mixture, WithHolesLetsLightThroughAndAllTechniquesAgree) {
 }
 
 // One part emits and is partly transparent. Light sampling and BSDF sampling agree.
-TEST(Mixture, OfALightIsALight) {
+TEST(Mixture, WithAnEmittingPartIsALight) {
   SceneMaker maker = with_sky(0);
   Material glow = Diffuse{TextureId{0}};
   glow.emission.radiance = {TextureId{0}, {6, 6, 6}};
@@ -172,8 +172,8 @@ TEST(HeightMap, UsesTheLengthsOfUvsOnBallsAndDisks) {
   bumped.relief.height = coordinate(disk, RampTexture::Over::kU);
   disk.scene.geometry.disks = {{{0, 0, 0}, {0, 0, 1}, 2, disk.material(bumped)}};
   const Rgb of_disk = normal_at(disk, {.origin = {0.3, 0.4, 5}, .direction = {0, 0, -1}});
-  const double across = 2.0 * of_disk.b - 1;
-  EXPECT_NEAR(across, 1 / std::sqrt(1 + 0.75 * 0.75), 5e-4);
+  const double normal_z = 2.0 * of_disk.b - 1;
+  EXPECT_NEAR(normal_z, 1 / std::sqrt(1 + 0.75 * 0.75), 5e-4);
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ Rgb value(const SceneMaker& maker, Integrator integrator, const Ray& ray,
 
 /// Expects the mean of many pixels to be `expected` within 4 standard errors, and returns the mean.
 /// A false alarm has the probability 6e-5.
-double mean(const SceneMaker& maker, Integrator integrator, const Ray& ray, double expected) {
+double expect_mean(const SceneMaker& maker, Integrator integrator, const Ray& ray,
+                   double expected) {
   const auto scene = maker.build();
   test::Moments moments;
   PathCounts counts;
@@ -151,17 +152,17 @@ TEST(SampleValue, ABallAboveOccludesItsViewFactor) {
   maker.sphere({0, 0, 4}, 2, maker.diffuse(0.5f));
   const Ray below{.origin = {0, 0, 1}, .direction = {0, 0, -1}};
   // The view factor of a ball of radius r at distance d along the normal is (r / d)^2.
-  mean(maker, Integrator::kAmbientOcclusion, below, 0.75);
+  expect_mean(maker, Integrator::kAmbientOcclusion, below, 0.75);
   maker.scene.local_shading.occlusion_distance = 2.5;
-  const double near = mean(maker, Integrator::kAmbientOcclusion, below,
-                           // Rays that hit the ball before 2.5 are in a cone. Its rim is the circle
-                           // in which the ball meets a sphere of radius 2.5 about the point. The
-                           // circle is at z = (2.5^2 + 4^2 - 2^2) / 8, so sin^2 of the half-angle
-                           // is 1 - (z / 2.5)^2.
-                           std::pow((2.5 * 2.5 + 12) / 8 / 2.5, 2));
+  const double near = expect_mean(maker, Integrator::kAmbientOcclusion, below,
+                                  // Rays that hit the ball before 2.5 are in a cone. Its rim is the
+                                  // circle in which the ball meets a sphere of radius 2.5 about the
+                                  // point. The circle is at z = (2.5^2 + 4^2 - 2^2) / 8, so sin^2
+                                  // of the half-angle is 1 - (z / 2.5)^2.
+                                  std::pow((2.5 * 2.5 + 12) / 8 / 2.5, 2));
   EXPECT_GT(near, 0.75);
   maker.scene.local_shading.occlusion_distance = 1.9;
-  EXPECT_EQ(mean(maker, Integrator::kAmbientOcclusion, below, 1), 1);
+  EXPECT_EQ(expect_mean(maker, Integrator::kAmbientOcclusion, below, 1), 1);
 }
 
 TEST(SampleValue, AmbientOcclusionSkipsHolesAndHiddenLamps) {
@@ -173,7 +174,7 @@ TEST(SampleValue, AmbientOcclusionSkipsHolesAndHiddenLamps) {
   const MaterialId lamp = maker.lamp(1);
   std::get<Emissive>(maker.scene.materials[index_of(lamp)].kind).hidden = true;
   wall(maker, lamp, 3);
-  EXPECT_EQ(mean(maker, Integrator::kAmbientOcclusion, kAhead, 1), 1);
+  EXPECT_EQ(expect_mean(maker, Integrator::kAmbientOcclusion, kAhead, 1), 1);
 }
 
 TEST(SampleValue, DirectIsIrradianceAndAmbientTerm) {
@@ -183,7 +184,7 @@ TEST(SampleValue, DirectIsIrradianceAndAmbientTerm) {
   maker.scene.local_shading.ambient = gray(0.25f);
   const Ray below{.origin = {0, 0, 1}, .direction = {0, 0, -1}};
   // The irradiance pi L (r / d)^2 times albedo / pi, plus the albedo times the ambient radiance.
-  mean(maker, Integrator::kDirect, below, 0.5 * 3 * 0.25 + 0.5 * 0.25);
+  expect_mean(maker, Integrator::kDirect, below, 0.5 * 3 * 0.25 + 0.5 * 0.25);
 }
 
 TEST(SampleValue, DirectHasNoInterreflection) {
@@ -206,7 +207,7 @@ TEST(SampleValue, DirectContinuesAtMirrorsAndGlass) {
   SceneMaker glass;
   glass.sphere({0.1, 0.2, 0}, 1, glass.glass(1.5));
   glass.background(gray(2), gray(2));
-  mean(glass, Integrator::kDirect, kAhead, 2);
+  expect_mean(glass, Integrator::kDirect, kAhead, 2);
 }
 
 TEST(SampleValue, NamesRoundTrip) {
