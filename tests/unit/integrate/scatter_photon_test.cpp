@@ -1,6 +1,7 @@
-// Tests that photons carry the light at a caster that paths find there. The integral of the
-// scattered light over the directions from which it comes and to which it goes must be the same for
-// both, also over a part of these directions.
+// Photons that a caster (a surface that casts caustics) scatters must carry the same light as paths
+// that are scattered there. The tests integrate the scattered light over pairs of directions: one
+// from which light comes, and one to which light goes. The integral must be the same for photons
+// and for paths, also over only a part of the pairs.
 
 #include "renderlib/integrate/scatter_photon.h"
 
@@ -26,6 +27,8 @@ using test::SceneMaker;
 constexpr std::size_t kParts = 4;
 using Parts = std::array<test::Moments, kParts>;
 
+/// Adds a sample of the scattered light to every part: `amount` to the parts that contain the pair
+/// of directions, and 0 to the other parts.
 void add(const Vec3& in, const Vec3& out, double amount, Parts& parts) {
   const bool refracted = in.z * out.z < 0;
   const std::array<bool, kParts> counted = {true, in.x > 0, out.x > 0, refracted && out.x > 0};

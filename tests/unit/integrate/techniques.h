@@ -27,8 +27,9 @@ inline Moments light_along(const SceneMaker& maker, const Ray& ray, int samples,
   return sum;
 }
 
-/// Checks that light sampling alone, BSDF sampling alone and both together have the same mean along
-/// the ray, at 4 standard errors each, and that the mean is above `at_least`.
+/// Checks mean radiances along the ray. The means of light sampling alone and of BSDF sampling
+/// alone must each agree with the mean of both together, within 4 standard errors of the
+/// difference. The mean of both together must be above `at_least`.
 inline void expect_techniques_agree(const SceneMaker& maker, const Ray& ray, double at_least) {
   const Moments both = light_along(maker, ray, 20000);
   const Moments lights = light_along(maker, ray, 20000, Technique::kLightsOnly);

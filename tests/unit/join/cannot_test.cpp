@@ -22,7 +22,7 @@ using ::testing::Not;
 
 class JoinCannotTest : public JoinTest {
  protected:
-  /// Opens a session with another offer; returns the status of its refusal.
+  /// Tries to open a session with this offer. Returns the HTTP status of the refusal.
   int refused(test::SocketOffer offer) const {
     return test::SocketClient(dashboard_->port(), offer).status();
   }
@@ -173,7 +173,7 @@ TEST_F(JoinCannotTest, SendBandsThatAreDamagedOrTooLong) {
   test::SocketClient socket = open();
   const std::string whole = band(lease_to(socket));
   std::string other = whole;
-  other.back() = static_cast<char>(other.back() ^ 1);  // another digest
+  other.back() = static_cast<char>(other.back() ^ 1);  // so its digest is wrong
   EXPECT_EQ(join_post("/join/band", other)->status, 400);
   EXPECT_EQ(join_post("/join/band", whole.substr(0, whole.size() - 8))->status, 400);
   EXPECT_EQ(join_post("/join/band", whole + "more")->status, 400);
@@ -225,7 +225,7 @@ TEST_F(JoinCannotTest, GoOnAfterTheLinkIsRevoked) {
 
 TEST_F(JoinCannotTest, GoOnAfterTheLinkHasEnded) {
   test::SocketClient socket = open();
-  ASSERT_TRUE(access_->make(1).ok());  // it ends in a second
+  ASSERT_TRUE(access_->make(1).ok());  // the link ends in a second
   socket.read_to_end();
   EXPECT_EQ(socket.close_code(), 4401);
   EXPECT_EQ(join_get("/join/about")->status, 401);
@@ -279,7 +279,7 @@ TEST_F(JoinCannotTest, OpenMoreSocketsThanAreAllowed) {
     EXPECT_THAT(third.refusal(), HasSubstr("2 browsers are connected"));
     second.close();
   }
-  wait_until([&] { return open().status() == 101; });  // its place is free again
+  wait_until([&] { return open().status() == 101; });  // the second tab's place is free again
 }
 
 TEST_F(JoinCannotTest, HoldASocketWithoutAHandshake) {
@@ -294,8 +294,8 @@ TEST_F(JoinCannotTest, HoldASocketWithoutAHandshake) {
   EXPECT_THAT(answer, testing::StartsWith("HTTP/1.1 4"));
 }
 
-// The coordinator's messages for this tab fill its queue, or one of them is not sent in time.
-// Either ends its session; neither blocks the scheduler.
+// Either the coordinator's messages for this tab fill the tab's queue, or a message is not sent in
+// time. Both end the tab's session. Neither blocks the scheduler.
 TEST_F(JoinCannotTest, HoldUpTheFarmByNotReading) {
   options_.browser_limits.write = std::chrono::milliseconds(200);
   options_.browser_limits.idle = std::chrono::minutes(1);

@@ -15,6 +15,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns the id of the instance (the tab) with this name: 32 hexadecimal digits.
 std::string instance_of(const std::string& name) { return wire::sha256(name).hex().substr(0, 32); }
 
 }  // namespace

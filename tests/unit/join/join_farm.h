@@ -1,7 +1,7 @@
 #pragma once
 
-// The base of tests of browsers that render. It starts a coordinator with a dashboard and a link
-// for browsers, and makes the messages that the page in a browser's tab sends.
+// The base class of the tests of browsers that render. It starts a coordinator with a dashboard and
+// a link for browsers, and makes the messages that the page in a browser's tab sends.
 
 #include <string>
 #include <thread>
@@ -28,10 +28,10 @@ class JoinTest : public WebTest {
   /// Sends a request with the link's secret and returns the answer.
   Answer join_get(const std::string& path);
   Answer join_post(const std::string& path, const std::string& body);
-  /// Returns the workers that are connected, by their names.
+  /// Returns the names of the workers that are connected.
   std::vector<std::string> workers();
-  /// Sends messages to a tab that reads none, until its session is ended. It MUST be the only
-  /// worker.
+  /// Makes the coordinator send messages to a tab that reads no messages, until the session of the
+  /// tab is ended. The tab MUST be the only worker.
   void send_until_nobody_is_connected();
   /// Waits until the condition is true.
   template <class Condition>
@@ -41,7 +41,7 @@ class JoinTest : public WebTest {
     }
   }
 
-  std::string secret_;  ///< of the link, which ends after a minute
+  std::string secret_;  ///< secret of the link, which ends after a minute
 };
 
 }  // namespace bandsaw::coordinator

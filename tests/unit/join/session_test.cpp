@@ -1,6 +1,6 @@
 // A browser's session over a WebSocket, from its Hello to the last band, and every way in which it
-// ends. Close codes of the standard: 1000 normal, 1001 going away, 1008 violation of the rules;
-// 4409 is our own: another session of the same tab replaced it.
+// ends. Close codes of the standard are 1000 (normal), 1001 (going away) and 1008 (violation of the
+// rules). The close code 4409 is bandsaw's own: another session of the same tab replaced this one.
 
 #include <gmock/gmock.h>
 
@@ -174,7 +174,7 @@ TEST_F(JoinSessionTest, ATabThatIgnoresTheEndDoesNotHoldUpTheCoordinator) {
 
 TEST_F(JoinSessionTest, ManySessionsLeaveTheDashboardItsThreads) {
   std::vector<std::unique_ptr<test::SocketClient>> sockets;
-  for (int i = 0; i < 64; ++i) {  // twice as many as threads
+  for (int i = 0; i < 64; ++i) {  // twice as many as the HTTP server has threads
     sockets.push_back(std::make_unique<test::SocketClient>(dashboard_->port(),
                                                            test::SocketOffer{.secret = secret_}));
     ASSERT_EQ(sockets.back()->status(), 101);

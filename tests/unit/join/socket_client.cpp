@@ -19,7 +19,8 @@ namespace websocket = boost::beast::websocket;
 
 namespace {
 
-/// Beast does not return the response of a refused handshake, so the request is made once more.
+/// Sends the request of the handshake once more and returns the response, because Beast does not
+/// return the response of a refused handshake.
 std::optional<HttpAnswer> ask_again(int port, const SocketOffer& offer, const std::string& origin) {
   return http_call(port, {.target = offer.target,
                           .headers = {{"Origin", origin},
@@ -43,7 +44,7 @@ SocketClient::SocketClient(int port, const SocketOffer& offer, int receive_buffe
   auto& stream = socket_->stream;
   beast::error_code error;
   stream.next_layer().open(asio::ip::tcp::v4(), error);
-  if (receive_buffer > 0) {  // before the connection exists, so that its window is small
+  if (receive_buffer > 0) {  // set before connecting, so that the TCP window is small
     stream.next_layer().set_option(asio::socket_base::receive_buffer_size(receive_buffer), error);
   }
   stream.next_layer().connect({asio::ip::address_v4::loopback(), static_cast<unsigned short>(port)},

@@ -1,6 +1,6 @@
 #pragma once
 
-// A blocking WebSocket client for tests: it takes the place of the page /join in a browser's tab.
+// A blocking WebSocket client for tests. It takes the place of the page /join in a browser's tab.
 // The server is on loopback.
 
 #include <atomic>
@@ -13,12 +13,12 @@
 
 namespace bandsaw::test {
 
-/// The handshake of a client. The secret is that of the link for browsers; it is sent as one of the
-/// WebSocket's protocols, because a page cannot set other headers.
+/// The handshake of a client. The secret is sent as one of the WebSocket's protocols, because a
+/// page cannot set other headers.
 struct SocketOffer {
-  std::string secret;
+  std::string secret;  ///< secret of the link for browsers
   std::string protocol = "bandsaw.1";
-  std::string origin = {};  ///< empty: that of the server
+  std::string origin = {};  ///< empty: the origin of the server
   std::string target = "/join/session";
 };
 
@@ -29,7 +29,7 @@ class SocketClient {
   SocketClient(int port, const SocketOffer& offer, int receive_buffer = 0);
   ~SocketClient();
 
-  /// HTTP status of the response to the handshake: 101 (accepted) or that of a refusal; 0: no
+  /// HTTP status of the response to the handshake: 101 (accepted) or the status of a refusal. 0: no
   /// response came.
   int status() const { return status_; }
   /// Body of a refusal.
@@ -39,6 +39,8 @@ class SocketClient {
 
   /// Sends one message. Returns false if the connection has ended.
   bool send(const farm::FromWorker& message);
+  /// Sends one message of these bytes, as binary or as text. Returns false if the connection has
+  /// ended.
   bool send_bytes(const std::string& bytes, bool binary = true);
   /// Sends these bytes as they are, not in a frame.
   void send_raw(const std::string& bytes);
@@ -46,15 +48,15 @@ class SocketClient {
   std::optional<farm::ToWorker> read();
   /// Reads until the session has ended.
   void read_to_end();
-  /// Code and reason of the server's close frame, after read() has returned std::nullopt; 0: it
-  /// sent none.
+  /// Code and reason of the server's close frame, after read() has returned std::nullopt. The
+  /// code is 0 if the server sent no close frame.
   std::uint16_t close_code() const { return code_; }
   const std::string& close_reason() const { return reason_; }
   /// Number of pings that read() has answered. Thread-safe.
   int pings() const { return pings_; }
   /// Ends the connection without a close frame.
   void vanish();
-  /// Ends the session as a browser does.
+  /// Ends the session by a close frame, as a browser does.
   void close();
 
  private:

@@ -1,6 +1,6 @@
 // A browser's session over TLS with the farm's certificate. The same rules hold as without TLS
-// (session_test.cpp). Whatever happens to the connection ends the session and frees its place among
-// the limited number of sessions.
+// (session_test.cpp). The number of sessions is limited. However a connection breaks, its session
+// must end, and the place of the session must become free.
 
 #include <gmock/gmock.h>
 
@@ -28,8 +28,8 @@ namespace websocket = boost::beast::websocket;
 /// A browser that trusts the farm's certificate only.
 class SecureTab {
  public:
-  /// `secret`: that of the link. `receive_buffer`: size of the socket's receive buffer in bytes; 0:
-  /// the system's default.
+  /// Connects and sends the handshake. `secret`: secret of the link. `receive_buffer`: size of the
+  /// socket's receive buffer in bytes; 0: the system's default.
   SecureTab(int port, const std::string& certificate_pem, const std::string& secret,
             int receive_buffer = 0) {
     tls_.add_certificate_authority(asio::buffer(certificate_pem));
@@ -76,7 +76,8 @@ class SecureTab {
     code_ = error == websocket::error::closed ? stream_.reason().code : 0;
     return std::nullopt;
   }
-  /// Returns the code of the server's close frame; 0: it sent none.
+  /// Reads until the session has ended. Returns the code of the server's close frame; 0: the server
+  /// sent no close frame.
   int read_to_end() {
     while (read()) {
     }
@@ -113,8 +114,8 @@ std::string frame(const std::string& payload, std::size_t size) {
   return head + std::string(4, '\0') + payload;
 }
 
-/// Two dashboards of one coordinator: that of the base class, and one over TLS with one place for a
-/// browser.
+/// Two dashboards of one coordinator: the dashboard of the base class, and `secure_`, which uses
+/// TLS and admits one browser at a time.
 class JoinTlsTest : public JoinTest {
  protected:
   JoinTlsTest() { log_in(); }
@@ -171,7 +172,8 @@ TEST_F(JoinTlsTest, ABrowserGetsItsLeasesAndLeaves) {
 TEST_F(JoinTlsTest, MessagesOfOneRecordAreAllRead) {
   auto tab = open_secure();
   const std::string bytes = hello().SerializeAsString();
-  // The second one, which is against the rules, waits inside TLS and not in the socket.
+  // The second Hello violates the rules. Both are in one TLS record, so the second one waits inside
+  // TLS and not in the socket.
   tab->send_record(frame(bytes, bytes.size()) + frame(bytes, bytes.size()));
   EXPECT_EQ(tab->read_to_end(), 1008);
   tab.reset();

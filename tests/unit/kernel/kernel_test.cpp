@@ -1,5 +1,5 @@
 // A kernel is the code that builds scenes and renders them, compiled for one instruction set. All
-// kernels of a program give the same bits, and a scene is rendered by the one that built it.
+// kernels of a program give the same bits, and a scene is rendered by the kernel that built it.
 
 #include "renderlib/render/kernel.h"
 
@@ -37,7 +37,8 @@ TEST(Kernels, BeginWithAvx2IfTheMachineRunsIt) {
   }
 }
 
-// The flags in /proc/cpuinfo are the Linux kernel's own judgement of processor and registers.
+// The flags in /proc/cpuinfo are the Linux kernel's own answer: what the processor has, and which
+// registers programs may use.
 TEST(Kernels, RunsX86_64V3AgreesWithLinux) {
   std::ifstream info("/proc/cpuinfo");
   std::set<std::string> flags;

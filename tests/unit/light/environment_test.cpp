@@ -32,6 +32,7 @@ struct Sky {
   Environment environment = {};
 };
 
+/// `texel(x, y)`: the radiance of a texel.
 Sky equirectangular(const std::string& name, std::uint32_t width, std::uint32_t height,
                     absl::FunctionRef<float(std::uint32_t, std::uint32_t)> texel) {
   Sky sky{.name = name, .textures = {float_image(width, height, texel)}};
@@ -39,6 +40,7 @@ Sky equirectangular(const std::string& name, std::uint32_t width, std::uint32_t 
   return sky;
 }
 
+/// `texel(image, x, y)`: the radiance of a texel of one of the six images.
 Sky cube(const std::string& name, std::uint32_t side,
          absl::FunctionRef<float(std::uint32_t, std::uint32_t, std::uint32_t)> texel) {
   Sky sky{.name = name, .textures = {}};
@@ -51,6 +53,7 @@ Sky cube(const std::string& name, std::uint32_t side,
   return sky;
 }
 
+/// Returns a number between 2^-6 and 2^4, always the same one for the same arguments.
 float noise(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   Random random(a * 10007 + b * 101 + c);
   return static_cast<float>(std::exp2(random.uniform(-6, 4)));
@@ -61,8 +64,8 @@ std::vector<Sky> skies() {
   all.push_back(equirectangular("noise", 17, 9, [](auto x, auto y) { return noise(x, y, 1); }));
   all.push_back(equirectangular("one row", 6, 1, [](auto x, auto y) { return noise(x, y, 2); }));
   all.push_back(equirectangular("one column", 1, 7, [](auto x, auto y) { return noise(x, y, 3); }));
-  // One bright texel, whose light reaches across the seam. At a pole a whole row is bright, because
-  // one texel would be too narrow there to integrate over the test's cells.
+  // One bright texel, whose light reaches across the seam. At a pole a whole row is bright: one
+  // texel there would be too narrow for the cells over which the test integrates the pdf.
   all.push_back(equirectangular("L8 one texel", 20, 10,
                                 [&](auto x, auto y) { return x == 19 && y == 3 ? 7.0f : 0; }));
   all.push_back(
@@ -89,6 +92,7 @@ Vec3 any_direction(Random& random) {
   return {r * turn.cos, r * turn.sin, z};
 }
 
+// An EnvironmentPlace is a position in an image of the environment.
 TEST(Environment, PlacesAndDirectionsAreInverse) {
   Random random(1);
   for (const Sky& sky : skies()) {
@@ -104,7 +108,7 @@ TEST(Environment, C10_TheMiddleOfAnImageIsAtXAndItsRightHalfAtZ) {
   const Sky sky = equirectangular("numbered", 4, 2,
                                   [](auto x, auto y) { return static_cast<float>(10 * y + x); });
   const auto seen = [&](double column, double row) {
-    // Seen exactly at a texel's centre.
+    // The direction in which the centre of the texel is seen.
     const SinCos around = sincos_turns((column + 0.5) / 4 - 0.5);
     const SinCos down = sincos_turns((row + 0.5) / 4);
     return radiance(sky.environment, sky.textures,
@@ -167,18 +171,18 @@ TEST(EnvironmentLight, SamplesHaveThePdfOfTheirDirection) {
       const double u = random.uniform();
       const auto sample = light.sample(u, random.uniform());
       ASSERT_GT(sample.pdf, 0);
-      // If the sample is at the border of a texel, rounding decides.
+      // At the border of a texel, rounding decides to which texel a direction belongs.
       ASSERT_NEAR(light.pdf(sample.direction), sample.pdf, 1e-6 * sample.pdf + 1e-9) << sky.name;
     }
   }
 }
 
 /// Returns the integral of f over the directions around a texel, by the midpoint rule. Interpolated
-/// radiance has kinks at the centres of texels, so these are borders of the rule's cells.
+/// radiance has kinks at the centres of texels, so the cells of the rule have borders there.
 double around_texel(const Sky& sky, std::uint32_t column, std::uint32_t row,
                     absl::FunctionRef<double(const Vec3&)> f) {
-  constexpr int kFine = 400;  // along a column; along a row everything is linear between centres
-  constexpr int kCoarse = 4;
+  constexpr int kFine = 400;  // cells per texel along a column
+  constexpr int kCoarse = 4;  // cells per texel along a row, where radiance is linear
   const auto& image = std::get<ImageTexture>(sky.textures[0]);
   double sum = 0;
   const int rows = static_cast<int>(image.height);
@@ -233,6 +237,7 @@ TEST(EnvironmentLight, TheExcessIsTheLightAboveTheMean) {
   const Sky sky =
       equirectangular("half", 2, 512, [](auto, auto y) { return y < 256 ? 3.0f : 1.0f; });
   const EnvironmentLight light(sky.environment, sky.textures);
+  // The mean is 2, and the upper half of the sphere is brighter than the mean by 1.
   EXPECT_NEAR(light.excess(), 2 * kPi, 1e-4);
 }
 

@@ -25,7 +25,7 @@ Vec3 random_point(Random& random, double size) {
   return {x, y, random.uniform(-size, size)};
 }
 
-/// Spheres, one- and two-sided flats and spots, in clusters, with powers over twelve decades.
+/// Spheres, one- and two-sided flat lights and spots, in clusters, with powers over twelve decades.
 std::vector<LightBound> lights_of_all_kinds(std::size_t count) {
   Random random(1);
   std::vector<LightBound> lights;
@@ -65,7 +65,7 @@ TEST(LightTree, L7_ProbabilitiesOfManyLightsSumToOne) {
       sum += probability;
     }
     // If lights face in all directions, both halves of a node may contribute nothing although the
-    // bound of the whole node does: then no light is selected.
+    // bound of the whole node is above 0. No light is selected then.
     EXPECT_LE(sum, 1 + 1e-12);
     EXPECT_GE(sum, 0.5);
   }
@@ -121,8 +121,8 @@ TEST(LightTree, PrefersANearLightToABrighterDistantOne) {
   }
   const LightTree tree(lights);
   const Receiver receiver{{500, 0, 0}, Vec3{0, 1, 0}};
-  // With the exact importance, it would be 1 / (sum over all integers k of 1 / (k^2 + 1)^(3/2)),
-  // which is about 0.49. The tree's bounds are looser.
+  // With the exact importance, light 500 would have the probability 1 / (sum over all integers k of
+  // 1 / (k^2 + 1)^(3/2)), which is about 0.49. The tree's bounds are looser.
   EXPECT_GT(tree.probability(receiver, 500), 0.1);
   EXPECT_LT(tree.probability(receiver, 0), 1e-4);
 }
@@ -153,9 +153,10 @@ TEST(LightTree, NestedLightsStayWithinTheMaximumDepth) {
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
-/// A light whose ball is hit by a direction within the cone may be selected. A light that is
-/// further from the axis than the sum of the angles may not be selected. The sum may be exceeded by
-/// 1.5e-8, the angle that cosines resolve.
+/// A light may be selected exactly if its ball overlaps the cone. That is so if the angle between
+/// the axis and the ball's centre (`off`) is below the sum of the cone's angle (`angle`) and the
+/// angle at which the ball's radius is seen (`seen`). Cosines resolve angles of 1.5e-8, so lights
+/// near this limit are left out.
 TEST(LightChoice, AConeSelectsTheLightsThatOverlapIt) {
   Random random(4);
   int met = 0;

@@ -129,6 +129,8 @@ TEST(Lights, O4_VisibleSamplesAreNotSelfShadowed) {
   test::report_hard_case("O4", "0 of 100,000 occluded, for each of ten kinds of light");
 }
 
+// Counts samples in cells of equal solid angle above the plane y = 0. Each count must agree with
+// the integral of the pdf over the cell, which is a sum over kSteps x kSteps directions.
 TEST(Lights, DirectionsFollowThePdf) {
   constexpr int kRings = 12;
   constexpr int kSectors = 16;
@@ -178,7 +180,7 @@ TEST(Lights, DirectionsFollowThePdf) {
     EXPECT_LT(inside, 1.005) << test_case.name;
     expected.back() = kSamples * std::max(0.0, 1 - inside);
     if (expected.back() < kSamples * 0.005) {
-      expected.back() = 0;  // error of the sum over the cells; no sample falls there
+      expected.back() = 0;  // error of the sum over the cells; no sample may fall outside
       EXPECT_EQ(counts.back(), 0u) << test_case.name;
     }
     EXPECT_GT(test::chi_squared(counts, expected).p_value, test::sidak(0.01, 8)) << test_case.name;

@@ -125,8 +125,8 @@ TEST_F(ConnectTest, RefusesAnotherCertificateBeforeAnyCall) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("another certificate"));
 }
 
-// Join strings name addresses that every machine has, such as loopback, and another farm may run at
-// them. The right farm may still exist and be unreachable at the moment.
+// Join strings name addresses that every machine has, such as loopback. Another farm may run at
+// such an address. The right farm may still exist and be unreachable at the moment.
 TEST_F(ConnectTest, AnotherFarmOnThisMachineDoesNotHideAnUnreachableOne) {
   const EchoServer server(tls(identity_));
   for (const std::string host : {"127.0.0.1", "localhost"}) {

@@ -65,8 +65,8 @@ TEST(Identity, ItsCertificateIsValidNowAndForYears) {
   EXPECT_FALSE(certificate_validity("nonsense").ok());
 }
 
-// A certificate and the digest of its key, as printed by: openssl x509 -noout -pubkey | openssl
-// pkey -pubin -outform der | sha256sum
+// The expected digest of the certificate's public key was printed by `openssl x509 -noout -pubkey |
+// openssl pkey -pubin -outform der | sha256sum`.
 TEST(Identity, ItsPublicKeyHasADigest) {
   const std::string certificate =
       "-----BEGIN CERTIFICATE-----\n"

@@ -12,7 +12,7 @@
 namespace bandsaw::link {
 namespace {
 
-/// A loopback address on which a socket listens, in the form in which getaddrinfo returns one.
+/// A loopback address on which a socket listens. `info` has the form of a result of getaddrinfo.
 struct Listener {
   const int fd = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
   sockaddr_in address{};
@@ -35,8 +35,8 @@ struct Listener {
   ~Listener() { close(fd); }
 };
 
-/// A listener that answers no connection: its queue has the length 0, and Linux answers no further
-/// connection while one waits in such a queue.
+/// A listener that answers no connection. Its queue has the length 0. While a connection waits in
+/// such a queue, Linux answers no further connection.
 struct SilentListener : Listener {
   std::vector<int> waiting;
 

@@ -79,7 +79,8 @@ void expect_samples_follow_density(const Bsdf& bsdf, const Vec3& axis, double re
   }
   EXPECT_LT(inside, 1 + 2e-3) << name;
   expected.back() = kSamples * std::max(0.0, 1 - inside);
-  // There are 14 such tests: one false alarm in a hundred runs of all tests with other seeds.
+  // This function is called 14 times. With other seeds, one of the 14 calls would fail by chance in
+  // one of a hundred runs.
   EXPECT_GT(test::chi_squared(counts, expected).p_value, test::sidak(0.01, 14)) << name;
 }
 
@@ -154,6 +155,7 @@ TEST(Bsdf, MirrorsAndGlassLoseNothingUnderAnyShadingNormal) {
     const auto through = sample(bsdf(Dielectric{1.5}, wo, shading), 0, 0, random.uniform());
     ASSERT_TRUE(through && through->delta);
     ASSERT_NEAR(length(through->wi), 1, 1e-14);
+    // Radiance is scaled by the square of the relative index, 1.5^2 = 2.25, at a boundary.
     const bool beyond = through->wi.z * wo.z < 0;
     const double compression = !beyond ? 1 : wo.z > 0 ? 1 / 2.25 : 2.25;
     ASSERT_NEAR(through->compression, compression, 1e-12);
@@ -163,7 +165,7 @@ TEST(Bsdf, MirrorsAndGlassLoseNothingUnderAnyShadingNormal) {
 
 TEST(Bsdf, GlassReflectsTheFresnelShare) {
   const Vec3 wo{std::sqrt(0.75), 0, 0.5};
-  const double share = 0.0891867128;
+  const double share = 0.0891867128;  // fresnel(0.5, 1.5)
   EXPECT_GT(sample(bsdf(Dielectric{1.5}, wo), 0, 0, share - 1e-6)->wi.z, 0);
   EXPECT_LT(sample(bsdf(Dielectric{1.5}, wo), 0, 0, share + 1e-6)->wi.z, 0);
   // From inside, beyond the critical angle, all light is reflected and stays inside.

@@ -37,7 +37,8 @@ TEST(Ggx, M3TheDistributionIsExactHoweverSmoothTheSurface) {
   test::report_hard_case("M3", "5,000 values within 1e-13");
 }
 
-// Weak white furnace: the facets that are visible from o cover the whole direction.
+// The density integrates to 1 over all facets, because the visible facets cover the whole surface
+// as seen from o. This is the weak white furnace test.
 TEST(Ggx, VisibleNormalsAreSampledWithTheirDensity) {
   for (const double alpha : {0.35, 0.6, 1.0}) {
     for (const double mu : {0.1, 0.4, 1.0}) {
@@ -70,8 +71,9 @@ TEST(Ggx, M5WeightsOfVisibleNormalsStayInTheUnitIntervalEvenAtGrazingDirections)
   test::report_hard_case("M5", "40,000 weights in [0, 1 + 1e-9]");
 }
 
-// The expected values are those of single scattering with F = 1. They were computed by quadrature
-// in another program. At alpha 1 and normal incidence the closed form is 1 - ln 2.
+// The expected values are the albedos of single scattering if the Fresnel reflectance is 1. They
+// were computed by quadrature in another program. At alpha 1 and normal incidence the closed form
+// is 1 - ln 2.
 TEST(Ggx, TheAlbedoTableHoldsTheIntegrals) {
   struct Known {
     double alpha;

@@ -1,5 +1,5 @@
-// Material numbers that vary over a surface: where a map has a value, the material equals the one
-// with that number.
+// Material numbers that vary over a surface. At each point, a material with a map must equal a
+// material that has the map's value at this point as a constant number.
 
 #include <gtest/gtest.h>
 
@@ -53,8 +53,9 @@ ImageTexture tilted_map(UvSet set) {
   return map;
 }
 
-// The uvs of the second set are turned by a quarter, so the normal of the coat leans along y; that
-// of the base, whose map is the same in the first set, leans along x.
+// The base and the coat have the same normal map, but the base uses the first set of uvs and the
+// coat the second. The second set is turned by a quarter turn. So the normal of the base leans
+// along x, and the normal of the coat leans along y.
 TEST(Maps, TheNormalMapOfTheCoatUsesItsOwnUvs) {
   const std::vector<Texture> textures = {ConstantTexture{{1, 1, 1}}, tilted_map(UvSet::kFirst),
                                          tilted_map(UvSet::kSecond)};
@@ -119,10 +120,10 @@ ImageTexture waves(double scale) {
   return map;
 }
 
-// A repetition of the map is one unit long on each of the quads, so they have the same relief. The
-// slope jumps in the middles of texels, and no point is there. The tolerance allows for the
-// rounding of heights to float (difference_step in shading_normal.cpp): it is ten times 2^-11 of
-// the height, which is 0.005.
+// A repetition of the map is one unit long on each of the quads, so all quads have the same relief.
+// The slope jumps in the middles of texels, so none of the points lies there. The tolerance allows
+// for the rounding of heights to float (difference_step in shading_normal.cpp). It is ten times
+// 2^-11 of the height of 0.005.
 TEST(HeightMap, GivesTheSameReliefHoweverOftenItRepeats) {
   for (const double x : {0.3, 0.54, 0.78}) {
     const std::vector<Texture> once{waves(1)};
@@ -137,8 +138,8 @@ TEST(HeightMap, GivesTheSameReliefHoweverOftenItRepeats) {
 }
 
 // The size of a quad does not change the relief of a noise in space. The tolerance allows for the
-// rounding of heights to float: it is four times 2^-11 of the height, 0.02, for each of the 12
-// cells in a unit.
+// rounding of heights to float. It is 48 times 2^-11 of the height of 0.02: four times for each of
+// the 12 cells in a unit.
 TEST(HeightMap, TheReliefOfANoiseInSpaceDoesNotDependOnTheQuad) {
   const std::vector<Texture> textures{NoiseTexture{.scale = 12}};
   constexpr double kHeight = 0.02;

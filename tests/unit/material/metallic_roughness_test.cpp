@@ -88,7 +88,7 @@ TEST(MetallicRoughness, SamplesFollowTheirDensity) {
               const auto drawn = sample(b, u, v, lobes.uniform());
               return drawn ? drawn->wi : Vec3{};
             },
-            [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 64);  // seed; tests in all
+            [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 64);  // seed; number of calls
       }
     }
   }
@@ -146,7 +146,7 @@ TEST(MetallicRoughness, ReflectionIsReciprocal) {
   Random random(6);
   for (const auto& [name, material] : all_materials(0.5)) {
     if (name == "bumped") {
-      continue;  // the shading normal is bent towards wo
+      continue;  // its shading normal depends on wo, towards which it is bent
     }
     const bool glass = std::holds_alternative<Dielectric>(material.kind);
     for (int i = 0; i < 5000; ++i) {
@@ -258,8 +258,8 @@ TEST(ShadingNormal, AFlatTexelChangesNothingAndATiltedOneTiltsAlongTheUvs) {
   EXPECT_NEAR(mapped_normal(mirrored, {0.5f, 0.75f, 0.933f}, 1).y, -0.5, 2e-2);
 }
 
-// The texel tilts the normal to the right in the map. If the map is turned by a quarter, that is
-// upwards on the surface; if it is mirrored in u, that is to the left.
+// The texel tilts the normal to the right in the map. If the map is turned by a quarter turn, the
+// normal tilts upwards on the surface. If the map is mirrored in u, the normal tilts to the left.
 TEST(ShadingNormal, ATransformedMapTiltsAlongItsOwnAxes) {
   const SurfacePoint p = point({0, 0, 1});
   const Rgb tilted{1, 0.5f, 0.5f};

@@ -136,7 +136,7 @@ TEST(Surfaces, SamplesFollowTheirDensity) {
             const auto drawn = sample(b, u, v, lobes.uniform());
             return drawn && !drawn->delta ? drawn->wi : Vec3{};
           },
-          [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 51);  // seed; tests in all
+          [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 51);  // seed; number of calls
     }
   }
 }
@@ -161,6 +161,8 @@ TEST(Surfaces, SamplesWeighValueOverPdf) {
   }
 }
 
+/// Returns the moments of the weights of samples: the mean is the share of the light that the
+/// surface scatters. The compression of radiance in glass is divided out.
 test::Moments albedo_of(const Bsdf& b, int samples) {
   Random random(2);
   test::Moments sum;
@@ -173,6 +175,7 @@ test::Moments albedo_of(const Bsdf& b, int samples) {
   return sum;
 }
 
+/// Returns a direction whose cosine to the normal is mu.
 Vec3 along(double mu) { return {std::sqrt(1 - mu * mu), 0, mu}; }
 
 // Mitsuba's principled definition adds its layers up, so its bound is not 1. The bounds 1.35 and
@@ -289,8 +292,8 @@ TEST(ConductorFresnel, HasItsClosedForms) {
   }
 }
 
-// The probabilities of all facets that are seen from a direction sum to 1. For Beckmann they do so
-// up to the error of the rational approximation of its masking.
+// The probabilities of all facets that are seen from a direction sum to 1. For Beckmann the sum has
+// the error of the rational approximation of the masking.
 TEST(Facets, VisibleFacetsSumToOne) {
   for (const Distribution distribution : {Distribution::kGgx, Distribution::kBeckmann}) {
     const Facets facets{0.3, 0.8, distribution, Masking::kSeparable};
@@ -307,7 +310,8 @@ TEST(Facets, VisibleFacetsSumToOne) {
   }
 }
 
-/// Returns the transmittance of a rough boundary by integration over the facets' normals, with the
+/// Returns the transmittance of a rough boundary with the relative index of refraction eta, for
+/// light whose cosine to the normal is mu. Integrates over the facets' normals, with the
 /// distributions as they are defined.
 double transmittance_of(double mu, double eta, const Facets& f) {
   constexpr int kSteps = 400;
@@ -344,7 +348,7 @@ TEST(PlasticCoat, PassesTheIntegralOfItsFacets) {
   for (const Distribution distribution : {Distribution::kGgx, Distribution::kBeckmann}) {
     for (const double alpha : {0.2, 0.6}) {
       const PlasticCoat coat(rough(alpha, alpha, distribution), 1.5);
-      for (const int node : {63, 40, 10}) {
+      for (const int node : {63, 40, 10}) {  // of the coat's table of 64 cosines
         const double mu = node / 63.0;
         const Facets facets{alpha, alpha, distribution, Masking::kSeparable};
         EXPECT_NEAR(coat.at(alpha).passing(mu), transmittance_of(mu, 1.5, facets), 2e-3)
@@ -358,7 +362,7 @@ TEST(PlasticCoat, IsSmoothInTheLimit) {
   const PlasticCoat smooth({}, 1.5);
   const PlasticCoat satin(rough(2e-3, 2e-3), 1.5);
   EXPECT_NEAR(smooth.at(0).internal_reflectance(), 0.5963, 2e-4) << "d'Eon and Irving 2011";
-  // The mean over 64 cosines is that of Mitsuba, whose error is part of the definition.
+  // Mitsuba takes the mean over 64 cosines. The error of this mean is part of the definition.
   EXPECT_NEAR(satin.at(2e-3).internal_reflectance(), 0.5963, 1e-2);
   for (const int node : {63, 40, 20}) {
     const double mu = node / 63.0;

@@ -32,12 +32,13 @@ struct Case {
   bool logarithmic;
 };
 
-/// x turns are a number of quarter turns and a rest in [-1/8, 1/8]. Only the rest is passed to the
-/// reference function, because its own range reduction is exact for small arguments.
+/// Returns what is left of x turns after whole quarter turns, in [-1/8, 1/8] turns. Only this rest
+/// is passed to the reference function, whose own range reduction is exact for small arguments.
 Quad rest_of_turn(Quad x) {
   return x - static_cast<Quad>(std::nearbyint(4 * static_cast<double>(x))) / 4;
 }
 
+/// Returns the number of whole quarter turns in x turns, modulo 4.
 int quarter_of_turn(Quad x) {
   return static_cast<int>(std::nearbyint(4 * static_cast<double>(x))) & 3;
 }

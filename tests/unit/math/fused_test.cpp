@@ -1,4 +1,5 @@
-// The emulation of fma for WebAssembly, compared with the processor's or the C library's.
+// The emulation of fma for WebAssembly, compared with std::fma, which the processor or the C
+// library computes.
 
 #include "renderlib/math/fused.h"
 
@@ -19,6 +20,8 @@ bool same(double a, double b) {
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b) || (std::isnan(a) && std::isnan(b));
 }
 
+/// Expects that the emulation gives the bits of std::fma: for a b + c, and for the rounding error
+/// of the product a b.
 void expect_same(double a, double b, double c) {
   ASSERT_TRUE(same(emulated::fma(a, b, c), std::fma(a, b, c)))
       << std::hexfloat << a << " " << b << " " << c << ": " << emulated::fma(a, b, c);
@@ -102,14 +105,14 @@ TEST(EmulatedFma, EqualsFmaIfTheProductIsCancelled) {
   }
 }
 
-/// c + product lies in the middle between two doubles, or differs from it by much less than any
-/// double's last bit.
+/// c + product lies in the middle between two doubles, or differs from the middle by much less than
+/// the last bit of a double.
 TEST(EmulatedFma, EqualsFmaIfTheSumIsNearAMiddle) {
   Numbers numbers;
   for (int i = 0; i < 1'000'000; ++i) {
     const double c = numbers.near_one(3);
     const double half = std::ldexp(1.0, std::ilogb(c) - 53);
-    // Products of about half the last bit: 2^k (1 + x)(1 - x) with a small x, which is exactly
+    // Products of about half the last bit of c: 2^k (1 + x)(1 - x) with a small x, which is exactly
     // 2^k (1 - x^2).
     const double x = std::ldexp(1.0, -static_cast<int>(numbers.below(53)));
     expect_same(half * (1 + x), 1 - x, c);

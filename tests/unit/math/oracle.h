@@ -1,8 +1,8 @@
 #pragma once
 
 // Reference values for elementary_test.cpp: elementary functions in more precision than double.
-// They are those of libquadmath with g++ on x86-64, elsewhere of the C library in long double (80
-// bits with clang on x86-64, 128 on ARM64).
+// With g++ on x86-64 they are the functions of libquadmath. Elsewhere they are the functions of the
+// C library in long double, which has 80 bits with clang on x86-64 and 128 bits on ARM64.
 
 #include <cmath>
 

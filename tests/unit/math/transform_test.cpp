@@ -90,7 +90,7 @@ TEST(Transform, HasNoInverseWhenSingular) {
   EXPECT_FALSE(inverse(flat));
 }
 
-// The normals of an ellipsoid are its gradient.
+// The normals of an ellipsoid have the direction of the gradient of its implicit function.
 TEST(Transform, CarriesNormalsByTheInverseTranspose) {
   test::Random random(2);
   const Transform turn = rotation({1, 2, 3}, 40);

@@ -1,5 +1,6 @@
-// Transmittance and emission of homogeneous media, for very thin and very dense ones too. An id
-// such as V1 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// Transmittance and emission of homogeneous media, for very thin and very dense ones too. reach()
+// is an effective length: the integral of the transmittance over a segment. An id such as V1 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/medium/attenuation.h"
 
@@ -30,7 +31,7 @@ TEST(Attenuation, V1_IsExactForLittleExtinctionAndOneForNone) {
   test::report_hard_case("V1", "T = 1 at 0; within 1e-12");
 }
 
-/// Very dense media are opaque, without overflow in between.
+/// Very dense media are opaque, and no number overflows in the computation.
 TEST(Attenuation, V3_IsZeroForVeryDenseMedia) {
   for (const double sigma : {1e6, 1e12, 2e12}) {
     EXPECT_EQ(transmittance(sigma, kInfinity), 0);

@@ -20,8 +20,10 @@ namespace {
 constexpr std::size_t kCells = 100;
 constexpr int kSamples = 100000;
 
-/// Compares samples with the pdf integrated over 100 cells: equal ones or, for an infinite length,
-/// cells of increasing length.
+/// Counts samples in 100 cells and compares the counts with the integral of the pdf over each cell.
+/// The cells have equal lengths if `length` is finite, and increasing lengths if it is infinite.
+/// `sample(choice, u)` returns a distance for two random numbers in [0, 1). `pdf(s)` returns the
+/// pdf of the distance s.
 void expect_density(const std::function<double(double, double)>& sample,
                     const std::function<double(double)>& pdf, double length, std::uint64_t seed) {
   std::vector<double> edges = {0};
@@ -84,7 +86,7 @@ TEST(FreeFlight, DistancesFollowThePdf) {
   expect_flight_density({.scattering = gray(1e-12f)}, gray(1), 3, 6);
 }
 
-/// The probability of scattering and the mean weight follow the closed form.
+/// The probability of scattering and the weight of all scattered light follow the closed form.
 TEST(FreeFlight, ScatterProbabilityIsTheScatteredShare) {
   const FreeFlight flight({.absorption = gray(0.5f), .scattering = gray(1.5f)}, gray(1), 0.7);
   const double stopped = -std::expm1(-1.4);
@@ -96,8 +98,8 @@ TEST(FreeFlight, ScatterProbabilityIsTheScatteredShare) {
   EXPECT_EQ(FreeFlight({.scattering = gray(1)}, gray(1), kInfinity).scatter_probability(), 1);
 }
 
-/// For any channels, no weight grows by more than a factor of 3, and the sum of the channels does
-/// not depend on the outcome.
+/// For any coefficients of the channels, no weight grows by more than a factor of 3. The sum of the
+/// channels is the same whether the light is scattered or passes.
 TEST(FreeFlight, V10_WeightsStayBounded) {
   test::Random random(9);
   const std::vector<Medium> media = {
@@ -162,14 +164,15 @@ TEST(Equiangular, DistancesFollowThePdf) {
     for (const double length : {2.0, kInfinity}) {
       const Vec3 pivot = origin + direction * along + Vec3{0, 0.9, 0.45};
       const Equiangular angles(origin, direction, length, pivot);
-      // The tail 1 / s^2 of an infinite ray is cut at 1e4: a share of about 1e-4 is beyond.
+      // On an infinite ray, the tail 1 / s^2 of the pdf is cut at 1e4. About 1e-4 of the samples
+      // are beyond that.
       expect_density([&](double, double u) { return angles.sample(u); },
                      [&](double s) { return angles.pdf(s); }, length, ++seed);
     }
   }
 }
 
-/// The light is on the ray itself, at its start, or far away.
+/// The light is on the ray itself, at the start of the ray, or far away.
 TEST(Equiangular, V8_IsFiniteForALightOnTheRay) {
   const Vec3 direction{0, 0, 1};
   for (const double length : {1e-3, 1.0, kInfinity}) {

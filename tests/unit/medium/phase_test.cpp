@@ -31,7 +31,8 @@ TEST(Phase, PdfMatchesItsSamples) {
 TEST(Phase, V5_MeanCosineIsG) {
   const Vec3 direction = normalize({-0.2, 0.1, -0.9});
   for (const double g : {-kMaxG, -0.9, -0.5, 0.0, 1e-4, 0.5, 0.9, kMaxG}) {
-    // The midpoints of equal parts of [0, 1): a quadrature of the inverse, not a random estimate.
+    // u takes the midpoints of equal parts of [0, 1), so the mean is a quadrature, not a random
+    // estimate.
     constexpr int kParts = 20000;
     double sum = 0;
     for (int i = 0; i < kParts; ++i) {
@@ -45,7 +46,8 @@ TEST(Phase, V5_MeanCosineIsG) {
   test::report_hard_case("V5", "mean cosine within 1e-3 up to the largest g");
 }
 
-/// Near g = 0 the cosine is accurate to rounding; u = 0 and the largest u give the two poles.
+/// Near g = 0 the cosine is accurate to rounding. u = 0 gives the cosine -1, and the largest u
+/// gives the cosine 1.
 TEST(Phase, V4_IsAccurateNearIsotropic) {
   const Vec3 up{0, 0, 1};
   test::Random random(4);

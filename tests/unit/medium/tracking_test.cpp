@@ -23,6 +23,7 @@ constexpr std::uint32_t kGridCells = 257;
 const GridRay kAlong{{0.5, 0.5, 0.5}, {1, 0, 0}};
 constexpr double kLength = kGridCells - 1;
 
+/// Returns a medium with these coefficients, scaled by the density of grid 0.
 Medium of_density(const Rgb& absorption, const Rgb& scattering, const Rgb& emission = {}) {
   Medium medium{.absorption = absorption, .scattering = scattering, .emission = emission};
   medium.grids.density = GridUse{GridId{0}, 1};
@@ -57,7 +58,7 @@ const Profile kConstant{"constant", [](double) { return 0.004; },
 /// Returns the deviation of the mean from `expected` in standard errors, 0 if only rounding
 /// differs.
 double z_of(const Moments& moments, double expected) {
-  // Float colours of a variance of 0 differ from doubles by rounding.
+  // If the variance is 0, the mean of float colours still differs from the double by rounding.
   return std::abs(moments.mean() - expected) < 1e-6 * expected ? 0 : moments.z(expected);
 }
 
@@ -121,7 +122,7 @@ TEST(Tracking, FirstCollisionsFollowTheClosedForm) {
   }
 }
 
-/// Returns the integral of f over the row.
+/// Returns the integral of f along kAlong, from 0 to kLength.
 double integral(const std::function<double(double)>& f) {
   constexpr int kSteps = 100000;
   double sum = 0;
@@ -217,9 +218,9 @@ TEST(Tracking, CollectsEmissionWhereNothingIsDense) {
     ASSERT_EQ(flight.emitted.b, 0);
     seen.add(flight.emitted.g);
   }
-  // The expected value is the emission 2 times the grid's factor 2 times 0.01 over 128 cells. These
-  // are half a cell before the first centre, 127 cells between centres, and half of the cell in
-  // which the emission falls to 0.
+  // The expected value is the emission 2 times the grid's factor 2 times 0.01 over a length of 128
+  // cells. This length is half a cell before the first centre, 127 cells between centres, and half
+  // of the cell in which the emission falls to 0.
   EXPECT_LT(std::abs(seen.z(2 * 2 * 0.01 * (0.5 + 127.5))), 4);
 }
 
@@ -274,8 +275,8 @@ TEST(Tracking, ADensityMayHaveThreeChannels) {
 }
 
 TEST(Tracking, EndsInVeryDenseMedia) {
-  // Without roulette over the number of collisions, a thin ray through the corner of a region of
-  // density 1e9 would take 1e9 of them.
+  // The region's bound of the density is 1e9, and the density is 0 where the ray passes. Without
+  // Russian roulette over the number of collisions, the ray would take more than 1e9 collisions.
   std::vector<VolumeGrid> grids = {
       test::grid_of({8, 8, 8}, {}, {8, 8, 8},
                     [](auto x, auto y, auto) { return x == 7 && y == 7 ? 1e9f : 0.0f; })};
@@ -285,7 +286,7 @@ TEST(Tracking, EndsInVeryDenseMedia) {
   const Flight flight = fly(medium, beside, 8, gray(1), {0.5, 0.5}, numbers);
   EXPECT_FALSE(flight.scattered);
   const Rgb t = estimate_transmittance(medium, beside, 8, numbers);
-  EXPECT_EQ(t, Rgb{});  // Russian roulette ended it
+  EXPECT_EQ(t, Rgb{});  // Russian roulette ended the ray
 }
 
 TEST(RegionWalk, SpansFollowEachOtherAndHaveTheDensityOfTheirPoints) {

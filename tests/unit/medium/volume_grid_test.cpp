@@ -1,5 +1,6 @@
 // Grids of numbers in space, stored as bricks of 8 x 8 x 8 cells: numbers are stored exactly,
-// interpolated between the centres of cells, bounded and checked.
+// interpolated between the centres of cells, bounded and checked. A half is a floating-point number
+// of 16 bits.
 
 #include "renderlib/medium/volume_grid.h"
 
@@ -216,6 +217,7 @@ std::string error_of(const VolumeGrid& grid) {
   return std::string(check_grid(grid).status().message());
 }
 
+/// Returns a copy of the bytes in which the four bytes from `at` on are `word`.
 SharedBytes with(const SharedBytes& bytes, std::size_t at, std::uint32_t word) {
   std::vector<std::byte> copy(bytes.begin(), bytes.end());
   std::memcpy(copy.data() + at, &word, sizeof(word));

@@ -1,4 +1,5 @@
-// Packages with more primitives than BVHs can hold are refused by their manifest alone.
+// Packages with more primitives than BVHs can hold are refused as soon as the manifest is read,
+// before any blob is read.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

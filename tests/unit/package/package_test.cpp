@@ -1,5 +1,5 @@
-// Packages, which are scenes as a manifest and blobs: they read back bit for bit, and damaged ones
-// are refused.
+// A package is a scene as a manifest and blobs. Packages read back bit for bit, and damaged
+// packages are refused.
 
 #include "renderlib/package/package.h"
 
@@ -234,6 +234,8 @@ TEST(Package, LimitsTheNamesOfCameras) {
   ASSERT_TRUE(kept.ok()) << kept.status();
   EXPECT_EQ(kept->model_cameras.size(), 100u);
   EXPECT_EQ(kept->model_cameras[0].substr(0, 2), "?c");
+  // Returns the error for a manifest in which the last of the 100 names is `name` and one name is
+  // added. If `name` is not empty, the first name is removed, so that there are 100 again.
   const auto error_with = [&](const std::string& name) {
     package::Manifest manifest;
     EXPECT_TRUE(manifest.ParseFromString(bytes));
@@ -367,7 +369,7 @@ const std::vector<Wrong> kWrong = {
     {"grid_index", [](auto& m) { *m.mutable_grid(0)->mutable_index() = m.grid(0).values(); },
      "grids[0].index: must have 8 bytes for 2 bricks"},
     {"grid_places",
-     // The numbers of a grid as its index.
+     // The index is the blob with the numbers of the grid.
      [](auto& m) {
        m.mutable_grid(1)->set_cells(0, 8 * 32);
        m.mutable_grid(1)->set_cells(1, 8 * 4);
@@ -562,7 +564,7 @@ TEST(Package, RefusesArraysThatAreNotFinite) {
   EXPECT_THAT(decoded(scene), HasSubstr("textures[2].texels: texel (1, 0) must be finite"));
 }
 
-// A manifest may be crafted: it is either decoded or refused.
+// A manifest may be crafted by an attacker. It must be either decoded or refused.
 TEST(Package, SurvivesAnyByteThatIsChanged) {
   BlobMap blobs;
   const std::string manifest = encode_package(sample_scene(), sample_info(), blobs);
@@ -574,8 +576,8 @@ TEST(Package, SurvivesAnyByteThatIsChanged) {
       changed[at] = static_cast<char>(random());
       refused += decode_package(changed, blobs).ok() ? 0u : 1u;
     }
-    // If it is truncated between two fields, it may be the manifest of a smaller scene: only its
-    // digest can detect that.
+    // A manifest that is truncated between two fields may be the manifest of a smaller scene. Only
+    // the manifest's digest can detect the truncation.
     (void)decode_package(manifest.substr(0, at), blobs);
   }
   EXPECT_GT(refused, manifest.size());

@@ -1,8 +1,10 @@
 // The plan of adaptive sampling: how many samples each half tile gets from the measured noise, and
-// that the result is not biased. A tile has two halves, each planned by the noise of the other. The
-// level of a half tile is a digit of `levels`: level l has 2^((6 - l) / 2) times the samples of
-// uniform sampling. A TileError is measured on half of the pixel groups of a half tile. An id such
-// as A5 in a test's name is that of a case in tests/hard_cases/cases.txt.
+// that the result is not biased. A tile has two half tiles, each planned by the noise of the other
+// one. TilePlan::levels has a digit l for each half tile, which then gets 2^((6 - l) / 2) times the
+// samples of uniform sampling. TilePlan::even() is true if every half tile gets the samples of
+// uniform sampling. A half tile has two TileErrors: one of its even pixel groups, and one of its
+// odd pixel groups. An id such as A5 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include "renderlib/render/adaptive_plan.h"
 
@@ -25,6 +27,7 @@ using test::Random;
 
 constexpr TileGrid kGrid{64, 32};
 
+/// Returns the errors of all half tiles. All errors in a column of tiles are `variance(column)`.
 std::vector<HalfTileErrors> errors(const TileGrid& grid,
                                    const std::function<double(std::uint32_t column)>& variance) {
   std::vector<HalfTileErrors> tiles;
@@ -48,13 +51,15 @@ TEST(AdaptivePlan, UniformNoiseGivesUniformPasses) {
 }
 
 TEST(AdaptivePlan, SamplesAreProportionalToTheStandardDeviation) {
-  // Half of the 32 columns have the noise 1, the others 1/64, so these get an eighth of the
-  // samples.
+  // The variance is 1 in the left 16 columns and 1/64 in the right 16 columns. So the standard
+  // deviation in the right columns is an eighth, and they get an eighth of the samples.
   const TileGrid grid{512, 32};
   const auto tiles = errors(grid, [](std::uint32_t column) { return column < 16 ? 1 : 1.0 / 64; });
   const TilePlan plan = plan_tiles(grid, tiles, 64);
   EXPECT_EQ(plan.pilot, 64u);
-  EXPECT_EQ(plan.levels[0], '5');  // 2^(1/2) times the root of the mean variance
+  // The root of the mean variance is sqrt((1 + 1/64) / 2), about 0.71. The standard deviation 1 is
+  // 1.40 times that, so the nearest level is 5: 2^(1/2) times the samples of uniform sampling.
+  EXPECT_EQ(plan.levels[0], '5');
   EXPECT_EQ(plan.levels[2 * 31], 'b');
   EXPECT_NEAR(share_of(plan, 2 * 31) / share_of(plan, 0), 0.125, 1e-12);
 }
@@ -157,7 +162,8 @@ Rendered render_pixel(const Pixel& pixel, std::uint64_t seed, bool naive) {
   return {mean.mean(), !plan.even()};
 }
 
-/// Returns samples that are `base`, and with the probability p so much more that the mean is 1.
+/// Returns a pixel whose samples are `base` with the probability 1 - p. With the probability p a
+/// sample is larger, base + (1 - base) / p, so the mean is 1.
 Pixel bernoulli(double p, double base = 0) {
   return [=](Random& random) { return base + (random.uniform() < p ? (1 - base) / p : 0); };
 }
@@ -192,7 +198,8 @@ TEST(AdaptivePlan, A5_RareLightIsNotBiased) {
   test::at_most("A5", "bias of the mean, in standard errors", worst.value(), 3);
 }
 
-// Shows that the test above can fail.
+// If each half tile were planned by its own samples, the mean would be too small, and the test
+// above would fail.
 TEST(AdaptivePlan, A5_TheSameRuleOnOwnSamplesIsBiased) {
   const Result result = renders(bernoulli(0.0002), kRuns, true);
   EXPECT_LT(result.mean.z(1), -4);

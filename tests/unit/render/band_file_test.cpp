@@ -122,7 +122,8 @@ TEST(BandFile, EveryFlippedBitIsDetected) {
   }
 }
 
-// A half tile may take samples outside the pass, and more than it has (render/tile_samples.h).
+// A half tile may take samples that are outside of the band's pass, and more samples than the pass
+// has (render/tile_samples.h).
 TEST(BandFile, CountsOfAdaptiveBandsAreKept) {
   BandRecord adaptive = record();
   adaptive.pixels.counters.bad_sample = adaptive.pixels.band.samples.last + 100;

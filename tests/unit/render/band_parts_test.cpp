@@ -27,8 +27,8 @@ TEST(BandParts, AWholeBandNeedsTheMapsOfItsNode) {
   EXPECT_EQ(maps_of({{{0, kOfMap + 1}, {0, 16}}, {}}), (Maps{0, 1}));
 }
 
-// Half tiles with one, two, no and four blocks are divided until each part needs one map; each
-// sample of each half tile is in one part.
+// The four half tiles have one, two, no and four blocks. The band is divided until each part needs
+// one map. Each sample of each half tile must be in one part.
 TEST(BandParts, HalvesDivideTheSamplesOfAllHalfTiles) {
   TileSamples tiles(32, {0, 16});
   tiles.set(0, {kBlockSamples, 2 * kBlockSamples});
@@ -46,6 +46,7 @@ TEST(BandParts, HalvesDivideTheSamplesOfAllHalfTiles) {
       open.insert(open.end(), {left, right});
       continue;
     }
+    // Two numbers for each half tile: its first sample and its number of samples.
     const std::vector<std::uint32_t> numbers = next.tiles.numbers();
     for (std::size_t i = 0; i < samples.size(); ++i) {
       samples[i] += numbers[2 * i + 1];

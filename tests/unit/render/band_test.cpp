@@ -10,8 +10,9 @@
 namespace bandsaw {
 namespace {
 
-/// Returns true if the range is a node by the definition: there are a level and an index whose
-/// blocks the range covers. The last block may be truncated.
+/// Returns true if the range of samples is a node of the summation tree by the definition. A node
+/// has a level and an index: with 2^level blocks of 8 samples, it begins at the block index *
+/// 2^level. Its last block may be truncated.
 bool is_node_by_definition(std::uint64_t first, std::uint64_t last) {
   for (std::uint64_t blocks = 1; blocks <= 64; blocks *= 2) {
     for (std::uint64_t index = 0; index < 64; ++index) {

@@ -1,5 +1,5 @@
-// Renders, with the integrator path_guided, a scene whose caustics come from photon maps. The
-// pixels have the same bits for any number of threads and any division of the image into bands
+// Tests of a scene whose caustics come from photon maps, rendered with the integrator path_guided.
+// The pixels have the same bits for any number of threads and any division of the image into bands
 // (ranges of samples by ranges of rows).
 
 #include <gtest/gtest.h>
@@ -18,6 +18,7 @@ namespace {
 
 constexpr RenderSettings kSettings{
     .width = 21, .height = 18, .max_depth = 6, .seed = 5, .integrator = Integrator::kPathGuided};
+/// Passed as the flag that stops a render. It is never set.
 const std::atomic<bool> kGoOn = false;
 
 /// A box with a glass ball below a small lamp. `closed`: the background is black, so neighbouring
@@ -103,7 +104,7 @@ TEST(CausticBand, ProgressCountsEachRowOnce) {
                                   [&](std::uint32_t done) { rows.push_back(done); });
   ASSERT_TRUE(pixels.ok());
   const auto steps = std::count(rows.begin(), rows.end(), 0u);
-  EXPECT_GE(steps, 64 * 10);  // chunks: three rounds of training, more than eight maps
+  EXPECT_GE(steps, 64 * 10);  // in chunks: three rounds of training and more than eight maps
   std::erase(rows, 0u);
   EXPECT_EQ(rows, (std::vector<std::uint32_t>{1, 2, 3}));
 }

@@ -12,7 +12,7 @@
 namespace bandsaw::test {
 namespace {
 
-// Gray pixels whose two halves of 16 samples have the means value +- error.
+// Gray pixels whose two halves of 16 samples have the means value + error and value - error.
 class Pixels {
  public:
   void add(double value, double error) {
@@ -42,6 +42,7 @@ TEST(ErrorEstimate, IsHalfTheDifferenceBetweenTheHalves) {
   EXPECT_NEAR(error.relative_mse, 0.01 / 4.01, 1e-12);
 }
 
+/// Returns the square of at_most() / relative_rmse.
 double square_at_most(const ErrorEstimate& error) {
   const double over = error.at_most() / error.relative_rmse;
   return over * over;
@@ -111,8 +112,9 @@ TEST(ErrorEstimate, BlackIsCertain) {
   EXPECT_EQ(error.worst_share, 0);
 }
 
-// A further node that agrees with the halves lowers the error according to its samples; one that
-// differs much raises it.
+// The first two nodes have the means 1.1 and 0.9. So their common mean is 1, and its variance is
+// 0.01. A further node with the mean m and half as many samples as the two together changes the
+// variance to (2^2 * 0.01 + 1^2 * ((m - 1)^2 - 0.01)) / 3^2, by the formulas of ErrorSums::add().
 TEST(ErrorEstimate, FurtherNodesCount) {
   const std::vector<double> a(3, 16 * 1.1);
   const std::vector<double> b(3, 16 * 0.9);

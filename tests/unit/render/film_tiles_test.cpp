@@ -1,6 +1,7 @@
-// The film (the sums of an image, to which bands are added) if half tiles have their own numbers of
-// samples, as adaptive sampling decides them. A half tile is half of the pixels of a tile of 16 x
-// 16 pixels; in each pass it takes one node of the summation tree (render/band.h), or no samples.
+// The film holds the sums of an image, to which bands are added. In these tests, half tiles have
+// their own numbers of samples, as adaptive sampling decides them. A half tile is half of the
+// pixels of a tile of 16 x 16 pixels. In each pass it takes the samples of one node of the
+// summation tree (render/band.h), or no samples.
 
 #include <gtest/gtest.h>
 
@@ -102,10 +103,11 @@ TEST(Film, HalfTilesHaveTheTreeOfTheirOwnSamplesInAnyOrder) {
   }
 }
 
-// With different numbers of samples, the noise of each pixel is that of its own number.
+// If pixels have different numbers of samples, the noise of each pixel follows from the pixel's own
+// number.
 TEST(Film, TheErrorOfDifferentSampleCountsIsTheirStandardError) {
   const TileGrid grid{128, 96};
-  // Every other tile.
+  // Every other tile takes `samples`; the other tiles take none.
   const auto some = [&](const SampleRange& samples) {
     TileSamples tiles(grid.width, {0, grid.height});
     for (std::size_t i = 0; i < grid.half_tiles(); i += 4) {

@@ -1,5 +1,6 @@
-// The number of samples in the image of about the first half of the samples, which the denoiser
-// needs beside the whole image. The share of a pixel is that number divided by all of its samples.
+// The first part of an image is an image of about the first half of its samples. The denoiser needs
+// it beside the whole image. The share of a pixel is the number of its samples in the first part,
+// divided by the number of all its samples.
 
 #include "renderlib/render/first_part.h"
 
@@ -11,7 +12,7 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the sums of an image of two pixels with that many samples each.
+/// Returns the film of an image of two pixels, each with `samples` samples.
 Film film_of(std::uint64_t samples) {
   absl::StatusOr<Film> film = Film::create(2, 1, "");
   EXPECT_TRUE(film.ok());

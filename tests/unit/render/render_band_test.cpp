@@ -1,6 +1,6 @@
 // Rendering of bands (ranges of samples by ranges of rows): pixels have the same bits for any
-// number of threads, any division of the image into bands and any order of these. An id such as C5
-// in a test's name is that of a case in tests/hard_cases/cases.txt.
+// number of threads, any division of the image into bands and any order of the bands. An id such as
+// C5 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/render/render_band.h"
 
@@ -22,6 +22,7 @@ namespace bandsaw {
 namespace {
 
 constexpr RenderSettings kSettings{.width = 13, .height = 11, .max_depth = 6, .seed = 5};
+/// Passed as the flag that stops a render. It is never set.
 const std::atomic<bool> kGoOn = false;
 
 /// A scene with diffuse, metal, glass and two lights.
@@ -94,7 +95,7 @@ TEST(RenderBand, EveryIntegratorGivesTheSameBitsForAnyBandsAndThreads) {
   EXPECT_FALSE(validate(settings).ok());
 }
 
-// One tile and a part of another; the half rows of the second have two and three pixels.
+// The image has parts of two tiles. The half rows of the second tile have two and three pixels.
 TEST(RenderBand, C5_PathReuseGivesTheSameBitsForAnyBandsAndThreads) {
   const auto box = test::cornell_box().build();
   ASSERT_TRUE(box->reuses_paths());
@@ -288,7 +289,8 @@ TEST(RenderBand, A3_OverflowingSamplesAreCountedAndDiscarded) {
 }
 
 TEST(RenderBand, A3_APixelIsTheMeanOfItsOtherSamples) {
-  // As above; a quarter of the samples hits a small emitter of radiance 1 in front of the camera.
+  // As in the test above, but a quarter of the samples hits a small emitter of radiance 1 in front
+  // of the camera.
   test::SceneMaker maker;
   maker.camera({0, 0, 0}, {0, 0, 1}, 20);
   maker.background({3e38f, 3e38f, 3e38f}, {3e38f, 3e38f, 3e38f});
