@@ -53,7 +53,7 @@ void expect_the_light_of_paths(const SceneMaker& maker, MaterialId material) {
   point.geometric_normal = {0, 0, 1};
   point.shading_normal = {0.5, 0, std::sqrt(0.75)};
   point.material = material;
-  const Material& of = scene->material(material);
+  const Material& material_of_point = scene->material(material);
   test::Random random(17);
   Parts of_photons;
   Parts of_paths;
@@ -64,8 +64,8 @@ void expect_the_light_of_paths(const SceneMaker& maker, MaterialId material) {
     add(in, photon ? photon->out : Vec3{}, photon ? 2 * kPi * photon->factor.g : 0, of_photons);
     const Vec3 out = direction(random);
     const Sample4 other{random.uniform(), random.uniform(), random.uniform()};
-    const auto path =
-        sample(bsdf_at(of, scene->textures(), point, out), other[0], other[1], other[2]);
+    const auto path = sample(bsdf_at(material_of_point, scene->textures(), point, out), other[0],
+                             other[1], other[2]);
     add(path ? path->wi : Vec3{}, out, path ? 2 * kPi * path->weight.g : 0, of_paths);
   }
   for (std::size_t i = 0; i < kParts; ++i) {

@@ -26,7 +26,8 @@ TEST_F(JoinPageTest, OnlyThePageForBrowsersMayCompileWebAssembly) {
     EXPECT_THAT(policy, StartsWith("default-src 'none';"));
     EXPECT_THAT(policy, Not(HasSubstr("unsafe-inline")));
     EXPECT_THAT(policy, Not(HasSubstr("'unsafe-eval'")));
-    EXPECT_EQ(got->headers.count("Content-Security-Policy"), 1U) << "one policy, not two";
+    EXPECT_EQ(got->headers.count("Content-Security-Policy"), 1U)
+        << "there must be exactly one policy";
   }
   for (const char* path : {"/", "/main.js", "/style.css", "/join/bandsaw.wasm", "/nothing"}) {
     const std::string policy = get(path)->header("Content-Security-Policy");
@@ -37,7 +38,7 @@ TEST_F(JoinPageTest, OnlyThePageForBrowsersMayCompileWebAssembly) {
   }
 }
 
-TEST_F(JoinPageTest, ItHasNoInlineScriptOrStyle) {
+TEST_F(JoinPageTest, ThePageHasNoInlineScriptOrStyle) {
   const std::string page = get("/join")->body;
   EXPECT_THAT(page, Not(HasSubstr("style=")));
   EXPECT_THAT(page, Not(HasSubstr("<style")));
@@ -107,7 +108,7 @@ TEST_F(JoinPageTest, UsersOfTheDashboardMakeShowAndRevokeTheLink) {
   EXPECT_GT(shown.left_s(), 0);
   EXPECT_LE(shown.left_s(), 60);
   const auto longer = message<web::BrowserLink>(post("/api/link", "{\"seconds\": 7200}"));
-  EXPECT_EQ(longer.url(), shown.url()) << "the same link ends later";
+  EXPECT_EQ(longer.url(), shown.url()) << "the link must stay the same";
   EXPECT_GT(longer.left_s(), 7000);
   EXPECT_EQ(post("/api/link", "{\"seconds\": 0.5}")->status, 400);
   EXPECT_EQ(post("/api/link", "{\"seconds\": 1e9}")->status, 400);
@@ -126,7 +127,7 @@ TEST_F(JoinPageTest, UsersOfTheDashboardMakeShowAndRevokeTheLink) {
 TEST(Qr, ACodeHasAMarkInThreeOfItsCorners) {
   const auto code = qr_code("https://192.168.1.5:8787/join#0123456789abcdefghijkl");
   ASSERT_TRUE(code.ok());
-  EXPECT_EQ((code->side - 17) % 4, 0) << "a version of the standard";
+  EXPECT_EQ((code->side - 17) % 4, 0) << "the side must be one that the standard allows";
   // A mark has 7 x 7 modules, which are dark except for a light ring around the inner 3 x 3.
   const auto is_mark = [&](int x0, int y0) {
     for (int y = 0; y < 7; ++y) {

@@ -127,7 +127,7 @@ TEST_F(JoinSessionTest, AViolationEndsTheSessionWithTheReason) {
   EXPECT_NE(raw.close_code(), 1000);
 }
 
-TEST_F(JoinSessionTest, ABrowserOfOtherPixelsIsRefused) {
+TEST_F(JoinSessionTest, ABrowserThatRendersOtherPixelsIsRefused) {
   test::SocketClient socket = open();
   farm::FromWorker other = hello();
   other.mutable_hello()->set_canary(other.hello().canary() + 1);
@@ -139,7 +139,7 @@ TEST_F(JoinSessionTest, ABrowserOfOtherPixelsIsRefused) {
   EXPECT_EQ(socket.close_code(), 1000);
 }
 
-TEST_F(JoinSessionTest, TheSchedulerMayEndTheSession) {
+TEST_F(JoinSessionTest, ASecondSessionOfATabEndsItsFirst) {
   test::SocketClient first = open();
   ASSERT_TRUE(first.send(hello()));
   ASSERT_TRUE(first.read());
@@ -151,7 +151,7 @@ TEST_F(JoinSessionTest, TheSchedulerMayEndTheSession) {
   EXPECT_FALSE(first.close_reason().empty());
 }
 
-TEST_F(JoinSessionTest, AStoppingCoordinatorSaysSo) {
+TEST_F(JoinSessionTest, AStoppingCoordinatorClosesSessionsAsGoingAway) {
   test::SocketClient greeted = open();
   ASSERT_TRUE(greeted.send(hello()));
   ASSERT_TRUE(greeted.read());
@@ -164,7 +164,7 @@ TEST_F(JoinSessionTest, AStoppingCoordinatorSaysSo) {
   EXPECT_EQ(silent.close_code(), 1001);
 }
 
-TEST_F(JoinSessionTest, ATabThatIgnoresTheEndDoesNotHoldUpTheCoordinator) {
+TEST_F(JoinSessionTest, ATabThatIgnoresTheCloseFrameDoesNotHoldUpTheCoordinator) {
   options_.browser_limits.stop = std::chrono::milliseconds(50);
   start_dashboard();
   test::SocketClient socket = open();
@@ -172,7 +172,7 @@ TEST_F(JoinSessionTest, ATabThatIgnoresTheEndDoesNotHoldUpTheCoordinator) {
   dashboard_.reset();  // returns, although nobody reads the close frame
 }
 
-TEST_F(JoinSessionTest, ManySessionsLeaveTheDashboardItsThreads) {
+TEST_F(JoinSessionTest, ManySessionsDoNotUseUpTheThreadsOfTheDashboard) {
   std::vector<std::unique_ptr<test::SocketClient>> sockets;
   for (int i = 0; i < 64; ++i) {  // twice as many as the HTTP server has threads
     sockets.push_back(std::make_unique<test::SocketClient>(dashboard_->port(),

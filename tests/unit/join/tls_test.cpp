@@ -156,7 +156,7 @@ class JoinTlsTest : public JoinTest {
 
 TEST_F(JoinTlsTest, ABrowserGetsItsLeasesAndLeaves) {
   auto tab = join();
-  EXPECT_FALSE(open_secure()->is_open()) << "there is one place";
+  EXPECT_FALSE(open_secure()->is_open()) << "a second session must be refused";
   const std::uint64_t job = submit_box();
   auto message = tab->read();
   while (message && !message->has_lease()) {
@@ -180,7 +180,7 @@ TEST_F(JoinTlsTest, MessagesOfOneRecordAreAllRead) {
   expect_ended();
 }
 
-TEST_F(JoinTlsTest, AMessageOverTheBoundEndsTheSession) {
+TEST_F(JoinTlsTest, AMessageAboveTheSizeLimitEndsTheSession) {
   auto tab = join();
   tab->send(std::string(100'000, 'x'));
   EXPECT_EQ(tab->read_to_end(), 1009);
@@ -252,7 +252,7 @@ TEST_F(JoinTlsTest, ATabThatDoesNotReadHoldsUpNobody) {
   send_until_nobody_is_connected();
 }
 
-TEST_F(JoinTlsTest, AStoppingCoordinatorSaysSo) {
+TEST_F(JoinTlsTest, AStoppingCoordinatorClosesSessionsAsGoingAway) {
   const auto tab = join();
   std::thread stop([&] { secure_.reset(); });
   EXPECT_EQ(tab->read_to_end(), 1001);

@@ -93,7 +93,7 @@ Vec3 any_direction(Random& random) {
 }
 
 // An EnvironmentPlace is a position in an image of the environment.
-TEST(Environment, PlacesAndDirectionsAreInverse) {
+TEST(Environment, PlacesInTheImageAndDirectionsConvertBothWays) {
   Random random(1);
   for (const Sky& sky : skies()) {
     for (int i = 0; i < 2000; ++i) {
@@ -104,7 +104,7 @@ TEST(Environment, PlacesAndDirectionsAreInverse) {
   }
 }
 
-TEST(Environment, C10_TheMiddleOfAnImageIsAtXAndItsRightHalfAtZ) {
+TEST(Environment, C10_TheMiddleOfAnImageIsSeenAlongXAndItsRightHalfAlongZ) {
   const Sky sky = equirectangular("numbered", 4, 2,
                                   [](auto x, auto y) { return static_cast<float>(10 * y + x); });
   const auto seen = [&](double column, double row) {
@@ -120,8 +120,8 @@ TEST(Environment, C10_TheMiddleOfAnImageIsAtXAndItsRightHalfAtZ) {
   const auto at = [&](const Vec3& d) { return radiance(sky.environment, sky.textures, d).g; };
   EXPECT_NEAR(at({1, 0, 0}), (1 + 2 + 11 + 12) / 4.0, 1e-6);
   EXPECT_NEAR(at({0, 0, 1}), (2 + 3 + 12 + 13) / 4.0, 1e-6);
-  EXPECT_NEAR(at({-1, 0, 0}), (3 + 0 + 13 + 10) / 4.0, 1e-6) << "it goes on at its other side";
-  EXPECT_NEAR(at({1e-9, 1, 0}), (1 + 2) / 2.0, 1e-6) << "at a pole the last row stays";
+  EXPECT_NEAR(at({-1, 0, 0}), (3 + 0 + 13 + 10) / 4.0, 1e-6) << "the image must join at its edges";
+  EXPECT_NEAR(at({1e-9, 1, 0}), (1 + 2) / 2.0, 1e-6) << "at a pole only the nearest row must count";
 }
 
 TEST(Environment, C10_SidesOfACubeMapHaveTheirDirections) {

@@ -113,7 +113,7 @@ TEST(LightTree, L7_SelectionFrequenciesEqualProbabilities) {
   test::report_hard_case("L7", "chi-squared passes");
 }
 
-TEST(LightTree, PrefersANearLightToABrighterDistantOne) {
+TEST(LightTree, PrefersANearLightToEquallyBrightDistantOnes) {
   std::vector<LightBound> lights(1000);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     lights[i].ball = {{static_cast<double>(i), 1, 0}, 0.01};
@@ -159,7 +159,7 @@ TEST(LightTree, NestedLightsStayWithinTheMaximumDepth) {
 /// near this limit are left out.
 TEST(LightChoice, AConeSelectsTheLightsThatOverlapIt) {
   Random random(4);
-  int met = 0;
+  int overlapping = 0;
   for (int i = 0; i < 20000; ++i) {
     const double angle = std::pow(10, random.uniform(-6, 0));
     const Cone cone{normalize(random_point(random, 1)), std::sin(angle), std::cos(angle)};
@@ -167,21 +167,22 @@ TEST(LightChoice, AConeSelectsTheLightsThatOverlapIt) {
     const double off = std::min(random.uniform(0, 3) * angle, 3.0);
     const Vec3 aside = normalize(cross(cone.axis, random_point(random, 1)));
     const double distance = random.uniform(1, 9);
-    const Vec3 way = cone.axis * std::cos(off) + aside * std::sin(off);
+    const Vec3 towards = cone.axis * std::cos(off) + aside * std::sin(off);
     const double seen = angle * random.uniform(0, 1);
-    const LightBound light{.ball = {receiver.position + way * distance, distance * std::sin(seen)},
-                           .intensity = 1};
+    const LightBound light{
+        .ball = {receiver.position + towards * distance, distance * std::sin(seen)},
+        .intensity = 1};
     if (std::abs(off - angle - seen) < 3e-8) {
       continue;
     }
     EXPECT_EQ(importance(light, receiver) > 0, off < angle + seen) << angle << " " << off;
-    met += off < angle + seen ? 1 : 0;
+    overlapping += off < angle + seen ? 1 : 0;
   }
-  EXPECT_GT(met, 5000);
-  EXPECT_LT(met, 15000);
+  EXPECT_GT(overlapping, 5000);
+  EXPECT_LT(overlapping, 15000);
 }
 
-TEST(LightChoice, DistantLightsAreCandidatesNextToTheTree) {
+TEST(LightChoice, DistantLightsCanBeChosenBesideThoseOfTheTree) {
   for (const std::size_t count : {3u, 300u}) {
     const std::vector<LightBound> local = lights_of_all_kinds(count);
     const LightChoice choice(local, {{5, Vec3{0, 1, 0}}, {2, std::nullopt}});
@@ -194,7 +195,8 @@ TEST(LightChoice, DistantLightsAreCandidatesNextToTheTree) {
     EXPECT_GT(choice.probability(receiver, count), 0);
     EXPECT_NEAR(choice.probability(receiver, count) / choice.probability(receiver, count + 1), 2.5,
                 1e-9);
-    EXPECT_EQ(choice.probability({{0, 0, 0}, Vec3{0, -1, 0}}, count), 0) << "below the horizon";
+    EXPECT_EQ(choice.probability({{0, 0, 0}, Vec3{0, -1, 0}}, count), 0)
+        << "it is below the horizon";
     Random random(3);
     for (int i = 0; i < 2000; ++i) {
       const auto chosen = choice.choose(receiver, random.uniform());

@@ -265,7 +265,7 @@ TEST(Lights, LightsBelowTheHorizonAreNotSampled) {
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {0, 1}), 1);
 }
 
-TEST(Lights, Q6_AReceiverInThePlaneOfALightGetsZero) {
+TEST(Lights, Q6_AReceiverInThePlaneOfALightGetsNoSample) {
   SceneMaker maker;
   maker.quad({1, 0, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1));
   const auto scene = maker.build();

@@ -127,7 +127,7 @@ TEST_F(ConnectTest, RefusesAnotherCertificateBeforeAnyCall) {
 
 // Join strings name addresses that every machine has, such as loopback. Another farm may run at
 // such an address. The right farm may still exist and be unreachable at the moment.
-TEST_F(ConnectTest, AnotherFarmOnThisMachineDoesNotHideAnUnreachableOne) {
+TEST_F(ConnectTest, AnotherFarmOnThisMachineDoesNotHideThatTheRightFarmIsUnreachable) {
   const EchoServer server(tls(identity_));
   for (const std::string host : {"127.0.0.1", "localhost"}) {
     JoinString join = join_to(server.port, wire::sha256("another"));

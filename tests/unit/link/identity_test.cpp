@@ -36,7 +36,7 @@ TEST(Identity, IsReadableByItsOwnerOnly) {
   EXPECT_EQ(mode_of(folder / "a/data"), 0700U);
   EXPECT_EQ(mode_of(folder / "a/data/identity"), 0600U);
   const auto entries = std::filesystem::directory_iterator(folder / "a/data");
-  EXPECT_EQ(std::distance(begin(entries), end(entries)), 1) << "no temporary file is left";
+  EXPECT_EQ(std::distance(begin(entries), end(entries)), 1) << "no temporary file may be left";
 }
 
 TEST(Identity, RenewingASecretChangesNothingElse) {
@@ -67,7 +67,7 @@ TEST(Identity, ItsCertificateIsValidNowAndForYears) {
 
 // The expected digest of the certificate's public key was printed by `openssl x509 -noout -pubkey |
 // openssl pkey -pubin -outform der | sha256sum`.
-TEST(Identity, ItsPublicKeyHasADigest) {
+TEST(Identity, ThePublicKeyDigestIsThatOfOpenSsl) {
   const std::string certificate =
       "-----BEGIN CERTIFICATE-----\n"
       "MIIBbjCCAROgAwIBAgIUEsUGly2sB4OpZf0/SZu7/qlfow8wCgYIKoZIzj0EAwIw\n"

@@ -53,7 +53,7 @@ struct SilentListener : Listener {
   }
 };
 
-TEST(Socket, StopsWhenItIsTold) {
+TEST(Socket, ConnectStopsWhenItIsInterrupted) {
   const SilentListener silent;
   int calls = 0;
   const Deadline deadline{std::chrono::steady_clock::now() + std::chrono::hours(24),
@@ -70,7 +70,7 @@ TEST(Socket, AnAddressThatDoesNotAnswerLeavesTimeForTheNext) {
   const Deadline deadline{std::chrono::steady_clock::now() + std::chrono::seconds(1)};
   EXPECT_TRUE(Socket::connect(&silent.info, deadline).ok());
   const int accepted = accept(answers.fd, nullptr, nullptr);
-  EXPECT_GE(accepted, 0) << "the second address was reached";
+  EXPECT_GE(accepted, 0) << "the second address must be reached";
   close(accepted);
 }
 

@@ -94,7 +94,7 @@ TEST(MetallicRoughness, SamplesFollowTheirDensity) {
   }
 }
 
-TEST(MetallicRoughness, SamplesWeighValueOverPdf) {
+TEST(MetallicRoughness, SampleWeightsAreValueOverPdf) {
   Random random(12);
   for (const double roughness : {0.0, 0.02, 0.3, 1.0}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -189,7 +189,7 @@ TEST(MetallicRoughness, M10OpaqueSurfacesPassNoLightForAnyNormals) {
   }
 }
 
-TEST(MetallicRoughness, M2M5EdgesOfTheirRangesGiveFiniteNumbers) {
+TEST(MetallicRoughness, M2M5EdgesOfTheRangesOfParametersGiveFiniteNumbers) {
   const double least = 0x1p-32;
   for (const double roughness : {0.0, 0.01, 1.0}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -228,7 +228,7 @@ TEST(MetallicRoughness, SmoothDielectricsReflectFresnelAtNormalIncidence) {
   EXPECT_NEAR(sum / kSamples, 0.04, 4e-4);
 }
 
-TEST(MetallicRoughness, ChannelsAreThoseOfGltf) {
+TEST(MetallicRoughness, MetalnessIsReadFromBlueAndRoughnessFromGreen) {
   MetallicRoughness m = layered(1, 1);
   m.metallic.texture = TextureId{1};
   m.roughness.texture = TextureId{1};
@@ -269,7 +269,7 @@ TEST(ShadingNormal, ATransformedMapTiltsAlongItsOwnAxes) {
   // Texture coordinates (s, t) = (v, -u): s grows where v does.
   EXPECT_GT(normal({0, 1, 0, -1, 0, 1}).y, 0.99);
   EXPECT_LT(normal({-1, 0, 1, 0, 1, 0}).x, -0.99);
-  EXPECT_GT(normal({5, 0, 0, 0, 3, 0}).x, 0.99) << "a size is no tilt";
+  EXPECT_GT(normal({5, 0, 0, 0, 3, 0}).x, 0.99) << "a scaled map must tilt the same way";
   EXPECT_NEAR(mapped_normal(p, {0.5f, 0.75f, 0.933f}, 1, UvTransform{{-1, 0, 1, 0, 1, 0}}).y, 0.5,
               2e-2);
 }

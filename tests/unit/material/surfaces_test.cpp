@@ -58,8 +58,8 @@ const ConductorIndex kGold = {{0.143f, 0.375f, 1.44f}, {3.98f, 2.39f, 1.6f}};
 struct Named {
   std::string name;
   Material material;
-  bool glass = false;    ///< refracts, by an index of 1.5
-  bool matching = true;  ///< reflects at most what it receives, by definition
+  bool glass = false;            ///< refracts, by an index of 1.5
+  bool conserves_energy = true;  ///< reflects at most what it receives, by definition
 };
 
 Named principled(const std::string& name, const std::function<void(Principled&)>& set) {
@@ -141,7 +141,7 @@ TEST(Surfaces, SamplesFollowTheirDensity) {
   }
 }
 
-TEST(Surfaces, SamplesWeighValueOverPdf) {
+TEST(Surfaces, SampleWeightsAreValueOverPdf) {
   Random random(12);
   for (const Named& named : all_materials()) {
     for (int i = 0; i < 2000; ++i) {
@@ -184,7 +184,7 @@ TEST(Surfaces, ReflectNoMoreThanTheyReceive) {
   for (const Named& named : all_materials()) {
     for (const double mu : {1.0, 0.7, 0.3, 0.05, -0.4, -0.05}) {
       const test::Moments sum = albedo_of(bsdf(named.material, along(mu)), 4000);
-      const double most = named.matching ? 1 : named.name == "layered" ? 2.5 : 1.35;
+      const double most = named.conserves_energy ? 1 : named.name == "layered" ? 2.5 : 1.35;
       ASSERT_LE(sum.mean(), most + 0.005 + 4 * sum.standard_error()) << named.name << " " << mu;
     }
   }
@@ -249,7 +249,7 @@ TEST(Surfaces, OpaqueSurfacesPassNoLightForAnyNormals) {
   }
 }
 
-TEST(Surfaces, EdgesOfTheirRangesGiveFiniteNumbers) {
+TEST(Surfaces, EdgesOfTheRangesOfParametersGiveFiniteNumbers) {
   const double least = 0x1p-32;
   for (const Named& named : all_materials()) {
     for (const Vec3& wo : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{1, 0, 1e-12}, Vec3{1, 0, -1e-4}}) {
@@ -280,7 +280,7 @@ TEST(Surfaces, OneSidedSurfacesAreBlackFromBehind) {
 
 // ---- Closed forms ----
 
-TEST(ConductorFresnel, HasItsClosedForms) {
+TEST(ConductorFresnel, AgreesWithClosedForms) {
   for (const double k : {0.0, 0.5, 4.0}) {
     const double n = 1.3;
     const double normal = ((n - 1) * (n - 1) + k * k) / ((n + 1) * (n + 1) + k * k);
@@ -288,7 +288,8 @@ TEST(ConductorFresnel, HasItsClosedForms) {
     EXPECT_NEAR(conductor_fresnel(0, n, k), 1, 1e-14);
   }
   for (const double mu : {0.9, 0.5, 0.1}) {
-    EXPECT_NEAR(conductor_fresnel(mu, 1.5, 0), fresnel(mu, 1.5), 1e-14) << "a dielectric";
+    EXPECT_NEAR(conductor_fresnel(mu, 1.5, 0), fresnel(mu, 1.5), 1e-14)
+        << "k = 0 must give a dielectric";
   }
 }
 
@@ -344,7 +345,7 @@ double transmittance_of(double mu, double eta, const Facets& f) {
   return sum;
 }
 
-TEST(PlasticCoat, PassesTheIntegralOfItsFacets) {
+TEST(PlasticCoat, TransmittanceIsTheIntegralOverTheFacets) {
   for (const Distribution distribution : {Distribution::kGgx, Distribution::kBeckmann}) {
     for (const double alpha : {0.2, 0.6}) {
       const PlasticCoat coat(rough(alpha, alpha, distribution), 1.5);
@@ -358,7 +359,7 @@ TEST(PlasticCoat, PassesTheIntegralOfItsFacets) {
   }
 }
 
-TEST(PlasticCoat, IsSmoothInTheLimit) {
+TEST(PlasticCoat, ApproachesASmoothCoatAsAlphaGoesToZero) {
   const PlasticCoat smooth({}, 1.5);
   const PlasticCoat satin(rough(2e-3, 2e-3), 1.5);
   EXPECT_NEAR(smooth.at(0).internal_reflectance(), 0.5963, 2e-4) << "d'Eon and Irving 2011";
@@ -388,7 +389,7 @@ TEST(PlasticCoat, InterpolatesWhereAlphaHasAMap) {
 
 // Along the normal the value is a sum of three terms: Fresnel's 0.04 times the distribution's peak,
 // base / pi, and the coat's peak.
-TEST(PrincipledBsdf, HasItsClosedFormAlongTheNormal) {
+TEST(PrincipledBsdf, AgreesWithAClosedFormAlongTheNormal) {
   Principled m;
   m.base_color = kTinted;
   m.roughness.value = 0.5;
@@ -412,7 +413,7 @@ TEST(PrincipledBsdf, MetalReflectsItsBaseColour) {
   EXPECT_NEAR(drawn->weight.g, 0.35, 0.01);
 }
 
-TEST(ThinDielectric, IncludesTheReflectionsInside) {
+TEST(ThinDielectric, IncludesReflectionsInsideThePane) {
   const Bsdf b = bsdf(ThinDielectric{1.5, {1, 1, 1}, {0.5f, 1, 1}}, {0.3, 0, 1});
   const double face = fresnel(normalize(Vec3{0.3, 0, 1}).z, 1.5);
   const auto reflected = sample(b, 0, 0, 0);
@@ -428,7 +429,7 @@ TEST(ThinDielectric, IncludesTheReflectionsInside) {
 
 TEST(ThinDielectric, AReflectionCountsAndAFreePassageDoesNot) {
   const Bsdf b = bsdf(ThinDielectric{.free_passage = true}, {0.3, 0, 1});
-  EXPECT_TRUE(sample(b, 0, 0, 0)->counts) << "the reflection";
+  EXPECT_TRUE(sample(b, 0, 0, 0)->counts) << "a reflection must count";
   EXPECT_FALSE(sample(b, 0, 0, 0.999)->counts);
 }
 

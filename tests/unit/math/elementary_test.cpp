@@ -219,7 +219,7 @@ void hash_in(std::uint64_t& hash, double value) {
 
 /// The hash is the same for every compiler, CPU and C library. It changes only together with the
 /// pixel version.
-TEST(ElementaryBits, Y4_AreTheOnesRecorded) {
+TEST(ElementaryBits, Y4_HaveTheRecordedHash) {
   test::Random random(19);
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const Case& c : cases()) {

@@ -36,7 +36,7 @@ TEST(Blackbody, HasTheChromaticityOfThePlanckianLocus) {
   }
 }
 
-TEST(Blackbody, HasTheStatedLuminance) {
+TEST(Blackbody, LuminanceIsThatOfTheScale) {
   for (const double kelvin : {150.0, 500.0, 1000.0, 1500.0, 3000.0, 20000.0, 2e5}) {
     EXPECT_NEAR(
         luminance(blackbody(kelvin, BlackbodyScale::kPower)) / (std::pow(kelvin / 1000, 4) / 1000),

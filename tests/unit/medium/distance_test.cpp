@@ -132,8 +132,8 @@ TEST(FreeFlight, V10_WeightsStayBounded) {
             EXPECT_NEAR(sum_after, double{passed.r} + passed.g + passed.b, 1e-5 * sum);
           }
           // The weight is the scattered light divided by the pdf of the distance.
-          const double followed = flight.scatter_probability() * flight.pdf(distance);
-          EXPECT_NEAR(after.g, flight.scattered(distance).g / followed, 1e-5 * sum);
+          const double density = flight.scatter_probability() * flight.pdf(distance);
+          EXPECT_NEAR(after.g, flight.scattered(distance).g / density, 1e-5 * sum);
         }
       }
     }

@@ -132,7 +132,7 @@ double integral(const std::function<double(double)>& f) {
   return sum * kLength / kSteps;
 }
 
-TEST(Tracking, EveryChannelKeepsItsMeanAndTheirSumDoesNotGrow) {
+TEST(Tracking, EveryChannelKeepsItsMeanAndTheSumOfChannelsDoesNotGrow) {
   const std::vector<VolumeGrid> grids = row(kExponential.density);
   const Rgb absorption{0.5f, 0, 0.4f};
   const Rgb scattering{0.5f, 2, 0};
@@ -224,7 +224,7 @@ TEST(Tracking, CollectsEmissionWhereNothingIsDense) {
   EXPECT_LT(std::abs(seen.z(2 * 2 * 0.01 * (0.5 + 127.5))), 4);
 }
 
-TEST(Tracking, TheAlbedoGridSharesTheExtinction) {
+TEST(Tracking, TheAlbedoGridDividesExtinctionIntoScatteringAndAbsorption) {
   std::vector<VolumeGrid> grids = row([](double) { return 0.01; });
   VolumeGrid albedo = dense_grid({2, 1, 1}, 3, [](std::size_t i) { return i < 3 ? 0.25f : 2.0f; });
   albedo.filter = VolumeGrid::Filter::kNearest;
@@ -238,7 +238,7 @@ TEST(Tracking, TheAlbedoGridSharesTheExtinction) {
   EXPECT_NEAR(left.scattering[0], 0.0075, 1e-7);
   const Coefficients right =
       varying.coefficients({200, 0.5, 0.5}, varying.density({200, 0.5, 0.5}, 1));
-  EXPECT_NEAR(right.scattering[2], 0.03, 1e-7) << "an albedo above 1 counts as 1";
+  EXPECT_NEAR(right.scattering[2], 0.03, 1e-7) << "an albedo above 1 must count as 1";
 }
 
 TEST(Tracking, ADensityMayHaveThreeChannels) {
@@ -289,7 +289,7 @@ TEST(Tracking, EndsInVeryDenseMedia) {
   EXPECT_EQ(t, Rgb{});  // Russian roulette ended the ray
 }
 
-TEST(RegionWalk, SpansFollowEachOtherAndHaveTheDensityOfTheirPoints) {
+TEST(RegionWalk, SpansFollowEachOtherAndBoundTheDensityAtTheirPoints) {
   std::vector<VolumeGrid> grids = {test::grid_of(
       {20, 17, 40}, {-1, 2, 3}, {4, 5, 9}, [](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
         return x / 8 == 1 ? 0.0f : static_cast<float>((x * 3 + y * 5 + z * 11) % 17);

@@ -224,7 +224,7 @@ SharedBytes with(const SharedBytes& bytes, std::size_t at, std::uint32_t word) {
   return copy;
 }
 
-TEST(CheckGrid, RefusesWhatIsOutOfRange) {
+TEST(CheckGrid, RefusesFieldsThatAreOutOfRange) {
   const VolumeGrid good = sparse();
   const auto changed = [&](auto change) {
     VolumeGrid grid = good;

@@ -44,13 +44,13 @@ std::string error_after(const std::function<void(package::Manifest&)>& change) {
   NoBlobs blobs;
   const absl::Status status = decode_package(bytes, blobs).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << status;
-  EXPECT_EQ(blobs.asked, 0) << "a blob is read before counts are judged";
+  EXPECT_EQ(blobs.asked, 0) << "no blob may be read before the counts are checked";
   EXPECT_EQ(package_info(bytes).status(), status)
-      << "the error is the same when only the manifest is read";
+      << "the error must be the same when only the manifest is read";
   return std::string(status.message());
 }
 
-TEST(Counts, LargerMeshesThanABvhHoldsAreRefusedUnread) {
+TEST(Counts, MeshesLargerThanABvhHoldsAreRefusedUnread) {
   EXPECT_EQ(error_after([](package::Manifest& m) {
               m.mutable_mesh(1)->mutable_indices()->set_size(12 * (kMaxTreeItems + 1));
             }),

@@ -540,28 +540,28 @@ const std::vector<Wrong> kWrong = {
 INSTANTIATE_TEST_SUITE_P(All, SpoiltManifest, ::testing::ValuesIn(kWrong),
                          [](const auto& wrong) { return wrong.param.name; });
 
-TEST(Package, RefusesArraysThatAreNotFinite) {
+TEST(Package, RefusesArraysWithNumbersOutOfRange) {
   const float nan = std::nanf("");
-  const auto decoded = [](const SceneDescription& scene) {
+  const auto error_of = [](const SceneDescription& scene) {
     BlobMap blobs;
     const std::string manifest = encode_package(scene, sample_info(), blobs);
     return std::string(decode_package(manifest, blobs).status().message());
   };
   SceneDescription scene = sample_scene();
   scene.geometry.meshes.change(0).positions[2][1] = nan;
-  EXPECT_THAT(decoded(scene), HasSubstr("meshes[0].positions[2]: must be finite"));
+  EXPECT_THAT(error_of(scene), HasSubstr("meshes[0].positions[2]: must be finite"));
   scene = sample_scene();
   scene.geometry.spheres[1].radius = -1;
-  EXPECT_THAT(decoded(scene), HasSubstr("spheres[1].radius: must be > 0, is -1"));
+  EXPECT_THAT(error_of(scene), HasSubstr("spheres[1].radius: must be > 0, is -1"));
   scene = sample_scene();
   scene.geometry.quads[0].u.z = 1.0 / 0.0;
-  EXPECT_THAT(decoded(scene), HasSubstr("quads[0].u: must be within"));
+  EXPECT_THAT(error_of(scene), HasSubstr("quads[0].u: must be within"));
   scene = sample_scene();
   auto& image = std::get<ImageTexture>(scene.textures[2]);
   std::vector<std::byte> texels(image.texels.begin(), image.texels.end());
   std::memcpy(texels.data() + 16, &nan, sizeof(nan));
   image.texels = std::move(texels);
-  EXPECT_THAT(decoded(scene), HasSubstr("textures[2].texels: texel (1, 0) must be finite"));
+  EXPECT_THAT(error_of(scene), HasSubstr("textures[2].texels: texel (1, 0) must be finite"));
 }
 
 // A manifest may be crafted by an attacker. It must be either decoded or refused.

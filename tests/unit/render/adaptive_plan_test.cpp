@@ -84,18 +84,20 @@ TEST(AdaptivePlan, AHalfIsNotPlannedByItsOwnSamples) {
   EXPECT_NE(after.levels, before.levels);
 }
 
-TEST(AdaptivePlan, NoiseOfOneTileIsPlannedIfBothHalvesShowIt) {
+TEST(AdaptivePlan, NoiseOfOneTileIsPlannedIfEvenAndOddGroupsShowIt) {
   const TileGrid grid{512, 128};
-  const auto plan_of_groups = [&](double even, double odd) {
+  const auto plan_of_groups = [&](double even_groups, double odd_groups) {
     std::vector<HalfTileErrors> tiles = errors(grid, [](auto) { return 1e-3; });
     const std::size_t tile = 2 * (std::size_t{4} * grid.columns() + 7);
     for (const std::size_t half : {0, 1}) {
-      tiles[tile + half] = {TileError{64, even, even}, TileError{64, odd, odd}};
+      tiles[tile + half] = {TileError{64, even_groups, even_groups},
+                            TileError{64, odd_groups, odd_groups}};
     }
     return plan_tiles(grid, tiles, 64);
   };
   EXPECT_FALSE(plan_of_groups(1, 1).even());
-  EXPECT_TRUE(plan_of_groups(1, 1e-3).even()) << "one bright sample is no reason";
+  EXPECT_TRUE(plan_of_groups(1, 1e-3).even())
+      << "noise in even groups alone must not change the plan";
 }
 
 TEST(AdaptivePlan, ImagesOfOneTileOrOnePixelHaveAPlan) {
@@ -191,7 +193,7 @@ TEST(AdaptivePlan, A5_RareLightIsNotBiased) {
   for (const double base : {0.0, 0.5, 0.99}) {
     for (const double p : {0.1, 0.01, 0.001, 0.0002}) {
       const Result result = renders(bernoulli(p, base), kRuns);
-      EXPECT_GT(result.planned, kRuns / 8) << "adaptive sampling is hardly ever on";
+      EXPECT_GT(result.planned, kRuns / 8) << "adaptive sampling must be on in enough renders";
       worst.see(std::abs(result.mean.z(1)));
     }
   }
@@ -200,7 +202,7 @@ TEST(AdaptivePlan, A5_RareLightIsNotBiased) {
 
 // If each half tile were planned by its own samples, the mean would be too small, and the test
 // above would fail.
-TEST(AdaptivePlan, A5_TheSameRuleOnOwnSamplesIsBiased) {
+TEST(AdaptivePlan, A5_PlanningByOwnSamplesIsBiased) {
   const Result result = renders(bernoulli(0.0002), kRuns, true);
   EXPECT_LT(result.mean.z(1), -4);
   EXPECT_LT(result.mean.mean(), 0.98);

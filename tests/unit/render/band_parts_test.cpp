@@ -13,18 +13,18 @@ namespace {
 
 using Maps = std::vector<std::uint32_t>;
 /// Number of samples of each of the first four maps.
-constexpr std::uint64_t kOfMap = PhotonMaps::kMinSamplesOfMap;
-static_assert(kOfMap == kBlockSamples);
+constexpr std::uint64_t kSamplesOfMap = PhotonMaps::kMinSamplesOfMap;
+static_assert(kSamplesOfMap == kBlockSamples);
 
 TEST(BandParts, AWholeBandNeedsTheMapsOfItsNode) {
-  const BandPart part{{{16 * kOfMap, 32 * kOfMap}, {0, 16}}, {}};
-  // Ten maps precede: four of kOfMap samples and six of twice as many.
+  const BandPart part{{{16 * kSamplesOfMap, 32 * kSamplesOfMap}, {0, 16}}, {}};
+  // Ten maps precede: four of kSamplesOfMap samples and six of twice as many.
   EXPECT_EQ(maps_of(part), (Maps{10, 11, 12, 13}));
   const auto [left, right] = halves_of(part, 32);
   EXPECT_EQ(maps_of(left), (Maps{10, 11}));
   EXPECT_EQ(maps_of(right), (Maps{12, 13}));
   // The last block may be truncated.
-  EXPECT_EQ(maps_of({{{0, kOfMap + 1}, {0, 16}}, {}}), (Maps{0, 1}));
+  EXPECT_EQ(maps_of({{{0, kSamplesOfMap + 1}, {0, 16}}, {}}), (Maps{0, 1}));
 }
 
 // The four half tiles have one, two, no and four blocks. The band is divided until each part needs

@@ -48,15 +48,16 @@ double square_at_most(const ErrorEstimate& error) {
   return over * over;
 }
 
-// Only n = `decide` groups have an error, and each has the same squared error e. The margin assumes
-// that their sum, n e, is off by a standard deviation of sqrt(1.5 n) e, and adds three of these to
-// it. The bound is the same whether one pixel of a group has the error or all eight.
+// Only n = `noisy_groups` groups have an error, and each has the same squared error e. The margin
+// assumes that their sum, n e, has a standard deviation of sqrt(1.5 n) e, and adds three standard
+// deviations to the sum. The bound is the same whether one pixel of a group has the error or all
+// eight.
 TEST(ErrorEstimate, TheMarginGrowsWithFewerGroups) {
-  for (const int decide : {3, 150}) {
+  for (const int noisy_groups : {3, 150}) {
     Pixels one_pixel;  // one pixel of each noisy group has an error
     Pixels all;        // all eight pixels of each noisy group have the same error
     for (int i = 0; i < 2400; ++i) {
-      const bool noisy = i / 8 < decide;
+      const bool noisy = i / 8 < noisy_groups;
       one_pixel.add(1, noisy && i % 8 == 4 ? 0.1 : 0);
       all.add(1, noisy ? 0.1 : 0);
       if (i % 8 == 7) {
@@ -64,13 +65,13 @@ TEST(ErrorEstimate, TheMarginGrowsWithFewerGroups) {
         all.end_group();
       }
     }
-    const double expected = 1 + 3 * std::sqrt(1.5 / decide);
-    EXPECT_NEAR(square_at_most(one_pixel.estimate()), expected, 1e-9) << decide;
-    EXPECT_NEAR(square_at_most(all.estimate()), expected, 1e-9) << decide;
+    const double expected = 1 + 3 * std::sqrt(1.5 / noisy_groups);
+    EXPECT_NEAR(square_at_most(one_pixel.estimate()), expected, 1e-9) << noisy_groups;
+    EXPECT_NEAR(square_at_most(all.estimate()), expected, 1e-9) << noisy_groups;
   }
 }
 
-TEST(ErrorEstimate, ADominantPixelMakesItUncertain) {
+TEST(ErrorEstimate, ADominantPixelMakesTheEstimateDoubtful) {
   Pixels even;
   Pixels uneven;
   for (int i = 0; i < 2000; ++i) {
@@ -94,7 +95,7 @@ TEST(ErrorEstimate, PercentilesAreOfThePixelsOwnErrors) {
   EXPECT_NEAR(error.percentile_99, 0.99 / 1.01, 1e-6);
 }
 
-TEST(ErrorEstimate, IsKnownForBlackWithManySamples) {
+TEST(ErrorEstimate, IsKnownForABlackImageOfManySamples) {
   Pixels pixels;
   pixels.add(0, 0);
   EXPECT_LT(known_error(pixels.estimate(), kBlackSamples - 1), 0);
@@ -102,7 +103,7 @@ TEST(ErrorEstimate, IsKnownForBlackWithManySamples) {
   EXPECT_LT(known_error(std::nullopt, 1 << 20), 0);
 }
 
-TEST(ErrorEstimate, BlackIsCertain) {
+TEST(ErrorEstimate, ABlackImageHasNoError) {
   Pixels pixels;
   pixels.add(0, 0);
   const ErrorEstimate error = pixels.estimate();
@@ -115,7 +116,7 @@ TEST(ErrorEstimate, BlackIsCertain) {
 // The first two nodes have the means 1.1 and 0.9. So their common mean is 1, and its variance is
 // 0.01. A further node with the mean m and half as many samples as the two together changes the
 // variance to (2^2 * 0.01 + 1^2 * ((m - 1)^2 - 0.01)) / 3^2, by the formulas of ErrorSums::add().
-TEST(ErrorEstimate, FurtherNodesCount) {
+TEST(ErrorEstimate, AFurtherNodeChangesTheErrorByItsDifference) {
   const std::vector<double> a(3, 16 * 1.1);
   const std::vector<double> b(3, 16 * 0.9);
   const auto with = [&](double mean) {

@@ -143,7 +143,7 @@ TEST(Film, TheErrorIsKnownWhenEachRowHasTwoEqualHalves) {
   EXPECT_TRUE(film.error());
   Film whole = make_film(1, 1);
   ASSERT_TRUE(whole.add(band_pixels({{0, 64}, {0, 1}}, 1)).ok());
-  EXPECT_FALSE(whole.error()) << "one node has no halves";
+  EXPECT_FALSE(whole.error()) << "a single node must give no error estimate";
 }
 
 TEST(Film, TheFirstPartIsAboutHalfOfTheSamples) {

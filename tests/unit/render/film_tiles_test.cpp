@@ -79,7 +79,8 @@ TEST(Film, HalfTilesHaveTheTreeOfTheirOwnSamplesInAnyOrder) {
     Film film = *Film::create(grid.width, grid.height, "", Film::Grain::kHalfTiles);
     for (const auto& [band, tiles] : bands) {
       ASSERT_TRUE(film.add(pixels_of(band, grid, tiles), tiles).ok());
-      EXPECT_FALSE(film.add(pixels_of(band, grid, tiles), tiles).ok()) << "it is there";
+      EXPECT_FALSE(film.add(pixels_of(band, grid, tiles), tiles).ok())
+          << "a second copy must be refused";
     }
     EXPECT_TRUE(film.complete(samples));
     EXPECT_EQ(film.snapshot().least_samples, samples);

@@ -47,7 +47,7 @@ TEST(PixelGroups, PartitionTheImage) {
   }
 }
 
-TEST(PixelGroups, AWholeHalfTileHasSixteenOfEight) {
+TEST(PixelGroups, AWholeHalfTileHasSixteenGroupsOfEightPixels) {
   const PixelGroups groups({64, 48}, 9);
   EXPECT_EQ(groups.count(), 16u);
   for (std::uint32_t i = 0; i < groups.count(); ++i) {
@@ -74,7 +74,7 @@ TEST(PixelGroups, HalvesHaveEightPixelsInEachRowOfATile) {
 // At any distance, at most 5.1 % of the pairs of pixels are in one group (the bound allows for the
 // edge of the image). The errors of two pixels in one group have a correlation of up to 0.95, so
 // the correlation at any distance is at most 5 % on average.
-TEST(PixelGroups, PixelsAtEveryDistanceRarelyShare) {
+TEST(PixelGroups, PixelsAtEveryDistanceRarelyShareAGroup) {
   constexpr int kSide = 256;
   const std::vector<int> groups = groups_of({kSide, kSide});
   for (int dy = 0; dy <= 16; ++dy) {

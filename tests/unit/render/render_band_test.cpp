@@ -288,7 +288,7 @@ TEST(RenderBand, A3_OverflowingSamplesAreCountedAndDiscarded) {
   test::report_hard_case("A3", "left out of the sums, counted, the first one named");
 }
 
-TEST(RenderBand, A3_APixelIsTheMeanOfItsOtherSamples) {
+TEST(RenderBand, A3_APixelIsTheMeanOfItsFiniteSamples) {
   // As in the test above, but a quarter of the samples hits a small emitter of radiance 1 in front
   // of the camera.
   test::SceneMaker maker;
