@@ -23,7 +23,8 @@ SampleRange some_node(test::Random& random) {
   return random.below(3) == 0 ? SampleRange{} : SampleRange{first, first + size};
 }
 
-/// Random samples of the half tiles of an image, and the same samples for each pixel.
+/// Random samples for each half tile of an image. `of_pixel`: the samples that each pixel takes,
+/// row by row.
 struct Some {
   TileSamples tiles;
   std::vector<SampleRange> of_pixel;
@@ -88,7 +89,8 @@ TEST(TileSamples, DefaultToTheSamplesOfTheBand) {
   EXPECT_TRUE(TileSamples::from_numbers({}, 10, {2, 5})->whole());
 }
 
-// However a pass is split, its bands take its samples exactly once, in nodes.
+// However a pass is split into bands, the bands together take each sample of the half tile exactly
+// once, and each band takes one node or none.
 TEST(TileSamples, PartsOfAPassAddUpToThePass) {
   test::Random random(7);
   const RowRange row{0, 1};
@@ -166,7 +168,7 @@ TEST(TileSamples, CountersCountTheSamplesTaken) {
   EXPECT_TRUE(good({.bad_samples = 1, .bad_x = 2, .bad_y = 2, .bad_sample = 100}));
   EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 2, .bad_y = 2, .bad_sample = 128}));
   EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 3, .bad_y = 2, .bad_sample = 70}))
-      << "the other half takes none";
+      << "the pixel is in the other half, which takes no samples";
   EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 16, .bad_y = 2, .bad_sample = 100}));
   EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 2, .bad_y = 4, .bad_sample = 100}));
   EXPECT_TRUE(good({.truncated_paths = 32 * 64}));

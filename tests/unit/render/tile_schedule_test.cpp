@@ -1,6 +1,6 @@
-// The order in which half tiles (half of the pixels of a tile of 16 x 16: tile_samples.h) take the
-// samples that the plan of adaptive sampling gives them: in whole nodes of the summation tree,
-// which are aligned ranges of 2^k blocks of 8 samples.
+// The order in which half tiles take the samples that the plan of adaptive sampling gives them. A
+// half tile is half of the pixels of a tile of 16 x 16 pixels (tile_samples.h). It takes samples in
+// whole nodes of the summation tree, which are aligned ranges of 2^k blocks of 8 samples.
 
 #include "renderlib/render/tile_schedule.h"
 
@@ -18,9 +18,10 @@ using test::Moments;
 
 constexpr TileGrid kTwelveTiles{512, 32};
 
-/// The left half of the image has twice the uniform number of samples, the right half an eighth:
-/// the level '4' means 2^((6 - 4) / 2) times the uniform number, 'c' (12) means 2^((6 - 12) / 2).
-/// `pilot` is the number of samples that all pixels have before the plan is made.
+/// Returns a plan that gives the left half of the image twice the uniform number of samples, and
+/// the right half an eighth of it. The level '4' means 2^((6 - 4) / 2) times the uniform number,
+/// and 'c' (12) means 2^((6 - 12) / 2) times. `pilot` is the number of samples that all pixels have
+/// before the plan is made.
 TilePlan half_noisy(std::uint64_t pilot) {
   TilePlan plan{.pilot = pilot, .levels = {}};
   for (std::size_t i = 0; i < kTwelveTiles.half_tiles(); ++i) {
@@ -50,12 +51,13 @@ TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
         ASSERT_TRUE(is_node(more));
         ASSERT_EQ(more.first, taken[i]);
         taken[i] = more.last;
-        EXPECT_EQ(taken[i] % (std::bit_floor(taken[i]) / 4), 0u) << "quarters of an octave";
+        EXPECT_EQ(taken[i] % (std::bit_floor(taken[i]) / 4), 0u)
+            << "the samples must end at a quarter of the way between two powers of two";
       }
       (plan.levels[i] == '4' ? noisy : quiet).add(static_cast<double>(taken[i]));
     }
     const auto due = static_cast<double>(first + 64);
-    if (first >= 256) {  // before that, they have not caught up yet
+    if (first >= 256) {  // before that, noisy half tiles have less than their share
       EXPECT_NEAR(noisy.mean() / (2 * due), 1, 0.05) << due;
     }
     EXPECT_NEAR(quiet.mean() / std::max(64.0, due / 8), 1, 0.05) << due;

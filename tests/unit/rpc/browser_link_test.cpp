@@ -1,5 +1,5 @@
-// The link by which browsers join the farm as workers: how it is made, shown, moved to a later end
-// and revoked by the call BrowserLink, and the file that keeps it over a restart.
+// The link by which browsers join the farm as workers. The call BrowserLink makes the link, shows
+// it, changes the time at which it ends, or revokes it. A file keeps the link over a restart.
 
 #include <gmock/gmock.h>
 
@@ -96,9 +96,9 @@ TEST_F(BrowserLinkTest, IsRevoked) {
   EXPECT_EQ(ask(0, true).url(), "");
   EXPECT_TRUE(status_.ok()) << status_.error_message();
   EXPECT_FALSE(holds(url));
-  EXPECT_EQ(ask(0, true).url(), "") << "again: the same";
+  EXPECT_EQ(ask(0, true).url(), "") << "a second revocation gives the same answer";
   start();
-  EXPECT_FALSE(holds(url)) << "also after a restart";
+  EXPECT_FALSE(holds(url)) << "a revoked link must stay invalid after a restart";
   EXPECT_NE(ask().url(), url);
 }
 

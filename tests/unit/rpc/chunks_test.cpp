@@ -59,7 +59,7 @@ class ChunksTest : public FarmTest {
     return chunks;
   }
 
-  /// Uploads the first `count` chunks, then disconnects.
+  /// Uploads the first `count` chunks of the blob, waits until they are on disk, and disconnects.
   void cut_after(const std::string& bytes, std::size_t count) {
     const auto call = context(link::Role::kFarm);
     farm::PutBlobReply reply;
@@ -78,7 +78,7 @@ class ChunksTest : public FarmTest {
     EXPECT_EQ(writer->Finish().error_code(), StatusCode::CANCELLED);
   }
 
-  /// Returns how many bytes of an unfinished upload the coordinator has.
+  /// Returns how many bytes of the unfinished upload of this blob the coordinator has.
   std::uint64_t bytes_there(const std::string& bytes) {
     farm::MissingBlobsRequest request;
     request.add_sha256(wire::sha256(bytes).raw());
@@ -88,7 +88,8 @@ class ChunksTest : public FarmTest {
     EXPECT_EQ(reply.there_size(), 1);
     return reply.there_size() == 1 ? reply.there(0) : 0;
   }
-  /// Waits until the coordinator has noticed the end of the sender. Returns how many bytes it has.
+  /// Waits until the coordinator has noticed that the sender disconnected. Returns how many bytes
+  /// of the blob it has.
   std::uint64_t wait_until_there(const std::string& bytes) {
     std::uint64_t there = 0;
     while (there == 0 && !HasFailure()) {
@@ -218,7 +219,7 @@ TEST_F(ChunksTest, SizesOverTheirLimitsAreRefused) {
   expect(put_blob({huge}), StatusCode::RESOURCE_EXHAUSTED, "size");
   EXPECT_EQ(put_blob({whole(pattern(wire::kMessageBytes))}).error_code(),
             StatusCode::RESOURCE_EXHAUSTED)
-      << "gRPC's own guard";
+      << "gRPC itself must refuse a message of this size";
   farm::BandChunk band = band_chunk();
   band.mutable_header()->set_size(wire::kBandBytes + 1);
   expect(put_bands({band}).status, StatusCode::INVALID_ARGUMENT, "header.size");

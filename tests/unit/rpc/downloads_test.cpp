@@ -46,7 +46,7 @@ class DownloadsTest : public FarmTest {
     const auto call = context(link::Role::kFarm);
     return read_all(get_result(*call, job));
   }
-  /// Waits until exactly so many bytes of the budget are free.
+  /// Waits until exactly this number of bytes of the budget is free.
   void wait_until_left(std::int64_t bytes) {
     while (engine_->images().left() != bytes) {
       std::this_thread::yield();
@@ -58,7 +58,7 @@ TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileItIsDownloaded) {
   const std::uint64_t job = finish_job(kSide);
   const std::int64_t all = engine_->images().left();
   const auto call = context(link::Role::kFarm);
-  const Reader slow = get_result(*call, job);  // it does not read
+  const Reader slow = get_result(*call, job);  // the client does not read yet
   wait_until_left(all - kImageBytes);
 
   // Other images take so much of the budget that a byte is missing for a second download.

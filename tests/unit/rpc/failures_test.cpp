@@ -19,7 +19,8 @@ TEST(Failures, AreCountedByAddressAndMinute) {
   EXPECT_EQ(failures.add("a", 120), Verdict::kTooMany);
   EXPECT_EQ(failures.add("b", 120), Verdict::kFirst);
   EXPECT_EQ(failures.add("a", 159), Verdict::kTooMany);
-  EXPECT_EQ(failures.add("a", 160), Verdict::kFirst) << "a minute after its first";
+  EXPECT_EQ(failures.add("a", 160), Verdict::kFirst)
+      << "a minute after the first failure, the count must begin again";
 }
 
 TEST(Failures, TakeBoundedMemoryForAnyNumberOfAddresses) {

@@ -1,4 +1,4 @@
-// A coordinator with a gRPC server on a free port, and short calls for tests.
+// A coordinator with a gRPC server on a free port, and functions by which tests call it.
 
 #include "tests/unit/rpc/farm.h"
 

@@ -36,11 +36,13 @@ class FarmTest : public ::testing::Test {
   std::unique_ptr<farm::Work::Stub> work() const { return farm::Work::NewStub(channel_); }
 
   grpc::Status put_blob(const std::vector<farm::BlobChunk>& chunks);
+  /// The outcome of each uploaded band, and the status of the call.
   struct PutBands {
     std::vector<farm::PutBandReply::Outcome> outcomes;
     grpc::Status status;
   };
-  /// Returns a band of two rows of three pixels, of an unknown job; `sums`: 3 for each pixel.
+  /// Returns a band of two rows of three pixels, of an unknown job, in one chunk. `sums`: three for
+  /// each pixel.
   static farm::BandChunk band_chunk(const std::vector<double>& sums = std::vector<double>(18, 0.5));
   /// Sends these chunks as a worker, and returns the answers to the bands.
   PutBands put_bands(const std::vector<farm::BandChunk>& chunks);
@@ -49,13 +51,16 @@ class FarmTest : public ::testing::Test {
 
   /// Stores the Cornell box's package; returns its manifest's digest.
   wire::Digest put_cornell_box();
+  /// Returns a request to render the package with 24 x 20 pixels and 40 samples per pixel.
   farm::SubmitRequest cornell_request(const wire::Digest& manifest) const;
 
   /// Submits a job of side x side pixels with 8 samples per pixel; returns its id.
   std::uint64_t submit_job(std::uint32_t side);
-  /// Uploads all samples of these rows and waits until they are stored.
+  /// Stores all samples of the rows [first, last) of a job that submit_job(side) returned, and
+  /// waits until they are stored.
   void put_rows(std::uint64_t job, std::uint32_t side, std::uint32_t first, std::uint32_t last);
-  /// Submits a job, uploads its pixels and waits until it is done; returns its id.
+  /// Submits a job as submit_job does, stores all its rows and waits until it is done. Returns the
+  /// id of the job.
   std::uint64_t finish_job(std::uint32_t side);
 
   test::TempDir folder_;

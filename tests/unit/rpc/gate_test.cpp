@@ -1,5 +1,5 @@
-// Access control: makes each call in the list calls() with the secret of each role, with a wrong
-// secret, and without one.
+// Tests of access control. Each call in the list calls() is made with the secret of each role, with
+// a wrong secret, and without a secret.
 
 #include <gmock/gmock.h>
 

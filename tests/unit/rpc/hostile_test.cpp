@@ -1,6 +1,6 @@
 // Hostile clients: many connections, repeated requests, names that look like paths. Other clients
-// are served at the same time, and nothing is leaked. (Wrong secrets and roles: gate_test; wrong
-// certificates: link/channel_test; sizes: chunks_test.)
+// are served at the same time, and nothing is leaked. gate_test tests wrong secrets and roles,
+// link/channel_test wrong certificates, and chunks_test sizes beyond the limits.
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -21,8 +21,8 @@ class HostileTest : public FarmTest {
  protected:
   ~HostileTest() override { hang_up(); }
 
-  /// Raises this process's limit of open files, because it has both ends of each connection.
-  /// Returns true if it may then open `files` files.
+  /// Raises the limit of open files of this process, which holds both ends of each connection.
+  /// Returns true if the process may then open `files` files.
   static bool may_open(std::size_t files) {
     rlimit limit{};
     getrlimit(RLIMIT_NOFILE, &limit);
@@ -52,6 +52,7 @@ class HostileTest : public FarmTest {
     return static_cast<std::size_t>(std::distance(begin(all), end(all)));
   }
 
+  /// Makes the call About over a new connection.
   grpc::Status ask_as_newcomer() {
     const auto connected = link::connect(join(link::Role::kFarm), std::chrono::seconds(60));
     EXPECT_TRUE(connected.ok()) << connected.status();
@@ -96,7 +97,7 @@ TEST_F(HostileTest, AnUnfinishedHandshakeIsClosed) {
   dial(kHalfHello);
   for (const int one : sockets_) {
     pollfd readable{.fd = one, .events = POLLIN, .revents = 0};
-    ASSERT_EQ(poll(&readable, 1, 60'000), 1) << "the coordinator holds it for ever";
+    ASSERT_EQ(poll(&readable, 1, 60'000), 1) << "the coordinator did not close the connection";
     char byte = 0;
     while (recv(one, &byte, 1, 0) > 0) {
     }
@@ -118,7 +119,7 @@ TEST_F(HostileTest, RepeatedMessagesCountOnce) {
     ASSERT_TRUE(people()->Cancel(context(link::Role::kFarm).get(), cancel, &status).ok());
     EXPECT_EQ(status.state(), farm::JOB_STATE_CANCELLED);
   }
-  EXPECT_EQ(submit(request), job) << "a cancelled job does not come back";
+  EXPECT_EQ(submit(request), job) << "a repeated request must return the cancelled job";
 }
 
 TEST_F(HostileTest, NamesAreNeverPaths) {

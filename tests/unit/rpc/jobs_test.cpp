@@ -19,6 +19,7 @@ class JobsTest : public FarmTest {
     return reply.job();
   }
 
+  /// Makes a call that answers with the status of a job, and keeps this answer in `job_`.
   template <class Request>
   grpc::Status tell(grpc::Status (farm::Farm::Stub::*call)(grpc::ClientContext*, const Request&,
                                                            farm::JobStatus*),

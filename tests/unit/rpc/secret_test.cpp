@@ -158,7 +158,8 @@ TEST_F(SecretTest, DownloadsOfImagesWithTheOldSecretEnd) {
   ASSERT_TRUE(reader->Read(&chunk));
   farm::RotateSecretReply reply;
   ASSERT_TRUE(rotate(farm::SECRET_ROLE_FARM, &reply).ok());
-  EXPECT_EQ(engine_->images().left(), all) << "whether it reads on or not";
+  EXPECT_EQ(engine_->images().left(), all)
+      << "the memory must be free even if the client does not read on";
   while (reader->Read(&chunk)) {
   }
   EXPECT_EQ(reader->Finish().error_code(), StatusCode::UNAUTHENTICATED);

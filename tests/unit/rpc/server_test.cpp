@@ -91,7 +91,8 @@ TEST_F(ServerTest, ReportsTheMissingBlobOfAJob) {
   EXPECT_EQ(status.error_code(), grpc::StatusCode::FAILED_PRECONDITION) << status.error_message();
 }
 
-/// A real worker in this process, on a thread of its own. `id`: a character that distinguishes it.
+/// A real worker in this process, on a thread of its own. `id`: a different character for each
+/// worker of a test.
 class Worker {
  public:
   Worker(const link::JoinString& join, const std::string& cache, char id)
@@ -130,6 +131,7 @@ class Worker {
 
 class WorkerTest : public FarmTest {
  protected:
+  /// Waits until the job is over and returns its last state.
   farm::JobStatus watch_to_end(std::uint64_t job) {
     const auto call = context(link::Role::kFarm);
     farm::WatchRequest request;
@@ -143,6 +145,7 @@ class WorkerTest : public FarmTest {
     return state;
   }
 
+  /// Downloads the image of a job and returns its bytes.
   std::string result(std::uint64_t job) {
     const auto call = context(link::Role::kFarm);
     farm::GetResultRequest request;
@@ -161,6 +164,7 @@ class WorkerTest : public FarmTest {
     return bytes;
   }
 
+  /// Returns the bytes of the image of cornell_request, rendered in this process without a farm.
   static std::string rendered_here() {
     Pool pool(1);
     const std::atomic<bool> never{false};

@@ -44,7 +44,7 @@ TEST(GridDistribution, CellsAreSelectedByTheirWeight) {
     ++counts[cell.row * kWidth + cell.column];
   }
   EXPECT_GT(test::chi_squared(counts, expected).p_value, 0.01);
-  EXPECT_LE(std::abs(left_u.z(0.5)), 4) << "what is left of a number is uniform again";
+  EXPECT_LE(std::abs(left_u.z(0.5)), 4) << "the remainder of the random number must be uniform";
 }
 
 TEST(GridDistribution, L7_ATailOfSmallWeightsIsSampled) {

@@ -130,7 +130,8 @@ TEST(SphereLight, SamplesUniformlyInSolidAngle) {
   }
 }
 
-// From inside, the mean of 1 / pdf is the whole sphere of directions.
+// If the point is inside the sphere, the mean of 1 / pdf is 4 pi, the solid angle of all
+// directions.
 TEST(SphereLight, L3_CoversAllDirectionsFromInside) {
   test::Random random(30);
   for (const double radius_of_point : {0.0, 0.5, 0.99}) {

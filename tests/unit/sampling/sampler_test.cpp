@@ -40,7 +40,7 @@ TEST(Sampler, ChangesWithEveryArgument) {
   EXPECT_NE(sample4({1, 2, 3, 4}, 5), sample4({1, 3, 2, 4}, 5));
 }
 
-/// Changing these numbers changes every image: raise the pixel version with it.
+/// If these numbers change, every image changes. The pixel version MUST then be raised.
 TEST(Sampler, GivesTheRecordedNumbers) {
   const auto in_units = [](const Sample4& s) {
     std::array<std::uint32_t, 4> units{};
@@ -69,7 +69,7 @@ std::vector<int> cells(const std::vector<Sample4>& samples, const std::array<int
   return counts;
 }
 
-/// Returns 2^m aligned samples, the `block`th range of that size.
+/// Returns the samples [block * 2^m, (block + 1) * 2^m) of a pixel for this group of dimensions.
 std::vector<Sample4> aligned_range(std::uint64_t seed, std::uint32_t group, int m,
                                    std::uint64_t block) {
   const PixelSampler sampler(seed, 11, 12);
@@ -81,8 +81,8 @@ std::vector<Sample4> aligned_range(std::uint64_t seed, std::uint32_t group, int 
   return samples;
 }
 
-// Expects that the 2^m samples are a net of strength t in these dimensions: each elementary
-// interval of volume 2^(t-m) has 2^t of the points.
+/// Expects that the 2^m samples are a (t, m, s)-net in base 2 in these s dimensions. That means
+/// that each elementary interval of volume 2^(t-m) has 2^t of the points.
 void expect_net(const std::vector<Sample4>& samples, int m,
                 const std::vector<std::size_t>& dimensions, int t) {
   const int bits = m - t;
@@ -92,6 +92,7 @@ void expect_net(const std::vector<Sample4>& samples, int m,
     }
   };
   std::array<int, 4> shape{};
+  // Tries all shapes that divide the cube into 2^bits cells along these dimensions.
   const auto place = [&](auto&& self, std::size_t index, int left) -> void {
     if (index + 1 == dimensions.size()) {
       shape[dimensions[index]] = left;
@@ -165,8 +166,8 @@ TEST(Sampler, R4_IsUniformOverPairsOfDimensionsOfAnyGroups) {
 }
 
 /// Samples of one pixel fill pairs of dimensions of different groups no worse than independent
-/// numbers do. (Chi-squared's own distribution does not hold here: the samples are not independent
-/// but stratified along each of the two.)
+/// numbers do. The statistic does not follow the chi-squared distribution here, because the samples
+/// are not independent. They are stratified along each of the two dimensions.
 TEST(Sampler, FillsPairsOfDimensionsOfDifferentGroupsAsWellAsIndependentNumbers) {
   constexpr std::size_t kSide = 16;
   constexpr std::uint64_t kSamples = 4096;
@@ -192,6 +193,8 @@ TEST(Sampler, FillsPairsOfDimensionsOfDifferentGroupsAsWellAsIndependentNumbers)
   EXPECT_GT(statistic.mean(), kSide * kSide / 2.0);
 }
 
+/// Returns the correlation of the values, which are uniform in [0, 1), with the values at an offset
+/// of (dx, dy) pixels. The factor 12 divides by the variance, 1/12.
 double correlation(const std::vector<double>& values, std::uint32_t side, std::uint32_t dx,
                    std::uint32_t dy) {
   double sum = 0;
@@ -238,8 +241,8 @@ TEST(Sampler, R5_SupportsMoreThanTwoToThe32Samples) {
   test::report_hard_case("R5", "no repeat at four times 2^32");
 }
 
-/// A smooth integrand: scrambled nets are far better than independent samples (whose error would be
-/// 0.29 / sqrt(256)).
+/// For a smooth integrand, the error of scrambled nets is far below that of independent samples,
+/// which would be 0.31 / sqrt(256). The bound is about a tenth of it.
 TEST(Sampler, IntegratesSmoothFunctionsWell) {
   test::Moments error;
   for (std::uint32_t pixel = 0; pixel < 200; ++pixel) {

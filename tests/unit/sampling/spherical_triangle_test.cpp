@@ -63,8 +63,9 @@ TEST(SphericalTriangle, SamplesUniformlyInSolidAngle) {
 }
 
 TEST(SphericalTriangle, HasSolidAnglesOfClosedForms) {
-  // The octant is an eighth of all directions. The other triangles are halves of squares, of which
-  // a cube's face is a sixth of all directions.
+  // The octant is an eighth of all directions. The other triangles are halves of squares at the
+  // distance 1. A square of half side h has the solid angle 4 asin(h^2 / (h^2 + 1)). With h = 1,
+  // the square is the face of a cube, a sixth of all directions.
   const auto octant = SphericalTriangle::seen_from({0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {-1, 0, 1});
   ASSERT_TRUE(octant);
   EXPECT_NEAR(octant->solid_angle(), kPi / 2, 1e-14);

@@ -15,11 +15,12 @@ namespace {
 
 using test::Random;
 
-constexpr int kCells = 400;
-constexpr int kSteps = 64;
+constexpr int kCells = 400;  ///< cells of the chi-squared test
+constexpr int kSteps = 64;   ///< steps of the integral of the pdf over a cell
 constexpr int kSamples = 100000;
 
-/// Returns the weight of texel `index` at x, in texels, by the definition of linear interpolation.
+/// Returns the weight of texel `index` at position x by the definition of linear interpolation. The
+/// unit of x is a texel.
 double tent(double x, std::uint32_t index, std::uint32_t texels, Ends ends) {
   const double centre = index + 0.5;
   if (ends == Ends::kClamped) {
@@ -33,7 +34,8 @@ double tent(double x, std::uint32_t index, std::uint32_t texels, Ends ends) {
   return sum;
 }
 
-/// Compares 10^5 samples in [0, end) with a pdf that need not be normalised.
+/// Compares 10^5 samples in [0, end] with a pdf that need not be normalised. `tests`: the number of
+/// such comparisons in the calling test, for the Sidak correction.
 template <class Draw, class Density>
 void expect_density(double end, Draw draw, Density density, std::size_t tests) {
   std::vector<double> expected(kCells);

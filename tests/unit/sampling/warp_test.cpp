@@ -19,6 +19,7 @@ namespace {
 
 using test::expect_samples_match_density;
 
+/// Coordinates at and near the edges of the unit square, and in its middle.
 const std::vector<double> kCorners = {0, 0x1p-32, 0.5, 1 - 0x1p-24, 1 - 0x1p-32};
 
 TEST(Warp, DiskIsUniform) {
@@ -36,6 +37,8 @@ TEST(Warp, DiskIsUniform) {
   EXPECT_GT(test::chi_squared(counts, std::vector<double>(64, 100000.0 / 64)).p_value, 0.01);
 }
 
+// sample_disk is the concentric map (Shirley and Chiu 1997), which maps squares around the middle
+// to circles.
 TEST(Warp, PointsMatchExactAngles) {
   test::Random random(8);
   for (int i = 0; i < 100000; ++i) {
@@ -78,7 +81,7 @@ TEST(Warp, ConeMatchesItsPdf) {
 
 TEST(Warp, BallIsUniform) {
   test::Random random(5);
-  test::Moments inside;  // half the radius holds an eighth
+  test::Moments inside;  // share of points within half of the radius: an eighth of the volume
   test::Moments mean_x;
   for (int i = 0; i < 100000; ++i) {
     const double u = random.uniform();

@@ -1,4 +1,5 @@
-// Limits of counts: capacity of BVHs and of light numbers, and errors for larger scenes.
+// Limits on the numbers of primitives and lights in a scene, and the errors of scenes beyond them.
+// The BVHs and the numbers that identify lights have these capacities.
 
 #include "renderlib/scene/check_counts.h"
 
@@ -17,6 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+/// Expects an INVALID_ARGUMENT and returns its message.
 std::string text_of(const absl::Status& status) {
   EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
   return std::string(status.message());

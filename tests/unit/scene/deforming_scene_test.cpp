@@ -31,7 +31,8 @@ Mesh changing(std::uint64_t seed = 1) {
   return mesh;
 }
 
-/// A deforming mesh of metal, one that emits, and a medium in one, over a floor under a sky.
+/// Three deforming meshes over a floor under a sky: one of metal, one that emits light, and one
+/// that bounds a medium.
 SceneMaker scene_of_all() {
   SceneMaker maker;
   maker.quad({-9, -2, -9}, {0, 0, 18}, {18, 0, 0}, maker.diffuse(0.5f));
@@ -47,7 +48,7 @@ SceneMaker scene_of_all() {
   return maker;
 }
 
-/// How the scene is built and rendered; every way must give the same pixels.
+/// Options with which the scene is built and rendered. All of them must give the same pixels.
 struct How {
   SceneFeatures forced = {};
   Traversal traversal = Traversal::kBvh;
@@ -91,7 +92,7 @@ TEST(DeformingScene, PixelsAreTheSameForKernelsBandsAndTraversals) {
   EXPECT_EQ(rendered(scene, {.rows = 4}), expected);
   EXPECT_EQ(rendered(scene, {.traversal = Traversal::kBruteForce}), expected);
   EXPECT_EQ(rendered(scene, {.forced = kAllFeatures}), expected);
-  // The BVHs of shared meshes are those of the earlier scene.
+  // The next scene shares the meshes of the earlier scene and uses their BVHs again.
   SceneDescription next = scene;
   next.geometry.meshes = first->geometry().meshes;
   const std::shared_ptr<const Scene> earlier[] = {first};
@@ -116,8 +117,8 @@ SceneDescription frozen(SceneDescription scene, double share) {
   return scene;
 }
 
-// If both ends are equal, the pixels are those of the ordinary mesh, to the bit. The same holds for
-// a shutter without duration.
+// If a mesh has the same positions when the shutter opens and closes, the pixels are those of the
+// ordinary mesh, to the bit. A shutter without duration also gives the pixels of the ordinary mesh.
 TEST(DeformingScene, AMeshThatDoesNotChangeEqualsTheOrdinaryMesh) {
   SceneDescription scene = scene_of_all().scene;
   SceneDescription still = frozen(scene, 0.3);
@@ -128,7 +129,8 @@ TEST(DeformingScene, AMeshThatDoesNotChangeEqualsTheOrdinaryMesh) {
       meshes->change(i).normals_at_close = (*meshes)[i].normals;
     }
   }
-  // Lights that move have bounds of another kind, and are chosen with other probabilities.
+  // The deforming lamp is removed. Lights that move have bounds of another kind, and are chosen
+  // with other probabilities.
   for (SceneDescription* each : {&scene, &still, &both}) {
     each->geometry.instances.pop_back();
   }
@@ -138,6 +140,7 @@ TEST(DeformingScene, AMeshThatDoesNotChangeEqualsTheOrdinaryMesh) {
   EXPECT_EQ(rendered(scene), rendered(frozen(scene, 0)));
 }
 
+/// Returns the error of the scene that `spoil` has changed; empty if there is none.
 std::string error_after(void (*spoil)(SceneDescription&)) {
   SceneMaker maker = scene_of_all();
   spoil(maker.scene);
@@ -170,7 +173,8 @@ TEST(DeformingScene, InvalidPositionsAreRefusedWithTheField) {
               HasSubstr("boundaries.meshes[0]: must be closed, has"));
 }
 
-// A triangle that has no area at either end, but between them, is seen and kept.
+// A triangle that has no area when the shutter opens and closes, and has an area in between, can be
+// hit, so it is kept.
 TEST(DeformingScene, OnlyTrianglesThatAreNeverHitAreRemoved) {
   SceneMaker maker;
   maker.camera({0, 0, 5}, {0, 0, 0}, 40);

@@ -27,7 +27,8 @@ Instance of_group(std::uint32_t group, const Transform& to_world) {
   return instance;
 }
 
-/// A ball over a floor under a sky; a frame places the ball.
+/// A ball over a floor under a sky. The ball is placed by a frame, which is a coordinate system
+/// that moves by these keys.
 SceneMaker ball_in_frame(std::vector<Key> keys, const Shutter& shutter) {
   SceneMaker maker;
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(0.5f));
@@ -89,8 +90,8 @@ TEST(MovingScene, OnlyInstancesThatNeverMoveBecomeStatic) {
   }
   g.shutter = {0, 2};
   make_static(g);
-  EXPECT_EQ(g.instances[0].frame, FrameId{0}) << "it ends at its start, but moves in between";
-  EXPECT_EQ(g.instances[1].frame, kNoFrame) << "it moves later";
+  EXPECT_EQ(g.instances[0].frame, FrameId{0}) << "it ends where it began and moves in between";
+  EXPECT_EQ(g.instances[1].frame, kNoFrame) << "it moves only after the shutter has closed";
   EXPECT_EQ(g.instances[2].frame, FrameId{2}) << "its parent frame moves";
   EXPECT_EQ(g.instances[3].to_world, scaling({2, 2, 2}));
   EXPECT_TRUE(moves(g));

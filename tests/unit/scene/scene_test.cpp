@@ -19,7 +19,7 @@ namespace {
 using test::SceneMaker;
 using ::testing::StartsWith;
 
-/// A valid scene with one of everything.
+/// A valid scene with a sphere, a quad, a triangle and an instance of a mesh.
 SceneMaker valid() {
   SceneMaker maker;
   const MaterialId white = maker.diffuse(0.5f);
@@ -30,6 +30,7 @@ SceneMaker valid() {
   return maker;
 }
 
+/// Builds the scene and returns the message of the error; empty if there is none.
 std::string message(const SceneDescription& scene) {
   Pool pool(1);
   const auto built = Scene::build(scene, pool);
@@ -197,7 +198,7 @@ TEST(Scene, SharesMeshesWithEarlierScenes) {
   Pool pool(1);
   const auto first = *Scene::build(maker.scene, pool);
   EXPECT_EQ(maker.scene.geometry.meshes[0].triangles.size(), mesh.triangles.size())
-      << "the description that was copied has its mesh still";
+      << "the copied description must still have all its triangles";
   SceneDescription moved = maker.scene;
   moved.geometry.meshes = first->geometry().meshes;
   moved.geometry.instances[0].to_world = translation({0, 0, 1});
@@ -211,7 +212,7 @@ TEST(Scene, SharesMeshesWithEarlierScenes) {
   const Hit hit = second->accel().closest(ray);
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit.t, alone->accel().closest(ray).t);
-  EXPECT_EQ(hit.t, 8) << "it is where its own scene has it";
+  EXPECT_EQ(hit.t, 8) << "the instance must be where the second scene places it";
 }
 
 TEST(Scene, FeaturesAreThoseThatItUses) {

@@ -49,7 +49,7 @@ TEST(Adaptive, PassesAfterThePilotFollowTheTilePlan) {
   const auto planned = run.farm.all_records<record::TilesPlanned>();
   ASSERT_EQ(planned.size(), 1u);
   // Tiles are planned as soon as the error is at most four times the target. 0.2 / sqrt(n) <= 4 x
-  // 0.01 from 25 samples on, so this is at the first checkpoint, 32 samples.
+  // 0.01 from 25 samples on, so they are planned at the first checkpoint, 32 samples.
   EXPECT_EQ(planned[0].plan, plan_tiles(kGrid, uneven(), 32));
   TileSchedule schedule(kGrid, planned[0].plan);
   std::map<SampleRange, TileSamples> tiles_of;
@@ -63,8 +63,8 @@ TEST(Adaptive, PassesAfterThePilotFollowTheTilePlan) {
     left_out += lease.tiles.whole() ? 0 : 1;
   }
   EXPECT_GT(left_out, 0u);
-  // Half of the pixels have 2^(1/2) times as many samples as in a uniform job, the others an eighth
-  // of that.
+  // Half of the pixels have sqrt(2) times as many samples as in a uniform job. The other half has
+  // an eighth of these samples, so the mean is sqrt(2) x 9 / 16.
   const JobView view = run.farm.job(run.job);
   const auto all = static_cast<double>(run.looks.back());
   EXPECT_NEAR(static_cast<double>(view.samples_per_pixel), all * std::sqrt(2) * 9 / 16, all * 0.05);

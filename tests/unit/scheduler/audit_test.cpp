@@ -1,4 +1,5 @@
-// Audits: which bands are rendered twice, by which machines, and what happens if results differ.
+// Audits. A second machine renders some of the bands again, and the scheduler compares the results.
+// These tests cover the selection of bands and machines, and results that differ.
 
 #include "coordinator/scheduler/model/audit.h"
 #include "coordinator/scheduler/api/worker_process.h"
@@ -156,7 +157,7 @@ TEST(Audit, AWrongAuditorIsQuarantinedAndTheRowsStay) {
 
 TEST(Audit, TheMachineThatContradictsItselfIsWrong) {
   AuditFarm farm = two_results(7, 0);
-  // There is no third machine: each of the two renders it again.
+  // There is no third machine, so each of the two machines renders the row again.
   farm.result(farm.lease(1, true), "a", 8);
   EXPECT_EQ(farm.state_of("worker-a"), "quarantined");
   EXPECT_EQ(farm.all_records<record::WorkerQuarantined>()[0].name, "worker-a");
@@ -170,7 +171,8 @@ TEST(Audit, TwoMachinesThatRepeatTheirResultsWaitForAThird) {
   farm.result(farm.lease(2, true), "b", 0);
   const std::size_t leases = farm.all<action::Lease>().size();
   farm.pass_time(100, {1, 2});
-  EXPECT_EQ(farm.all<action::Lease>().size(), leases) << "each renders it again once";
+  EXPECT_EQ(farm.all<action::Lease>().size(), leases)
+      << "each machine must render the row again only once";
   EXPECT_EQ(farm.job(1).state, JobState::kRunning);
   EXPECT_NE(farm.job(1).reason.find("another machine must decide"), std::string::npos)
       << farm.job(1).reason;
@@ -179,8 +181,8 @@ TEST(Audit, TwoMachinesThatRepeatTheirResultsWaitForAThird) {
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
 }
 
-/// Returns the farm of two_results after a restart that selects no bands for audits. The row that a
-/// stored is on disk.
+/// Returns the farm of two_results after a restart that selects no bands for audits. The row that
+/// worker a stored is on disk.
 AuditFarm after_restart(const AuditFarm& farm, const std::vector<Record>& records,
                         std::uint64_t lie_of_a) {
   SchedulerOptions options = slow();
@@ -217,8 +219,8 @@ TEST(Audit, ADisputeIsStillOpenAfterARestart) {
     b.name = "worker-b";
     next.send(input::Hello{1, a});
     next.send(input::Hello{2, b});
-    // The former processes do not reconnect. The first lease is of a2; b2 gets the second one,
-    // because a2 is late, and a2 gets another one after that.
+    // The former processes do not reconnect. a2 gets the first lease. b2 gets the second lease,
+    // because a2 is late. After that, a2 gets another lease.
     next.pass_time(8, {1, 2});
     next.result(next.lease(2, true), "b2", 0);
     next.result(next.lease(1, true), "a2", 7);
@@ -249,8 +251,8 @@ TEST(Audit, ADecidedDisputeIsNotOpenedAfterARestart) {
   }
 }
 
-// The band of a is leased to b when a is lost. Then a returns with wrong pixels of it, and c has to
-// decide.
+// Worker a is lost, and its band is leased to b. Then a returns with wrong pixels of this band, and
+// c has to decide.
 TEST(Audit, ABackupTaskThatDiffersOpensADispute) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
@@ -304,7 +306,7 @@ TEST(Quarantine, LastsOverRestartsUntilItIsLifted) {
   old.process = worker_process_id("a");
   next.scheduler.replay(old);
   next.take(next.scheduler.replayed(next.now));
-  EXPECT_EQ(next.job(1).samples_done, 0u) << "what it rendered stays void";
+  EXPECT_EQ(next.job(1).samples_done, 0u) << "the rows of a quarantined worker stay void";
   EXPECT_EQ(next.state_of("worker-a"), "quarantined");
   // The same process and a new process on the same machine are both refused.
   EXPECT_EQ(in<action::Refuse>(next.hello(1, "a")).size(), 1u);
@@ -330,7 +332,8 @@ TEST(Quarantine, IsImposedAgainAfterALift) {
   ASSERT_TRUE(farm.send(input::LiftQuarantine{"worker-a"}).status.ok());
   ASSERT_TRUE(farm.send(input::Quarantine{"worker-a"}).status.ok());
   ASSERT_TRUE(farm.send(input::Quarantine{"worker-a"}).status.ok());
-  EXPECT_EQ(farm.all_records<record::WorkerQuarantined>().size(), 2u) << "once for each lift";
+  EXPECT_EQ(farm.all_records<record::WorkerQuarantined>().size(), 2u)
+      << "a repeated request must add no record";
   WorkerHello again = test_worker("a2");
   again.name = "worker-a";
   EXPECT_EQ(in<action::Refuse>(farm.send(input::Hello{3, again})).size(), 1u);
@@ -356,7 +359,8 @@ TEST(Audit, AuditsTheRowsThatReplaceRetractedOnes) {
     }
   }
   EXPECT_EQ(farm.job(2).state, JobState::kFinishing);
-  EXPECT_EQ(farm.all_records<record::BandAudited>().size(), audits.size() + 2) << "both rows";
+  EXPECT_EQ(farm.all_records<record::BandAudited>().size(), audits.size() + 2)
+      << "both rows must be audited";
 }
 
 TEST(Audit, ALargeBandIsComparedInPartsAndNoPartTwice) {
@@ -396,7 +400,7 @@ TEST(Audit, ALargeBandIsComparedInPartsAndNoPartTwice) {
     again = lease.audit && !again ? std::optional(lease.band.rows) : again;
   }
   ASSERT_TRUE(again);
-  EXPECT_EQ(again->first, part.band.rows.last) << "the part before was vouched for";
+  EXPECT_EQ(again->first, part.band.rows.last) << "the first part was compared before the restart";
 }
 
 TEST(Audit, DecidesNothingOnceTheImageIsRequested) {
@@ -431,7 +435,7 @@ TEST(Quarantine, ForgetsAnErrorMeasuredWithWrongPixels) {
       farm.send(input::PassMerged{1, 8 * (i + 1), ErrorEstimate{.relative_rmse = 1e-6}});
       EXPECT_EQ(farm.job(1).error, 1e-6);
       // The error is far below the target, but it is compared only when all audits are done.
-      EXPECT_EQ(farm.job(1).state, JobState::kRunning) << "a look waits for the audits";
+      EXPECT_EQ(farm.job(1).state, JobState::kRunning) << "the job must not end before its audits";
     }
   }
   ASSERT_FALSE(farm.all<action::Retract>().empty());

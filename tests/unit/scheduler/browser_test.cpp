@@ -194,11 +194,11 @@ TEST(Browser, TheSameRequestWithAPackageSizeIsTheSameJob) {
   BrowserFarm farm;
   const JobId job = farm.submit(of_size(0));
   const Step again = farm.send(input::Submit{of_size(5)});
-  EXPECT_TRUE(again.status.ok()) << "a job that an earlier version journalled";
+  EXPECT_TRUE(again.status.ok()) << "an earlier version journalled the job without a size";
   EXPECT_EQ(again.job, job);
 }
 
-// ---- --browsers ----
+// ---- the option --browsers ----
 
 TEST(Browser, IsRefusedIfNoneAreWanted) {
   SchedulerOptions options = browsers_audited();
@@ -276,7 +276,8 @@ BrowserFarm lie_found() {
 
 TEST(Browser, ABrowserThatLiesIsFoundByASingleNativeWorker) {
   BrowserFarm farm = lie_found();
-  EXPECT_EQ(farm.leases(2, true), 2u) << "the native worker repeats it, and may be wrong itself";
+  EXPECT_EQ(farm.leases(2, true), 2u)
+      << "the native worker may be wrong itself, so it renders again";
   const Step step = farm.result(farm.lease(2), "a");
   EXPECT_EQ(farm.worker("tab@browser").state, "quarantined");
   ASSERT_EQ(in<action::Retract>(step).size(), 1u);
@@ -285,7 +286,8 @@ TEST(Browser, ABrowserThatLiesIsFoundByASingleNativeWorker) {
       << farm.worker("tab@browser").reason;
   farm.result(farm.lease(2), "a");
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
-  // The process is refused; its name says nothing, because anybody may have chosen it.
+  // Only the process is refused. Another tab with its name is admitted, because anybody may have
+  // chosen this name.
   EXPECT_EQ(in<action::Refuse>(farm.hello_tab(3, "t")).size(), 1u);
   EXPECT_EQ(in<action::Welcome>(farm.hello_tab(4, "v")).size(), 1u);
   EXPECT_TRUE(farm.send(input::LiftQuarantine{"tab@browser"}).status.ok());
@@ -307,7 +309,8 @@ TEST(Browser, AnyNumberOfBrowsersDoNotOutvoteANativeWorker) {
   EXPECT_TRUE(farm.all_records<record::WorkerQuarantined>().empty());
   EXPECT_TRUE(farm.all_records<record::BandAudited>().empty());
   farm.result(farm.lease(2), "a");
-  EXPECT_EQ(farm.all_records<record::WorkerQuarantined>().size(), 6u) << "all but the native one";
+  EXPECT_EQ(farm.all_records<record::WorkerQuarantined>().size(), 6u)
+      << "all except the native worker";
   EXPECT_EQ(farm.worker("worker-a").state, "rendering");
 }
 
@@ -452,7 +455,7 @@ TEST(Browser, BrowsersThatLieAreFoundWithTheExpectedProbability) {
     expected += probability;
     variance += probability * (1 - probability);
   }
-  EXPECT_GT(expected, 0.2 * kTabs);  // or else the next comparison would say little
+  EXPECT_GT(expected, 0.2 * kTabs);  // otherwise the next comparison would prove little
   EXPECT_NEAR(found, expected, 4 * std::sqrt(variance));
 }
 
@@ -536,8 +539,9 @@ TEST(Browser, LossesOfAnyNumberOfBrowsersDoNotBlameABand) {
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
 }
 
-/// Opens tabs, whose instances begin with `prefix`, and quarantines each of them, until one is
-/// refused or there are 2,000. Returns the number of those that were admitted.
+/// Opens tabs and quarantines each of them, until one is refused or there are 2,000. The sessions
+/// are numbered from `first` on, and the instances begin with `prefix`. Returns the number of tabs
+/// that were admitted.
 int flood(BrowserFarm& farm, SessionId first, const std::string& prefix) {
   for (int i = 0; i < 2'000; ++i) {
     const auto welcomed = in<action::Welcome>(
@@ -551,7 +555,8 @@ int flood(BrowserFarm& farm, SessionId first, const std::string& prefix) {
 }
 
 TEST(Browser, BrowsersThatLieDisplaceNobodyFromTheQuarantine) {
-  // The native worker and the tab with the lowest ids: a full list would lose these first.
+  // Returns an instance whose process has a very low id. The native worker and the tab get such
+  // instances, because a full list would lose the lowest ids first.
   const auto lowest = [](const std::string& prefix) {
     std::string found = prefix + "0";
     for (int i = 1; i < 20'000; ++i) {
@@ -615,7 +620,7 @@ TEST(Browser, CannotPredictWhichBandsOfAFrameAreAudited) {
   const auto added = farm.all_records<record::JobAdded>();
   ASSERT_EQ(added.size(), 1u);
   EXPECT_TRUE(contains(added[0].spec.request_id, spec.request_id))
-      << "the choice is a hash of this id";
+      << "the choice of bands is a hash of this id";
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// The additional jobs that a denoised ("clean") image needs: its guides, which are images of the
-// albedo and of the shape of the surfaces, and half of its samples if it has at most one block (8).
+// The additional jobs that a denoised ("clean") image needs. Two jobs render its guides, which are
+// images of the albedo and of the shape of the surfaces. If the image has at most one block of 8
+// samples, a third job renders half of its samples.
 
 #include "coordinator/scheduler/api/clean_jobs.h"
 
@@ -31,7 +32,7 @@ TEST(CleanJobs, AreTheGuidesAndHalfOfASingleBlock) {
   EXPECT_EQ(few.shape.stop, StopRule(StopAtSamples{7}));
   ASSERT_TRUE(few.half);
   EXPECT_EQ(few.half->stop, StopRule(StopAtSamples{3}));
-  EXPECT_FALSE(clean_jobs(job(), 9).half) << "two blocks";
+  EXPECT_FALSE(clean_jobs(job(), 9).half) << "9 samples are two blocks";
   EXPECT_EQ(few.half->settings.integrator, Integrator::kPath);
 }
 
@@ -67,7 +68,7 @@ TEST(CleanJobs, HaveNamesThatAFarmAccepts) {
   const std::string name = clean_jobs(long_name, 64).albedo.name;
   EXPECT_LE(name.size(), 200u);
   EXPECT_EQ(name.substr(name.find(" (")), " (guide: albedo)");
-  EXPECT_EQ(name.find(" (") % 2, 1u);  // no half of an é
+  EXPECT_EQ(name.find(" (") % 2, 1u);  // the name is not cut within an é, which has two bytes
 }
 
 TEST(CleanJobs, AreRefusedForImagesWithoutNoise) {

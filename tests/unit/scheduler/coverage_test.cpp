@@ -10,6 +10,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns the invariant that is broken; empty if there is none.
 std::string check(const Coverage& coverage) {
   return coverage.check([](LeaseId, const Band&) {}).value_or("");
 }
@@ -82,6 +83,7 @@ class Plain {
     }
     return any;
   }
+  /// Gives the band's rows to the owner, except rows in which a block of the band is stored.
   void assign(const Band& band, Owner owner) {
     for (std::uint32_t row = band.rows.first; row < band.rows.last; ++row) {
       if (stored(row, band.samples)) {

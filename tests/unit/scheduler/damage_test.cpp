@@ -90,6 +90,7 @@ TEST(Damage, ARestartNotesAuditedBandsMissingFromTheLog) {
   for (const Record& record : farm.records) {
     next.scheduler.replay(record);
   }
+  // The band log has 100 bytes that belong to no whole band.
   next.scheduler.replay_damage(lease.job, 100);
   next.take(next.scheduler.replayed(next.now));
   ASSERT_EQ(next.all_records<record::BandLost>().size(), 1u);

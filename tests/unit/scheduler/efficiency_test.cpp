@@ -14,12 +14,14 @@ namespace bandsaw::coordinator::sim {
 namespace {
 
 constexpr std::uint32_t kHeight = 1080;
+/// All rows cost the same.
 double even(std::uint32_t) { return 1; }
 /// Rows of the upper half cost 20 times as much as the others. The mean cost is 1.
 double uneven(std::uint32_t row) { return row < kHeight / 2 ? 40.0 / 21 : 2.0 / 21; }
 
 /// Returns the speeds of 16 workers, in pixel samples a second, that together need `seconds` for
-/// the job if no time is lost. If not `equal`, one half of them is four times as fast as the other.
+/// the job if no time is lost. If not `equal`, one half of the workers is four times as fast as the
+/// other half.
 std::vector<double> speeds(double seconds, bool equal) {
   const double all = 1920.0 * kHeight * 64 / seconds;
   std::vector<double> speeds;
@@ -29,12 +31,12 @@ std::vector<double> speeds(double seconds, bool equal) {
   return speeds;
 }
 
-/// Prints and returns the second worst efficiency and last phase of 20 seeds (of 5 seeds: the
-/// worst), and the maximum of the other figures. One seed may be bad, because with random render
-/// times it is random which bands come last: 6 of 300 seeds of the noisy farm have a last phase
-/// above 2 % (8 with audits, 7 and 11 without probes). If a change raised this share to 10 % of all
-/// seeds, the test would fail six times of ten. It would fail only four times of ten if the worst
-/// of five seeds counted.
+/// Prints and returns the second worst efficiency and last phase of 20 seeds, or the worst of 5
+/// seeds. The other figures are the maximum of all seeds. One seed may be bad, because with random
+/// render times it is random which bands come last. In the farm with noisy times, 6 of 300 seeds
+/// have a last phase above 2 %, and 8 with audits. Without probe bands (dispatch/probes.h) there
+/// would be 7 and 11. If a change raised this share to 10 % of all seeds, the test would fail six
+/// times of ten. It would fail only four times of ten if the worst of five seeds counted.
 BenchResult measure(const char* name, BenchFarm farm, std::size_t seeds = 20) {
   BenchResult worst;
   std::vector<double> efficiencies;
@@ -113,8 +115,8 @@ TEST(Efficiency, IsHighIfAWorkerStallsNearTheEnd) {
   EXPECT_LE(r.tail, 0.05);
 }
 
-/// Returns the relative error of the remaining time that is predicted after a quarter of the job's
-/// time: the largest of five seeds.
+/// Predicts the remaining time after a quarter of the job's time. Returns the largest relative
+/// error of this prediction for five seeds.
 double worst_time_left(BenchFarm farm) {
   double worst = 0;
   for (farm.seed = 1; farm.seed <= 5; ++farm.seed) {
@@ -129,14 +131,16 @@ double worst_time_left(BenchFarm farm) {
 double rising(std::uint32_t row) { return 0.4 + 1.2 * row / kHeight; }
 
 TEST(TimeLeft, IsPredictedAfterAQuarterOfTheTime) {
-  const double two = 1920.0 * kHeight * 64 / 60 / 2;  // speed of each of two workers: 60 s
+  // The speed of each of two workers, which together need 60 s.
+  const double two = 1920.0 * kHeight * 64 / 60 / 2;
   EXPECT_LE(worst_time_left({.speeds = speeds(60, true), .cost_of = even}), 0.15);
   EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = rising, .noise = 0.1}), 0.15);
   EXPECT_LE(worst_time_left({.speeds = speeds(60, false), .cost_of = rising, .noise = 0.3}), 0.15);
 }
 
 TEST(TimeLeft, IsPredictedForRowsThatTakeMinutes) {
-  const double two = 1920.0 * kHeight * 64 / 600 / 2;  // speed of each of two workers: 600 s
+  // The speed of each of two workers, which together need 600 s.
+  const double two = 1920.0 * kHeight * 64 / 600 / 2;
   EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = rising, .noise = 0.1}), 0.15);
   EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = uneven, .noise = 0.1}), 0.15);
 }

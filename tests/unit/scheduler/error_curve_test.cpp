@@ -67,9 +67,9 @@ TEST(ErrorCurve, FindsTheExponentOfTheFall) {
   EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t) { return 1.0; })), 0.5);
 }
 
-// Returns the error of an imagined renderer with Sobol' sequences. It falls as samples^-0.5 and
-// also, by a step of 2^-0.2, whenever 2^k samples complete a net. So each doubling of the samples
-// divides it by 2^0.7.
+/// Returns the error of an imagined renderer with Sobol' sequences. It falls as samples^-0.5 and
+/// also, by a step of 2^-0.2, whenever 2^k samples complete a net. So each doubling of the samples
+/// divides it by 2^0.7.
 double error_in_steps(double samples) {
   return std::pow(samples, -0.5) * std::exp2(-0.2 * std::floor(std::log2(samples)));
 }
@@ -85,7 +85,8 @@ TEST(ErrorCurve, ExpectsTheStepsOfWholeNetsAgain) {
   for (const double samples : {160.0, 896.0, 1024.0, 1280.0, 1792.0, 2048.0, 3072.0, 4096.0}) {
     EXPECT_NEAR(error_at(curve, samples) / error_in_steps(samples), 1, 1e-9) << samples;
   }
-  // 3,584 samples miss the target by little; the whole net of 4,096 is far below it.
+  // The error at 3,584 samples is little above the target. The error of the whole net of 4,096
+  // samples is far below it.
   const double target = 0.99 * error_in_steps(3584);
   EXPECT_GT(*samples_until(curve, target), 3584);
   EXPECT_LT(*samples_until(curve, target), 4096);
@@ -188,7 +189,8 @@ double error_at(const Measured& measured, std::uint64_t samples) {
   return e0 * std::exp(std::log(e1 / e0) * log_ratio(samples, n0) / log_ratio(n1, n0));
 }
 
-/// Returns the checkpoints of a job with this target on such a scene, with the errors there.
+/// Returns the checkpoints of a job with this target, and the error at each of them. `scene`: the
+/// errors that were measured for a scene.
 Measured looks_of(const Measured& scene, double target) {
   Measured seen;
   std::uint64_t n = next_checkpoint(0, -1, target, kMaxSamples);

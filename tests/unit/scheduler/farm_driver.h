@@ -16,7 +16,7 @@
 
 namespace bandsaw::coordinator {
 
-/// The versions are those of test_worker: protocol 1, pixel version 2, canary 3.
+/// Returns options with the versions of test_worker: protocol 1, pixel version 2, canary 3.
 inline SchedulerOptions test_options() {
   SchedulerOptions options;
   options.compatibility = {1, 2, 3};
@@ -24,8 +24,8 @@ inline SchedulerOptions test_options() {
   return options;
 }
 
-/// Options with which a band of a small image has one row or a few, because the target time of a
-/// band is a millisecond.
+/// Returns options for which workers are slow. The target time of a band is a millisecond, so a
+/// band of a small image has one row or a few.
 inline SchedulerOptions slow() {
   SchedulerOptions options = test_options();
   options.band_target_s = 1e-3;
@@ -86,7 +86,8 @@ class FarmDriver {
     return step;
   }
 
-  /// Keeps the records and actions of a step that the test caused itself.
+  /// Keeps the records and actions of a step, and checks the invariants. Tests call it for steps
+  /// that they caused without `send`.
   void take(const Step& step) {
     for (const Record& record : step.records) {
       records.push_back(record);
@@ -99,7 +100,8 @@ class FarmDriver {
 
   JobId submit(JobSpec spec) { return send(input::Submit{std::move(spec)}).job; }
 
-  /// A worker joins that holds at most `max_bands` bands at once; `held`: those that it holds now.
+  /// A worker joins. It may hold at most `max_bands` bands at once. `held`: the leases that it
+  /// holds now.
   Step hello(SessionId session, const std::string& instance, std::uint32_t max_bands = 2,
              std::vector<WorkerHello::Held> held = {}) {
     return send(input::Hello{session, test_worker(instance, max_bands, std::move(held))});
@@ -115,7 +117,7 @@ class FarmDriver {
     return send(input::Hello{session, std::move(worker)});
   }
 
-  /// The worker returns the right pixels of a lease, which took it `render_s` seconds.
+  /// The worker returns the right pixels of a lease, which it rendered in `render_s` seconds.
   Step stored(const action::Lease& lease, const std::string& instance, double render_s = 0.5) {
     input::BandStored in;
     in.job = lease.job;
@@ -130,8 +132,8 @@ class FarmDriver {
 
   void heartbeat(SessionId session) { send(input::Heartbeat{session, {}, "rendering"}); }
 
-  /// Advances the time in steps of half a second. Each sends heartbeats of these sessions and a
-  /// Tick. Workers of other sessions are silent.
+  /// Advances the time in steps of half a second. Each step sends heartbeats of these sessions and
+  /// a Tick. Workers of other sessions are silent.
   void pass_time(double seconds, const std::vector<SessionId>& sessions = {}) {
     for (double passed = 0; passed < seconds; passed += 0.5) {
       now += 0.5;

@@ -326,8 +326,8 @@ TEST(CrashAttribution, FindsOneDeadlyRowOfALongBand) {
   EXPECT_NE(farm.job(job).reason.find(rows), std::string::npos) << farm.job(job).reason;
 }
 
-// A worker that crashes at the first pixel of a band still holds the one before it, finished and
-// not stored.
+// A worker that crashes at the first pixel of a band still holds the lease of the band before it,
+// which is finished and not stored.
 TEST(CrashAttribution, TheSecondLeaseIsSuspectToo) {
   FarmDriver farm(slow());
   const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 2));
@@ -340,7 +340,7 @@ TEST(CrashAttribution, TheSecondLeaseIsSuspectToo) {
   const std::vector<action::Lease> again = farm.all<action::Lease>();
   ASSERT_EQ(again.size(), 1u) << "a suspect band is given alone";
   farm.stored(again[0], "b");
-  ASSERT_EQ(farm.all<action::Lease>().size(), 2u) << "and so is the other one";
+  ASSERT_EQ(farm.all<action::Lease>().size(), 2u) << "the other suspect band is given alone, too";
   EXPECT_EQ(farm.job(job).state, JobState::kRunning);
 }
 
@@ -353,10 +353,10 @@ TEST(CrashAttribution, ABandIsNotBlamedForARevokedLease) {
     const std::string instance = std::to_string(session);
     farm.hello(session, instance, 1);
     farm.send(input::Pause{deadly});
-    farm.pass_time(1.5);  // the band is taken back, the sound one is given
+    farm.pass_time(1.5);  // the lease of `deadly` is revoked, `sound` has free rows
     if (session > 1) {
       EXPECT_NE(farm.all<action::Lease>().back().job, sound)
-          << "not before a heartbeat omits the revoked lease";
+          << "`sound` must not be leased before a heartbeat omits the revoked lease";
     }
     farm.send(input::SessionEnded{session, "connection reset"});
     farm.send(input::Resume{deadly});
@@ -417,7 +417,8 @@ TEST(CrashRate, RequiresMoreCrashesIfMoreWorkersAreLost) {
     storm.add_band();
     storm.add_crash();
   }
-  // A worker is lost at half of all bands: 2^-20 is 1e-6.
+  // A worker is lost at half of all bands. The probability that 20 workers are lost at one band by
+  // chance is 2^-20, about 1e-6, which is the limit.
   EXPECT_EQ(storm.required(3, 0), 20u);
   for (int i = 0; i < 100'000; ++i) {
     storm.add_band();

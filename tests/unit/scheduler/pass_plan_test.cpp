@@ -77,9 +77,9 @@ TEST(Checkpoints, ContinueWithoutAnErrorAndStayBelowTheMaximum) {
   EXPECT_EQ(next_checkpoint(0, -1, 0.01, 5), 5u);
 }
 
-/// A worker that renders 100 rows of 8 samples a second, half of the speed of the farm, gets a band
-/// of 1,000 free rows, which are all that are left. The target time of a band is 1 s. A row of
-/// tiles has 16 rows.
+/// A worker renders 100 rows of 8 samples a second, which is half of the speed of the farm. It gets
+/// a band of the 1,000 free rows, which are all that are left. The target time of a band is 1 s. A
+/// row of tiles has 16 rows.
 Sizing sizing() {
   static const CostMap even(2000);
   Sizing s;
@@ -134,7 +134,7 @@ TEST(BandSizes, AreSmallBeforeAnythingIsMeasured) {
 TEST(BandSizes, ARowOfTilesThatIsTooMuchWorkIsCutByItsSamples) {
   Sizing s = sizing();
   s.free.samples = {256, 512};
-  s.work_rate = 8 * 1600;  // a block of a row of tiles a second
+  s.work_rate = 8 * 1600;  // one block of 8 samples of a row of tiles a second
   s.free.rows.first = 32;
   EXPECT_EQ(size_band(s), (Band{{256, 272}, {32, 48}}));
   s.free.rows.first = 40;

@@ -39,14 +39,14 @@ TEST(ReconnectBarrier, TheFirstReconnectedWorkerGetsNothingAnotherHasRendered) {
   EXPECT_NE(all.farm.job(all.job).reason.find("waits for 1 workers"), std::string::npos);
   const Step step = all.farm.hello(4, "b", 1, {all.held(1, true)});
   const auto given = in<action::Lease>(step);
-  ASSERT_EQ(given.size(), 2u) << "its own, and new rows for the first";
+  ASSERT_EQ(given.size(), 2u) << "b gets its own lease again, and a gets new rows";
   EXPECT_EQ(given[0].lease, all.leases[1].lease);
   EXPECT_FALSE(share_rows(given[1], all.leases[1]));
 }
 
 TEST(ReconnectBarrier, EndsAfterTheGraceTime) {
   AllLost all;
-  all.farm.pass_time(3600);  // does not count: the grace time begins with the first worker
+  all.farm.pass_time(3600);  // not counted: the grace time begins when a worker is back
   all.farm.stored(all.leases[0], "a");
   all.farm.hello(3, "a", 1);
   all.farm.pass_time(5, {3});

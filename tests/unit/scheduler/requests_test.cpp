@@ -9,7 +9,7 @@ JobId submit(FarmDriver& farm, const std::string& request, std::int32_t priority
   return farm.send(input::Submit{test_job(request, StopAtSamples{64}, 64, 64), priority}).job;
 }
 
-/// Returns the job of the lease that worker a gets after its last one.
+/// Lets worker a return the newest lease. Returns the job of the lease that it gets next.
 JobId next_leased(FarmDriver& farm) {
   const action::Lease last = farm.all<action::Lease>().back();
   farm.stored(last, "a");
@@ -26,7 +26,7 @@ TEST(Priority, TheHigherPriorityIsLeasedFirstAndCanChange) {
   farm.send(input::SetPriority{old, 11});
   EXPECT_EQ(next_leased(farm), old);
   farm.send(input::SetPriority{old, 10});
-  EXPECT_EQ(next_leased(farm), old) << "of equal priority the older one is first";
+  EXPECT_EQ(next_leased(farm), old) << "the older of two jobs of equal priority is first";
   EXPECT_EQ(farm.job(old).priority, 10);
 }
 
@@ -71,7 +71,7 @@ TEST(Pause, RevokesLeasesThatAreNotRenderedASecondLater) {
   EXPECT_TRUE(farm.all<action::Revoke>().empty());
   farm.pass_time(1, {1, 2});
   const auto revoked = farm.all<action::Revoke>();
-  ASSERT_EQ(revoked.size(), 1u) << "what is rendered and on its way is kept";
+  ASSERT_EQ(revoked.size(), 1u) << "a lease whose band is being sent must be kept";
   EXPECT_EQ(revoked[0].leases, std::vector<LeaseId>{leases[0].lease});
   EXPECT_EQ(in<action::AddToFilm>(farm.stored(leases[1], "b")).size(), 1u);
   EXPECT_TRUE(farm.job(job).workers.empty());
@@ -120,7 +120,7 @@ TEST(Pause, DoesNotCountAsTimeOfTheJob) {
     next.scheduler.replay(record);
   }
   next.take(next.scheduler.replayed(next.now));
-  EXPECT_EQ(next.job(job).elapsed_s, 4) << "also after a restart";
+  EXPECT_EQ(next.job(job).elapsed_s, 4) << "a restart must not count the pause";
   farm.send(input::Resume{job});
   farm.pass_time(3, {1});
   EXPECT_EQ(farm.job(job).elapsed_s, 7);

@@ -22,7 +22,8 @@ struct Before {
     band.row_digests = honest_digests(band.band);
   }
 
-  /// Returns the restarted scheduler. The caller MUST call `replayed`, which ends the replay.
+  /// Returns the restarted scheduler. `with_band`: `band` is on disk. The caller MUST call
+  /// `replayed`, which ends the replay.
   FarmDriver restart(bool with_band = true) const {
     SchedulerOptions options = slow();
     options.epoch = "two";
@@ -142,7 +143,7 @@ TEST(Restart, KeepsTheErrorCurveOfARunningJob) {
   EXPECT_EQ(next.job(1).curve, farm.job(1).curve);
 }
 
-/// Expects the same jobs in both.
+/// Expects that both schedulers have the same jobs.
 void expect_equal(const FarmDriver& one, const FarmDriver& other) {
   const std::vector<JobView> a = one.scheduler.jobs(one.now);
   const std::vector<JobView> b = other.scheduler.jobs(other.now);
@@ -191,7 +192,7 @@ TEST(Snapshot, DropsForgottenJobsAndNeverReusesTheirIds) {
   farm.submit(test_job("r2", StopAtSamples{8}));
   farm.send(input::Cancel{2});
   const Step step = farm.send(input::Forget{{1, 2, 99}});
-  ASSERT_EQ(in<action::DropJob>(step).size(), 1u) << "one runs, one is not known";
+  ASSERT_EQ(in<action::DropJob>(step).size(), 1u) << "job 1 runs, and job 99 is not known";
   EXPECT_EQ(in<action::DropJob>(step)[0].job, 2u);
   EXPECT_FALSE(farm.scheduler.job(2, farm.now).has_value());
   FarmDriver next;
@@ -384,7 +385,7 @@ TEST(Restart, RetractsAWrongMachineOnceAllBandsAreReplayed) {
   next.scheduler.replay(on_disk({0, 3}, 2));
   next.scheduler.replay(on_disk({0, 4}, 3));
   EXPECT_TRUE(next.scheduler.wanted(1, {{0, 8}, {0, 4}})->empty())
-      << "the film has the first one's rows and cannot take another's yet";
+      << "the film has rows of process 1 and cannot take those of another process yet";
   next.take(next.scheduler.replayed(next.now));
   const auto retracted = next.all<action::Retract>();
   ASSERT_EQ(retracted.size(), 1u);

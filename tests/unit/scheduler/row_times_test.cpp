@@ -1,4 +1,5 @@
-// RowTimes: the render time of each row of an image, measured by bands and interpolated elsewhere.
+// RowTimes: the render time of each row of an image. It is measured for the rows of bands and
+// interpolated for the other rows.
 
 #include "coordinator/scheduler/model/row_costs.h"
 
@@ -15,13 +16,13 @@ TEST(RowTimes, AreZeroBeforeAnyMeasurement) {
 
 TEST(RowTimes, AreInterpolatedBetweenMeasuredRows) {
   RowTimes times(12);
-  times.measure({2, 4}, 2);  // 1 each
+  times.measure({2, 4}, 2);  // 1 for each row
   times.measure({7, 8}, 5);
   EXPECT_DOUBLE_EQ(times.of({2, 4}), 2);
   EXPECT_DOUBLE_EQ(times.of({4, 7}), 2 + 3 + 4);
-  EXPECT_DOUBLE_EQ(times.of({5, 6}), 3) << "from within a gap too";
-  EXPECT_DOUBLE_EQ(times.of({0, 2}), 2) << "above the first: as the first";
-  EXPECT_DOUBLE_EQ(times.of({8, 12}), 20) << "below the last: as the last";
+  EXPECT_DOUBLE_EQ(times.of({5, 6}), 3) << "a range within a gap is interpolated, too";
+  EXPECT_DOUBLE_EQ(times.of({0, 2}), 2) << "rows above the first measured row take its time";
+  EXPECT_DOUBLE_EQ(times.of({8, 12}), 20) << "rows below the last measured row take its time";
 }
 
 TEST(RowTimes, AverageTwoMeasurements) {

@@ -109,10 +109,10 @@ class FrameFarm : public FarmDriver {
     return 0;
   }
 
-  std::map<SessionId, std::string> instances;
-  std::map<JobId, std::set<SessionId>> sessions_of;  ///< who rendered bands of a job
-  std::map<JobId, int> results;
-  std::set<JobId> fails;  ///< jobs whose bands fail
+  std::map<SessionId, std::string> instances;        ///< instance of the worker of a session
+  std::map<JobId, std::set<SessionId>> sessions_of;  ///< sessions that rendered bands of a job
+  std::map<JobId, int> results;  ///< number of images that were written for a job
+  std::set<JobId> fails;         ///< jobs whose bands fail
 
  private:
   std::size_t next_ = 0;
@@ -152,7 +152,7 @@ TEST(Sequences, WholeFramesGoToWorkersWhileThereAreMany) {
   for (const FrameView& frame : farm.frames(id)) {
     shared += farm.sessions_of[frame.job].size() > 1 ? 1 : 0;
   }
-  // The last three frames may be shared: then some workers have no frame of their own.
+  // The last three frames may be shared, because some workers then have no frame of their own.
   EXPECT_LE(shared, 3u);
 }
 
@@ -353,7 +353,8 @@ TEST(Sequences, TheHighestPriorityGetsTheLastFrameJobs) {
   EXPECT_EQ(farm.in_state(ids[4], FrameState::kRendering).size(), 82u);
   spec.request_id = "one more";
   const JobId more = farm.submit_frames(spec);
-  EXPECT_EQ(farm.in_state(more, FrameState::kRendering).size(), 4u) << "each has four";
+  EXPECT_EQ(farm.in_state(more, FrameState::kRendering).size(), 4u)
+      << "each sequence has at least four";
 }
 
 TEST(Sequences, FramesWaitForTheirScenes) {
@@ -367,7 +368,7 @@ TEST(Sequences, FramesWaitForTheirScenes) {
   farm.work_all();
   EXPECT_THAT(farm.in_state(id, FrameState::kDone), ElementsAre(2, 4));
   EXPECT_EQ(farm.job(id).state, JobState::kRunning);
-  farm.add(id, {1, 2, 3});  // 2 again, as after an answer that was lost
+  farm.add(id, {1, 2, 3});  // 2 again, as a client does after a lost answer
   farm.work_all();
   EXPECT_EQ(farm.job(id).state, JobState::kDone);
   EXPECT_EQ(farm.results.size(), 4u);
@@ -523,7 +524,7 @@ TEST(Sequences, CancelledSequencesDoNotFail) {
   const std::vector<FrameNumber> done = farm.in_state(id, FrameState::kDone);
   const JobId frame = farm.job_of(id, farm.in_state(id, FrameState::kRendering).front());
   const Step step = farm.send(input::Cancel{id});
-  EXPECT_FALSE(farm.scheduler.job(frame, farm.now)) << "its job is forgotten";
+  EXPECT_FALSE(farm.scheduler.job(frame, farm.now)) << "the job of an open frame is forgotten";
   EXPECT_FALSE(in<action::DropJob>(step).empty());
   const auto expect_right = [&](const Scheduler& scheduler) {
     const JobView view = *scheduler.job(id, farm.now);
