@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 constexpr SampleRange kPass{256, 384};
 
 /// Returns a random node of up to 32 blocks; in a third of the cases an empty range.
-SampleRange some_node(test::Random& random) {
+SampleRange random_node(test::Random& random) {
   const std::uint64_t size = kBlockSamples << random.below(6);
   const std::uint64_t first = random.below(9) * size;
   return random.below(3) == 0 ? SampleRange{} : SampleRange{first, first + size};
@@ -25,21 +25,21 @@ SampleRange some_node(test::Random& random) {
 
 /// Random samples for each half tile of an image. `of_pixel`: the samples that each pixel takes,
 /// row by row.
-struct Some {
+struct RandomTiles {
   TileSamples tiles;
   std::vector<SampleRange> of_pixel;
 };
 
-Some some(std::uint32_t width, std::uint32_t height) {
+RandomTiles random_tiles(std::uint32_t width, std::uint32_t height) {
   test::Random random(width * 1000 + height);
   const TileGrid grid{width, height};
   std::vector<SampleRange> halves(grid.half_tiles());
-  Some out{TileSamples(width, {0, height}), {}};
+  RandomTiles out{TileSamples(width, {0, height}), {}};
   for (std::uint32_t y = 0; y < height; y += kTileSide) {
     for (std::uint32_t x = 0; x < width; x += kTileSide) {
       for (const std::uint32_t half : {0, 1}) {
         const std::size_t i = 2 * (y / kTileSide * grid.columns() + x / kTileSide) + half;
-        halves[i] = some_node(random);
+        halves[i] = random_node(random);
         out.tiles.set(i, halves[i]);
       }
     }
@@ -56,7 +56,7 @@ Some some(std::uint32_t width, std::uint32_t height) {
 TEST(TileSamples, DescribeHalfTilesOfAnyImageAndRows) {
   for (const std::uint32_t width : {1, 15, 16, 17, 70}) {
     for (const std::uint32_t height : {1, 16, 33, 50}) {
-      const Some given = some(width, height);
+      const RandomTiles given = random_tiles(width, height);
       for (const RowRange& rows :
            {RowRange{0, height}, {height / 2, height}, {0, height / 3 + 1}}) {
         const TileSamples part = given.tiles.of(rows);
@@ -96,7 +96,7 @@ TEST(TileSamples, PartsOfAPassAddUpToThePass) {
   const RowRange row{0, 1};
   for (int i = 0; i < 200; ++i) {
     TileSamples tiles(1, row);
-    const SampleRange taken = some_node(random);
+    const SampleRange taken = random_node(random);
     tiles.set(0, taken);
     std::vector<SampleRange> parts{kPass};
     for (int cuts = 0; cuts < 5; ++cuts) {
@@ -139,8 +139,8 @@ TEST(TileSamples, InvalidNumbersAreRefused) {
   EXPECT_THAT(refused({0, 0, 0xffffffff, 0xffffffff}, {0, 1}), HasSubstr("half tile 1"));
 }
 
-TEST(TileSamples, SumsWithoutSamplesMustBeZero) {
-  const Some given = some(20, 20);
+TEST(TileSamples, SumsOfPixelsWithoutSamplesMustBeZero) {
+  const RandomTiles given = random_tiles(20, 20);
   BandPixels pixels{.band = {{0, 16}, {3, 20}}, .width = 20, .sums = {}, .counters = {}};
   for (std::uint32_t y = 3; y < 20; ++y) {
     for (std::uint32_t x = 0; x < 20; ++x) {

@@ -16,7 +16,7 @@ namespace {
 
 using test::Moments;
 
-constexpr TileGrid kTwelveTiles{512, 32};
+constexpr TileGrid kWideGrid{512, 32};  ///< pixels: 32 x 2 tiles
 
 /// Returns a plan that gives the left half of the image twice the uniform number of samples, and
 /// the right half an eighth of it. The level '4' means 2^((6 - 4) / 2) times the uniform number,
@@ -24,8 +24,8 @@ constexpr TileGrid kTwelveTiles{512, 32};
 /// before the plan is made.
 TilePlan half_noisy(std::uint64_t pilot) {
   TilePlan plan{.pilot = pilot, .levels = {}};
-  for (std::size_t i = 0; i < kTwelveTiles.half_tiles(); ++i) {
-    plan.levels += i / 2 % kTwelveTiles.columns() < 16 ? '4' : 'c';
+  for (std::size_t i = 0; i < kWideGrid.half_tiles(); ++i) {
+    plan.levels += i / 2 % kWideGrid.columns() < 16 ? '4' : 'c';
   }
   return plan;
 }
@@ -33,15 +33,15 @@ TilePlan half_noisy(std::uint64_t pilot) {
 /// Returns the samples that half tile i takes; empty if it takes none.
 SampleRange of_half_tile(const TileSamples& tiles, std::size_t i) {
   const auto tile = static_cast<std::uint32_t>(i / 2);
-  const std::uint32_t y = tile / kTwelveTiles.columns() * kTileSide;
+  const std::uint32_t y = tile / kWideGrid.columns() * kTileSide;
   const auto half = static_cast<std::uint32_t>(i & 1);
-  return tiles.of_pixel(half_row(kTwelveTiles, tile % kTwelveTiles.columns(), half, y)[0], y, {});
+  return tiles.of_pixel(half_row(kWideGrid, tile % kWideGrid.columns(), half, y)[0], y, {});
 }
 
 TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
   const TilePlan plan = half_noisy(64);
-  TileSchedule schedule(kTwelveTiles, plan);
-  std::vector<std::uint64_t> taken(kTwelveTiles.half_tiles(), 64);
+  TileSchedule schedule(kWideGrid, plan);
+  std::vector<std::uint64_t> taken(kWideGrid.half_tiles(), 64);
   for (std::uint64_t first = 64; first < 4096; first += 64) {
     const TileSamples tiles = schedule.next({first, first + 64});
     Moments noisy;
@@ -66,19 +66,19 @@ TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
 
 // The half tile has 48 samples, fewer than its share. In each pass it takes the longest node that
 // begins where its samples end: 16 samples at 48, 64 at 64, 128 at 128.
-TEST(TileSchedule, ArrearsAreTakenAtOnceWhereANodeBegins) {
-  TileSchedule schedule(kTwelveTiles, half_noisy(48));
+TEST(TileSchedule, AHalfTileBelowItsShareTakesTheLongestNode) {
+  TileSchedule schedule(kWideGrid, half_noisy(48));
   EXPECT_EQ(of_half_tile(schedule.next({48, 64}), 0), (SampleRange{48, 64}));
   EXPECT_EQ(of_half_tile(schedule.next({64, 128}), 0), (SampleRange{64, 128}));
   EXPECT_EQ(of_half_tile(schedule.next({128, 192}), 0), (SampleRange{128, 256}));
 }
 
-TEST(TileSchedule, AnUnplannedHalfTakesUniformPasses) {
+TEST(TileSchedule, AHalfWithTheEvenLevelTakesUniformPasses) {
   TilePlan plan = half_noisy(32);
   for (std::size_t i = 1; i < plan.levels.size(); i += 2) {
     plan.levels[i] = kEvenLevel;
   }
-  TileSchedule schedule(kTwelveTiles, plan);
+  TileSchedule schedule(kWideGrid, plan);
   for (const SampleRange& pass : {SampleRange{32, 64}, {64, 96}, {96, 100}}) {
     const TileSamples tiles = schedule.next(pass);
     EXPECT_FALSE(tiles.whole());
@@ -87,7 +87,7 @@ TEST(TileSchedule, AnUnplannedHalfTakesUniformPasses) {
     }
   }
   plan.levels.assign(plan.levels.size(), kEvenLevel);
-  EXPECT_TRUE(TileSchedule(kTwelveTiles, plan).next({32, 64}).whole());
+  EXPECT_TRUE(TileSchedule(kWideGrid, plan).next({32, 64}).whole());
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST_F(BrowserLinkTest, EndsAtItsTime) {
   EXPECT_NE(ask().url(), url) << "a link that has ended does not come back";
 }
 
-TEST_F(BrowserLinkTest, ItsEndIsMovedWithTheSameSecret) {
+TEST_F(BrowserLinkTest, KeepsItsSecretWhenItsEndIsMoved) {
   const std::string url = ask(100).url();
   EXPECT_EQ(ask(1000).url(), url);
   now_ += 500;
@@ -120,7 +120,7 @@ TEST_F(BrowserLinkTest, ChecksTheRequest) {
             grpc::StatusCode::PERMISSION_DENIED);
 }
 
-TEST_F(BrowserLinkTest, ADamagedFileIsNamedWithItsCure) {
+TEST_F(BrowserLinkTest, TheErrorOfADamagedFileNamesACommandThatHelps) {
   ask();
   for (const char* text : {"", "something\n", "bandsaw-browsers 1\nsecret short\nends 1\n",
                            "bandsaw-browsers 1\nsecret 0123456789abcdefghijkl\nends soon\n"}) {

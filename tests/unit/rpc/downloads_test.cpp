@@ -94,8 +94,8 @@ TEST_F(DownloadsTest, APreviewCountsWithItsActualSize) {
   put_rows(running, kSide, 0, kSide / 2);
   const std::int64_t all = engine_->images().left();
   for (const std::uint64_t job : {done, running}) {
-    const auto none = engine_->images().take(static_cast<std::uint64_t>(all - 1000));
-    ASSERT_TRUE(none);
+    const auto others = engine_->images().take(static_cast<std::uint64_t>(all - 1000));
+    ASSERT_TRUE(others);
     const auto call = context(link::Role::kFarm);
     EXPECT_EQ(read_all(preview(*call, job)).error_code(), StatusCode::RESOURCE_EXHAUSTED);
   }

@@ -86,10 +86,10 @@ TEST_F(ProbeTest, ReflectionIsOffByDefault) {
   std::string answer;
   EXPECT_EQ(list_services(server_->port(), answer).error_code(), grpc::StatusCode::UNIMPLEMENTED);
   EXPECT_EQ(answer, "");
-  const auto open =
+  const auto reflecting =
       Server::start(*engine_, identity_, {.listen = "127.0.0.1:0", .reflection = true});
-  ASSERT_TRUE(open.ok()) << open.status();
-  EXPECT_TRUE(list_services((*open)->port(), answer).ok());
+  ASSERT_TRUE(reflecting.ok()) << reflecting.status();
+  EXPECT_TRUE(list_services((*reflecting)->port(), answer).ok());
   EXPECT_THAT(answer, HasSubstr("bandsaw.farm.Farm"));
   EXPECT_THAT(answer, HasSubstr("grpc.health.v1.Health"));
 }

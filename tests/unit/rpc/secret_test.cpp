@@ -63,7 +63,7 @@ class SecretTest : public FarmTest {
   absl::Status written_;  ///< the result of writing the file with the join string
 };
 
-TEST_F(SecretTest, TheOldUsersSecretIsRefusedAndTheNewOneIsNot) {
+TEST_F(SecretTest, TheOldSecretOfUsersIsRefusedAndTheNewOneIsNot) {
   farm::RotateSecretReply reply;
   ASSERT_TRUE(rotate(farm::SECRET_ROLE_FARM, &reply).ok());
   EXPECT_EQ(reply.join_file(), "the file");
@@ -165,7 +165,7 @@ TEST_F(SecretTest, DownloadsOfImagesWithTheOldSecretEnd) {
   EXPECT_EQ(reader->Finish().error_code(), StatusCode::UNAUTHENTICATED);
 }
 
-TEST_F(SecretTest, ADownloadWithTheOtherSecretContinues) {
+TEST_F(SecretTest, ADownloadWithTheSecretOfTheOtherRoleContinues) {
   const std::uint64_t job = finish_job(1024);
   const auto call = context(link::Role::kFarm);
   farm::GetResultRequest request;

@@ -178,7 +178,7 @@ class WorkerTest : public FarmTest {
   }
 };
 
-TEST_F(WorkerTest, RendersAJobToTheSameBytes) {
+TEST_F(WorkerTest, RendersTheSameBytesAsALocalRender) {
   Worker first(join(link::Role::kWorker), folder_ / "cache", 'a');
   Worker second(join(link::Role::kWorker), folder_ / "cache", 'b');
   const wire::Digest manifest = put_cornell_box();

@@ -112,7 +112,7 @@ TEST_F(StreamTest, AdmitsACompatibleWorker) {
   EXPECT_TRUE(stream->Finish().ok());
 }
 
-TEST_F(StreamTest, RefusesAWorkerOfOtherPixelsWithTheReason) {
+TEST_F(StreamTest, RefusesAWorkerWithAnotherCanaryAndGivesTheReason) {
   farm::FromWorker other = hello();
   other.mutable_hello()->set_canary(canary() + 1);
   std::vector<farm::ToWorker> answers;

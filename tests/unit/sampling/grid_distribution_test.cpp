@@ -34,17 +34,18 @@ TEST(GridDistribution, CellsAreSelectedByTheirWeight) {
     }
   }
   EXPECT_DOUBLE_EQ(grid.total(), sum);
-  test::Moments left_u;
+  test::Moments remaining_u;
   for (int i = 0; i < kSamples; ++i) {
     const double u = random.uniform();
     const auto cell = grid.sample(u, random.uniform());
     ASSERT_GT(weight(cell.column, cell.row), 0);
     ASSERT_TRUE(cell.u >= 0 && cell.u < 1 && cell.v >= 0 && cell.v < 1);
-    left_u.add(cell.u);
+    remaining_u.add(cell.u);
     ++counts[cell.row * kWidth + cell.column];
   }
   EXPECT_GT(test::chi_squared(counts, expected).p_value, 0.01);
-  EXPECT_LE(std::abs(left_u.z(0.5)), 4) << "the remainder of the random number must be uniform";
+  EXPECT_LE(std::abs(remaining_u.z(0.5)), 4)
+      << "the remainder of the random number must be uniform";
 }
 
 TEST(GridDistribution, L7_ATailOfSmallWeightsIsSampled) {
@@ -54,7 +55,7 @@ TEST(GridDistribution, L7_ATailOfSmallWeightsIsSampled) {
   EXPECT_GT(last.column, 0u);
 }
 
-TEST(GridDistribution, ExtremeNumbersStayInside) {
+TEST(GridDistribution, ExtremeWeightsAndRandomNumbersSelectTheOnlyCell) {
   for (const double scale : {1e-300, 1.0, 1e200}) {
     const GridDistribution grid(
         3, 3, [&](std::uint32_t x, std::uint32_t y) { return x == 1 && y == 1 ? scale : 0.0; });

@@ -62,7 +62,7 @@ TEST(SphericalTriangle, SamplesUniformlyInSolidAngle) {
   }
 }
 
-TEST(SphericalTriangle, HasSolidAnglesOfClosedForms) {
+TEST(SphericalTriangle, SolidAnglesMatchClosedForms) {
   // The octant is an eighth of all directions. The other triangles are halves of squares at the
   // distance 1. A square of half side h has the solid angle 4 asin(h^2 / (h^2 + 1)). With h = 1,
   // the square is the face of a cube, a sixth of all directions.

@@ -24,8 +24,8 @@ constexpr int kSamples = 100000;
 double tent(double x, std::uint32_t index, std::uint32_t texels, Ends ends) {
   const double centre = index + 0.5;
   if (ends == Ends::kClamped) {
-    const double stays = std::min(std::max(x, 0.5), texels - 0.5);
-    return std::max(0.0, 1 - std::abs(stays - centre));
+    const double clamped = std::min(std::max(x, 0.5), texels - 0.5);
+    return std::max(0.0, 1 - std::abs(clamped - centre));
   }
   double sum = 0;
   for (const double turn : {-1.0, 0.0, 1.0}) {
@@ -103,7 +103,7 @@ TEST(Tent, SolidAnglesOfAllRowsSumToTheSphere) {
   }
 }
 
-TEST(Tent, TheSolidAngleOfARowIsItsIntegral) {
+TEST(Tent, TheSolidAngleOfARowIsTheIntegralOfItsTent) {
   for (const auto& [row, rows] :
        {std::pair(0u, 10u), std::pair(1u, 10u), std::pair(4u, 10u), std::pair(0u, 1000u)}) {
     constexpr int kFine = 200000;

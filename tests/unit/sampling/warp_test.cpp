@@ -96,7 +96,7 @@ TEST(Warp, BallIsUniform) {
   EXPECT_NEAR(mean_x.variance(), 0.2, 0.005);
 }
 
-TEST(Warp, M1_CornersOfTheUnitSquareAreFine) {
+TEST(Warp, M1_CornersOfTheUnitSquareGiveValidPoints) {
   for (const double u : kCorners) {
     for (const double v : kCorners) {
       const Vec3 d = sample_cosine_hemisphere(u, v);

@@ -49,7 +49,7 @@ SceneMaker scene_of_all() {
 }
 
 /// Options with which the scene is built and rendered. All of them must give the same pixels.
-struct How {
+struct BuildOptions {
   SceneFeatures forced = {};
   Traversal traversal = Traversal::kBvh;
   const Kernel* kernel = nullptr;  ///< nullptr: the fastest
@@ -57,9 +57,11 @@ struct How {
   std::uint32_t rows = 12;  ///< of each band; a divisor of 12
 };
 
-std::shared_ptr<const Scene> built(const SceneDescription& scene, const How& how = {}) {
+std::shared_ptr<const Scene> built(const SceneDescription& scene,
+                                   const BuildOptions& options = {}) {
   Pool pool(1);
-  auto built = Scene::build(scene, pool, how.forced, how.traversal, how.kernel, how.earlier);
+  auto built =
+      Scene::build(scene, pool, options.forced, options.traversal, options.kernel, options.earlier);
   EXPECT_TRUE(built.ok()) << built.status();
   return built.ok() ? *built : nullptr;
 }
@@ -77,8 +79,8 @@ std::vector<double> rendered(const Scene& scene, std::uint32_t rows = 12) {
   return all;
 }
 
-std::vector<double> rendered(const SceneDescription& scene, const How& how = {}) {
-  return rendered(*built(scene, how), how.rows);
+std::vector<double> rendered(const SceneDescription& scene, const BuildOptions& options = {}) {
+  return rendered(*built(scene, options), options.rows);
 }
 
 TEST(DeformingScene, PixelsAreTheSameForKernelsBandsAndTraversals) {

@@ -215,7 +215,7 @@ TEST(Scene, SharesMeshesWithEarlierScenes) {
   EXPECT_EQ(hit.t, 8) << "the instance must be where the second scene places it";
 }
 
-TEST(Scene, FeaturesAreThoseThatItUses) {
+TEST(Scene, HasTheFeaturesThatItUses) {
   SceneMaker empty;
   EXPECT_EQ(empty.build()->features(), SceneFeatures{});
   SceneMaker maker = valid();

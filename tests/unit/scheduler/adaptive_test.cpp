@@ -87,13 +87,13 @@ TEST(Adaptive, ARestartHasTheSamePlanFromJournalAndSnapshot) {
   }
 }
 
-TEST(Adaptive, PlansNoTilesForOtherJobs) {
+TEST(Adaptive, PlansNoTilesForUniformJobs) {
   const Adaptive run(false);
   EXPECT_TRUE(run.farm.all_records<record::TilesPlanned>().empty());
   EXPECT_EQ(run.farm.job(run.job).samples_per_pixel, run.looks.back());
 }
 
-TEST(Adaptive, UniformNoiseGivesAllTilesSamplesAndTheSameEnd) {
+TEST(Adaptive, UniformNoiseRendersAsAUniformJob) {
   const Adaptive run(true, std::vector<HalfTileErrors>(kGrid.half_tiles(),
                                                        {TileError{64, 1, 1}, TileError{64, 1, 1}}));
   EXPECT_EQ(run.farm.all_records<record::TilesPlanned>().size(), 1u);

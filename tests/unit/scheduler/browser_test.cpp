@@ -244,7 +244,7 @@ TEST(Browser, LeavesPlacesToNativeWorkers) {
 
 // ---- audits ----
 
-TEST(Browser, ItsBandsAreAuditedByNativeWorkersAtARateOfTheirOwn) {
+TEST(Browser, NativeWorkersAuditItsBandsAtASeparateRate) {
   BrowserFarm farm;
   farm.submit(one_row());
   farm.hello_tab(1, "t");
@@ -597,7 +597,7 @@ TEST(Browser, BrowsersThatLieDisplaceNobodyFromTheQuarantine) {
   EXPECT_TRUE(contains(refused[0].reason, "take the link back")) << refused[0].reason;
 }
 
-TEST(Browser, IsAdmittedAfterAFloodOfLiesWhenNoJobHasThem) {
+TEST(Browser, IsAdmittedAgainOnceNoJobHasBandsOfTheQuarantinedBrowsers) {
   BrowserFarm farm;
   const JobId job = farm.submit(one_row());
   flood(farm, 10, "u");

@@ -71,7 +71,7 @@ TEST(CleanJobs, HaveNamesThatAFarmAccepts) {
   EXPECT_EQ(name.find(" (") % 2, 1u);  // the name is not cut within an é, which has two bytes
 }
 
-TEST(CleanJobs, AreRefusedForImagesWithoutNoise) {
+TEST(CleanJobs, AreRefusedForASingleSampleAndForImagesWithoutNoise) {
   RenderSettings settings = job().settings;
   EXPECT_TRUE(check_cleanable(settings, 2).ok());
   EXPECT_FALSE(check_cleanable(settings, 1).ok());

@@ -22,7 +22,7 @@ TEST(Coverage, BeginsAsOneFreePiece) {
   EXPECT_FALSE(coverage.complete());
 }
 
-TEST(Coverage, PartsOfARowThatAreStoredMakeTheWholeRow) {
+TEST(Coverage, ARowIsCompleteOnceAllItsPartsAreStored) {
   Coverage coverage({64, 128}, 1);
   coverage.assign({{64, 96}, {0, 1}}, 7);
   EXPECT_EQ(coverage.free_from(0), (Band{{96, 128}, {0, 1}}));

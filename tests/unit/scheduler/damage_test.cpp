@@ -43,7 +43,7 @@ TEST(Damage, ADamagedBandIsFreeAgainAndCountedOnce) {
   EXPECT_EQ(farm.job(job).counters.rays, rays);
 }
 
-TEST(Damage, BandsThatTheWorkerDidNotStoreStay) {
+TEST(Damage, ReportsOfBandsThatWereNotStoredChangeNothing) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");

@@ -132,17 +132,17 @@ double rising(std::uint32_t row) { return 0.4 + 1.2 * row / kHeight; }
 
 TEST(TimeLeft, IsPredictedAfterAQuarterOfTheTime) {
   // The speed of each of two workers, which together need 60 s.
-  const double two = 1920.0 * kHeight * 64 / 60 / 2;
+  const double speed = 1920.0 * kHeight * 64 / 60 / 2;
   EXPECT_LE(worst_time_left({.speeds = speeds(60, true), .cost_of = even}), 0.15);
-  EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = rising, .noise = 0.1}), 0.15);
+  EXPECT_LE(worst_time_left({.speeds = {speed, speed}, .cost_of = rising, .noise = 0.1}), 0.15);
   EXPECT_LE(worst_time_left({.speeds = speeds(60, false), .cost_of = rising, .noise = 0.3}), 0.15);
 }
 
 TEST(TimeLeft, IsPredictedForRowsThatTakeMinutes) {
   // The speed of each of two workers, which together need 600 s.
-  const double two = 1920.0 * kHeight * 64 / 600 / 2;
-  EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = rising, .noise = 0.1}), 0.15);
-  EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = uneven, .noise = 0.1}), 0.15);
+  const double speed = 1920.0 * kHeight * 64 / 600 / 2;
+  EXPECT_LE(worst_time_left({.speeds = {speed, speed}, .cost_of = rising, .noise = 0.1}), 0.15);
+  EXPECT_LE(worst_time_left({.speeds = {speed, speed}, .cost_of = uneven, .noise = 0.1}), 0.15);
 }
 
 }  // namespace

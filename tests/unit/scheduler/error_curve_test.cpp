@@ -116,7 +116,7 @@ using Measured = std::vector<std::pair<std::uint64_t, double>>;  ///< samples, e
 /// each of them how many samples the job takes in total. Returns the predicted number divided by
 /// the actual one, for each checkpoint after a quarter of the work. The job's first checkpoint is
 /// left out, because one point does not tell how fast the error falls.
-std::vector<double> foreseen(const Measured& measured, double target) {
+std::vector<double> prediction_ratios(const Measured& measured, double target) {
   ErrorCurve curve;
   std::vector<std::pair<std::uint64_t, double>> predictions;
   for (std::size_t i = 0; i < measured.size(); ++i) {
@@ -151,7 +151,7 @@ TEST(ErrorCurve, PredictsTheEndOfAPowerLawAfterAQuarterOfTheWork) {
         }
         n = next_checkpoint(n, measured.back().second, target, kMaxSamples);
       }
-      for (const double ratio : foreseen(measured, target)) {
+      for (const double ratio : prediction_ratios(measured, target)) {
         EXPECT_NEAR(ratio, 1, 0.15) << p << ", " << target;
       }
     }
@@ -191,7 +191,7 @@ double error_at(const Measured& measured, std::uint64_t samples) {
 
 /// Returns the checkpoints of a job with this target, and the error at each of them. `scene`: the
 /// errors that were measured for a scene.
-Measured looks_of(const Measured& scene, double target) {
+Measured checkpoints_of(const Measured& scene, double target) {
   Measured seen;
   std::uint64_t n = next_checkpoint(0, -1, target, kMaxSamples);
   do {
@@ -212,7 +212,7 @@ TEST(ErrorCurve, PredictsTheEndOfMeasuredCurvesAfterAQuarter) {
   for (const Measured& scene : {kCornell, kManyLights, kSpheres, kTextured}) {
     for (int i = 0; i < kTargets; ++i) {
       const double target = 0.025 * std::pow(2.4, i / (kTargets - 1.0));
-      for (const double ratio : foreseen(looks_of(scene, target), target)) {
+      for (const double ratio : prediction_ratios(checkpoints_of(scene, target), target)) {
         ++all;
         right += std::abs(ratio - 1) <= 0.15 ? 1 : 0;
         off += std::abs(std::log(ratio));

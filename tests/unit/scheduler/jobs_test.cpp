@@ -109,21 +109,21 @@ TEST(Jobs, AnErrorTargetEndsAtTheFirstCheckpointThatReachesIt) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtError{0.01, kMaxSamples}));
   farm.hello(1, "a");
-  std::vector<std::uint64_t> looks;
+  std::vector<std::uint64_t> checkpoints;
   for (int i = 0; i < 50 && farm.job(job).state == JobState::kRunning; ++i) {
     farm.render_all(1, "a");
     const std::uint64_t n = farm.job(job).samples_per_pixel;
-    looks.push_back(n);
+    checkpoints.push_back(n);
     const double error = 0.2 / std::sqrt(static_cast<double>(n));
     farm.send(input::PassMerged{job, n, ErrorEstimate{.relative_rmse = error}});
   }
   // 0.2 / sqrt(n) <= 0.01 from 400 samples on.
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
-  EXPECT_EQ(looks.front(), 32u);
-  EXPECT_GE(looks.back(), 400u);
-  EXPECT_LE(looks.back(), 500u);
-  EXPECT_EQ(farm.all<action::WriteResult>().back().samples, looks.back());
-  EXPECT_LE(looks.size(), 8u);
+  EXPECT_EQ(checkpoints.front(), 32u);
+  EXPECT_GE(checkpoints.back(), 400u);
+  EXPECT_LE(checkpoints.back(), 500u);
+  EXPECT_EQ(farm.all<action::WriteResult>().back().samples, checkpoints.back());
+  EXPECT_LE(checkpoints.size(), 8u);
 }
 
 TEST(Jobs, AnErrorTargetThatCannotBeReachedEndsAtMaxSamples) {

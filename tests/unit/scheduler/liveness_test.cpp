@@ -181,7 +181,7 @@ TEST(BandFailures, AJobWaitsALimitedTimeForAWorkerThatMayRenderIt) {
   EXPECT_NE(farm.job(job).reason.find("cannot read the scene"), std::string::npos);
 }
 
-TEST(BandFailures, ReconnectsOfAFailingWorkerDoNotKeepTheJob) {
+TEST(BandFailures, ReconnectsOfAFailingWorkerDoNotKeepTheJobRunning) {
   FarmDriver farm(slow());
   const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 64));
   farm.hello(1, "a", 3);

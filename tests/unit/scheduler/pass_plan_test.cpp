@@ -55,17 +55,17 @@ TEST(Checkpoints, AreFewAndTheLastIsAtMostAQuarterTooFar) {
     for (const double target : {0.1, 0.01, 0.003}) {
       const auto error = [&](std::uint64_t n) { return std::pow(static_cast<double>(n), -power); };
       std::uint64_t samples = next_checkpoint(0, -1, target, kMaxSamples);
-      int looks = 1;
+      int checkpoints = 1;
       while (error(samples) > target) {
         const std::uint64_t next = next_checkpoint(samples, error(samples), target, kMaxSamples);
         ASSERT_GT(next, samples);
         samples = next;
-        ++looks;
+        ++checkpoints;
       }
       // Checkpoints begin at 32 samples and are multiples of 16.
       const double needed = std::max(32.0, std::pow(target, -1 / power));
       EXPECT_LE(static_cast<double>(samples), needed * 1.25 + 16);
-      EXPECT_LE(looks, 16);
+      EXPECT_LE(checkpoints, 16);
     }
   }
 }
@@ -99,7 +99,7 @@ TEST(BandSizes, AreTheTargetWhileMuchWorkIsLeft) {
   EXPECT_EQ(size_band(s), (Band{{0, 8}, {12, 112}}));
 }
 
-TEST(BandSizes, EndWhereARowOfTilesEndsIfTheyReachOne) {
+TEST(BandSizes, EndWhereARowOfTilesEndsIfTheyAreLongEnough) {
   Sizing s = sizing();
   EXPECT_EQ(size_band(s).rows, (RowRange{10, 96}));  // not 110
   s.work_left = 80'000;
@@ -163,20 +163,20 @@ TEST(BandSizes, FitIntoAMessage) {
 }
 
 TEST(RecentRate, CoversTheLastTenSeconds) {
-  RecentRate t;
-  t.start(100.5);
+  RecentRate rate;
+  rate.start(100.5);
   for (int i = 0; i < 40; ++i) {
-    t.add(100.5 + i * 0.5, 5);
+    rate.add(100.5 + i * 0.5, 5);
   }
-  EXPECT_NEAR(t.per_second(120.4), 10, 1);
-  EXPECT_EQ(t.per_second(140), 0);
+  EXPECT_NEAR(rate.per_second(120.4), 10, 1);
+  EXPECT_EQ(rate.per_second(140), 0);
 }
 
 TEST(RecentRate, ForgetsAllAmountsWhenItIsStarted) {
-  RecentRate t;
-  t.add(100, 5);
-  t.start(120);
-  EXPECT_EQ(t.per_second(120), 0);
+  RecentRate rate;
+  rate.add(100, 5);
+  rate.start(120);
+  EXPECT_EQ(rate.per_second(120), 0);
 }
 
 TEST(SchedulerClock, NeverGoesBackAndLimitsTheTimeoutStepOfOneInput) {

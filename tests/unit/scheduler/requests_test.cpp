@@ -57,7 +57,7 @@ TEST(Pause, RevokesLeasesThatAreNotBegunAndKeepsTheOthers) {
   EXPECT_EQ(farm.job(job).state, JobState::kRunning);
 }
 
-TEST(Pause, RevokesLeasesThatAreNotRenderedASecondLater) {
+TEST(Pause, RevokesUnfinishedLeasesAfterASecond) {
   FarmDriver farm;
   const JobId job = submit(farm, "r1", 0);
   farm.hello(1, "a", 1);

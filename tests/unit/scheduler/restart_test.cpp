@@ -372,7 +372,7 @@ input::BandStored on_disk(const RowRange& rows, std::uint64_t process, std::uint
   return band;
 }
 
-TEST(Restart, RetractsAWrongMachineOnceAllBandsAreReplayed) {
+TEST(Restart, RetractsTheRowsOfAWrongMachineOnceAllBandsAreReplayed) {
   FarmDriver farm(slow());
   farm.submit(test_job("r1", StopAtSamples{8}));
   FarmDriver next;
