@@ -43,7 +43,7 @@ absl::StatusOr<Camera> decode_camera(const package::Camera& from, const std::str
   std::optional<ImageWindow> window;
   if (from.window_size() != 0) {
     if (from.window_size() != 4) {
-      return manifest_error("camera.window", "must be 4 numbers");
+      return manifest_error(field + ".window", "must be 4 numbers");
     }
     window = {from.window(0), from.window(1), from.window(2), from.window(3)};
   }

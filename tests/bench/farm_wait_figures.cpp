@@ -112,6 +112,7 @@ double error_of_time_left(const FarmProcesses& farm, const Job& job, int seed) {
   const auto told = std::find_if(lines.begin(), lines.end(), [&](const std::string& line) {
     return number(line, "elapsed_s") >= whole / 4;
   });
+  BANDSAW_CHECK(told != lines.end(), "the last line has the time");
   return number(*told, "remaining_s") / (whole - number(*told, "elapsed_s")) - 1;
 }
 

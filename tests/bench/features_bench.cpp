@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "renderlib/base/check.h"
 #include "renderlib/import/import.h"
 #include "renderlib/render/render_band.h"
 
@@ -60,7 +61,8 @@ double seconds_of(const Scene& scene, const RenderSettings& settings, std::uint6
   const double start = cpu_seconds();
   const auto done =
       render_band(scene, settings, {{0, samples}, {0, settings.height}}, pool, stop, {});
-  return done.ok() ? cpu_seconds() - start : 0;
+  BANDSAW_CHECK(done.ok(), done.status().ToString().c_str());
+  return cpu_seconds() - start;
 }
 
 /// Returns the number of samples, a power of two, that take about kSecondsARender.

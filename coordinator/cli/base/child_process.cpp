@@ -92,6 +92,7 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
     }
     outcome.output.append(rest.data(), static_cast<std::size_t>(got));
   }
+  outcome.output.resize(std::min(outcome.output.size(), kMaxOutput));
   return outcome;
 }
 
