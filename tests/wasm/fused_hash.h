@@ -13,8 +13,8 @@
 
 namespace bandsaw::test {
 
-/// Returns the hash for numbers of any bits, for numbers of similar sizes, some with few bits, for
-/// sums that cancel, and for very small results.
+/// Returns the hash. The numbers have any bits, or are of similar sizes, some with few bits. Some
+/// sums cancel, and some results are very small. A result that is not a number counts as 1.
 inline std::uint64_t fused_hash() {
   Hash64 hash;
   std::uint64_t state = 0;

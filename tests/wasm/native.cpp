@@ -1,4 +1,5 @@
-// Prints what bandsaw_test.wasm must compute as well: the canary and the hash of fused products.
+// Prints the canary and the hash of fused operations (fused_hash.h). bandsaw_test.wasm must compute
+// the same values.
 
 #include <cstdio>
 

@@ -43,6 +43,7 @@ const Value& field(const Value& value, const std::string& name) {
 
 Process start_driver() { return Process::start({chromedriver_program(), "--port=0"}); }
 
+/// Waits until chromedriver prints its port, and returns it.
 int port_of(Process& driver) {
   const std::string before = "successfully on port ";
   BANDSAW_CHECK(driver.wait_for(before), driver.out().c_str());
@@ -142,6 +143,7 @@ bool Browser::wait(const std::string& expression) {
 std::string Browser::element(const std::string& selector) {
   Struct by = object("using", "css selector");
   (*by.mutable_fields())["value"].set_string_value(selector);
+  // The name of this field is fixed by the WebDriver standard.
   return field(post(session_ + "/element", by), "element-6066-11e4-a52e-4f735466cecf")
       .string_value();
 }

@@ -41,10 +41,11 @@ class Browser {
   std::string text(const std::string& expression);
   /// Waits in the page until the expression is true. Returns false after 170 seconds.
   bool wait(const std::string& expression);
-  /// Elements are given by a CSS selector.
+  /// Clicks on the first element that matches the CSS selector, or types into it.
   void click(const std::string& selector);
   void type(const std::string& selector, const std::string& keys);
-  /// Lets requests fail from now on if their address matches the pattern, as in "*.png"; "": none.
+  /// From now on, requests fail if their address matches the pattern, such as "*.png". The pattern
+  /// "" lets all requests pass.
   void block(const std::string& pattern);
   /// Writes a PNG of the window's content to the file.
   void screenshot(const std::string& path);

@@ -98,7 +98,7 @@ TEST_F(DashboardTest, RequiresTheJoinString) {
   EXPECT_THAT(browser.console_errors(), IsEmpty());
   browser.type("form input", "wrong\n");
   EXPECT_TRUE(browser.wait("document.querySelector('[role=alert]').textContent !== ''"));
-  browser.console_errors();  // the browser logs the refused request
+  browser.console_errors();  // discards the logged error of the refused request
   browser.run("document.querySelector('form input').value = ''");
   browser.type("form input", content_of(folder_ / "data/farm"));
   EXPECT_TRUE(browser.wait("document.querySelector('h1')?.textContent === 'Jobs'"));
@@ -108,6 +108,7 @@ TEST_F(DashboardTest, RequiresTheJoinString) {
   EXPECT_THAT(browser.console_errors(), IsEmpty());
 }
 
+// An expression in JavaScript: the card with the link for browsers, if it is shown.
 constexpr char kCard[] = "document.querySelector('.invite:not([hidden])')";
 
 TEST_F(DashboardTest, TheLinkForBrowsersIsShownOpenedAndTakenBack) {
@@ -162,7 +163,7 @@ TEST_F(DashboardTest, ADroppedSceneIsRenderedAndItsImageDownloaded) {
   EXPECT_TRUE(browser.wait(kDone));
   EXPECT_TRUE(browser.wait("document.querySelector('.plot polyline')"));
   browser.screenshot(shot("job-done"));
-  // The first bytes of each kind of file: PNG's and EXR's marks, and "{\n  ".
+  // The first bytes of each kind of file: the signatures of PNG and EXR, and "{\n  ".
   const std::map<std::string, std::string> first_bytes = {
       {"png", "137,80,78,71"}, {"exr", "118,47,49,1"}, {"json", "123,10,32,32"}};
   for (const auto& [suffix, bytes] : first_bytes) {

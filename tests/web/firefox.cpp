@@ -61,7 +61,7 @@ class Firefox::Socket {
     boost::system::error_code error;
     asio::write(socket_, asio::buffer(absl::StrCat(json.size(), ":", json)), error);
   }
-  /// Returns an empty text if the connection ended.
+  /// Waits for a message and returns its JSON; empty: the connection has ended.
   std::string receive() {
     std::size_t size = 0;
     char c = 0;
@@ -100,7 +100,7 @@ Firefox::Firefox() {
       {firefox_program(), "--headless", "--marionette", "--no-remote", "--profile", profile},
       {"HOME=" + (profile_ / ""), "MOZ_CRASHREPORTER_DISABLE=1"}));
   socket_ = std::make_unique<Socket>(port_in(profile));
-  socket_->receive();  // its greeting: the versions of the protocol
+  socket_->receive();  // Firefox's greeting, which names the versions of the protocol
   call("WebDriver:NewSession", parsed(R"({"acceptInsecureCerts": true,
                   "timeouts": {"script": 180000, "pageLoad": 120000}})"));
 }
@@ -111,6 +111,8 @@ Firefox::~Firefox() {
 }
 
 Value Firefox::call(const std::string& command, const Struct& parameters) {
+  // A command is the list [0, id, name, parameters]. Its answer is a list of four values, of which
+  // the third is null or an error, and the fourth is the result.
   Value message;
   message.mutable_list_value()->add_values()->set_number_value(0);
   message.mutable_list_value()->add_values()->set_number_value(++last_id_);

@@ -30,6 +30,7 @@ std::vector<pid_t> family(pid_t parent) {
   for (const auto& entry : fs::directory_iterator("/proc")) {
     std::string stat;
     std::getline(std::ifstream(entry.path() / "stat"), stat);
+    // The text is "ID (NAME) STATE PARENT …", and STATE is one letter.
     const std::size_t after_name = stat.rfind(')');
     if (after_name != std::string::npos) {
       children.emplace(std::atoi(stat.c_str() + after_name + 4), std::atoi(stat.c_str()));
@@ -62,7 +63,7 @@ int free_port() {
 std::string program_of(const Browser*) { return chromedriver_program(); }
 std::string program_of(const Firefox*) { return firefox_program(); }
 
-/// Starts to render with `cores` cores in a tab with the page of the link.
+/// Starts to render with `cores` cores in a tab that shows the page of the link.
 template <class Kind>
 void start(Kind& tab, int cores) {
   ASSERT_TRUE(tab.wait("document.querySelector('#start')?.offsetParent"));
@@ -121,6 +122,7 @@ class JoinTest : public ::testing::Test {
     return tab;
   }
 
+  /// Returns the arguments of `bandsaw submit` and `bandsaw render` for a scene of the gallery.
   std::vector<std::string> settings(const std::string& scene, const std::string& samples) const {
     return {std::string(BANDSAW_GALLERY) + "/" + scene + ".textproto",
             "--width",
@@ -129,12 +131,15 @@ class JoinTest : public ::testing::Test {
             samples,
             "--quiet"};
   }
+  /// Submits a job with these settings. The client waits for the image and writes it.
   Process submit(const std::vector<std::string>& what) {
     std::vector<std::string> arguments = {"submit"};
     arguments.insert(arguments.end(), what.begin(), what.end());
     arguments.insert(arguments.end(), {"-o", farm_->path("farm.pfm")});
     return Process::start(farm_->on("person", farm_->command(arguments)));
   }
+  /// Waits until the client has written the image of the farm. Expects that a local render with the
+  /// same settings gives the same bytes.
   void expect_same_bytes(Process& client, const std::vector<std::string>& what) {
     ASSERT_EQ(client.wait(), 0) << client.err() << farm_->coordinator_log();
     std::vector<std::string> arguments = {BANDSAW_BIN, "render"};
@@ -260,8 +265,8 @@ TEST_F(BothBrowsersTest, ChromiumAndFirefoxGiveTheBytesOfANativeWorker) {
   expect_same_bytes(client, what);
 }
 
-/// The coordinator, a native worker, the tab and a user are each on a machine of its own, which is
-/// a network namespace with a cable. The dashboard is not on loopback, so tabs reach it by TLS.
+/// The coordinator, a native worker, the tab and a user are each on a machine of its own. A machine
+/// is a network namespace with a cable. The dashboard is not on loopback, so tabs reach it by TLS.
 template <class Kind>
 class PulledCableTest : public JoinTest<Kind> {
  protected:
@@ -279,8 +284,8 @@ class PulledCableTest : public JoinTest<Kind> {
     visit_ = this->hosts_->visit("tab");
   }
 
-  /// Pulls the cable of a tab that renders, and waits until both ends have noticed. Then the leases
-  /// of the tab are over.
+  /// Pulls the cable of a tab that renders, and waits until the coordinator and the tab have
+  /// noticed it. Then the leases of the tab are over.
   void pull_cable(Kind& tab) {
     this->hosts_->unplug("tab");
     const std::regex lost("@browser.*(closed|disconnected|answers no more)");
@@ -322,8 +327,8 @@ TYPED_TEST(PulledCableTest, AJobContinuesWithoutATabThatReturnsForTheNextJob) {
   this->expect_same_bytes(client, next);
 }
 
-/// Returns the WebAssembly module with another bound of its memory: `pages` of 64 KiB. The encoding
-/// of the number keeps its length in bytes.
+/// Returns the WebAssembly module with another limit of its memory, which is `pages` pages of 64
+/// KiB. The encoding of the new number has as many bytes as that of the old number.
 std::string with_memory(std::string module, std::uint32_t pages) {
   std::size_t at = 8;
   const auto number = [&] {  // LEB128
@@ -340,9 +345,9 @@ std::string with_memory(std::string module, std::uint32_t pages) {
     const std::uint32_t size = number();
     at += size;
   }
-  number();  // its size
-  number();  // one memory
-  EXPECT_EQ(number(), 1U) << "it has a bound";
+  number();  // size of the section
+  number();  // number of memories
+  EXPECT_EQ(number(), 1U) << "the memory must have a limit";
   number();  // pages at the start
   std::size_t digits = at;
   number();

@@ -28,7 +28,7 @@ class Bench {
       beat(i);
     }
     tick();
-    // A job that is not over after 1e5 seconds, a hundred times its planned time, never ends.
+    // A job that is not over after 1e5 seconds, a hundred times its planned time, is given up.
     while (!over_ && agenda_.now() < 1e5 && result_.broken.empty() && agenda_.run_next()) {
     }
     finish();
@@ -48,7 +48,9 @@ class Bench {
     double begun_at = -1;             ///< when the first was begun
     double takes = 0;                 ///< seconds that the first takes
     double idle_since = 0;            ///< if the queue is empty
-    std::uint64_t turn = 0;  ///< counts what was begun; the end of an earlier turn is ignored
+    /// Number of calls of begin(). If it has grown when a band ends, that band was revoked, and its
+    /// end is ignored.
+    std::uint64_t turn = 0;
   };
 
   void hello(std::size_t i) {
@@ -68,6 +70,7 @@ class Bench {
     agenda_.in(0.1, [this] { tick(); });
   }
 
+  /// Sends a heartbeat of worker i each second.
   void beat(std::size_t i) {
     agenda_.in(1, [this, i] {
       input::Heartbeat beat{i + 1, {}, "rendering"};
@@ -84,6 +87,7 @@ class Bench {
     });
   }
 
+  /// Checks the scheduler's invariants and carries out the actions of the step.
   void take(const Step& step) {
     if (const auto broken = scheduler_.broken_invariant(); broken && result_.broken.empty()) {
       result_.broken = *broken;
@@ -112,6 +116,7 @@ class Bench {
     }
   }
 
+  /// Lets worker i begin the first lease of its queue. If the queue is empty, the worker is idle.
   void begin(std::size_t i) {
     Busy& worker = workers_[i];
     ++worker.turn;
@@ -136,6 +141,7 @@ class Bench {
     });
   }
 
+  /// Sends the first band of worker i's queue, which is finished, and begins the next one.
   void rendered(std::size_t i) {
     Busy& worker = workers_[i];
     input::BandStored stored;
@@ -155,6 +161,7 @@ class Bench {
     begin(i);
   }
 
+  /// Removes a revoked lease from the queue of worker i.
   void drop(std::size_t i, LeaseId id) {
     Busy& worker = workers_[i];
     const bool first = !worker.queue.empty() && worker.queue.front().lease == id;
@@ -165,6 +172,7 @@ class Bench {
     }
   }
 
+  /// Computes the results of the whole run.
   void finish() {
     if (!over_ && result_.broken.empty()) {
       result_.broken = "the job did not come to its end";

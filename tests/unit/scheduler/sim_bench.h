@@ -22,7 +22,7 @@ struct BenchFarm {
   std::uint64_t samples = 64;
   std::uint32_t threads = 8;  ///< of each worker
   double noise = 0;           ///< maximum relative deviation of a band's time
-  double trip_s = 0.002;      ///< seconds that a message takes, either way
+  double trip_s = 0.002;      ///< seconds that a message takes, in either direction
   double upload_s = 0.02;     ///< seconds from the end of a band until it is on disk
   std::uint64_t seed = 1;     ///< of the noise and of the times at which workers join
   double audit_share = 0;     ///< share of the bands that are rendered twice
@@ -37,9 +37,11 @@ struct BenchResult {
   std::uint64_t bands = 0;
   std::uint64_t wasted = 0;   ///< bands that were rendered, in whole or in part, for nothing
   double predicted_left = 0;  ///< predicted over true remaining time, after a quarter of `seconds`
-  std::string broken;         ///< a broken invariant, or that the job did not end; empty: neither
+  /// Says which invariant was broken, or that the job did not end; empty: neither.
+  std::string broken;
 };
 
+/// Renders the job on the farm in virtual time.
 BenchResult run_bench(const BenchFarm& farm);
 
 }  // namespace bandsaw::coordinator::sim

@@ -30,7 +30,8 @@ void SimCoordinator::start() {
   ++epoch_number_;
   SchedulerOptions options = test_options();
   options.epoch = epoch();
-  options.progress_timeout_s = 8;  // short, so that bands that hang are revoked in the storm
+  // The timeout is short, so that bands that hang are revoked while things still fail (kStorm).
+  options.progress_timeout_s = 8;
   options.audit_share = audit_share;
   options.browser_audit_share = browser_audit_share;
   options.browsers = browsers;
@@ -40,7 +41,7 @@ void SimCoordinator::start() {
     note(record);
   }
   if (chance_.happens(0.3)) {
-    journal_ = scheduler_->snapshot();  // as the compaction of a long journal
+    journal_ = scheduler_->snapshot();  // as when a long journal is compacted
   }
   for (auto& [id, disk] : disk_) {
     disk.stored = {};

@@ -39,23 +39,24 @@ class SimCoordinator {
   std::uint64_t epoch_number() const { return epoch_number_; }
   std::string epoch() const { return std::to_string(epoch_number_); }
 
-  /// Opens a session with a worker, to which `link` sends. MUST be up.
+  /// Opens a session with a worker. `link` sends actions to it. The coordinator MUST be up.
   SessionId open(ToWorker link);
   /// Gives an input to the scheduler; ignored while the coordinator is down.
   void input(const Input& input);
-  /// Takes a band of a worker. MUST be up. `reply` is called at once or later; if the coordinator
-  /// crashes before, it is not called.
+  /// Takes a band of a worker. The coordinator MUST be up. `reply` is called at once or later. It
+  /// is not called if the coordinator crashes before.
   void put_band(const input::BandStored& band, std::function<void(PutOutcome)> reply);
   /// Lets all writes of bands and results fail for this time.
   void fill_disk(double seconds);
-  /// Damages some, the last or all records in the band log of a random job. Either the film finds
-  /// the damage while the coordinator runs, or the next start does.
+  /// Damages the band log of a random job: random records, all records, or all records from a
+  /// random one on. The damage is found by the film while the coordinator runs, or at the next
+  /// start.
   void damage_log();
 
   /// Returns true if the coordinator is up and each of its jobs is final.
   bool all_final() const;
   std::uint64_t package_bytes(JobId job) { return disk_[job].spec.package_bytes; }
-  /// Sets `broken`, unless it is set.
+  /// Sets `broken` to `what` with the time and the epoch, unless `broken` is set already.
   void fail(const std::string& what);
   Scheduler& scheduler() { return *scheduler_; }
 
@@ -65,13 +66,15 @@ class SimCoordinator {
   std::uint64_t damages = 0;               ///< damaged logs that a film found
   std::map<JobId, std::uint64_t> results;  ///< samples per pixel of each finished image
   double time_skew = 0;  ///< seconds that the scheduler's clock is ahead of the virtual time
+  // Options of the scheduler (SchedulerOptions), from the next start on.
   double audit_share = 0;
   double browser_audit_share = 0.1;
   Browsers browsers = Browsers::kAlso;
-  /// Requires that images have no wrong row. This holds only if every band is audited and machines
-  /// that are right stay connected until the end.
+  /// Requires that no image has a wrong row. If some machines return wrong pixels, this can be
+  /// required only if all their bands are audited and machines that return right pixels stay
+  /// connected until the end.
   bool must_be_right = false;
-  std::set<std::string> quarantined;  ///< names, in all epochs
+  std::set<std::string> quarantined;  ///< names of workers that were quarantined in any epoch
   bool tear_steps = false;            ///< a crash may keep a part of a step's records
 
  private:
@@ -102,20 +105,31 @@ class SimCoordinator {
 
   /// Checks a step and commits it later; `then` is called after its actions.
   void take(Step step, std::function<void()> then = {});
+  /// Adds the records of the oldest waiting step to the journal, and performs its actions.
   void commit();
+  /// `band`: the band that the action's step stored, if any.
   void perform(const Action& action, const std::optional<input::BandStored>& band);
+  /// Fails if a row of the lease is stored already. Audits and leases in `held` are exempt.
   void check_lease(const action::Lease& lease, const std::set<LeaseId>& held);
+  /// Gives a band to the scheduler, to be stored or compared. `then` is called after the step's
+  /// actions.
   void take_stored(const input::BandStored& band, std::function<void()> then);
   /// Calls `what` after this time, unless the coordinator has crashed.
   void after(double seconds, std::function<void()> what);
-  /// Runs the calls of the film late but in order, as on one thread.
+  /// Calls `what` later, after all earlier calls that were given to on_film, as on one thread.
   void on_film(std::function<void()> what);
   void write_band(input::BandStored band, std::function<void(PutOutcome)> reply);
   void add_to_film(JobId job, const input::BandStored& band, const std::vector<RowRange>& rows);
+  /// Reports to the scheduler each pass whose samples are all in the film.
   void tell_passes(JobId job);
+  /// Removes the damaged records from the film, and reports them to the scheduler later.
   void find_damage(JobId job, const std::vector<Added>& records);
+  /// Gives a report of damaged bands to the scheduler. The bands that it declares lost are no
+  /// longer stored.
   void take_damaged(const input::BandsDamaged& damaged);
+  /// Writes the image, as soon as the film has all its samples, and checks it.
   void write_result(const action::WriteResult& write);
+  /// Keeps the parts of a record that the simulation needs: jobs, quarantines, ends of passes.
   void note(const Record& record);
   void tick();
 
@@ -130,8 +144,8 @@ class SimCoordinator {
   std::set<JobId> writing_;  ///< jobs whose results were requested
   double film_at_ = 0;       ///< when the film will have finished the calls it was given
   double disk_full_until_ = 0;
-  std::set<LeaseId> held_;                 ///< leases that the Hello of this step names
-  std::optional<input::BandStored> band_;  ///< band that this step stores
+  std::set<LeaseId> held_;                 ///< leases that the Hello of the present step names
+  std::optional<input::BandStored> band_;  ///< band that the present step stores
 
   // Survives a crash.
   std::vector<Record> journal_;

@@ -19,7 +19,7 @@ namespace bandsaw::coordinator::sim {
 class SimFilm {
  public:
   /// Stores these rows of the band. Returns false, and changes nothing, if some of their samples
-  /// are stored already.
+  /// are stored already. Rows of a process that was retracted are not stored; this is no error.
   bool add(const input::BandStored& band, const RowRange& rows) {
     if (any_of(band.band.samples, rows)) {
       return false;
@@ -35,7 +35,8 @@ class SimFilm {
     return true;
   }
 
-  /// Removes all rows that the process rendered, and ignores those that are added later.
+  /// Removes all rows that the process rendered. Rows of the process that are added later are
+  /// ignored.
   void retract(std::uint64_t process) {
     void_.insert(process);
     for (auto& [row, there] : rows_) {
@@ -43,7 +44,7 @@ class SimFilm {
     }
   }
 
-  /// Removes the rows of this band, as far as the process rendered them.
+  /// Removes those rows of this band that the process rendered.
   void lose(const Band& band, std::uint64_t process) {
     for (std::uint32_t row = band.rows.first; row < band.rows.last; ++row) {
       if (const auto part = rows_[row].find(band.samples);
@@ -91,8 +92,8 @@ class SimFilm {
     return last;
   }
 
-  /// Returns a row that has a wrong digest in samples [0, end): one that is not honest(samples,
-  /// row). std::nullopt: all are right.
+  /// Returns a row with a wrong digest: one of its sample ranges that begin before `end` has a
+  /// digest other than honest(samples, row). std::nullopt: all digests are right.
   template <class Honest>
   std::optional<std::uint32_t> wrong_row(std::uint64_t end, Honest honest) const {
     for (const auto& [row, there] : rows_) {
@@ -106,6 +107,7 @@ class SimFilm {
   }
 
  private:
+  /// The samples of one range in one row.
   struct Part {
     std::uint64_t process = 0;
     std::uint64_t digest = 0;

@@ -17,6 +17,7 @@ class Chance {
  public:
   explicit Chance(std::uint64_t seed) : state_(seed * kSplitMixIncrement + 1) {}
   std::uint64_t bits() { return split_mix(state_ += kSplitMixIncrement); }
+  /// Returns a number in [0, 1).
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double between(double low, double high) { return low + (high - low) * uniform(); }
   /// Returns a number in [low, high) that is uniform in the logarithm; low > 0.

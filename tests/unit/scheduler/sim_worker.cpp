@@ -270,7 +270,7 @@ void SimWorker::send(const input::BandStored& band, LeaseId id) {
     later(chance_.between(0.001, 0.05), [this, id] { drop(id); });
   };
   if (nature_.browser && !coordinator_.scheduler().is_browser(band.instance)) {
-    reply(PutOutcome::kTryAgain);  // as SchedulerThread::put_band
+    reply(PutOutcome::kTryAgain);  // SchedulerThread::put_band refuses the band in this case, too
   } else {
     coordinator_.put_band(band, reply);
   }

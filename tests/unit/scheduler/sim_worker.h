@@ -23,7 +23,7 @@ struct Nature {
   double hangs = 0;                ///< share of its bands that it renders until they are revoked
   double lies = 0;                 ///< share of its rows that have wrong pixels
   double loses = 0.05;             ///< share of messages about bands that are lost, either way
-  bool browser = false;            ///< it is a tab; a new process is the page loaded again
+  bool browser = false;            ///< it is a tab; each new process is a reload of the page
   std::uint64_t memory_bytes = 0;  ///< for scenes; 0: no limit
   /// The process crashes at the end of each band of the job `dies_of` that has the row
   /// `dies_at_row`, and is restarted. 0: it never crashes by itself.
@@ -54,7 +54,7 @@ class SimWorker {
   void calm_down() { nature_.fails = nature_.hangs = nature_.lies = nature_.loses = 0; }
   bool running() const { return running_; }
 
-  std::uint64_t rendered = 0;  ///< bands, with those that failed
+  std::uint64_t rendered = 0;  ///< bands, including those that failed
   std::uint64_t failed = 0;    ///< bands
 
  private:
@@ -63,18 +63,20 @@ class SimWorker {
     SessionId id = 0;
     std::uint64_t epoch_number = 0;
     bool open = true;
-    double down_at = 0;  ///< arrival of the last message from the coordinator; the order is kept
-    double up_at = 0;    ///< the same for messages to the coordinator
+    /// Time at which the last message from the coordinator arrives. No later message arrives before
+    /// it.
+    double down_at = 0;
+    double up_at = 0;  ///< the same as down_at, for messages to the coordinator
   };
-  /// A lease that it holds until its result is acknowledged.
+  /// A lease, which the worker holds until the result is acknowledged.
   struct Held {
     action::Lease lease;
-    std::string epoch;      ///< of the coordinator that granted or confirmed it
+    std::string epoch;      ///< of the coordinator that granted or confirmed the lease
     bool finished = false;  ///< rendered, but not acknowledged
     std::vector<std::uint64_t> digests;
-    double render_s = 0;      ///< seconds that it takes, without the scene
+    double render_s = 0;      ///< seconds that rendering takes, without the scene
     double begun_at = -1;     ///< negative: not begun
-    double prepared_at = -1;  ///< the scene is being fetched until then
+    double prepared_at = -1;  ///< time at which the scene will have been fetched
     bool hangs = false;
   };
 
@@ -93,12 +95,17 @@ class SimWorker {
   void take(const action::Lease& lease);
   void drop(LeaseId id);
   void render();
+  /// Returns true if the lease has the row at which the process crashes (Nature).
   bool has_deadly_row(const action::Lease& lease) const;
   /// Crashes; a new process starts after a second.
   void die();
+  /// Ends a rendered band: reports a failure or uploads the result, and renders the next band.
   void finish(LeaseId id);
+  /// Sends the result of a lease, and repeats this until it is acknowledged.
   void upload(LeaseId id);
+  /// Lets a result arrive at the coordinator. The lease `id` is dropped when the reply arrives.
   void send(const input::BandStored& band, LeaseId id);
+  /// Sends a heartbeat each second. If the coordinator has crashed, the worker reconnects.
   void heartbeat();
   Held* find(LeaseId id);
 

@@ -14,8 +14,8 @@ namespace bandsaw::coordinator::sim {
 
 class SimulatedFarm {
  protected:
-  /// Seconds from the beginning in which things fail. The timeouts of the simulated coordinator, 4
-  /// to 8 s, expire several times in it.
+  /// Length of the storm, in seconds from the beginning. Things fail only in the storm. It is long
+  /// enough for the timeouts of the simulated coordinator, 4 to 8 s, to expire several times.
   static constexpr double kStorm = 40;
 
   explicit SimulatedFarm(std::uint64_t seed) : chance_(seed), coordinator_(agenda_, chance_) {}
@@ -25,8 +25,8 @@ class SimulatedFarm {
     return coordinator_.all_final() && coordinator_.scheduler().jobs(agenda_.now()).size() == jobs;
   }
 
-  /// Calls `send` now and every five seconds until 20 s after the storm, if the coordinator is up:
-  /// a crash may have lost what was sent.
+  /// Calls `send` now and every five seconds until 20 s after the storm, each time only if the
+  /// coordinator is up. The call is repeated because a crash may have lost what was sent.
   template <class Send>
   void keep_sending(Send send) {
     if (coordinator_.up()) {
@@ -43,8 +43,8 @@ class SimulatedFarm {
     keep_sending([this, job] { coordinator_.input(input::Submit{job}); });
   }
 
-  /// Runs the farm until `jobs` jobs are final and `calm_s` seconds have passed since the storm. It
-  /// ends early at the time `end`, in seconds, or as soon as something is wrong.
+  /// Runs the farm until `jobs` jobs are final and `calm_s` seconds have passed since the storm.
+  /// The run ends early at the time `end`, in seconds, or as soon as something is wrong.
   void run_until_over(std::size_t jobs, double calm_s, double end) {
     while (agenda_.now() < end && !coordinator_.broken) {
       if (!agenda_.run_next() || (agenda_.now() > kStorm + calm_s && over(jobs))) {

@@ -83,12 +83,13 @@ class Simulation : SimulatedFarm {
   }
 
  private:
-  // A farm of one slow worker renders two sequences of large frames in days.
+  // Seconds after which a run is given up. A farm of one slow worker needs days for two sequences
+  // of large frames.
   static constexpr double kEnd = 400'000;
 
   using SimulatedFarm::submit;
-  /// Submits a sequence, and sends the scenes of some of its frames. After the storm it sends those
-  /// of all frames.
+  /// Submits a sequence, and sends the scenes of some of its frames. After the storm it sends the
+  /// scenes of all frames.
   void submit(const SequenceSpec& spec) {
     keep_sending([this, spec] {
       coordinator_.input(input::SubmitSequence{spec});
@@ -110,7 +111,7 @@ class Simulation : SimulatedFarm {
     coordinator_.input(input::AddFrames{sequence, scenes});
   }
 
-  // Repeats until it was sent, because the coordinator may be down.
+  // Resumes the job. While the coordinator is down, this is tried again each second.
   void resume(JobId job) {
     if (coordinator_.up()) {
       coordinator_.input(input::Resume{job});
@@ -229,8 +230,9 @@ class Simulation : SimulatedFarm {
 
   /// Ends the storm: from now on nothing fails, and every job has to end.
   void calm_down() {
-    for (JobId job = 1; job <= 3; ++job) {  // those that `one_thing_happens` may pause
-      resume(job);                          // a pause may have been journalled and its answer lost
+    // These jobs may have been paused by `one_thing_happens`, and a crash may have lost the Resume.
+    for (JobId job = 1; job <= 3; ++job) {
+      resume(job);
     }
     if (!weather_.liars) {
       lift_quarantines();
@@ -245,8 +247,9 @@ class Simulation : SimulatedFarm {
     }
   }
 
-  /// The user replaces the memory of the wrong machines and lifts their quarantine. Repeated,
-  /// because bands that were rendered before may show that further machines were wrong.
+  /// Lifts all quarantines, as a user does who has replaced the memory of the wrong machines. This
+  /// is repeated, because bands that were rendered before may show that further machines were
+  /// wrong.
   void lift_quarantines() {
     if (coordinator_.up()) {
       for (const std::string& name : coordinator_.quarantined) {
@@ -275,6 +278,7 @@ class Simulation : SimulatedFarm {
     return "";
   }
 
+  /// Returns the outcome of a run after which `jobs` jobs must be final.
   Outcome outcome(std::size_t jobs) {
     Outcome out;
     for (const auto& worker : workers_) {
@@ -313,7 +317,8 @@ class Simulation : SimulatedFarm {
       const bool by_losses = job.state == JobState::kFailed &&
                              job.reason.find("workers were lost while they") != std::string::npos;
       if (!explained || (by_losses && !(weather_.deadly_row && job.id == 1))) {
-        out.broken = absl::StrCat("job ", job.id, " ended otherwise: ", job.reason);
+        out.broken =
+            absl::StrCat("job ", job.id, " failed, which is not expected here: ", job.reason);
       }
     }
     return out;
@@ -328,9 +333,10 @@ std::vector<JobSpec> random_jobs(std::uint64_t seed) {
   std::vector<JobSpec> jobs;
   const std::uint64_t count = chance.pick(1, 3);
   for (std::uint64_t i = 0; i < count; ++i) {
+    // Images of 64 rows or more have probe bands.
     jobs.push_back(test_job(absl::StrCat("request ", i), StopAtSamples{chance.pick(1, 200)},
                             static_cast<std::uint32_t>(chance.pick(1, 48)),
-                            static_cast<std::uint32_t>(chance.pick(1, 90))));  // with probes too
+                            static_cast<std::uint32_t>(chance.pick(1, 90))));
     const std::uint64_t rule = chance.pick(0, 3);
     if (rule == 0) {
       const double target = chance.between_log(0.01, 0.06);
@@ -452,7 +458,7 @@ TEST(Simulation, AuditedImagesAreRightWithWrongWorkers) {
     const Outcome one = run_with_liars(seed, liars);
     EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
     for (const std::string& name : one.quarantined) {
-      // A restart may find bands of a machine before it connects.
+      // The name is empty if a restart finds bands of a machine before the machine connects.
       EXPECT_TRUE(name.empty() || name == "w0" || (name == "w1" && liars == 2))
           << name << " was right, again with BANDSAW_SEED=" << seed;
     }
@@ -482,16 +488,15 @@ std::vector<JobSpec> job_with_error_target(std::uint64_t seed) {
   return {test_job("request", StopAtError{chance.between_log(0.01, 0.06), kMaxSamples}, 16, 12)};
 }
 
-/// Runs the job of this seed on a farm on which things fail. The farm has another seed than the
-/// calm one, so its workers are different.
+/// Runs the job of this seed on a farm on which things fail. This farm has another seed than
+/// the calm farm, so its workers are different.
 Outcome run_storm(std::uint64_t seed) {
   return Simulation(seed + 1'000'000, {.failures = false, .cancels = false})
       .run(job_with_error_target(seed));
 }
 
-// At these seeds, workers that were lost by chance made an earlier version blame the band that they
-// had held, although it was sound: that version blamed a band after three losses, or after four on
-// a new farm.
+// At these seeds, several workers that hold the same sound band are lost by chance. A scheduler
+// that blames a band after three lost workers, or after four on a new farm, fails the job here.
 TEST(Simulation, SeedsAtWhichAHealthyJobOnceFailed) {
   EXPECT_EQ(run_with_liars(69'113, 2).broken, "");
   EXPECT_EQ(run_storm(20'771).broken, "");

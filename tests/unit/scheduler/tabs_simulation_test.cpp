@@ -27,7 +27,7 @@ struct TabOutcome {
 struct TabWeather {
   bool liars = false;  ///< a third of the tabs lie, and all bands of tabs are audited
   Browsers browsers = Browsers::kAlso;
-  std::size_t natives = 3;
+  std::size_t natives = 3;  ///< number of native workers
 };
 
 class TabSimulation : SimulatedFarm {
@@ -63,7 +63,8 @@ class TabSimulation : SimulatedFarm {
     JobSpec job = test_job(absl::StrCat("request ", number), StopAtSamples{chance_.pick(16, 400)},
                            static_cast<std::uint32_t>(chance_.pick(8, 48)),
                            static_cast<std::uint32_t>(chance_.pick(8, 90)));
-    // Each job fits into tab 0, which has 4 GB: a scene needs four times the bytes of its package.
+    // A scene needs four times the bytes of its package. So each job fits into tab 0, which has 4
+    // GB.
     job.package_bytes = static_cast<std::uint64_t>(chance_.between_log(1e6, 9e8));
     return job;
   }
@@ -73,8 +74,8 @@ class TabSimulation : SimulatedFarm {
     return *workers_.back();
   }
 
-  // If tabs lie, native workers are never frozen, closed or disconnected: wrong pixels are certain
-  // to be found only if a native worker is connected all the time.
+  // If tabs lie, native workers are never frozen, closed or disconnected. The reason is that wrong
+  // pixels are certain to be found only if a native worker is connected all the time.
   void add_native(std::size_t number) {
     SimWorker& worker =
         add(absl::StrCat("native", number), {.samples_per_s = chance_.between_log(3'000, 30'000),
@@ -150,8 +151,8 @@ class TabSimulation : SimulatedFarm {
 
   /// Ends the storm. Half of the tabs are closed for good. The others are loaded again, so that
   /// they are new workers; they stay, and lie no more. They have to be loaded again because a
-  /// worker that has failed three bands of a job in a row gets no more of it. A job that fits only
-  /// into such a tab would wait for ever.
+  /// worker that has failed three bands of a job in a row gets no more bands of this job. A job
+  /// that fits only into such a tab would wait for ever.
   void calm_down() {
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       SimWorker& worker = *workers_[i];
@@ -167,6 +168,7 @@ class TabSimulation : SimulatedFarm {
     }
   }
 
+  /// Returns the outcome of a run after which `jobs` jobs must be done.
   TabOutcome outcome(std::size_t jobs) {
     TabOutcome out;
     out.reloads = reloads_;

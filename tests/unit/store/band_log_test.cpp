@@ -1,4 +1,5 @@
-// The log of a job's bands on disk: truncation and damage lose only the records that they hit.
+// Tests the log of a job's bands on disk. Truncation and damage lose only the records that they
+// hit.
 
 #include "coordinator/store/band_log.h"
 
@@ -11,6 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns a record of one row; the sums of its pixels depend on the row.
 BandRecord sample_band(std::uint32_t row, std::uint32_t width = 4) {
   BandRecord record{.package_digest = std::string(64, 'c'),
                     .settings = {.width = width, .height = 8, .max_depth = 3, .seed = 9},
@@ -108,7 +110,7 @@ TEST_F(BandLogTest, AChangedByteLosesOnlyItsOwnRecord) {
 }
 
 // A record with 4 pixels is read at once. One with 4,000 pixels has 96 kB of sums and is read
-// twice: first its head, which has its size, then the whole record.
+// twice: first its head, which contains the size of the record, then the whole record.
 TEST_F(BandLogTest, ReadsRecordsOfAnySize) {
   {
     absl::StatusOr<BandLog> log = open();
@@ -132,10 +134,12 @@ TEST_F(BandLogTest, ReadsRecordsOfAnySize) {
   ASSERT_TRUE(open().ok());
   EXPECT_EQ(rows_, (Rows{0, 2}));
   ASSERT_TRUE(open().ok());
-  EXPECT_EQ(report_.damaged_bytes, size) << "the end was cut off";
+  EXPECT_EQ(report_.damaged_bytes, size)
+      << "the first opening must have removed the truncated record at the end";
 }
 
-// The search reads 1 MiB at a time. The next record may begin in the last bytes of such a piece.
+// The search for the next record reads 1 MiB at a time. The next record may begin in the last bytes
+// of such a piece.
 TEST_F(BandLogTest, FindsTheRecordAfterManyDamagedBytes) {
   const std::string whole = make(2);
   const std::size_t one = whole.size() / 2;
@@ -152,7 +156,7 @@ TEST_F(BandLogTest, AFullDiskLeavesTheLogUnchanged) {
   absl::StatusOr<BandLog> log = open();
   ASSERT_TRUE(log.ok());
   {
-    const test::FullDisk full(whole.size() + 50);  // room for a part of the next
+    const test::FullDisk full(whole.size() + 50);  // space for a part of the next record
     EXPECT_EQ(log->append(sample_band(2)).status().code(), absl::StatusCode::kResourceExhausted);
     EXPECT_EQ(log->append(sample_band(3)).status().code(), absl::StatusCode::kResourceExhausted);
   }

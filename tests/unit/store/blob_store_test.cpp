@@ -1,4 +1,4 @@
-// The blobs on the coordinator's disk: uploads, interrupted ones, damage, and a full disk.
+// The blobs on the coordinator's disk: uploads, interrupted uploads, damage, and a full disk.
 
 #include "coordinator/store/blob_store.h"
 
@@ -37,8 +37,9 @@ class BlobStoreTest : public testing::Test {
     return writer->commit();
   }
 
-  /// Long enough that half of it is kept as a partial upload.
+  /// Returns a text that is long enough that half of it is kept as a partial upload.
   static std::string long_text(char fill) { return std::string(2 * PartialBlobs::kMinBytes, fill); }
+  /// Uploads the first half of a blob, and then gives the upload up.
   static void leave_half(BlobStore& store, const std::string& text) {
     absl::StatusOr<BlobStore::Writer> writer = store.write(wire::sha256(text), text.size());
     ASSERT_TRUE(writer.ok()) << writer.status();
@@ -73,7 +74,7 @@ TEST_F(BlobStoreTest, ReturnsStoredBlobsAlsoAfterARestart) {
       const auto store = open();
       EXPECT_FALSE(store->has(digest));
       ASSERT_TRUE(put(*store, text).ok());
-      ASSERT_TRUE(put(*store, text).ok()) << "again is fine";
+      ASSERT_TRUE(put(*store, text).ok()) << "a second upload of the same blob must succeed";
       EXPECT_TRUE(store->has(digest));
       EXPECT_EQ(text_of(*store, digest), text);
     }
@@ -123,7 +124,8 @@ TEST_F(BlobStoreTest, AnInterruptedUploadContinuesAfterARestart) {
   EXPECT_FALSE(store->has(digest));
   auto writer = store->write(digest, text.size(), text.size() / 2);
   ASSERT_TRUE(writer.ok()) << writer.status();
-  EXPECT_EQ(store->partial(digest), 0u) << "somebody sends it";
+  EXPECT_EQ(store->partial(digest), 0u)
+      << "a part must not be offered while an upload continues it";
   ASSERT_TRUE(writer->append(bytes_of(text.substr(text.size() / 2))).ok());
   ASSERT_TRUE(writer->commit().ok());
   EXPECT_EQ(text_of(*store, digest), text);
@@ -178,7 +180,7 @@ TEST_F(BlobStoreTest, PartsAreLimitedInNumberAndAge) {
   EXPECT_EQ(store->partial(wire::sha256(texts.front())), 0u);
   EXPECT_GT(store->partial(wire::sha256(texts.back())), 0u);
   const double now = static_cast<double>(std::time(nullptr));
-  store->remove_partials(now, 60);  // those older than 60 s
+  store->remove_partials(now, 60);  // removes parts older than 60 s
   EXPECT_EQ(files(), wire::kPartialBlobs);
   store->remove_partials(now + 100, 60);
   EXPECT_EQ(files(), 0u);
@@ -191,7 +193,7 @@ TEST_F(BlobStoreTest, ADamagedFileIsDataLossOnceAndCanBeSentAgain) {
   write_all(file_of(digest), "some geometrY");
   const auto store = open();
   EXPECT_EQ(store->get(digest).status().code(), absl::StatusCode::kDataLoss);
-  EXPECT_FALSE(store->has(digest)) << "so that its sender is asked for it";
+  EXPECT_FALSE(store->has(digest)) << "it must be missing, so that its sender is asked for it";
   ASSERT_TRUE(put(*store, text).ok());
   EXPECT_EQ(text_of(*store, digest), text);
 }

@@ -72,7 +72,7 @@ TEST(Reserve, IsHeldReleasedAndHeldAgain) {
   struct stat info {};
   ASSERT_EQ(::stat((temp / "reserve").c_str(), &info), 0);
   EXPECT_GE(static_cast<std::uint64_t>(info.st_blocks) * 512, Reserve::kBytes);
-  EXPECT_TRUE(Reserve(temp / "reserve").hold().ok()) << "in the next life";
+  EXPECT_TRUE(Reserve(temp / "reserve").hold().ok()) << "a file that exists must be accepted";
   EXPECT_TRUE(reserve.release());
   EXPECT_FALSE(file_exists(temp / "reserve"));
   {
@@ -91,7 +91,7 @@ TEST(DataFolder, TheProbeTestsWhetherTheDiskTakesData) {
     EXPECT_FALSE(probe_disk(temp.path()).ok());
   }
   EXPECT_TRUE(probe_disk(temp.path()).ok());
-  EXPECT_EQ(::rmdir(temp.path().c_str()), 0) << "nothing is left behind";
+  EXPECT_EQ(::rmdir(temp.path().c_str()), 0) << "the probe must leave no file";
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(RecordText, VersionsWithoutTheNewestFieldsAreRead) {
       EXPECT_FALSE(joined->browser);
     }
     if (const auto* added = std::get_if<record::JobAdded>(&*back)) {
-      EXPECT_EQ(added->spec.package_bytes, 0u) << "unknown";
+      EXPECT_EQ(added->spec.package_bytes, 0u) << "an unknown size is 0";
     }
     if (const auto* summary = std::get_if<record::JobSummary>(&*back)) {
       EXPECT_EQ(summary->counters.techniques, 0u);

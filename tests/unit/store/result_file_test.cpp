@@ -30,7 +30,7 @@ class ResultFileTest : public testing::Test {
 TEST_F(ResultFileTest, ReadsBackTheSamePixels) {
   const Image image = sample_image();
   ASSERT_TRUE(write_result(image, folder_.path(), path_).ok());
-  ASSERT_TRUE(write_result(image, folder_.path(), path_).ok()) << "again is fine";
+  ASSERT_TRUE(write_result(image, folder_.path(), path_).ok()) << "writing again must succeed";
   const absl::StatusOr<StoredResult> result = read_result(path_);
   ASSERT_TRUE(result.ok()) << result.status();
   EXPECT_EQ(result->image.width, 3u);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Sample data for tests of the journal: one record of every kind, with values that are difficult to
-// write as text, such as control characters and the limits of number types.
+// Sample data for tests of the journal: at least one record of every kind. Their values are
+// difficult to write as text, such as control characters and the limits of number types.
 
 #include <limits>
 #include <vector>
@@ -29,6 +29,7 @@ inline SequenceSpec sample_sequence() {
           .frames = {-1'000'000'000, -3, -2, 0, 7, 9, 11, 1'000'000'000}};
 }
 
+/// Returns the job of frame -2 of the sequence with id 4.
 inline JobSpec sample_frame_job() {
   JobSpec job = sample_spec(StopAtSamples{.samples = 1});
   job.sequence = 4;

@@ -1,5 +1,5 @@
-// Temporary folders: only their owner can read them, they are removed with their contents, and an
-// error names the folder in which none can be made.
+// Temporary folders: only their owner can read them, and they are removed with their contents. If
+// no folder can be made, the error names the parent folder.
 
 #include "coordinator/store/scratch_folder.h"
 

@@ -1,4 +1,5 @@
-// The journal in SQLite: order, damage, older schemas, a full disk, and a kill in the middle.
+// The journal in SQLite: order, damage, older schemas, a full disk, and a process that is killed
+// while it appends.
 
 #include "coordinator/store/sqlite_journal.h"
 
@@ -29,6 +30,7 @@ std::string text_of(const Record& record) {
   return absl::StrCat(text.kind, "\n", text.fields);
 }
 
+/// Returns the texts of all records of the journal, in order.
 Texts replayed(Journal& journal) {
   Texts all;
   const absl::Status status = journal.replay([&](const Record& r) { all.push_back(text_of(r)); });
@@ -132,6 +134,7 @@ TEST_F(SqliteJournalTest, AnOldSchemaIsReadOnAFullDiskAndUpgradedLater) {
   const std::vector<Record> records = sample_records();
   ASSERT_TRUE(open()->append(records).ok());
   run_sql(path_, "PRAGMA user_version = 1");
+  // Returns the version of the schema in the file.
   const auto version = [this] {
     std::string found;
     sqlite3* database = nullptr;
@@ -186,7 +189,8 @@ TEST_F(SqliteJournalTest, AFullDiskLosesNothingAndTheSameAppendWorksLater) {
 }
 
 /// Starts a child process that appends without end. The child writes the number of each finished
-/// append to a pipe. Sets `acknowledged` to the reading end of the pipe.
+/// append to a pipe. Sets `acknowledged` to the reading end of the pipe. Returns the child's
+/// process id.
 pid_t start_appender(const std::string& path, int& acknowledged) {
   int ends[2];
   EXPECT_EQ(::pipe(ends), 0);
@@ -231,7 +235,7 @@ TEST_F(SqliteJournalTest, WhatWasAcknowledgedSurvivesAKillInTheMiddleOfAppends) 
                     .ok());
     ASSERT_GT(count.size(), last);
     for (std::uint64_t i = 0; i < count.size(); ++i) {
-      EXPECT_EQ(count[i], 1 + i % 5) << "an append is there whole or not at all";
+      EXPECT_EQ(count[i], 1 + i % 5) << "an append must be stored wholly or not at all";
     }
   }
 }

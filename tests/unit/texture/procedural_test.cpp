@@ -23,7 +23,7 @@ constexpr Rgb kBlack{0, 0, 0};
 
 TextureId id(std::uint32_t i) { return TextureId{i}; }
 
-/// Evaluates the last of the textures.
+/// Evaluates the last of the textures at a point. at_uv() evaluates it at texture coordinates.
 Rgb at_point(const Textures& textures, const Vec3& p) {
   return evaluate(textures, id(static_cast<std::uint32_t>(textures.size() - 1)),
                   {.position = p, .object_position = p});
@@ -32,6 +32,7 @@ Rgb at_uv(const Textures& textures, double u, double v) {
   return evaluate(textures, id(static_cast<std::uint32_t>(textures.size() - 1)), {.uv = {u, v}});
 }
 
+/// Returns a white texture, a black texture, and a checker of both, whose even cells are white.
 Textures checker(CheckerTexture::Mapping mapping, const Vec3& size) {
   CheckerTexture checker{.even = id(0), .odd = id(1)};
   checker.mapping = mapping;
@@ -93,14 +94,15 @@ TEST(Noise, IsZeroAtLatticePointsAndWithinItsBound) {
     ASSERT_EQ(noise({std::floor(p.x), std::floor(p.y), std::floor(p.z)}), 0);
     const double rough = turbulence(p, 7);
     ASSERT_GE(rough, 0);
-    ASSERT_LE(rough, 1.74);  // twice as much: octaves have half the size of the one before
+    // The bound is twice that of noise(), because each octave is half as large as the one before.
+    ASSERT_LE(rough, 1.74);
   }
 }
 
 TEST(Noise, HasMeanZeroAndTheVarianceOfUnitGradients) {
-  // At the middle of a cell all weights are 1/8, and each product of a gradient with its offset has
-  // variance |offset|^2 / 3 = 1/4, so the sum has variance 1/8 1/4. With 2^14 cells, the tolerances
-  // are 5 standard errors; false-alarm rate 1e-6.
+  // At the middle of a cell all 8 weights are 1/8. Each product of a gradient with its offset has
+  // the variance |offset|^2 / 3 = 1/4. So the weighted sum has the variance 8 (1/8)^2 1/4 = 1/32.
+  // There are 2^14 cells. The tolerances are 5 standard errors; the false-alarm rate is 1e-6.
   constexpr int kSide = 16;
   double sum = 0;
   double squares = 0;
@@ -135,7 +137,7 @@ TEST(Noise, TakesAnyPoint) {
   }
 }
 
-// The recorded hash: another value means that images with noise have changed.
+// The hash is a recorded one. Another value means that images with noise have changed.
 TEST(Noise, KeepsItsBits) {
   Hash64 hash;
   for (int i = 0; i < 1000; ++i) {
@@ -209,12 +211,13 @@ TEST(Ramp, AppliesToATextureAndToEachCoordinate) {
   EXPECT_EQ(evaluate(Textures{ramp}, id(0), at).g, 8);
 }
 
-// Stops are doubles, and greys are floats. The grey nearest to a stop has its colour, as a constant
-// and as a texel of 8 bits; the next smaller float does not.
+// Stops are doubles, and greys are floats. The grey nearest to a stop gets the colour of the stop,
+// both as a constant and as a texel of 8 bits. The next smaller float does not get it.
 TEST(Ramp, StepsAtAGreyThatEqualsTheStop) {
   RampTexture ramp;
   ramp.texture = id(0);
   ramp.steps = true;
+  // Returns true if the ramp gives `grey` the colour of the stop.
   const auto steps_at = [&](double stop, const Texture& grey) {
     ramp.stops = {{-1, {1, 0, 0}}, {stop, {0, 1, 0}}};
     return at_uv({grey, ramp}, 0.5, 0.5) == Rgb{0, 1, 0};
@@ -330,6 +333,7 @@ TEST(Textures, CountTheirRepetitions) {
   EXPECT_EQ(along({.position = {8, 0, 0}})[6], 2);
 }
 
+/// Returns the message of the first fault in the textures; empty: none.
 std::string fault(const Textures& textures) {
   std::vector<std::uint64_t> cost;
   for (std::size_t i = 0; i < textures.size(); ++i) {

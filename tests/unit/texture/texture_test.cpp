@@ -39,6 +39,8 @@ Texture counted(std::uint32_t width, std::uint32_t height, Wrap wrap, Filter fil
   return image;
 }
 
+/// Returns an image whose texels have the codes `values`, three for each texel, in rows of `width`
+/// texels.
 Texture codes(Format format, std::vector<std::uint8_t> values, std::uint32_t width) {
   ImageTexture image;
   image.width = width;
@@ -183,8 +185,10 @@ TEST(Texture, MayWrapDifferentlyInUAndV) {
 }
 
 TEST(Texture, TX7HasNoSeamOnASphere) {
-  // A gradient that closes in u and runs from pole to pole in v, 64 x 32 texels; points close
-  // together on either side of the seam and around the poles differ by less than two texel steps.
+  // The image has 64 x 32 texels. Its first and last columns are equal, and its values grow in v
+  // from pole to pole. Points on either side of the seam that are close together must differ by
+  // less than two texel steps. Close to a pole, the value must be within two texel steps of the
+  // texel in the outermost row that lies in the direction of the point.
   ImageTexture image;
   image.width = 64;
   image.height = 32;

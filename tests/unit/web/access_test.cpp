@@ -87,7 +87,7 @@ TEST_F(AccessTest, ManyWrongSecretsAreLimited) {
     ASSERT_TRUE(absl::IsUnauthenticated(access.log_in(request, "wrong", reply)));
   }
   EXPECT_TRUE(absl::IsResourceExhausted(access.log_in(request, "wrong", reply)));
-  // Many users may share this address.
+  // The right secret is still accepted, because many users may share this address.
   EXPECT_TRUE(access.log_in(request, identity_.farm_secret, reply).ok());
 }
 
@@ -133,7 +133,8 @@ TEST_F(AccessTest, ANewSecretInvalidatesLogins) {
   EXPECT_EQ(status_of(get("/api/farm")), 401);
 }
 
-// An upload was admitted by an earlier login; the new secret ends it without a response.
+// The upload was admitted by a login with the old secret. The new secret of the users ends the
+// upload without a response.
 TEST_F(AccessTest, ANewSecretClosesConnections) {
   log_in();
   const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -154,7 +155,8 @@ TEST_F(AccessTest, ANewSecretClosesConnections) {
   renewed.worker_secret = "another22characters000";
   dashboard_->renew(renewed);
   char answer = 0;
-  EXPECT_EQ(recv(one, &answer, 1, MSG_DONTWAIT), -1) << "the workers' secret is not its own";
+  EXPECT_EQ(recv(one, &answer, 1, MSG_DONTWAIT), -1)
+      << "a new secret of the workers must not close the connection";
   renewed.farm_secret = "another22characters000";
   dashboard_->renew(renewed);
   EXPECT_EQ(recv(one, &answer, 1, 0), 0) << answer;
@@ -162,7 +164,8 @@ TEST_F(AccessTest, ANewSecretClosesConnections) {
 }
 
 // Each half-open connection occupies a thread of the server until its deadline. The server has 32
-// threads; 40 such connections would occupy all, if those of one address were not limited.
+// threads; 40 such connections would occupy all of them if the number of connections of one
+// address were not limited.
 TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   std::vector<int> sockets;
   sockaddr_in address{};
@@ -186,7 +189,7 @@ TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   }
 }
 
-// Without a login the response is sent before the body, which is never read.
+// Without a login, the server responds to the head of the request, and never reads the body.
 TEST_F(AccessTest, ABodyForAnUnknownPathIsNotRead) {
   for (const std::string path : {"/nowhere", "/%0A"}) {
     const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);

@@ -1,6 +1,6 @@
 // Denoised ("clean") pictures of finished jobs, for which the farm first renders the guides: images
-// of the albedo and of the normals of the surfaces. The guides of job n are here jobs n + 1 and
-// n + 2, with a quarter of its 64 samples.
+// of the albedo and of the normals of the surfaces. In these tests, the guides of job n are the
+// jobs n + 1 and n + 2. Each has 16 samples, a quarter of the 64 samples of job n.
 
 #include "coordinator/web/clean_pictures.h"
 
@@ -38,9 +38,9 @@ TEST_F(CleanPicturesTest, AreMadeWhenTheFarmHasRenderedTheGuides) {
   EXPECT_EQ(state(job).state(), "none");
   EXPECT_EQ(post(path(job))->status, 409);  // not finished
   finish(job, 24, 16);
-  EXPECT_EQ(get(path(job, ".png"))->status, 409);  // not asked for
+  EXPECT_EQ(get(path(job, ".png"))->status, 409);  // the picture was not requested
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
-  EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");  // the same jobs
+  EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");  // starts no more jobs
   EXPECT_EQ(state(job).state(), "guides");
   finish(job + 1, 24, 16, 16);
   EXPECT_EQ(state(job).fraction(), 0.5);
@@ -55,7 +55,7 @@ TEST_F(CleanPicturesTest, AreMadeWhenTheFarmHasRenderedTheGuides) {
   EXPECT_THAT(exr->body, HasSubstr("raw.R"));
   EXPECT_THAT(exr->body, HasSubstr("error.Z"));
   EXPECT_THAT(get(path(job, ".pfm"))->body, StartsWith("PF\n24 16\n"));
-  // The guides are no jobs of their own on the page.
+  // The page does not list the guides as jobs.
   const auto overview = message<web::Overview>(get("/api/farm"));
   ASSERT_EQ(overview.job_size(), 1);
   EXPECT_EQ(overview.job(0).status().job(), job);
@@ -71,7 +71,7 @@ TEST_F(CleanPicturesTest, SayWhyTheyFailedAndAreTriedAgain) {
   EXPECT_THAT(failed.reason(), HasSubstr("cancelled"));
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
   finish(job + 1, 24, 16, 16);
-  finish(job + 3, 24, 16, 16);  // instead of the cancelled one
+  finish(job + 3, 24, 16, 16);  // replaces the cancelled guide
   EXPECT_EQ(wait_until_filtered(job).state(), "ready");
 }
 

@@ -1,5 +1,5 @@
-// One exchange of HTTP over a socket: the bytes of a request, and those of its response. Covers the
-// parts of HTTP that browsers and attackers use.
+// One exchange of HTTP over a socket: the bytes of a request, and the bytes of the response. The
+// tests cover the parts of HTTP that browsers and attackers use.
 
 #include "coordinator/web/exchange.h"
 
@@ -56,6 +56,7 @@ class ExchangeTest : public ::testing::Test {
     }
     return all;
   }
+  /// Serves one request with echo(), and closes the connection.
   void serve(std::chrono::milliseconds timeout = Connection::kTimeout) const {
     Connection connection(sockets_[1], nullptr, timeout);
     exchange(connection, &echo, {{"X-Every", "answer"}});
@@ -111,7 +112,7 @@ TEST_F(ExchangeTest, ABodyOfWholeBuffersEnds) {
   std::thread server([this] { serve(); });
   std::thread sender([&] {
     say("POST / HTTP/1.1\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n");
-    say(body);  // and the connection stays open
+    say(body);  // the connection stays open, so only the length shows the end of the body
   });
   const std::string all = hear();
   sender.join();
@@ -165,8 +166,8 @@ TEST_F(ExchangeTest, ASilentClientIsDisconnected) {
   EXPECT_EQ(hear(), "");
 }
 
-// Each byte arrives in time, but the whole request does not: without an overall deadline this
-// hangs.
+// Each byte arrives in time, but the whole request does not. Without an overall deadline the server
+// would wait for ever.
 TEST_F(ExchangeTest, ASlowSenderIsDisconnected) {
   std::thread client([this] {
     for (char next = 'G'; send(this->client(), &next, 1, MSG_NOSIGNAL) == 1; next = 'x') {
@@ -180,7 +181,8 @@ TEST_F(ExchangeTest, ASlowSenderIsDisconnected) {
 // The response is larger than the system's buffers for a client that does not read.
 TEST_F(ExchangeTest, AClientThatDoesNotReadIsDisconnected) {
   say("GET / HTTP/1.1\r\n\r\n");
-  const int small = 1;  // a small buffer: each byte that the system accepts gives time for the next
+  // The send buffer is small, because each byte that the system accepts extends the deadline.
+  const int small = 1;
   setsockopt(serving(), SOL_SOCKET, SO_SNDBUF, &small, sizeof(small));
   Connection connection(serving(), nullptr, std::chrono::milliseconds(50));
   exchange(connection,

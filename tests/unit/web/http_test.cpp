@@ -21,7 +21,7 @@ TEST(HttpTarget, IsDecoded) {
   EXPECT_EQ(request.parameter("name"), "x&y z");
   EXPECT_EQ(request.parameter("empty"), "");
   EXPECT_EQ(request.parameters.size(), 4u);
-  EXPECT_EQ(request.parameter("Name"), "") << "case matters";
+  EXPECT_EQ(request.parameter("Name"), "") << "the case of a parameter's name must matter";
   parse_target("/%", request);
   EXPECT_EQ(request.path, "/%");
   EXPECT_TRUE(request.parameters.empty());
@@ -70,7 +70,7 @@ TEST(HttpRange, ARangeBeyondTheEndIsRefused) {
     EXPECT_EQ(reply.headers[0], HttpField("Content-Range", "bytes */10"));
   }
   for (const std::string range : {"bytes=0-", "bytes=-1", "bytes=0-0"}) {
-    EXPECT_EQ(ranged(range, text_reply("", "text")).status, 416) << range << " of nothing";
+    EXPECT_EQ(ranged(range, text_reply("", "text")).status, 416) << range << " of an empty body";
   }
 }
 

@@ -86,7 +86,7 @@ TEST_F(RoutesTest, ARangeReturnsNoMoreBytesThanTheFileHas) {
     EXPECT_TRUE(!got || got->body.size() <= size) << range;
   }
   headers_.clear();
-  EXPECT_EQ(get("/bandsaw-worker")->body.size(), size) << "it is still there";
+  EXPECT_EQ(get("/bandsaw-worker")->body.size(), size) << "the file must still be served";
 }
 
 TEST_F(RoutesTest, ADroppedSceneBecomesAJob) {
@@ -159,6 +159,7 @@ TEST_F(RoutesTest, AnImageThatFindsNoMemoryIsRefused) {
   const std::string path = "/api/jobs/" + std::to_string(job);
   const std::int64_t all = engine_->images().left();
   {
+    // Holds all memory for images, as many downloads would.
     const auto others = engine_->images().take(static_cast<std::uint64_t>(all));
     ASSERT_TRUE(others);
     for (const char* file : {"/image.png", "/image.exr", "/preview.png", "/report.json"}) {
@@ -170,13 +171,14 @@ TEST_F(RoutesTest, AnImageThatFindsNoMemoryIsRefused) {
   for (const char* file : {"/image.png", "/image.exr", "/report.json"}) {
     EXPECT_EQ(get(path + file)->status, 200) << file;
   }
-  while (engine_->images().left() != all) {  // until the server has closed the connection
+  // The server gives the memory back when it has closed the connection.
+  while (engine_->images().left() != all) {
     std::this_thread::yield();
   }
   const auto preview = get(path + "/preview.png");
   EXPECT_EQ(preview->status, 200);
   EXPECT_EQ(engine_->images().left(), all - static_cast<std::int64_t>(preview->body.size()))
-      << "it is kept for the next who asks";
+      << "the preview must stay in memory for the next request";
 }
 
 TEST_F(RoutesTest, ADoneJobHasNoOlderPicture) {
@@ -191,12 +193,14 @@ TEST_F(RoutesTest, ADoneJobHasNoOlderPicture) {
     const std::int64_t left = engine_->images().left();
     const auto others = engine_->images().take(static_cast<std::uint64_t>(left));
     ASSERT_TRUE(others);
-    EXPECT_EQ(get(path + "64")->status, 429) << "a picture of a part is no answer";
+    EXPECT_EQ(get(path + "64")->status, 429)
+        << "a picture of a part of the samples must not be sent";
   }
   const auto done = get(path + "64");
   EXPECT_EQ(done->status, 200);
   EXPECT_NE(done->body, early->body);
-  EXPECT_EQ(done->body, get(path + "500")->body) << "which is not kept yet";
+  EXPECT_EQ(done->body, get(path + "500")->body)
+      << "a picture that was not requested before must be the same";
 }
 
 TEST_F(RoutesTest, TheGalleryRendersItsScenes) {

@@ -54,7 +54,7 @@ TEST_F(SceneFilesTest, AFileIsMissingUntilItIsSent) {
   const auto taken = message<web::FileDigests>(post("/api/files", sent(box) + sent(empty)));
   EXPECT_THAT(taken.sha256(), ElementsAre(hex_of(box), hex_of(empty)));
   EXPECT_THAT(missing({hex_of(box), hex_of(empty)}), ElementsAre());
-  EXPECT_EQ(post("/api/files", sent(box))->status, 200) << "sent again";
+  EXPECT_EQ(post("/api/files", sent(box))->status, 200) << "sending a file again must succeed";
 }
 
 TEST_F(SceneFilesTest, ASceneOfSentFilesBecomesAJob) {
@@ -77,7 +77,7 @@ TEST_F(SceneFilesTest, TheThirdSceneAtATimeMayBeSentAgain) {
   options_.import_scene = [&, read = options_.import_scene](const std::string& path,
                                                             const std::string& inside,
                                                             const std::atomic<bool>& stop) {
-    // Each import submits another scene while it runs.
+    // Each import submits another scene while it runs, so three scenes are submitted at a time.
     if (const int status = post("/api/scenes/files", body)->status; status != 200) {
       refused = status;
     }
@@ -143,7 +143,7 @@ TEST_F(SceneFilesTest, WrongScenesAreRefused) {
   EXPECT_EQ(absent->status, 409);
   EXPECT_THAT(error_of(absent), HasSubstr("send it again"));
   ASSERT_EQ(post("/api/files", sent(box) + sent("broken"))->status, 200);
-  // The last three have a backslash and the control characters 1 and 0x9b.
+  // The last three names contain a backslash and the control characters 1 and 0x9b.
   for (const std::string name : {"../box.json", "/etc/box.json", "a/../b", "..", "./b", "a//b", "",
                                  R"(a\\b)", R"(a\u0001b)", R"(a\u009bb)"}) {
     EXPECT_THAT(error_of(post("/api/scenes/files", scene(name, hex_of(box)))),
@@ -167,7 +167,7 @@ TEST_F(SceneFilesTest, OnlyUsersMaySendFiles) {
 TEST_F(SceneFilesTest, PicturesAreAvailableAsFloats) {
   const std::uint64_t job = submit_box();
   const std::string path = absl::StrCat("/api/jobs/", job);
-  EXPECT_EQ(get(path + "/preview.pfm")->status, 404) << "no pixels yet";
+  EXPECT_EQ(get(path + "/preview.pfm")->status, 404) << "the job has no pixels yet";
   finish(job, 24, 16);
   for (const std::string name : {"/preview.pfm?side=64", "/image.pfm"}) {
     const auto got = get(path + name);
@@ -178,7 +178,7 @@ TEST_F(SceneFilesTest, PicturesAreAvailableAsFloats) {
     const std::size_t pixels = std::size_t{24} * 16 * 3 * sizeof(float);
     ASSERT_GT(got->body.size(), pixels);
     std::memcpy(&first, got->body.data() + got->body.size() - pixels, sizeof(first));
-    EXPECT_EQ(first, 0.5F) << "64 samples with a sum of 32";
+    EXPECT_EQ(first, 0.5F) << "the mean of 64 samples with a sum of 32";
   }
 }
 
@@ -205,7 +205,8 @@ TEST_F(SceneFilesTest, ALayerOfAJobWithALongNameHasAShorterName) {
             std::string(190, 'x') + " (normals)");
 }
 
-// The add-on and the Python module are for everybody who can reach the port: they hold no secret.
+// Everybody who can reach the port may download the add-on and the Python module, because they hold
+// no secret.
 TEST_F(SceneFilesTest, TheAddOnAndTheModuleAreOffered) {
   headers_.clear();
   const auto zip = get("/bandsaw_blender.zip");

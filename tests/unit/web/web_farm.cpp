@@ -17,6 +17,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Stores a blob on the farm.
 absl::Status put(Engine& engine, const wire::Digest& digest, absl::Span<const std::byte> bytes) {
   auto writer = engine.write_blob(digest, bytes.size());
   absl::Status status = writer.status();
@@ -26,6 +27,8 @@ absl::Status put(Engine& engine, const wire::Digest& digest, absl::Span<const st
   return status.ok() ? (*writer)->commit() : status;
 }
 
+/// Stores a package with the Cornell box on the farm, named after the scene file `path`.
+/// INVALID_ARGUMENT: the file contains "broken".
 absl::StatusOr<SceneOnFarm> bring_box(Engine& engine, const std::string& path) {
   std::ifstream file(path);
   std::stringstream text;

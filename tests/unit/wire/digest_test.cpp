@@ -1,4 +1,4 @@
-// SHA-256 against the examples of its standard, and its written forms.
+// Compares SHA-256 with the examples of its standard, and tests the written forms of a digest.
 
 #include "proto/wire/digest.h"
 

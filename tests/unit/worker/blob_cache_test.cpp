@@ -98,7 +98,7 @@ TEST_F(BlobCacheTest, ContinuesAnInterruptedDownload) {
   const auto digest = wire::sha256(bytes);
   ASSERT_TRUE((*open()->begin(digest))->append(absl::MakeConstSpan(bytes).first(300)).ok());
   const auto cache = open();
-  EXPECT_FALSE(cache->has(digest)) << "a part is not a blob";
+  EXPECT_FALSE(cache->has(digest)) << "a partial download must not count as a blob";
   auto download = *cache->begin(digest);
   EXPECT_EQ(download->offset(), 300U);
   ASSERT_TRUE(download->append(absl::MakeConstSpan(bytes).subspan(300)).ok());
@@ -162,7 +162,8 @@ TEST_F(BlobCacheTest, CountsWhatOtherWorkersAddToTheFolder) {
 TEST_F(BlobCacheTest, KeepsANewBlobThatIsLargerThanTheLimit) {
   const auto cache = open(500);
   put(*cache, bytes_of('a'));
-  EXPECT_TRUE(cache->get(wire::sha256(bytes_of('a'))).ok()) << "it is needed now";
+  EXPECT_TRUE(cache->get(wire::sha256(bytes_of('a'))).ok())
+      << "the new blob must be kept, because it is needed now";
   put(*cache, bytes_of('b'));
   EXPECT_FALSE(cache->has(wire::sha256(bytes_of('a'))));
 }
@@ -193,8 +194,9 @@ TEST_F(BlobCacheTest, FreesSpaceOnAFullDisk) {
             absl::StatusCode::kResourceExhausted);
 }
 
-// A hole in a file can be read on a full disk, as zeros. But access to a hole in a mapped file ends
-// the process there, as access to a bad sector does.
+// A hole in a file can be read on a full disk: read() returns zeros. But if the file is mapped into
+// memory and the disk is full, access to the hole raises SIGBUS, which ends the process. A bad
+// sector of the disk has the same effect.
 TEST_F(BlobCacheTest, RemovesABlobThatCannotBeMapped) {
   const SmallDisk disk(folder_ / "cache", "size=256k");
   if (!disk.is_mounted()) {
@@ -280,10 +282,11 @@ TEST_F(BlobCacheTest, IsSafeWithManyWorkersAndLittleSpace) {
         }
         auto download = cache->begin(digest);
         ASSERT_TRUE(download.ok()) << download.status();
-        // A null pointer: another worker is downloading this blob.
+        // begin() returns a null pointer while another worker downloads this blob.
         if (*download != nullptr && (*download)->offset() == 0) {
           ASSERT_TRUE((*download)->append(bytes).ok());
-          EXPECT_TRUE((*download)->commit().ok()) << "the part is still there";
+          EXPECT_TRUE((*download)->commit().ok())
+              << "no other worker may have removed the partial file";
         }
       }
     });

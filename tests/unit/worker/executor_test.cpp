@@ -60,6 +60,7 @@ class ExecutorTest : public ::testing::Test {
                            }});
   }
 
+  /// Loads the scene of a manifest for the executor. Waits while `gate_closed_` is true.
   absl::StatusOr<std::shared_ptr<const Scene>> load(const wire::Digest& manifest,
                                                     const std::atomic<bool>& stop,
                                                     const Prepared& prepared) {
@@ -72,7 +73,7 @@ class ExecutorTest : public ::testing::Test {
     if (stop) {
       return absl::CancelledError("stopped");
     }
-    prepared(1);  // one scene is loaded at a time, with mutex_ held
+    prepared(1);  // adds to prepared_; mutex_ is held, so only one thread does this at a time
     if (!load_error_.ok()) {
       return load_error_;
     }
@@ -101,7 +102,7 @@ class ExecutorTest : public ::testing::Test {
   Mutex mutex_;
   CondVar changed_;
   bool gate_closed_ = false;  ///< while it is true, loading a scene does not end
-  absl::Status load_error_;   ///< result of loading, unless it is OK
+  absl::Status load_error_;   ///< error that load() returns; OK: none
   bool load_needs_too_much_memory_ = false;
   double loaded_cpu_s_ = 0;  ///< cpu_s() when the last scene was loaded
   std::vector<wire::Digest> loads_;
@@ -210,7 +211,7 @@ TEST_F(ExecutorTest, StopsABandWhoseSceneIsLoading) {
 }
 
 // Two bands need the same scene. Its loading must be reported for the earlier one, whichever thread
-// loads it. That depends on timing, so it is tried with 20 scenes.
+// loads it. Which thread loads it depends on timing, so the test loads 20 scenes.
 TEST_F(ExecutorTest, ReportsLoadingUnderTheEarliestTask) {
   start();
   for (TaskId first = 1; first < 40; first += 2) {

@@ -1,5 +1,5 @@
-// A worker fetches a scene package (a manifest and the blobs that it names) from the coordinator:
-// each byte once, also after lost connections.
+// A worker fetches a scene package (a manifest and the blobs that it names) from the coordinator.
+// It fetches each byte once, also after lost connections.
 
 #include "worker/executor/load_package.h"
 
@@ -27,6 +27,7 @@ class LoadPackageTest : public ::testing::Test {
     }
   }
 
+  /// Sends a blob from `offset` on. If the transfer is interrupted, it sends half of these bytes.
   absl::Status transfer(const wire::Digest& digest, std::uint64_t offset, const TakeBytes& take) {
     const auto found = farm_.all().find(digest);
     if (found == farm_.all().end()) {
@@ -63,11 +64,11 @@ class LoadPackageTest : public ::testing::Test {
   }
 
   test::TempDir folder_;
-  BlobMap farm_;
+  BlobMap farm_;  ///< the blobs of the coordinator
   wire::Digest manifest_;
   std::uint64_t total_ = 0;  ///< bytes of the package
   std::uint64_t bytes_sent_ = 0;
-  int breaks_ = 0;              ///< so many of the next transfers are interrupted
+  int breaks_ = 0;              ///< number of the next transfers that are interrupted
   std::uint64_t prepared_ = 0;  ///< the last progress that was reported; it MUST grow
   std::atomic<bool> stop_{false};
   Pool pool_{1};
@@ -147,14 +148,14 @@ TEST_F(LoadPackageTest, ReadsAndBuildsOnceWhatAScenesFramesShare) {
   const auto next = load(*cache, second);
   ASSERT_TRUE(next.ok()) << next.status();
   EXPECT_EQ((*next)->geometry().meshes.shared(0), (*scene)->geometry().meshes.shared(0));
-  const std::uint64_t of_one_blob = prepared_;
+  const std::uint64_t of_one_blob = prepared_;  // only the second manifest was fetched
   // The mesh lives as long as one of its scenes.
   scene = absl::CancelledError("dropped");
   prepared_ = 0;
   const auto again = load(*cache, first);
   ASSERT_TRUE(again.ok()) << again.status();
   EXPECT_EQ((*again)->geometry().meshes.shared(0), (*next)->geometry().meshes.shared(0));
-  EXPECT_LT(prepared_, of_one_blob) << "the manifest was in the cache";
+  EXPECT_LT(prepared_, of_one_blob) << "the manifest must come from the cache";
 }
 
 TEST_F(LoadPackageTest, StopsOnRequest) {

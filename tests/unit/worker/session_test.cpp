@@ -128,7 +128,8 @@ TEST(Session, RefusesAnInvalidLease) {
   bad.mutable_lease()->mutable_band()->set_last_row(81);  // the image has 80 rows
   farm::ToWorker worse = lease(11, 0);
   worse.mutable_lease()->set_manifest_sha256("short");
-  farm::ToWorker no_node = lease(12, 0);  // samples [16, 48) of a half tile are no node
+  // Samples [16, 48) of a half tile are no node of the summation tree.
+  farm::ToWorker no_node = lease(12, 0);
   for (const std::uint32_t number : {16u, 16u, 16u, 32u}) {
     no_node.mutable_lease()->add_tile_samples(number);
   }
@@ -171,10 +172,11 @@ TEST(Session, ListsHeldBandsAfterAReconnect) {
   EXPECT_FALSE(hello.held(1).finished());
   EXPECT_EQ(hello.held(1).band().first_row(), 2U);
   EXPECT_NE(hello.held(0).work(), 0U);
-  EXPECT_EQ(hello.held(0).work(), hello.held(1).work()) << "of one job";
+  EXPECT_EQ(hello.held(0).work(), hello.held(1).work()) << "both bands belong to one job";
 }
 
-// The coordinator has a new data folder: another job has the same id and rows.
+// The coordinator was restarted with a new data folder. There, another job has the same id and the
+// same rows.
 TEST(Session, ABandOfAnotherJobWithTheSameIdIsDifferent) {
   Session session(worker_info());
   session.receive(welcome("e1"));
@@ -195,8 +197,9 @@ TEST(Session, KeepsAHeldBandUnderItsNewLease) {
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
   session.disconnected();
   session.receive(welcome("e2"));
-  EXPECT_EQ(session.heartbeat().heartbeat().lease_size(), 0) << "e2 has not named it yet";
-  EXPECT_THAT(session.receive(lease(3, 0)).start, IsEmpty()) << "it renders already";
+  EXPECT_EQ(session.heartbeat().heartbeat().lease_size(), 0) << "e2 has not leased the band yet";
+  EXPECT_THAT(session.receive(lease(3, 0)).start, IsEmpty())
+      << "the band must not be started again";
   EXPECT_EQ(session.lease_of(task)->lease, 3U);
   EXPECT_EQ(session.lease_of(task)->epoch, "e2");
   EXPECT_EQ(session.heartbeat().heartbeat().lease(0).lease(), 3U);
@@ -256,7 +259,7 @@ TEST(Session, IsDrainedWhenAllBandsAreAcknowledged) {
   EXPECT_EQ(message->draining().reason(), "SIGTERM");
   EXPECT_FALSE(session.drained());
   EXPECT_TRUE(session.finished(task));
-  EXPECT_FALSE(session.drained()) << "its pixels are not acknowledged";
+  EXPECT_FALSE(session.drained()) << "its pixels are not acknowledged yet";
   session.settled(task);
   EXPECT_TRUE(session.drained());
 }

@@ -18,8 +18,8 @@ FinishedBand band(TaskId id) {
   return band;
 }
 
-/// A coordinator that answers each attempt to send a band by answer_(task, attempt); attempts are
-/// counted from 1. By default it stores all bands.
+/// A coordinator that answers each attempt to send a band with answer_(task, attempt). Attempts
+/// are counted from 1. By default the coordinator stores all bands.
 class UploaderTest : public ::testing::Test {
  protected:
   Outcome put(const FinishedBand& band) {
