@@ -194,7 +194,7 @@ TYPED_TEST(JoinTest, ATabBesideANativeWorkerGivesTheSameBytes) {
   this->expect_same_bytes(client, what);
 }
 
-TYPED_TEST(JoinTest, AJobSurvivesItsTabs) {
+TYPED_TEST(JoinTest, AJobEndsAlthoughItsTabsAreClosedReloadedAndFrozen) {
   this->farm_->add_worker("native", 1);
   auto closed = this->open(1);
   const auto reloaded = this->open(1);

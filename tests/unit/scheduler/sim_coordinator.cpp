@@ -233,8 +233,9 @@ void SimCoordinator::tell_passes(JobId job) {
     filming.pass_ends.erase(filming.pass_ends.begin());
     // The last pass that is planned ends at an error checkpoint. Nothing may be rendered beyond it,
     // so that the same job stops at the same sample on every farm.
-    const bool look = std::holds_alternative<StopAtError>(spec.stop) && filming.pass_ends.empty();
-    if (look && filming.film.last_sample() != samples) {
+    const bool at_checkpoint =
+        std::holds_alternative<StopAtError>(spec.stop) && filming.pass_ends.empty();
+    if (at_checkpoint && filming.film.last_sample() != samples) {
       fail(absl::StrCat("the error of job ", job, " is looked at while its film has more than ",
                         samples, " samples"));
     }

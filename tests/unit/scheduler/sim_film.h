@@ -26,7 +26,7 @@ class SimFilm {
     }
     const std::uint64_t process =
         band.instance.empty() ? band.process : worker_process_id(band.instance);
-    if (void_.contains(process)) {
+    if (retracted_.contains(process)) {
       return true;
     }
     for (std::uint32_t row = rows.first; row < rows.last; ++row) {
@@ -38,9 +38,9 @@ class SimFilm {
   /// Removes all rows that the process rendered. Rows of the process that are added later are
   /// ignored.
   void retract(std::uint64_t process) {
-    void_.insert(process);
-    for (auto& [row, there] : rows_) {
-      std::erase_if(there, [&](const auto& entry) { return entry.second.process == process; });
+    retracted_.insert(process);
+    for (auto& [row, parts] : rows_) {
+      std::erase_if(parts, [&](const auto& entry) { return entry.second.process == process; });
     }
   }
 
@@ -58,8 +58,8 @@ class SimFilm {
   bool any_of(const SampleRange& samples, const RowRange& rows) const {
     for (auto it = rows_.lower_bound(rows.first); it != rows_.end() && it->first < rows.last;
          ++it) {
-      for (const auto& [there, what] : it->second) {
-        if (there.first < samples.last && samples.first < there.last) {
+      for (const auto& [stored, part] : it->second) {
+        if (stored.first < samples.last && samples.first < stored.last) {
           return true;
         }
       }
@@ -74,8 +74,8 @@ class SimFilm {
       const auto it = rows_.find(row);
       std::uint64_t end = 0;
       if (it != rows_.end()) {
-        for (const auto& [there, what] : it->second) {
-          end = there.first == end ? there.last : end;
+        for (const auto& [stored, part] : it->second) {
+          end = stored.first == end ? stored.last : end;
         }
       }
       least = std::min(least, end);
@@ -86,8 +86,8 @@ class SimFilm {
   /// Returns the end of the last sample range that is stored in any row; 0 if there is none.
   std::uint64_t last_sample() const {
     std::uint64_t last = 0;
-    for (const auto& [row, there] : rows_) {
-      last = std::max(last, there.empty() ? 0 : there.rbegin()->first.last);
+    for (const auto& [row, parts] : rows_) {
+      last = std::max(last, parts.empty() ? 0 : parts.rbegin()->first.last);
     }
     return last;
   }
@@ -96,9 +96,9 @@ class SimFilm {
   /// digest other than honest(samples, row). std::nullopt: all digests are right.
   template <class Honest>
   std::optional<std::uint32_t> wrong_row(std::uint64_t end, Honest honest) const {
-    for (const auto& [row, there] : rows_) {
-      for (const auto& [samples, what] : there) {
-        if (samples.first < end && what.digest != honest(samples, row)) {
+    for (const auto& [row, parts] : rows_) {
+      for (const auto& [samples, part] : parts) {
+        if (samples.first < end && part.digest != honest(samples, row)) {
           return row;
         }
       }
@@ -113,7 +113,7 @@ class SimFilm {
     std::uint64_t digest = 0;
   };
   std::map<std::uint32_t, std::map<SampleRange, Part>> rows_;
-  std::set<std::uint64_t> void_;  ///< processes that were retracted
+  std::set<std::uint64_t> retracted_;  ///< processes that were retracted
 };
 
 }  // namespace bandsaw::coordinator::sim

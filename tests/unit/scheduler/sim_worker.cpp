@@ -199,14 +199,14 @@ void SimWorker::render() {
   next->begun_at = agenda_.now();
   next->render_s = static_cast<double>(band.samples.samples()) * band.rows.count() *
                    next->lease.settings.width / nature_.samples_per_s * chance_.between(0.7, 1.5);
-  const double prepares =
+  const double prepare_s =
       scenes_.insert(next->lease.job).second ? chance_.between_log(0.01, 20) : 0;
-  next->prepared_at = agenda_.now() + prepares;
+  next->prepared_at = agenda_.now() + prepare_s;
   next->hangs = chance_.happens(nature_.hangs);
   if (next->hangs) {
     return;
   }
-  later(prepares + next->render_s, [this, id = rendering_, begun = next->begun_at] {
+  later(prepare_s + next->render_s, [this, id = rendering_, begun = next->begun_at] {
     const Held* held = find(id);
     if (rendering_ != id || held == nullptr || held->begun_at != begun) {
       return;

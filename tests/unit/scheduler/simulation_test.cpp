@@ -267,10 +267,10 @@ class Simulation : SimulatedFarm {
     const std::vector<FrameView> frames = *coordinator_.scheduler().frames(job.id, 0);
     for (const FrameView& frame : frames) {
       const bool has_image = coordinator_.results.contains(frame.job);
-      const bool said = frame.state == FrameState::kFailed && !frame.reason.empty() &&
-                        job.state != JobState::kDone;
-      const bool ended = job.state == JobState::kCancelled;
-      if (frame.state == FrameState::kDone ? !has_image : !said && !ended) {
+      const bool explained = frame.state == FrameState::kFailed && !frame.reason.empty() &&
+                             job.state != JobState::kDone;
+      const bool cancelled = job.state == JobState::kCancelled;
+      if (frame.state == FrameState::kDone ? !has_image : !explained && !cancelled) {
         return absl::StrCat("frame ", frame.number, " of job ", job.id, " is skipped: it is ",
                             frame_state_name(frame.state));
       }
@@ -497,7 +497,7 @@ Outcome run_storm(std::uint64_t seed) {
 
 // At these seeds, several workers that hold the same sound band are lost by chance. A scheduler
 // that blames a band after three lost workers, or after four on a new farm, fails the job here.
-TEST(Simulation, SeedsAtWhichAHealthyJobOnceFailed) {
+TEST(Simulation, AHealthyJobEndsAtSeedsWithManyLostWorkers) {
   EXPECT_EQ(run_with_liars(69'113, 2).broken, "");
   EXPECT_EQ(run_storm(20'771).broken, "");
 }

@@ -28,7 +28,7 @@ TEST_F(AttributionFileTest, ReadsWhatWasWritten) {
   EXPECT_TRUE(read_attribution(path_)->empty());
 }
 
-TEST_F(AttributionFileTest, AMissingFileIsNotADamagedOne) {
+TEST_F(AttributionFileTest, AMissingFileIsNotFound) {
   EXPECT_TRUE(absl::IsNotFound(read_attribution(path_).status()));
 }
 

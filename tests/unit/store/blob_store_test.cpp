@@ -131,7 +131,7 @@ TEST_F(BlobStoreTest, AnInterruptedUploadContinuesAfterARestart) {
   EXPECT_EQ(text_of(*store, digest), text);
 }
 
-TEST_F(BlobStoreTest, AnUploadMayContinueBeforeTheEndAndNotBeyond) {
+TEST_F(BlobStoreTest, AnUploadMayContinueBeforeTheEndOfItsPartButNotBeyond) {
   const std::string text = long_text('b');
   const wire::Digest digest = wire::sha256(text);
   const auto store = open();
@@ -186,7 +186,7 @@ TEST_F(BlobStoreTest, PartsAreLimitedInNumberAndAge) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(BlobStoreTest, ADamagedFileIsDataLossOnceAndCanBeSentAgain) {
+TEST_F(BlobStoreTest, ADamagedFileIsDataLossAndCanBeSentAgain) {
   const std::string text = "some geometry";
   const wire::Digest digest = wire::sha256(text);
   ASSERT_TRUE(put(*open(), text).ok());

@@ -29,7 +29,7 @@ TEST(DataFolder, IsReadableByItsOwnerOnly) {
   EXPECT_TRUE(file_exists(folder->jobs()));
 }
 
-TEST(DataFolder, IsUsedByOneAtATime) {
+TEST(DataFolder, CanBeOpenOnlyOnceAtATime) {
   const test::TempDir temp;
   {
     const auto first = DataFolder::open(temp / "data");
@@ -83,7 +83,7 @@ TEST(Reserve, IsHeldReleasedAndHeldAgain) {
   EXPECT_TRUE(reserve.hold().ok());
 }
 
-TEST(DataFolder, TheProbeTestsWhetherTheDiskTakesData) {
+TEST(DataFolder, TheProbeFailsWhileTheDiskIsFull) {
   const test::TempDir temp;
   EXPECT_TRUE(probe_disk(temp.path()).ok());
   {

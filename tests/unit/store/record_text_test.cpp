@@ -44,7 +44,7 @@ TEST(RecordText, AJobWithoutAnIntegratorUsesPath) {
   EXPECT_EQ(std::get<record::JobAdded>(from_text(text).value()).spec, spec);
 }
 
-TEST(RecordText, AJobWithoutAPixelVersionHasNone) {
+TEST(RecordText, AJobWithoutAPixelVersionGetsVersion0) {
   RecordText text = to_text(
       record::JobAdded{.job = 5, .spec = sample_spec(StopAtSamples{4}), .pixel_version = 8});
   const std::string field = "pixel_version 8\n";
@@ -52,7 +52,7 @@ TEST(RecordText, AJobWithoutAPixelVersionHasNone) {
   EXPECT_EQ(std::get<record::JobAdded>(from_text(text).value()).pixel_version, 0u);
 }
 
-TEST(RecordText, VersionsWithoutTheNewestFieldsAreRead) {
+TEST(RecordText, RecordsWithoutTheNewestFieldsAreRead) {
   int fields = 0;
   for (const Record& record : sample_records()) {
     RecordText old = to_text(record);

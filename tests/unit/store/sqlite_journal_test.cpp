@@ -65,7 +65,7 @@ class SqliteJournalTest : public testing::Test {
   std::string path_ = folder_ / "journal.sqlite";
 };
 
-TEST_F(SqliteJournalTest, EveryKindOfRecordIsThereAfterReopeningInOrder) {
+TEST_F(SqliteJournalTest, ReturnsRecordsOfEveryKindInOrderAfterReopening) {
   std::vector<Record> records = sample_records();
   const std::vector<Record> more = {records[4], records[0]};
   {
@@ -113,14 +113,14 @@ TEST_F(SqliteJournalTest, AMissingRecordIsNamed) {
 TEST_F(SqliteJournalTest, AnOldSchemaIsReadAndUpgraded) {
   ASSERT_TRUE(open()->append(sample_records()).ok());
   run_sql(path_, "PRAGMA user_version = 1");
-  for (int life = 0; life < 2; ++life) {
+  for (int opening = 0; opening < 2; ++opening) {
     EXPECT_EQ(replayed(*open()), texts(sample_records()));
   }
 }
 
 // Journals up to version 8 have no sequences. They can be read, and appending a sequence raises
 // their version.
-TEST_F(SqliteJournalTest, AJournalOfVersion8TakesSequences) {
+TEST_F(SqliteJournalTest, ASequenceCanBeAppendedToAJournalOfVersion8) {
   std::vector<Record> records = sample_records();
   std::vector<Record> old(records.begin(), records.end() - 3);
   ASSERT_TRUE(open()->append(old).ok());
@@ -160,7 +160,7 @@ TEST_F(SqliteJournalTest, AnOldSchemaIsReadOnAFullDiskAndUpgradedLater) {
   EXPECT_EQ(replayed(*open()).size(), records.size() + 1);
 }
 
-TEST_F(SqliteJournalTest, AnotherSchemaIsRefused) {
+TEST_F(SqliteJournalTest, AnUnknownSchemaIsRefused) {
   open();
   run_sql(path_, "PRAGMA user_version = 99");
   const absl::Status status = SqliteJournal::open(path_).status();
@@ -210,7 +210,7 @@ pid_t start_appender(const std::string& path, int& acknowledged) {
   return child;
 }
 
-TEST_F(SqliteJournalTest, WhatWasAcknowledgedSurvivesAKillInTheMiddleOfAppends) {
+TEST_F(SqliteJournalTest, AcknowledgedRecordsSurviveAKillInTheMiddleOfAppends) {
   for (const std::uint64_t kill_after : {1u, 7u, 40u}) {
     const std::string path = folder_ / absl::StrCat("killed", kill_after);
     int acknowledged = -1;

@@ -53,7 +53,7 @@ TEST(Checker, AlternatesInUvAndInSpace) {
   EXPECT_EQ(at_point(boxes, {3, -1, -1}), kBlack);
 }
 
-TEST(Checker, TX4APlaneBetweenTwoLayersHasOneSide) {
+TEST(Checker, TX4APlaneBetweenTwoLayersHasTheColorOfOneLayer) {
   // The result does not depend on the rounding of the third coordinate, also far away from the
   // origin and for cells whose size is no power of two.
   std::mt19937_64 numbers(7);
@@ -148,7 +148,7 @@ TEST(Noise, KeepsItsBits) {
   EXPECT_EQ(hash.value(), 757054877607107216u);
 }
 
-TEST(NoiseTexture, IsTheFormulaOfItsKind) {
+TEST(NoiseTexture, EvaluatesTheFormulaOfItsKind) {
   const Vec3 p{0.3, -1.7, 4.2};
   NoiseTexture t{.scale = 3, .low = {0.25f, 0, 0}, .high = {0.75f, 1, 2}};
   const auto green = [&] { return at_point({t}, p).g; };
@@ -166,7 +166,7 @@ TEST(NoiseTexture, IsTheFormulaOfItsKind) {
   EXPECT_EQ(max_value(Textures{t}, id(0)), 2);
 }
 
-TEST(NoiseTexture, DoesNotMoveInItsSpace) {
+TEST(NoiseTexture, UsesTheCoordinatesOfItsSpace) {
   NoiseTexture t;
   const TextureCoordinates moved{.position = {5.5, 1.2, 3.3}, .object_position = {0.4, 1.2, 3.3}};
   const Textures world{t};
@@ -354,11 +354,11 @@ TEST(CheckParts, RefusesCyclesAndInvalidNumbers) {
   EXPECT_EQ(fault({NoiseTexture{.octaves = 17}}), "noise.octaves: must lie in [1, 16], is 17");
   EXPECT_EQ(fault({NoiseTexture{.scale = std::numeric_limits<double>::infinity()}}),
             "noise.scale: must be finite, is inf");
-  RampTexture falls;
-  falls.over = RampTexture::Over::kU;
-  EXPECT_EQ(fault({falls}), "ramp.stop: must be 1 to 256 stops, are 0");
-  falls.stops = {{1, {}}, {1, {}}};
-  EXPECT_EQ(fault({falls}), "ramp.stop[1].at: must be above the stop before it, 1, is 1");
+  RampTexture ramp;
+  ramp.over = RampTexture::Over::kU;
+  EXPECT_EQ(fault({ramp}), "ramp.stop: must be 1 to 256 stops, are 0");
+  ramp.stops = {{1, {}}, {1, {}}};
+  EXPECT_EQ(fault({ramp}), "ramp.stop[1].at: must be above the stop before it, 1, is 1");
 }
 
 TEST(CheckParts, RefusesALookUpThatTakesTooLong) {

@@ -137,30 +137,31 @@ TEST_F(AccessTest, ANewSecretInvalidatesLogins) {
 // upload without a response.
 TEST_F(AccessTest, ANewSecretClosesConnections) {
   log_in();
-  const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(dashboard_->port()));
   inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
-  ASSERT_EQ(connect(one, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  ASSERT_EQ(connect(client, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
   const std::string head =
       "POST /api/scenes?name=a.glb HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Bandsaw: 1\r\nCookie: " +
       headers_.find("Cookie")->second + "\r\nExpect: 100-continue\r\nContent-Length: 1000\r\n\r\n";
-  ASSERT_EQ(send(one, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
+  ASSERT_EQ(send(client, head.data(), head.size(), MSG_NOSIGNAL),
+            static_cast<ssize_t>(head.size()));
   // The response "HTTP/1.1 100 Continue" with its empty line has 25 bytes: the request is admitted.
-  std::string told(25, '\0');
-  ASSERT_EQ(recv(one, told.data(), told.size(), MSG_WAITALL), 25);
-  ASSERT_EQ(told.substr(0, 12), "HTTP/1.1 100");
+  std::string received(25, '\0');
+  ASSERT_EQ(recv(client, received.data(), received.size(), MSG_WAITALL), 25);
+  ASSERT_EQ(received.substr(0, 12), "HTTP/1.1 100");
   link::Identity renewed = identity_;
   renewed.worker_secret = "another22characters000";
   dashboard_->renew(renewed);
   char answer = 0;
-  EXPECT_EQ(recv(one, &answer, 1, MSG_DONTWAIT), -1)
+  EXPECT_EQ(recv(client, &answer, 1, MSG_DONTWAIT), -1)
       << "a new secret of the workers must not close the connection";
   renewed.farm_secret = "another22characters000";
   dashboard_->renew(renewed);
-  EXPECT_EQ(recv(one, &answer, 1, 0), 0) << answer;
-  close(one);
+  EXPECT_EQ(recv(client, &answer, 1, 0), 0) << answer;
+  close(client);
 }
 
 // Each half-open connection occupies a thread of the server until its deadline. The server has 32
@@ -173,43 +174,44 @@ TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   address.sin_port = htons(static_cast<std::uint16_t>(dashboard_->port()));
   inet_pton(AF_INET, "127.0.0.2", &address.sin_addr);
   for (int i = 0; i < 40; ++i) {
-    const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in from{};
     from.sin_family = AF_INET;
     inet_pton(AF_INET, "127.0.0.2", &from.sin_addr);
-    ASSERT_EQ(bind(one, reinterpret_cast<sockaddr*>(&from), sizeof(from)), 0);
+    ASSERT_EQ(bind(client, reinterpret_cast<sockaddr*>(&from), sizeof(from)), 0);
     inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
-    ASSERT_EQ(connect(one, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-    send(one, "GET / HT", 8, MSG_NOSIGNAL);  // fails if the server has closed the connection
-    sockets.push_back(one);
+    ASSERT_EQ(connect(client, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    send(client, "GET / HT", 8, MSG_NOSIGNAL);  // fails if the server has closed the connection
+    sockets.push_back(client);
   }
   EXPECT_EQ(status_of(get("/")), 200);
-  for (const int one : sockets) {
-    close(one);
+  for (const int client : sockets) {
+    close(client);
   }
 }
 
 // Without a login, the server responds to the head of the request, and never reads the body.
 TEST_F(AccessTest, ABodyForAnUnknownPathIsNotRead) {
   for (const std::string path : {"/nowhere", "/%0A"}) {
-    const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(static_cast<std::uint16_t>(dashboard_->port()));
     inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
-    ASSERT_EQ(connect(one, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    ASSERT_EQ(connect(client, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
     const std::string head = "POST " + path +
                              " HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Bandsaw: 1\r\nContent-Length: "
                              "1000000000000\r\n\r\n";
-    ASSERT_EQ(send(one, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
+    ASSERT_EQ(send(client, head.data(), head.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(head.size()));
     char answer[13] = {};
-    ASSERT_EQ(recv(one, answer, sizeof(answer) - 1, MSG_WAITALL), 12);
+    ASSERT_EQ(recv(client, answer, sizeof(answer) - 1, MSG_WAITALL), 12);
     EXPECT_STREQ(answer, "HTTP/1.1 404");
-    close(one);
+    close(client);
   }
 }
 
-TEST_F(AccessTest, AHeadWithoutEndIsRefused) {
+TEST_F(AccessTest, AHeadThatIsTooLongIsRefused) {
   headers_.emplace("X-Long", std::string(4000, 'x'));
   EXPECT_EQ(status_of(get("/")), 200);
   for (int i = 0; i < 20; ++i) {  // 80 kB in all; a head may have 32 KiB

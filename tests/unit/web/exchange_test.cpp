@@ -89,13 +89,13 @@ TEST_F(ExchangeTest, AGetIsAnsweredAndTheConnectionEnds) {
   EXPECT_THAT(all, ::testing::EndsWith("\r\n\r\nGET /a b "));
 }
 
-TEST_F(ExchangeTest, AHeadHasNoBody) {
+TEST_F(ExchangeTest, TheResponseToHeadHasNoBody) {
   const std::string all = answer("HEAD / HTTP/1.1\r\nHost: a\r\n\r\n");
   EXPECT_THAT(all, HasSubstr("\r\nContent-Length: 7\r\n"));
   EXPECT_THAT(all, ::testing::EndsWith("\r\n\r\n"));
 }
 
-TEST_F(ExchangeTest, ABodyEndsWithItsLength) {
+TEST_F(ExchangeTest, ABodyEndsAfterItsContentLength) {
   EXPECT_THAT(answer("POST / HTTP/1.1\r\nContent-Length: 4\r\n\r\nbodyand more"),
               ::testing::EndsWith("\r\n\r\nPOST / body"));
 }
@@ -124,10 +124,10 @@ TEST_F(ExchangeTest, Expect100ContinueIsAnswered) {
   std::thread server([this] { serve(); });
   say("POST / HTTP/1.1\r\nExpect: 100-continue\r\nContent-Length: 4\r\n\r\n");
   const std::string go_on = "HTTP/1.1 100 Continue\r\n\r\n";
-  std::string told(go_on.size(), '\0');
-  ASSERT_EQ(recv(client(), told.data(), told.size(), MSG_WAITALL),
-            static_cast<ssize_t>(told.size()));
-  EXPECT_EQ(told, go_on);
+  std::string received(go_on.size(), '\0');
+  ASSERT_EQ(recv(client(), received.data(), received.size(), MSG_WAITALL),
+            static_cast<ssize_t>(received.size()));
+  EXPECT_EQ(received, go_on);
   say("body");
   EXPECT_THAT(hear(), ::testing::EndsWith("\r\n\r\nPOST / body"));
   server.join();

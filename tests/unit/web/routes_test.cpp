@@ -29,7 +29,7 @@ TEST_F(RoutesTest, AnEmptyFarmIsShown) {
   EXPECT_FALSE(overview.version().empty());
 }
 
-TEST_F(RoutesTest, ThePageHasItsFilesAndItsRules) {
+TEST_F(RoutesTest, ThePageHasItsScriptsAndASecurityPolicy) {
   const auto page = get("/");
   ASSERT_TRUE(page);
   EXPECT_THAT(page->body, StartsWith("<!doctype html>"));
@@ -110,7 +110,7 @@ TEST_F(RoutesTest, ScenesOfOtherRenderersAndZipsMayBeDropped) {
   }
 }
 
-TEST_F(RoutesTest, ADroppedSceneMayAskForAnError) {
+TEST_F(RoutesTest, ADroppedSceneMaySetAnErrorTarget) {
   post("/api/scenes?name=a.GLB&error=0.02", "a box");
   EXPECT_EQ(message<web::JobPage>(get("/api/jobs/1")).job().status().stop().error(), 0.02);
 }
@@ -127,7 +127,7 @@ TEST_F(RoutesTest, ARefusedDropStatesTheReason) {
   EXPECT_EQ(message<web::Overview>(get("/api/farm")).job_size(), 0);
 }
 
-TEST_F(RoutesTest, AJobIsPausedResumedRankedAndCancelled) {
+TEST_F(RoutesTest, AJobIsPausedResumedGivenAPriorityAndCancelled) {
   const std::string job = "/api/jobs/" + std::to_string(submit_box());
   const auto state = [&](const Answer& result) {
     return message<web::Job>(result).status().state();
@@ -153,7 +153,7 @@ TEST_F(RoutesTest, MissingThingsAre404) {
   EXPECT_EQ(get("/api/jobs/7/report.json")->status, 404);
 }
 
-TEST_F(RoutesTest, AnImageThatFindsNoMemoryIsRefused) {
+TEST_F(RoutesTest, AnImageForWhichNoMemoryIsLeftIsRefused) {
   const std::uint64_t job = submit_box();
   finish(job, 24, 16);
   const std::string path = "/api/jobs/" + std::to_string(job);
@@ -181,7 +181,7 @@ TEST_F(RoutesTest, AnImageThatFindsNoMemoryIsRefused) {
       << "the preview must stay in memory for the next request";
 }
 
-TEST_F(RoutesTest, ADoneJobHasNoOlderPicture) {
+TEST_F(RoutesTest, ADoneJobDoesNotShowAnOlderPicture) {
   const std::uint64_t job = submit_box();
   const std::string path = absl::StrCat("/api/jobs/", job, "/preview.png?side=");
   put(job, 24, 16, 0, 0.1);

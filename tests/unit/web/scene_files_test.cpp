@@ -70,7 +70,7 @@ TEST_F(SceneFilesTest, ASceneOfSentFilesBecomesAJob) {
 }
 
 // Clients repeat the request after 503, but not after 429, the status of a full disk.
-TEST_F(SceneFilesTest, TheThirdSceneAtATimeMayBeSentAgain) {
+TEST_F(SceneFilesTest, TheThirdSceneAtATimeIsRefusedWith503) {
   const std::string box = "a box";
   const std::string body = scene("box.json", hex_of(box));
   std::atomic<int> refused{0};
@@ -96,16 +96,16 @@ TEST_F(SceneFilesTest, ATitleIsCleanedAndCutBetweenCharacters) {
   const std::string box = "a box";
   ASSERT_EQ(post("/api/files", sent(box))->status, 200);
   const std::string body = scene("box.json", hex_of(box));
-  const std::string most(199, 'x');
-  post("/api/scenes/files?title=" + most + "%C3%A9", body);  // 201 bytes, the last two are an é
+  const std::string prefix(199, 'x');
+  post("/api/scenes/files?title=" + prefix + "%C3%A9", body);  // 201 bytes, the last two are an é
   post("/api/scenes/files?title=ok%0A%1B%5B31m%FF", body);
-  for (const auto& [job, name] : {std::pair(1, most), std::pair(2, std::string("ok??[31m?"))}) {
+  for (const auto& [job, name] : {std::pair(1, prefix), std::pair(2, std::string("ok??[31m?"))}) {
     const std::string path = absl::StrCat("/api/jobs/", job);
     EXPECT_EQ(message<web::JobPage>(get(path)).job().status().name(), name);
   }
 }
 
-TEST_F(SceneFilesTest, ASceneMayEndAfterATime) {
+TEST_F(SceneFilesTest, ASceneMayHaveATimeLimit) {
   const std::string box = "a box";
   ASSERT_EQ(post("/api/files", sent(box))->status, 200);
   post("/api/scenes/files?time=60", scene("box.json", hex_of(box)));

@@ -129,7 +129,7 @@ TEST_F(BlobCacheTest, RemovesADamagedBlob) {
   EXPECT_TRUE(cache->get(digest).ok());
 }
 
-TEST_F(BlobCacheTest, RemovesTheLeastRecentlyUsed) {
+TEST_F(BlobCacheTest, RemovesTheLeastRecentlyUsedBlob) {
   const auto cache = open(3000);
   const auto a = wire::sha256(bytes_of('a'));
   const auto b = wire::sha256(bytes_of('b'));
@@ -145,7 +145,7 @@ TEST_F(BlobCacheTest, RemovesTheLeastRecentlyUsed) {
   EXPECT_TRUE(cache->has(wire::sha256(bytes_of('d'))));
 }
 
-TEST_F(BlobCacheTest, CountsWhatOtherWorkersAddToTheFolder) {
+TEST_F(BlobCacheTest, CountsBlobsThatOtherWorkersAddToTheFolder) {
   const auto mine = open(3000);
   const auto theirs = open(3000);
   put(*mine, bytes_of('a'));

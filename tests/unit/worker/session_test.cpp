@@ -297,7 +297,7 @@ TEST(Session, KeepsBandsWhenRefusedAndDropsThemAtBye) {
 
 // The waiting time before a retry, in milliseconds, is random between half of a cap and the cap.
 // The cap doubles from 200 to 5000.
-TEST(Backoff, GrowsToItsCapAndStaysWithinHalfOfIt) {
+TEST(Backoff, StaysBetweenHalfOfItsGrowingCapAndTheCap) {
   Backoff backoff(1);
   std::int64_t cap = 200;
   for (int i = 0; i < 20; ++i) {
