@@ -33,7 +33,7 @@ struct Screen {
   }
 };
 
-Progress some_progress(double fraction = 0.5) {
+Progress displayed_progress(double fraction = 0.5) {
   Progress progress;
   progress.job.id = 3;
   progress.job.spec.name = "box";
@@ -55,9 +55,9 @@ TEST(ProgressDisplay, APipeGetsOneLineASecondAndNoEscapes) {
   const Console console = screen.console(false);
   ProgressDisplay display(console, {});
   for (int i = 0; i <= 30; ++i) {
-    display.update(some_progress(i / 40.0), 100 + i * 0.1);
+    display.update(displayed_progress(i / 40.0), 100 + i * 0.1);
   }
-  display.done(some_progress(1), {"box.png"});
+  display.done(displayed_progress(1), {"box.png"});
   const std::vector<std::string> lines = absl::StrSplit(screen.out, '\n', absl::SkipEmpty());
   EXPECT_THAT(lines, ElementsAre("job 3 · box · 8×4 · until 16 samples", StartsWith("  0 %"),
                                  StartsWith(" 25 %"), StartsWith(" 50 %"), StartsWith(" 75 %"),
@@ -70,7 +70,7 @@ TEST(ProgressDisplay, APipeGetsALineAtTheFirstPixels) {
   Screen screen;
   const Console console = screen.console(false);
   ProgressDisplay display(console, {});
-  Progress begun = some_progress(0);
+  Progress begun = displayed_progress(0);
   display.update(begun, 100);
   begun.job.samples_done = 32;
   begun.job.fraction = 0.02;
@@ -86,18 +86,18 @@ TEST(ProgressDisplay, ATerminalIsRedrawnInPlaceAndLeftClean) {
   Screen screen;
   const Console console = screen.console(true);
   ProgressDisplay display(console, {});
-  display.update(some_progress(0.25), 1);
+  display.update(displayed_progress(0.25), 1);
   EXPECT_EQ(screen.out,
             "job 3 · box · 8×4 · until 16 samples\n"
             " 25 % ━━━━━                0 samples\x1b[K\n"
             "   anna      2 threads     10/s   rows 0–4\x1b[K\n\x1b[J");
   screen.out.clear();
-  display.update(some_progress(0.5), 1.05);
+  display.update(displayed_progress(0.5), 1.05);
   EXPECT_EQ(screen.out, "") << "must not be redrawn after only 50 ms";
-  display.update(some_progress(0.5), 2);
+  display.update(displayed_progress(0.5), 2);
   EXPECT_THAT(screen.out, StartsWith("\r\x1b[2A 50 %"));
   screen.out.clear();
-  display.done(some_progress(1), {"box.png"});
+  display.done(displayed_progress(1), {"box.png"});
   EXPECT_EQ(screen.out,
             "\r\x1b[2A\x1b[J0 samples a pixel · 0 rays\nbox.png · 0.00 s · 0 workers\n");
 }
@@ -106,7 +106,7 @@ TEST(ProgressDisplay, ColoursAreOnlyUsedWhereTheyAreWanted) {
   Screen screen;
   const Console console = screen.console(true, true);
   ProgressDisplay display(console, {});
-  display.update(some_progress(), 1);
+  display.update(displayed_progress(), 1);
   EXPECT_THAT(screen.out, StartsWith("\x1b[1mjob 3"));
 }
 
@@ -114,9 +114,9 @@ TEST(ProgressDisplay, QuietPrintsTheLastLineOnly) {
   Screen screen;
   const Console console = screen.console(true);
   ProgressDisplay display(console, {.quiet = true, .json = false});
-  display.update(some_progress(), 1);
+  display.update(displayed_progress(), 1);
   display.preparing("sending", 1, 2, 1);
-  display.done(some_progress(1), {"box.png"});
+  display.done(displayed_progress(1), {"box.png"});
   EXPECT_EQ(screen.out, "box.png · 0.00 s · 0 workers\n");
 }
 
@@ -126,9 +126,9 @@ TEST(ProgressDisplay, JsonIsOneValidObjectALine) {
   ProgressDisplay display(console, {.quiet = false, .json = true});
   display.preparing("sending the scene", 5, 20, 0);
   display.preparing("sending the scene", 10, 20, 1);
-  display.update(some_progress(), 1);
+  display.update(displayed_progress(), 1);
   display.note("gone \"away\"\n");
-  display.done(some_progress(1), {"a b.png"});
+  display.done(displayed_progress(1), {"a b.png"});
   const std::vector<std::string> lines = absl::StrSplit(screen.out, '\n', absl::SkipEmpty());
   std::vector<std::string> events;
   for (const std::string& line : lines) {
@@ -156,7 +156,7 @@ TEST(ProgressDisplay, BadSamplesAreAWarningOnStandardError) {
   Screen screen;
   const Console console = screen.console(false);
   ProgressDisplay display(console, {.quiet = true, .json = false});
-  Progress progress = some_progress(1);
+  Progress progress = displayed_progress(1);
   progress.job.counters.bad_samples = 1;
   progress.bad_sample_at = "pixel (1, 2), sample 3";
   display.done(progress, {"box.png"});
@@ -173,7 +173,7 @@ TEST(Painter, TruncatesToTheWindowAndRedrawsInPlace) {
 }
 
 TEST(Json, HasTheErrorsOfTheRenderedAndOfTheCleanImage) {
-  Progress progress = some_progress();
+  Progress progress = displayed_progress();
   progress.job.error = 0.5;
   EXPECT_FALSE(parsed(progress_json(progress, "done").str()).fields().contains("clean_error"));
   progress.clean_error = 0.25;
@@ -204,13 +204,13 @@ TEST(ProgressDisplay, APictureIsAboveTheProgressAndRemainsAtTheEnd) {
   Screen screen;
   const Console console = screen.console(true, true);
   ProgressDisplay display(console, {.preview = true});
-  display.update(some_progress(), 100);
+  display.update(displayed_progress(), 100);
   EXPECT_THAT(screen.out, Not(HasSubstr("▀")));
   display.picture({2, 2, std::vector<Rgb>(4, Rgb{1, 0, 0})}, {});
-  display.update(some_progress(), 101);
+  display.update(displayed_progress(), 101);
   EXPECT_THAT(screen.out, HasSubstr("255;0;0m▀▀\x1b[0m\x1b[K\n 50 %"));
   screen.out.clear();
-  display.done(some_progress(1), {"box.png"});
+  display.done(displayed_progress(1), {"box.png"});
   EXPECT_THAT(screen.out, HasSubstr("▀▀\x1b[0m\nbox.png"));
 }
 
@@ -220,8 +220,8 @@ TEST(ProgressDisplay, WithoutColoursAMessageReplacesThePicture) {
   ProgressDisplay display(console, {.preview = true});
   EXPECT_FALSE(display.draws());
   display.picture({2, 2, std::vector<Rgb>(4)}, {});
-  display.update(some_progress(), 100);
-  display.done(some_progress(1), {"box.png"});
+  display.update(displayed_progress(), 100);
+  display.done(displayed_progress(1), {"box.png"});
   EXPECT_THAT(screen.out, Not(HasSubstr("▀")));
   EXPECT_THAT(screen.err, HasSubstr("NO_COLOR"));
 }
