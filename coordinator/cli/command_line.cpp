@@ -35,7 +35,8 @@ void add_job(CLI::App& app, RawOptions& raw) {
 
 void add_priority(CLI::App& app, RawOptions& raw) {
   app.add_option("job", raw.job, "The job's number, as in: bandsaw jobs");
-  app.add_option("value", raw.priority, "The highest is rendered first, -1000 to 1000");
+  app.add_option("value", raw.priority,
+                 "From -1000 to 1000; jobs of the highest priority are rendered first");
   add_farm(app, raw);
   add_verbosity(app, raw);
 }
@@ -91,21 +92,22 @@ constexpr Entry kCommands[] = {
      "bandsaw doctor --farm join    # on a worker's machine"},
     {"secret", "Make a new secret; the old one becomes invalid", add_secret, checked_secret,
      "bandsaw secret rotate worker"},
-    {"link", "Show the link by which browsers join as workers, or take it back", add_link,
+    {"link", "Show the link by which browsers join as workers, or revoke it", add_link,
      checked_link, "bandsaw link --for 8h    # a QR code for phones"},
     {"invite", "Install and start workers on other machines by ssh", add_invite, checked_invite,
      "bandsaw invite anna@desk laptop"},
-    {"dismiss", "Stop and remove such workers", add_dismiss, checked_dismiss,
-     "bandsaw dismiss anna@desk laptop"},
-    {"render", "Render a scene on this machine, without a farm: the same bits", add_render,
-     checked_render, "bandsaw render helmet.glb --width 640 --samples 256 -o helmet.exr"},
+    {"dismiss", "Stop and remove workers that bandsaw invite has installed", add_dismiss,
+     checked_dismiss, "bandsaw dismiss anna@desk laptop"},
+    {"render", "Render a scene on this machine, without a farm; a farm gives the same bits",
+     add_render, checked_render,
+     "bandsaw render helmet.glb --width 640 --samples 256 -o helmet.exr"},
     {"info", "Describe the contents of a scene or model, and what is not supported", add_info,
      checked_info, "bandsaw info helmet.glb"},
     {"import", "Convert a scene of pbrt or Mitsuba, or a model, to a scene file", add_import,
      checked_import, "bandsaw import kitchen.pbrt -o kitchen.textproto"},
-    {"stitch", "Join parts of an image that were rendered by rows", add_stitch, checked_stitch,
+    {"stitch", "Join parts of an image that render --rows has made", add_stitch, checked_stitch,
      "bandsaw stitch top.band bottom.band -o whole.png"},
-    {"compare", "Error metrics between two images", add_compare, checked_compare,
+    {"compare", "Compute error metrics between two images", add_compare, checked_compare,
      "bandsaw compare mine.png reference.pfm -o differences.png"},
     {"study", "Measure error against time, with and without each technique", add_study,
      checked_study, "bandsaw study cornell.textproto spheres.textproto -o study.svg"},

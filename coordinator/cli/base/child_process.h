@@ -38,8 +38,8 @@ struct ChildStreams {
 /// until it has ended. Kills it after `seconds`, or when another thread sets `stop`. `stop` may be
 /// nullptr; it is polled every 20 ms. The child has the default dispositions of SIGINT and SIGTERM,
 /// whatever this process does with them, so Ctrl-C in a terminal ends the child. Returns the
-/// system's error if the child could not be started. If the child itself fails, that is no error of
-/// run_child(): ChildOutcome::wait_status tells it.
+/// system's error if the child could not be started. If the child itself fails, run_child() returns
+/// no error; ChildOutcome::wait_status has the child's exit status.
 absl::StatusOr<ChildOutcome> run_child(const std::vector<std::string>& arguments, double seconds,
                                        const std::atomic<bool>* stop,
                                        const ChildStreams& streams = {});

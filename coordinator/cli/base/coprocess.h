@@ -35,8 +35,8 @@ class Coprocess {
 
   /// Sends a line and returns the child's answer, both without line ends. Kills the child if it has
   /// not answered after `seconds`, or when another thread sets `stop`. `stop` may be nullptr; it is
-  /// polled every 20 ms. If the child exits before it answers, or was killed, returns the outcome;
-  /// then exchange() MUST NOT be called again.
+  /// polled every 20 ms. Returns the outcome if the child exits before it answers, or if it was
+  /// killed. After that, exchange() MUST NOT be called again.
   std::variant<std::string, ChildOutcome> exchange(const std::string& line, double seconds,
                                                    const std::atomic<bool>* stop);
 

@@ -1,6 +1,7 @@
 // SIGINT, SIGTERM and SIGHUP are blocked in all threads, and one thread reads them from a signalfd.
 // The first signal calls the function of the newest Listener. Without a Listener, the first signal
-// ends the program at once. A second signal does so in any case, unless it is SIGHUP.
+// ends the program at once. After the first signal, SIGINT or SIGTERM ends the program at once, and
+// SIGHUP is ignored.
 
 #include "coordinator/cli/base/interrupts.h"
 

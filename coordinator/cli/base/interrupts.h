@@ -12,8 +12,8 @@ namespace bandsaw::coordinator {
 
 /// An object MUST be constructed in main before any other thread starts, because threads inherit
 /// the signal mask. Without a Listener, a signal ends the process at once with status 130. With a
-/// Listener the first signal calls its function, and the second ends the process, unless the second
-/// is SIGHUP.
+/// Listener, the first signal calls the Listener's function. After that, SIGINT or SIGTERM ends the
+/// process, and SIGHUP is ignored.
 class Interrupts {
  public:
   Interrupts();
@@ -43,7 +43,9 @@ class Interrupts {
   bool seen() const EXCLUDES(mutex_);
 
  private:
+  /// Reads signals until the destructor ends the thread.
   void read() EXCLUDES(mutex_);
+  /// Handles one signal: calls first_, ends the process or ignores the signal.
   void took_signal(int signal) EXCLUDES(mutex_);
 
   mutable Mutex mutex_;

@@ -43,6 +43,7 @@ std::size_t sequence_at(absl::string_view text, std::size_t i) {
   return 0;
 }
 
+// Returns the text as a JSON string, in quotes.
 std::string json_string(absl::string_view text) {
   std::string out = "\"";
   for (std::size_t i = 0; i < text.size();) {

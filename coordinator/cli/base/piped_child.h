@@ -17,9 +17,10 @@ namespace bandsaw::coordinator {
 class PipedChild {
  public:
   /// Starts `arguments[0]` (a path, or a name on PATH) without a shell. Its standard output is
-  /// discarded. NOT_FOUND: there is no such program. REQUIRES: SIGPIPE is ignored (outlive_reader).
+  /// discarded. NOT_FOUND: there is no such program. REQUIRES: this process ignores SIGPIPE
+  /// (outlive_reader() in cli/base/console.h).
   static absl::StatusOr<PipedChild> start(const std::vector<std::string>& arguments);
-  /// Kills a child that was not finished.
+  /// Kills the child if finish() was not called.
   ~PipedChild();
   PipedChild(PipedChild&& other) noexcept;
   PipedChild& operator=(PipedChild&& other) = delete;
@@ -33,6 +34,7 @@ class PipedChild {
 
  private:
   PipedChild(pid_t pid, int input, int errors) : pid_(pid), input_(input), errors_(errors) {}
+  /// Returns the last line of the child's standard error, or a text that says that there is none.
   std::string last_error_line() const;
 
   pid_t pid_ = -1;

@@ -1,5 +1,6 @@
-// Formats numbers, times and lists for users. Bounds such as 0.995, 9.95 and 999.5 are the least
-// values that rounding would lift to the next power of ten: 9.95 with one decimal would be "10.0".
+// Formats numbers, times and lists for users. Bounds such as 0.995, 9.95 and 999.5 stand for 1, 10
+// and 1000, because a value at the bound is rounded to this power of ten: 9.95 with one decimal
+// would be "10.0".
 
 #include "coordinator/cli/base/text.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Calls a function periodically from a thread of its own until it is destroyed. `render`, `submit`
-// and `watch` use it to renew what they show.
+// A Ticker calls a function periodically, on a thread of its own, until the Ticker is destroyed.
+// `render`, `submit` and `watch` use it to update their display.
 
 #include <chrono>
 #include <functional>

@@ -17,9 +17,9 @@ namespace bandsaw::coordinator {
 /// line: a name that stands for the files of all frames has #### in place of the number.
 /// BANDSAW_FILE_LIST is the name of a file that lists all `files`, one a line. That file is removed
 /// afterwards. The command writes to the standard output and standard error of this process; with
-/// --json to standard error only. Returns `code`, or kFailed if the command does not exit with 0. A
-/// signal kills the shell, and kInterrupted is returned. Programs that the shell has started may
-/// continue.
+/// --json to standard error only. Returns `code`, or kFailed if the command does not exit with 0.
+/// If this process gets a signal, such as SIGINT, it kills the shell and returns kInterrupted.
+/// Programs that the shell has started may continue.
 ExitCode run_after(const WatchOptions& options, FarmClient& client,
                    const std::vector<std::string>& outputs, const std::vector<std::string>& files,
                    ExitCode code, Process& process);

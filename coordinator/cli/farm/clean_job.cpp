@@ -1,5 +1,6 @@
-// Removes the noise of a farm's finished job on this machine. The farm renders the denoiser's
-// guides (images of the albedo and the shape of the surfaces), as jobs of their own.
+// When the farm has finished a job, this machine removes the noise of the job's image. The farm
+// renders the denoiser's guides (images of the albedo and the shape of the surfaces), as jobs of
+// their own.
 
 #include "coordinator/cli/farm/clean_job.h"
 

@@ -31,7 +31,7 @@ struct FarmImage {
 };
 
 /// Errors of all calls: UNAVAILABLE: the farm did not answer, also after retries. CANCELLED: stop()
-/// was called. Others are those that proto/farm.proto states.
+/// was called. Other errors are those that proto/farm.proto states.
 class FarmClient {
  public:
   /// Connects to the farm of the join string (a line with addresses, the digest of the certificate
@@ -81,7 +81,8 @@ class FarmClient {
   absl::StatusOr<Frames> frames(JobId sequence, std::uint64_t after = 0);
 
   /// Calls `changed` with the job's status now and after each change. Returns OK after a final
-  /// state (done, failed or cancelled). UNAVAILABLE: the connection was lost before; not retried.
+  /// state (done, failed or cancelled). UNAVAILABLE: the connection was lost before a final state;
+  /// the call is not repeated.
   absl::Status watch(JobId job, const std::function<void(const Progress&)>& changed);
 
   /// Waits until the connection is re-established. Returns false if the timeout has expired or
@@ -153,8 +154,8 @@ class FarmClient {
   /// Calls `body` with a new context for each attempt, at most kTries times, while the farm does
   /// not answer within `deadline`.
   /// If the call starts a job, stop() does not cancel an attempt. It ends the pauses between
-  /// attempts, and no further attempt is made. If stop() is called after an attempt whose outcome is
-  /// unknown, the message of CANCELLED says where the user finds the job.
+  /// attempts, and no further attempt is made. If stop() is called after an attempt whose outcome
+  /// is unknown, the message of CANCELLED says where the user finds the job.
   absl::Status call(std::chrono::milliseconds deadline,
                     const std::function<grpc::Status(grpc::ClientContext&)>& body,
                     bool starts_job = false) EXCLUDES(mutex_);

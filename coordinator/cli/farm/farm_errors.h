@@ -13,7 +13,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Finds the farm and connects to it. Errors as find_farm and FarmClient::connect.
+/// Finds the farm and connects to it. The errors are those of find_farm() and
+/// FarmClient::connect().
 absl::StatusOr<std::unique_ptr<FarmClient>> connect_to_farm(const FarmOption& option);
 
 /// Returns kDone for OK; kNoFarm for UNAVAILABLE and DEADLINE_EXCEEDED; kWrong for
@@ -21,7 +22,8 @@ absl::StatusOr<std::unique_ptr<FarmClient>> connect_to_farm(const FarmOption& op
 /// kInterrupted for CANCELLED; kFailed for all others.
 ExitCode exit_code_of(const absl::Status& status);
 
-/// Prints the error, if there is one, and returns its exit code. Commands end with it.
+/// If `status` is an error, prints its message. Returns exit_code_of(status). Commands end with a
+/// call of finished().
 ExitCode finished(const absl::Status& status, const Console& console);
 
 }  // namespace bandsaw::coordinator

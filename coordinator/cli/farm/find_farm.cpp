@@ -19,6 +19,7 @@ struct Source {
   std::string text;  ///< the join string, the file that has it, or "-" for standard input
 };
 
+/// Returns the first source that names a farm. UNAVAILABLE: there is none.
 absl::StatusOr<Source> source_of(const FarmOption& option) {
   if (!option.farm.empty()) {
     return Source{"--farm", option.farm};

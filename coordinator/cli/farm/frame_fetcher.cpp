@@ -1,6 +1,6 @@
 // update() asks for the frames that changed, fetches those that are done, and adds each to the
-// files, the contact sheet and the video. Frames may be done in any order; a video needs them in
-// order.
+// files, the contact sheet and the video. Frames may be done in any order, but a video needs them
+// in ascending order.
 
 #include "coordinator/cli/farm/frame_fetcher.h"
 

@@ -54,10 +54,13 @@ class FrameFetcher {
   /// Fetches the image of a frame, writes its files and calls add_to_collections(). `job`: here and
   /// below, the job that rendered the frame.
   absl::Status fetch(FrameNumber number, JobId job);
+  /// Fetches the image of a frame and, if wanted, removes its noise.
   absl::StatusOr<JobPictures> pictures_of(FrameNumber number, JobId job);
+  /// Writes the image files and the reports of a frame.
   absl::Status write(FrameNumber number, const JobPictures& pictures);
   /// Adds the frame to the contact sheet, and to the video if it is the video's next frame.
   absl::Status add_to_collections(FrameNumber number, const JobPictures& pictures);
+  /// Adds the frames that the video does not have yet, and ends the video.
   absl::Status feed_video();
   /// Returns true if any file is made of the images.
   bool needs_images() const;

@@ -11,8 +11,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Lists all jobs except finished guides (jobs that only render what the denoiser needs). A last
-/// line states how many these are.
+/// Lists all jobs except finished guides (jobs that only render what the denoiser needs). If there
+/// are finished guides, the last line states their number.
 std::vector<std::string> jobs_table(const std::vector<Progress>& jobs);
 /// Lists all jobs.
 std::vector<std::string> jobs_json(const std::vector<Progress>& jobs);

@@ -78,7 +78,7 @@ absl::Status check_files(const SubmitOptions& options, const WatchOptions& watch
 struct Started {
   JobId job = 0;
   std::vector<FrameNumber> left;  ///< frames whose scenes are still to be sent
-  absl::Status sent;              ///< result of sending the first scene; the job is started
+  absl::Status sent;              ///< result of sending the first scene, after the job was started
 };
 
 /// Starts or continues the sequence and sends its first scene. An error after the job was started
@@ -126,8 +126,9 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
 
 /// Prints why the scenes of `frames` were not sent; returns the exit code. Also names the frames
 /// and the command that sends them, unless the job is over (ABORTED). `status` is an error of the
-/// import or of the farm. The exit code is import_exit_code(status), unless that is kWrong. kWrong
-/// stands for all errors that import_exit_code() does not name, so exit_code_of(status) is used.
+/// import or of the farm. If import_exit_code(status) is kWrong, `status` may be an error of the
+/// farm, and the exit code is exit_code_of(status). Otherwise the exit code is
+/// import_exit_code(status).
 ExitCode not_sent(const absl::Status& status, JobId job, const std::vector<FrameNumber>& frames,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)

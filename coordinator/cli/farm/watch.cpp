@@ -19,7 +19,7 @@ ExitCode watch_sequence(const WatchOptions& options, const JobSpec& spec, FarmCl
   if (!options.tev.empty() || options.verbosity.preview) {
     return process.console.fail(
         ExitCode::kWrong, absl::StrCat("--preview and --tev are for one image: job ", options.job,
-                                       " has frames; watch the job of one of them"));
+                                       " has frames; watch the job of one frame"));
   }
   absl::Status status = check_frame_files(options);
   const bool lacks_program = absl::IsFailedPrecondition(status);

@@ -14,9 +14,9 @@ struct WatchedFrames {
   bool is_over = false;  ///< the job is done, failed or cancelled
 };
 
-/// Checks before any work is done that the files for the frames of a sequence can be made.
-/// FAILED_PRECONDITION: ffmpeg is missing. Other errors: a file cannot be written, or its name has
-/// no place for the number of a frame.
+/// Checks that the files for the frames of a sequence can be made. Commands call it before any work
+/// is done. FAILED_PRECONDITION: ffmpeg is missing. Other errors: a file cannot be written, or its
+/// name has no place for the number of a frame.
 absl::Status check_frame_files(const WatchOptions& options);
 
 /// Displays the progress of the sequence `options.job` until it is over. Writes the files of each

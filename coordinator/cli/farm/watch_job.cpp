@@ -240,7 +240,7 @@ ExitCode left_early(const absl::Status& status, JobId job, const std::string& ho
   }
   if (code == ExitCode::kNoFarm) {
     return console.fail(code, absl::StrCat(status.message(), "; job ", job,
-                                           " continues when it is started again. ", how));
+                                           " continues when the farm is started again. ", how));
   }
   return console.fail(code, otherwise);
 }

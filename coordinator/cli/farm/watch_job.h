@@ -38,8 +38,8 @@ struct JobPictures {
 
 /// Returns a sentence with the command, ready for a shell, that follows the job again and writes
 /// the same files: "Come back with: bandsaw watch 7 --denoise -o walk.png". `otherwise`: the file
-/// name in the command if there are no outputs. The command has --farm if the user gave the name of
-/// a file there. A join string is not shown, because it has a secret.
+/// name in the command if there are no outputs. The command has --farm if the user's --farm was the
+/// name of a file. A join string is not shown, because it has a secret.
 std::string come_back(const WatchOptions& options, const std::string& otherwise);
 
 /// Prints why a command ends before it has written the files of a job, and returns the exit code.

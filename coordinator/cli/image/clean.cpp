@@ -35,6 +35,7 @@ std::filesystem::path full_name(const std::filesystem::path& file) {
   return error ? file : folder / full.filename();
 }
 
+/// Returns the name of the file for the image as rendered: "picture.png" -> "picture.raw.png".
 std::string raw_name(const std::string& output) {
   std::filesystem::path path(output);
   const std::string suffix = path.extension().string();

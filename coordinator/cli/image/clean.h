@@ -54,7 +54,7 @@ absl::StatusOr<Denoised> make_clean(ToClean input, const JobRenderer& render, De
 Report::Clean clean_report(const Denoised& clean, Denoiser denoiser,
                            const std::vector<std::string>& outputs);
 
-/// Checks whether the noise of an image can be removed, before it is rendered. OK for kNone.
+/// Checks, before an image is rendered, whether its noise can be removed. Returns OK for kNone.
 /// FAILED_PRECONDITION: as check_cleanable (scheduler/api/clean_jobs.h). UNAVAILABLE:
 /// OpenImageDenoise is wanted and not installed.
 absl::Status check_denoise(Denoiser denoiser, const RenderSettings& settings, const StopRule& stop);
@@ -67,7 +67,7 @@ std::vector<std::string> raw_outputs(const std::vector<std::string>& outputs);
 /// `outputs`. Other errors: those of check_outputs_writable.
 absl::Status check_raw_outputs(const std::vector<std::string>& outputs);
 
-/// Checks before an image is rendered that its files can be written: `outputs`, and raw_outputs()
+/// Checks, before an image is rendered, that its files can be written: `outputs`, and raw_outputs()
 /// if the noise is removed. `given`: the outputs that the user named; empty: `outputs` are
 /// defaults. Returns the files of the report. Errors: those of check_outputs, of check_raw_outputs
 /// and of report_files.

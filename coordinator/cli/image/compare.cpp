@@ -19,7 +19,7 @@ struct Pair {
   Image reference;
 };
 
-/// Reads both images in confined processes. CANCELLED: a signal came.
+/// Reads both images, each in a child process with limits (ImportLimits). CANCELLED: a signal came.
 absl::StatusOr<Pair> read_pair(const CompareOptions& options, Interrupts& interrupts) {
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(interrupts, [&] { stop = true; });

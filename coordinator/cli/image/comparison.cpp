@@ -71,6 +71,8 @@ std::string comparison_text(const Comparison& comparison) {
     return "identical";
   }
   const BiasTest& bias = comparison.bias;
+  // The last line is the bias test. "Blocks off" are blocks of pixels whose |t| exceeds the test's
+  // bound.
   std::string text = absl::StrFormat(
       "RMSE %.4g · relRMSE %.4g %% · relMSE %.4g, %.4g without the worst 0.1 %% of pixels · "
       "MAPE %.4g %%\n"

@@ -31,7 +31,7 @@ constexpr Rgb kPaper{0.02f, 0.02f, 0.02f};  ///< background of the sheet
 constexpr Rgb kInk{0.6f, 0.6f, 0.6f};       ///< numbers, and the cross of a missing frame
 constexpr Rgb kCross{0.25f, 0.05f, 0.04f};  ///< background of that cross
 
-/// Returns at most `most` of the numbers, at equal distances, with the first and the last.
+/// Returns at most `most` of the numbers, evenly spaced. The first and the last are among them.
 std::vector<std::int64_t> spread(const std::vector<std::int64_t>& numbers, std::size_t most) {
   if (numbers.size() <= most) {
     return numbers;

@@ -13,8 +13,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Maximum number of frames on a contact sheet. If a sequence has more, this many are shown, at
-/// equal distances.
+/// Maximum number of frames on a contact sheet. If a sequence has more frames, this many of them
+/// are shown, evenly spaced.
 inline constexpr std::size_t kMaxSheetFrames = 400;
 
 class ContactSheet {

@@ -27,6 +27,7 @@ constexpr const char* kFiles[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoi
 constexpr int kDeviceCpu = 1;     // OIDN_DEVICE_TYPE_CPU, which reads images without copying them
 constexpr int kFormatFloat3 = 3;  // OIDN_FORMAT_FLOAT3
 
+// OfDevice and OfFilter are functions whose only argument is a device or a filter.
 using NewDevice = OidnDevice* (*)(int type);
 using OfDevice = void (*)(OidnDevice* device);
 using GetError = int (*)(OidnDevice* device, const char** message);

@@ -1,5 +1,5 @@
-// Checks and writes all output files of one image. A file that fails does not prevent the others
-// from being written.
+// Checks and writes all output files of one image. If a file cannot be written, the other files are
+// still written.
 
 #include "coordinator/cli/image/output.h"
 

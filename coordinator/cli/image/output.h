@@ -14,7 +14,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Checks before any work is done that every output can be written. The error names the file.
+/// Checks that every output can be written. Commands call it before any work is done. The error
+/// names the file.
 absl::Status check_outputs_writable(const std::vector<std::string>& outputs);
 
 /// Writes the image to every output, with its layers if the format supports them, each file

@@ -27,6 +27,7 @@ struct Beginning {
   std::uint64_t tone = 0;
   std::uint64_t hash = 0;
 
+  /// Returns the hash of the exposure and the tone.
   std::uint64_t hash_of_rest() const {
     Hash64 sum;
     sum.add(exposure);

@@ -1,5 +1,6 @@
 // Builds the report of an image as one JSON object. Each function X_json() makes the object of one
-// of its fields; coordinator/README.md documents them.
+// of its fields; coordinator/README.md documents these fields. known_number() writes null for a
+// negative value, which stands for an unknown one.
 
 #include "coordinator/cli/image/report.h"
 

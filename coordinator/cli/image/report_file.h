@@ -19,11 +19,11 @@ namespace bandsaw::coordinator {
 absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& given,
                                                       const std::vector<std::string>& outputs);
 
-/// Checks if an image of `scene` may be written to the default file `output`. If `scene` is a scene
-/// file (.textproto or .json), an existing file may always be replaced, because a scene file has no
-/// texture of its own name. Any other scene may be a model whose texture is the existing file, so
-/// the file may be replaced only if a report is beside it. INVALID_ARGUMENT: the file exists and
-/// may not be replaced.
+/// Checks if an image of `scene` may be written to the default file `output`, which has the name of
+/// the scene with another suffix. A model may have a texture of that name. So if `scene` is no
+/// scene file (.textproto or .json), an existing file may be replaced only if a report is beside
+/// it. For a scene file, an existing file may always be replaced. INVALID_ARGUMENT: the file exists
+/// and may not be replaced.
 absl::Status check_default_output(const std::string& scene, const std::string& output);
 
 /// Checks that `outputs` can be written. If the user named none (`given` is empty), also calls

@@ -49,8 +49,8 @@ class Stitcher {
     return film_->add(record.pixels);
   }
 
-  /// Returns the status of a job that rendered the image in one run. Values that the parts do not
-  /// have are unknown. INVALID_ARGUMENT: rows or samples are missing.
+  /// Returns the status that a job would have if it had rendered the image in one run. Values that
+  /// the parts do not have are unknown. INVALID_ARGUMENT: rows or samples are missing.
   absl::StatusOr<Progress> progress() const {
     ASSIGN_OR_RETURN(const std::uint64_t samples, coverage_->samples());
     Progress progress;

@@ -1,5 +1,5 @@
 // Keeps for each row the ranges of samples that the parts have, in ascending order. Parts fit
-// together if no ranges overlap and all rows have the samples from 0 to the same number.
+// together if no ranges overlap and all rows have the samples 0 to N - 1 for the same N.
 
 #include "coordinator/cli/image/stitch_coverage.h"
 

@@ -20,7 +20,8 @@ class Video {
   static absl::Status check(const std::string& path);
 
   /// `path`: a file whose name ends in .mp4, .mov, .mkv or .webm. REQUIRES: check() was OK, and
-  /// SIGPIPE is ignored (outlive_reader), so that add() returns an error if ffmpeg has ended.
+  /// this process ignores SIGPIPE (outlive_reader() in cli/base/console.h), so that add() returns
+  /// an error if ffmpeg has ended.
   Video(std::string path, double frames_per_second)
       : path_(std::move(path)), frames_per_second_(frames_per_second) {}
   /// If finish() was not called or failed, ends ffmpeg and removes the incomplete file.

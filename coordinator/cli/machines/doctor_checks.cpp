@@ -131,7 +131,7 @@ Check check_port(const std::string& listen, const std::string& answered,
   const bool ours = is_here(answered) &&
                     answered.substr(answered.rfind(':')) == listen.substr(colon) &&
                     (everywhere || std::find(own.begin(), own.end(), listen) != own.end());
-  return ours ? Check{"port", true, absl::StrCat(listen, " is the farm's own")}
+  return ours ? Check{"port", true, absl::StrCat(listen, " is in use by this farm")}
               : problem("port", std::string(free.message()));
 }
 
@@ -139,13 +139,14 @@ Check certificate_check(double from, double until, double now) {
   if (now < from || now > until) {
     return problem(
         "certificate",
-        absl::StrCat(now < from ? "not valid yet" : "not valid any more",
-                     ": check this machine's clock; if it is right, move the file identity "
-                     "out of the coordinator's data folder, start it again, and join again"));
+        absl::StrCat(
+            now < from ? "not valid yet" : "not valid any more",
+            ": check this machine's clock; if it is right, move the file identity "
+            "out of the coordinator's data folder, restart the coordinator, and join again"));
   }
-  return {
-      "certificate", true,
-      absl::StrFormat("the join string's own; valid for %.0f more days", (until - now) / kDay_s)};
+  return {"certificate", true,
+          absl::StrFormat("the one that the join string names; valid for %.0f more days",
+                          (until - now) / kDay_s)};
 }
 
 Check clock_check(double ours_before, double theirs, double ours_after) {

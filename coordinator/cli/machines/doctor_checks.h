@@ -64,7 +64,8 @@ Check certificate_check(double from, double until, double now);
 /// Checks that the coordinator's clock is at most a minute from this machine's. `theirs` was read
 /// between the two times of this machine.
 Check clock_check(double ours_before, double theirs, double ours_after);
-/// Checks that the coordinator has the protocol and the pixel version of this program.
+/// Checks that the coordinator has the protocol and the pixel version of this program. Programs of
+/// the same pixel version render the same pixels.
 Check versions_check(const farm::AboutReply& about);
 /// Checks that at least 1 GiB is free. `name`: the name of the check. `where`: the folder that the
 /// text names.

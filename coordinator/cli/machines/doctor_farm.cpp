@@ -74,7 +74,7 @@ FarmChecks check_farm(const link::JoinString& join) {
   if (join.certificate) {
     checks.push_back(check_certificate((*client)->address()));
   } else {
-    checks.push_back({"certificate", true, "none: the farm is --insecure"});
+    checks.push_back({"certificate", true, "none: the farm was started with --insecure"});
   }
   const double before = unix_seconds();
   const auto about = (*client)->about();

@@ -140,7 +140,8 @@ using HostWork =
     std::function<RemoteOutcome(const std::string& host, const std::atomic<bool>& stop)>;
 
 /// Does `work` for all hosts at the same time. Prints the result of each host as soon as it is
-/// known, and at the end the number of successes. `event`: the kind of the JSON events.
+/// known, and at the end the number of successes. `event`: "invited" or "dismissed", which begins
+/// the last line and is the kind of the JSON events.
 ExitCode on_hosts(const std::vector<std::string>& hosts, const char* event, const HostWork& work,
                   const Verbosity& verbosity, Process& process) {
   std::atomic<bool> stop = false;

@@ -9,7 +9,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 void add_hosts(CLI::App& app, RawOptions& raw) {
-  app.add_option("hosts", raw.hosts, "As ssh takes them: HOST, USER@HOST, ssh://USER@HOST:PORT");
+  app.add_option("hosts", raw.hosts,
+                 "Hosts as ssh takes them: HOST, USER@HOST, ssh://USER@HOST:PORT");
 }
 
 absl::StatusOr<std::vector<std::string>> checked_hosts(const RawOptions& raw,
@@ -31,8 +32,8 @@ absl::StatusOr<std::vector<std::string>> checked_hosts(const RawOptions& raw,
 void add_invite(CLI::App& app, RawOptions& raw) {
   add_hosts(app, raw);
   app.add_option("--join", raw.join,
-                 "The workers' join string, or the file that holds it [default: of the farm served "
-                 "from this account]");
+                 "The workers' join string, or the file that holds it [default: that of the farm "
+                 "served from this account]");
   add_data(app, raw);
   app.add_option("--time", raw.time, "Time limit for each host [default: 5m]")->type_name("T");
   add_verbosity(app, raw);
@@ -40,7 +41,8 @@ void add_invite(CLI::App& app, RawOptions& raw) {
 
 void add_dismiss(CLI::App& app, RawOptions& raw) {
   add_hosts(app, raw);
-  app.add_option("--time", raw.time, "Maximum time for a worker to finish its bands [default: 1m]")
+  app.add_option("--time", raw.time,
+                 "Maximum time for a worker to finish the rows that it is rendering [default: 1m]")
       ->type_name("T");
   add_verbosity(app, raw);
 }

@@ -27,8 +27,9 @@ absl::Status show(const farm::BrowserLinkReply& link, const Console& console) {
     ASSIGN_OR_RETURN(const QrCode code, qr_code(link.url()));
     console.write(qr_text(code));
   }
-  console.line(absl::StrCat("a browser that opens it renders for this farm, for the next ",
-                            duration(link.left_s()), "; bandsaw link --revoke takes it back"));
+  console.line(absl::StrCat(
+      "for the next ", duration(link.left_s()),
+      ", browsers that open this link render for this farm; bandsaw link --revoke ends the link"));
   if (is_for_this_machine_only(link.url())) {
     console.complain(
         "this link works on the coordinator's machine only; for others: bandsaw serve --web "

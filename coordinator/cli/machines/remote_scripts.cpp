@@ -11,8 +11,8 @@ namespace {
 
 // The common part of both scripts. `result` prints the result and ends the script; its first
 // argument is ok or failed. `serves` succeeds if the worker runs as a service of systemd.
-// `gone_within` waits at most $1 seconds until the process of own_pid has ended, and fails if it
-// still runs. `end_worker` ends a worker that runs.
+// `gone_within` waits, at most $1 seconds, until the process that own_pid finds has ended. It fails
+// if the process still runs. `end_worker` ends a worker that runs.
 constexpr char kCommon[] = R"sh(
 result() { echo "bandsaw-result: $*"; exit 0; }
 [ -n "${HOME:-}" ] || result failed "HOME is not set there"
@@ -137,7 +137,7 @@ else
   setsid nice -n 19 "$dir/bandsaw-worker" --join "$dir/join" --cache "$dir/cache" \
     >"$dir/log" 2>&1 </dev/null &
   echo $! >"$dir/pid"
-  how="a process until it is restarted"
+  how="a process until the host is restarted"
   running() { readlink "/proc/$(cat "$dir/pid")/exe" >/dev/null; }  # fails for a dead child
 fi
 

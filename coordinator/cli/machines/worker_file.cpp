@@ -1,6 +1,7 @@
 // A file is accepted as the worker for an architecture if its ELF header names this architecture,
 // and the WorkerMark in its bytes (proto/wire/worker_mark.h) has this farm's protocol and pixel
-// version. The file is not run, because it may be for another architecture.
+// version. Programs of the same pixel version render the same pixels. The file is not run, because
+// it may be for another architecture.
 
 #include "coordinator/cli/machines/worker_file.h"
 

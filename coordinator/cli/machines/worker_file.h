@@ -17,12 +17,13 @@ namespace bandsaw::coordinator {
 std::string worker_program_path(Machine machine);
 
 /// Checks that `bytes`, the contents of a whole file, are a worker's program for `machine`. The
-/// program must be compatible with this coordinator (equal protocol and pixel version). Returns the
-/// program with its version and its digest. Reads the ELF header and the wire::WorkerMark, a
-/// structure in each worker's program that states the versions. Does not run the program.
-/// INVALID_ARGUMENT: the file is another program, or is for another architecture. DATA_LOSS: the
-/// file is cut off. FAILED_PRECONDITION: the program has another protocol or pixel version. The
-/// message of an error begins with a verb; the caller puts the name of the file before it.
+/// program must be compatible with this coordinator (equal protocol and pixel version). Programs of
+/// the same pixel version render the same pixels. Returns the program with its version and its
+/// digest. Reads the ELF header and the wire::WorkerMark, a structure in each worker's program that
+/// states the versions. Does not run the program. INVALID_ARGUMENT: the file is another program, or
+/// is for another architecture. DATA_LOSS: the file is cut off. FAILED_PRECONDITION: the program
+/// has another protocol or pixel version. The message of an error begins with a verb; the caller
+/// puts the name of the file before it.
 absl::StatusOr<WorkerProgram> checked_worker_program(std::string bytes, Machine machine);
 
 /// Reads the program for `machine` and checks it. NOT_FOUND: it is not installed; the message says

@@ -9,7 +9,7 @@ void add_verbosity(CLI::App& app, RawOptions& raw, bool can_be_quiet) {
   if (can_be_quiet) {
     app.add_flag("--quiet", raw.quiet, "Print only the last line and errors");
   }
-  app.add_flag("--json", raw.json, "One JSON object a line, for programs");
+  app.add_flag("--json", raw.json, "Print one JSON object per line, for programs");
 }
 
 void add_farm(CLI::App& app, RawOptions& raw) {
@@ -25,40 +25,44 @@ void add_data(CLI::App& app, RawOptions& raw) {
 }
 
 void add_keep(CLI::App& app, RawOptions& raw) {
-  app.add_option("--keep-days", raw.keep_days,
-                 "Remove jobs that have been over for this long, with their images [default: 30]")
-      ->type_name("N");
   app.add_option(
-         "--keep-size", raw.keep_size,
-         "Remove the oldest of them when images and scenes take more than this [default: 100]")
+         "--keep-days", raw.keep_days,
+         "Remove jobs that have been over for more than N days, with their images [default: 30]")
+      ->type_name("N");
+  app.add_option("--keep-size", raw.keep_size,
+                 "Remove the oldest jobs that are over if images and scenes take more than this "
+                 "[default: 100]")
       ->type_name("GB");
-  app.add_option("--keep-jobs", raw.keep_jobs,
-                 "Remove the oldest of them when there are more than this [default: 10000]")
+  app.add_option(
+         "--keep-jobs", raw.keep_jobs,
+         "Remove the oldest jobs that are over if there are more than N of them [default: 10000]")
       ->type_name("N");
 }
 
 void add_serve(CLI::App& app, RawOptions& raw) {
   add_data(app, raw);
-  app.add_option("--listen", raw.listen,
-                 "Address for workers and users; port 0: a free one [default: 0.0.0.0:7878]")
+  app.add_option(
+         "--listen", raw.listen,
+         "Address for workers and users; port 0 stands for any free port [default: 0.0.0.0:7878]")
       ->type_name("HOST:PORT");
-  app.add_option("--web", raw.web,
-                 "Address of the dashboard, or none; HTTPS beyond loopback [default: "
-                 "127.0.0.1:8787, or another port if that is taken]")
+  app.add_option(
+         "--web", raw.web,
+         "Address of the dashboard, or none for no dashboard; an address that other machines can "
+         "reach uses HTTPS [default: 127.0.0.1:8787, or another port if that is taken]")
       ->type_name("HOST:PORT");
   add_keep(app, raw);
   app.add_option("--audit", raw.audit,
-                 "Share of the bands of native workers that two machines render and that are "
-                 "compared [default: 1%]")
+                 "Share of the bands (some rows each) of native workers that a second machine "
+                 "renders for comparison [default: 1%]")
       ->type_name("P%");
   app.add_option("--browser-audit", raw.browser_audit,
-                 "The same of the bands of browsers, which a native worker renders again "
+                 "Share of the bands of browsers that a native worker renders again for comparison "
                  "[default: 10%]")
       ->type_name("P%");
   app.add_option(
          "--browsers", raw.browsers,
-         "Browsers that join render: none (they are refused), also, or only (native workers "
-         "just compare) [default: also]")
+         "Whether browsers render: none (browsers are refused), also (browsers and native workers "
+         "render) or only (native workers only compare what browsers rendered) [default: also]")
       ->type_name("WHICH");
   app.add_flag("--reflection", raw.reflection,
                "List the gRPC calls to any client, such as grpcurl; the calls still need a secret");
@@ -74,7 +78,8 @@ void add_logs(CLI::App& app, RawOptions& raw) {
 
 void add_quarantine(CLI::App& app, RawOptions& raw) {
   app.add_option("worker", raw.worker, "The worker's name, as in: bandsaw workers");
-  app.add_flag("--lift", raw.lift, "Admit it again, after its worker is restarted");
+  app.add_flag("--lift", raw.lift,
+               "End the quarantine: the machine may render again after its worker is restarted");
   add_farm(app, raw);
   add_verbosity(app, raw);
 }
@@ -93,13 +98,12 @@ void add_doctor(CLI::App& app, RawOptions& raw) {
 }
 
 void add_link(CLI::App& app, RawOptions& raw) {
-  app.add_option(
-         "--for", raw.time,
-         "The link ends after this time, from now on, as in 90m or 8h [default: as it is; 8h "
-         "for a new one]")
+  app.add_option("--for", raw.time,
+                 "Time from now to the end of the link, as in 90m or 8h [default: the end of a "
+                 "present link is not changed; a new link ends after 8h]")
       ->type_name("TIME");
   app.add_flag("--revoke", raw.revoke,
-               "The present link is void, and its browsers are disconnected");
+               "End the link now, and disconnect the browsers that joined by it");
   add_farm(app, raw);
   add_verbosity(app, raw, false);
 }

@@ -98,8 +98,7 @@ absl::StatusOr<Command> checked_secret(const RawOptions& raw) {
   options.data = raw.data;
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   if (!raw.action || *raw.action != "rotate") {
-    return absl::InvalidArgumentError(
-        absl::StrCat("secret: the only thing to do with one is rotate, ", kUse));
+    return absl::InvalidArgumentError(absl::StrCat("secret: the action must be rotate, ", kUse));
   }
   if (!raw.role || (*raw.role != "worker" && *raw.role != "farm")) {
     return wrong_choice("secret rotate: whose", "role", raw.role.value_or(""));

@@ -48,7 +48,8 @@ absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
   }
   if (raw.adaptive && !raw.error) {
     return wrong(
-        "--adaptive needs --error: with --samples and --time all pixels have equally many");
+        "--adaptive needs --error: with --samples and --time all pixels get the same number of "
+        "samples");
   }
   if (raw.error) {
     ASSIGN_OR_RETURN(const double error, parse_percent("--error", *raw.error));
@@ -335,7 +336,7 @@ absl::Status read_sequence(const RawOptions& raw, SubmitOptions& options) {
   ASSIGN_OR_RETURN(options.after, checked_after(raw));
   if (raw.continued) {
     if (options.frames.empty()) {
-      return wrong("--continue needs --frames: those of the job that is continued");
+      return wrong("--continue needs --frames: name the frames of the job that is continued");
     }
     ASSIGN_OR_RETURN(options.continued, parse_whole("--continue", *raw.continued, 1,
                                                     std::numeric_limits<JobId>::max()));

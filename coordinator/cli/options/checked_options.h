@@ -83,6 +83,7 @@ absl::Status check_address(const std::string& option, const std::string& address
 /// rows of an image) is what a worker gets at once.
 absl::StatusOr<double> checked_share(const std::string& option,
                                      const std::optional<std::string>& text, double standard);
+/// Returns the value of --browsers; Browsers::kAlso: not given.
 absl::StatusOr<Browsers> checked_browsers(const RawOptions& raw);
 /// Returns HOST:PORT of the dashboard, or "none"; empty: not given.
 absl::StatusOr<std::string> checked_web(const RawOptions& raw);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Some options accept one of a few words, such as --tone. These functions return the words and
-// check a typed one; error messages, help and shell completion use them.
+// Some options accept one of a few words, such as --tone. These functions return the words, for
+// error messages, help and shell completion, and check a word that the user typed.
 
 #include <optional>
 #include <string>

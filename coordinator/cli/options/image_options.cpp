@@ -36,8 +36,9 @@ void add_scene(CLI::App& app, RawOptions& raw) {
   app.add_option("scene", raw.scene,
                  "Scene file (.textproto, .json), scene of pbrt (.pbrt) or Mitsuba (.xml), model "
                  "file, or a .zip of one of them with its files");
-  app.add_flag("--strict", raw.strict,
-               "A warning is an error: about what a scene or model holds and is not rendered");
+  app.add_flag(
+      "--strict", raw.strict,
+      "Fail if there is a warning, which names content of the scene or model that is not rendered");
   app.add_option("-D,--define", raw.parameters,
                  "Value of a parameter of a Mitsuba scene; may be repeated")
       ->type_name("NAME=VALUE")
@@ -45,10 +46,10 @@ void add_scene(CLI::App& app, RawOptions& raw) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--folder", raw.folder,
-                 "Folder around that of a Mitsuba scene: files below it are read [default: the "
-                 "scene's own]")
+                 "Folder that contains the folder of a Mitsuba scene: the scene may use all files "
+                 "in it [default: the scene's folder]")
       ->type_name("FOLDER");
-  app.add_option("--inside", raw.inside, "Which scene of a .zip [default: the only one]")
+  app.add_option("--inside", raw.inside, "Name of the scene in a .zip [default: the only scene]")
       ->type_name("NAME");
 }
 
@@ -64,8 +65,8 @@ void add_image(CLI::App& app, RawOptions& raw) {
                  "[default: the scene's, or a model's first]")
       ->type_name("NAME");
   app.add_option("--frame", raw.frame,
-                 "Frame of a scene that moves: the scene at time N / fps [default: time 0, models "
-                 "without their animations]")
+                 "Render frame N of a scene that moves: the scene at time N / fps [default: the "
+                 "scene at time 0, models without their animations]")
       ->type_name("N");
   app.add_flag("--fixed-seed", raw.fixed_seed,
                "The same noise in all frames [default: frame N has seed + N]");
@@ -80,16 +81,21 @@ void add_image(CLI::App& app, RawOptions& raw) {
       ->type_name("NAME");
   app.add_option("--samples", raw.samples, "Stop at N samples per pixel [default: 64]")
       ->type_name("N");
-  app.add_option("--error", raw.error,
-                 "Stop when the relative RMSE is at most this, in 19 of 20 cases, as in 1%")
+  app.add_option(
+         "--error", raw.error,
+         "Stop at this relative RMSE, as in 1%; in 19 of 20 renders the true error is at most this")
       ->type_name("E%");
   app.add_flag("--adaptive", raw.adaptive, "With --error: more samples where there is more noise");
   app.add_option("--time", raw.time, "Stop before this much time, as in 5s, 2m, 1h")
       ->type_name("T");
   app.add_option("--seed", raw.seed, "Seed of the noise [default: 0]")->type_name("N");
-  app.add_option("--width", raw.width, "Pixels; alone it keeps the scene's aspect ratio")
+  app.add_option(
+         "--width", raw.width,
+         "Width in pixels; if it is given without --height, the scene's aspect ratio is kept")
       ->type_name("W");
-  app.add_option("--height", raw.height, "Pixels; alone it keeps the scene's aspect ratio")
+  app.add_option(
+         "--height", raw.height,
+         "Height in pixels; if it is given without --width, the scene's aspect ratio is kept")
       ->type_name("H");
   app.add_option("--depth", raw.depth,
                  "Maximum number of scatterings of a path [default: the scene's]")
@@ -137,10 +143,10 @@ void add_after(CLI::App& app, RawOptions& raw) {
                  "speed [default: 24]")
       ->type_name("FILE");
   app.add_option("--contact-sheet", raw.contact_sheet,
-                 "Picture with all frames, small, under their numbers: .png …")
+                 "Picture with all frames, each small and above its number: .png …")
       ->type_name("FILE");
   app.add_option("--then", raw.then,
-                 "Command for sh when the job is over; this program runs it, with BANDSAW_JOB, "
+                 "Command that this program runs by sh when the job is over, with BANDSAW_JOB, "
                  "BANDSAW_STATE, BANDSAW_FILES and BANDSAW_FILE_LIST in its environment")
       ->type_name("COMMAND");
 }
@@ -177,8 +183,9 @@ void add_submit(CLI::App& app, RawOptions& raw) {
          "Many frames as one job, as in 1:240, 1-30, 1:240:2 or 47,60-72; the outputs' names "
          "have #### for the number")
       ->type_name("RANGES");
-  app.add_option("--continue", raw.continued,
-                 "Send the scenes that this job with frames lacks, instead of starting a new one")
+  app.add_option(
+         "--continue", raw.continued,
+         "Send the scenes that this job of many frames lacks, instead of starting a new job")
       ->type_name("JOB");
   add_integrator(app, raw);
   add_output(app, raw, kPictures, " [default: the scene's name as .png]");
@@ -187,7 +194,7 @@ void add_submit(CLI::App& app, RawOptions& raw) {
   add_denoise(app, raw);
   app.add_flag("--detach", raw.detach, "Do not watch; print the job's number and exit");
   app.add_option("--priority", raw.priority,
-                 "Jobs of the highest priority are rendered first, -1000 to 1000 [default: 0]")
+                 "From -1000 to 1000; jobs of the highest priority are rendered first [default: 0]")
       ->type_name("N");
   add_after(app, raw);
   add_farm(app, raw);
@@ -216,9 +223,10 @@ void add_render(CLI::App& app, RawOptions& raw) {
   add_layers(app, raw);
   add_denoise(app, raw);
   app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
-  app.add_option("--kernel", raw.kernel,
-                 "The renderer's code, for comparison; the image is the same: " +
-                     one_of(choices_of("--kernel")) + " [default: the first]")
+  app.add_option(
+         "--kernel", raw.kernel,
+         "Renderer's code for one instruction set, for comparison; each gives the same image: " +
+             one_of(choices_of("--kernel")) + " [default: the first]")
       ->type_name("NAME");
   app.add_option("--rows", raw.rows, "Only rows y0 to y1 - 1, from the top; stitch joins the parts")
       ->type_name("y0:y1");
@@ -250,8 +258,8 @@ void add_stitch(CLI::App& app, RawOptions& raw) {
 }
 
 void add_compare(CLI::App& app, RawOptions& raw) {
-  app.add_option("image", raw.image, "The image that is judged (PNG, PPM, PFM, …)");
-  app.add_option("reference", raw.reference, "The image that it is judged by");
+  app.add_option("image", raw.image, "The image whose errors are measured (PNG, PPM, PFM, …)");
+  app.add_option("reference", raw.reference, "The image that it is compared with");
   app.add_option("-o,--output", raw.outputs,
                  "File for a picture of the differences (FLIP), black for none, white for the most")
       ->allow_extra_args(false)

@@ -88,7 +88,8 @@ struct ServeOptions {
   double keep_days = 30;             ///< maximum age of jobs that are over
   double keep_gb = 100;              ///< maximum size of results and scenes
   std::uint64_t keep_jobs = 10'000;  ///< maximum number of jobs that are over
-  /// Share of the bands of native workers that a second machine renders for comparison, [0, 1].
+  /// Share of the bands of native workers that a second machine renders for comparison, [0, 1]. A
+  /// band (some rows of an image) is what a worker gets at once.
   double audit_share = 0.01;
   /// Share of the bands of browsers that a native worker renders again, [0, 1].
   double browser_audit_share = 0.1;
@@ -301,7 +302,7 @@ struct StudyOptions {
   std::vector<std::string> outputs = {"study.csv", "study.svg"};
   std::uint64_t samples = 64;      ///< maximum samples per pixel, [4, 65536]
   std::uint64_t seeds = 4;         ///< number of seeds to average over
-  std::uint64_t reference = 1024;  ///< samples per pixel of the image that errors are measured from
+  std::uint64_t reference = 1024;  ///< samples per pixel of the reference image
   std::uint64_t seed = 0;          ///< first seed
   std::uint32_t width = 96;        ///< pixels; the height keeps the scene's aspect ratio
   int threads = 0;                 ///< 0: one for each CPU

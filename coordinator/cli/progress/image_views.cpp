@@ -48,7 +48,7 @@ void ImageViews::show(const Image& image, const Display& of_scene) {
 
 void ImageViews::lost(const absl::Status& why) {
   display_.note(absl::StrCat("warning: no viewer at ", address_, ": ", why.message(),
-                             "; the image is rendered all the same"));
+                             "; the image is rendered without the viewer"));
 }
 
 }  // namespace bandsaw::coordinator

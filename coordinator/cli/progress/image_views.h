@@ -24,7 +24,7 @@ class ImageViews {
 
   /// Returns true if the image is shown anywhere.
   bool any() const { return display_.draws() || tev_; }
-  /// Returns the number of pixels of the image's longer side that is enough for all views; 0: full
+  /// Returns a length of the image's longer side, in pixels, that is enough for all views; 0: full
   /// resolution is needed.
   std::uint32_t most_side() const;
   /// Shows the image instead of the last one. `of_scene`: the scene's display settings.

@@ -30,7 +30,8 @@ ProgressDisplay::ProgressDisplay(const Console& console, Verbosity verbosity)
       draws_(verbosity.preview && console.is_terminal() && console.colour()) {
   if (verbosity.preview && !draws_) {
     console_.complain(
-        "--preview draws on a terminal with colours only: this is none, or NO_COLOR is set");
+        "--preview draws on a terminal with colours only; standard output is no such terminal, or "
+        "NO_COLOR is set");
   }
 }
 

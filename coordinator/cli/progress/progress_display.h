@@ -78,8 +78,8 @@ class ProgressDisplay {
   const bool draws_;  ///< the picture is drawn as well
   Mutex mutex_;
   Painter painter_ GUARDED_BY(mutex_);
-  Image image_ GUARDED_BY(mutex_);  ///< the picture; without pixels: none
-  Display shown_as_ GUARDED_BY(mutex_);
+  Image image_ GUARDED_BY(mutex_);              ///< the picture; without pixels: none
+  Display shown_as_ GUARDED_BY(mutex_);         ///< display settings of image_
   bool has_header_ GUARDED_BY(mutex_) = false;  ///< the header was printed
   bool has_shown_ GUARDED_BY(mutex_) = false;   ///< shown_at_ is valid; false: output is due now
   bool has_pixels_ GUARDED_BY(mutex_) = false;  ///< a state with pixels was shown

@@ -1,4 +1,5 @@
 // Writes progress as the JSON objects of --json (coordinator/README.md, "Progress for programs").
+// known_number() writes null for a negative value, which stands for an unknown one.
 
 #include "coordinator/cli/progress/progress_json.h"
 

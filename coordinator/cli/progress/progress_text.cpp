@@ -217,11 +217,10 @@ std::string bad_samples_line(const Progress& progress) {
   if (bad == 0) {
     return "";
   }
-  return absl::StrCat(
-      "warning: ", bad, bad == 1 ? " sample was" : " samples were",
-      " not finite or negative and left out of the image; the first: ",
-      printable(progress.bad_sample_at),
-      "; that is a fault of the scene or of this program, please look at that pixel");
+  return absl::StrCat("warning: ", bad, bad == 1 ? " sample was" : " samples were",
+                      " negative, infinite or NaN and left out of the image; the first: ",
+                      printable(progress.bad_sample_at),
+                      "; the scene or this program has a fault there");
 }
 
 }  // namespace bandsaw::coordinator
