@@ -12,9 +12,9 @@
 namespace bandsaw::coordinator {
 
 /// Returns a copy that shares nothing with `status`, for a status that goes to another thread.
-/// Copies of a status share their message by a reference count, which the code of Debian's Abseil
-/// changes. This library is not instrumented for ThreadSanitizer, which would therefore report
-/// false races.
+/// Copies of a status share their message by a reference count, which the compiled code of Abseil
+/// changes. Debian's build of Abseil is not instrumented for ThreadSanitizer. So ThreadSanitizer
+/// would report false races.
 inline absl::Status unshared_status(const absl::Status& status) {
   return absl::Status(status.code(), status.message());
 }

@@ -1,5 +1,6 @@
-// to_forget() sums the sizes of all blobs and final jobs, and returns the oldest final jobs if a
-// limit is exceeded. sweep() removes the blobs that no job needs, and folders of unknown jobs.
+// to_forget() sums the sizes of all blobs and of all final jobs (done, failed or cancelled), and
+// returns the oldest final jobs if a limit is exceeded. sweep() removes the blobs that no job
+// needs, and folders of unknown jobs.
 
 #include "coordinator/engine/collector.h"
 

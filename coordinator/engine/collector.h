@@ -1,7 +1,7 @@
 #pragma once
 
-// Finds old final jobs, and removes the blobs (the data of scenes) that no job needs. All data of a
-// job that is not final is kept.
+// Finds old final jobs (done, failed or cancelled), and removes the blobs (the data of scenes) that
+// no job needs. All data of a job that is not final is kept.
 
 #include <cstddef>
 #include <cstdint>
@@ -57,9 +57,10 @@ class Collector {
   /// Adds the blobs of a package, its manifest included. Adds none if the manifest is missing or
   /// damaged. Returns false if the manifest cannot be read for another reason.
   bool add_blobs_of(const DigestHex& manifest, Needs& needs);
-  /// Returns the blobs of a job's packages; std::nullopt: one of them exists and cannot be read.
+  /// Returns the blobs of a job's packages; std::nullopt: add_blobs_of() has returned false for one
+  /// of the packages.
   std::optional<std::set<wire::Digest>> blobs_of(const KeptJob& job);
-  /// Returns the result of blobs_of, or an empty set if that is std::nullopt.
+  /// Returns the result of blobs_of(), or an empty set instead of std::nullopt.
   std::set<wire::Digest> known_blobs_of(const KeptJob& job);
   /// Removes the blobs that are not in `needed` and were not used for Keep::unused_seconds.
   void remove_unneeded(const std::set<wire::Digest>& needed, double now);

@@ -1,6 +1,7 @@
-// Records wait here for the journal. Effects and completions that must not happen before the
-// records are on disk wait here, too. flush() writes all records at once. If that fails,
-// completions are called with the error, while effects and records stay.
+// Records wait here for the journal. Effects (functions that carry out a decision) and completions
+// (functions that receive OK or the journal's error) must not be called before the records are on
+// disk, so they wait here, too. flush() writes all records at once. If that fails, completions are
+// called with the error, while effects and records stay.
 
 #include "coordinator/engine/commit_queue.h"
 

@@ -1,4 +1,5 @@
-// Starts the three threads, and turns each call into a message to the thread that answers it.
+// Starts the three threads (scheduler, store and film), and turns each call into a message to the
+// thread that answers it.
 
 #include "coordinator/engine/engine.h"
 
@@ -52,8 +53,9 @@ SchedulerOptions scheduler_options(const EngineOptions& options, const std::stri
   return wanted;
 }
 
-/// Returns OK if a little data can be written in addition to the reserve. Otherwise releases the
-/// reserve, so that the journal can be opened and the rest of the start has space for small files.
+/// Returns OK if a little data can be written in addition to the reserve, a file that keeps disk
+/// space for the journal. Otherwise releases the reserve, so that the journal can be opened and the
+/// rest of the start has space for small files.
 absl::Status ensure_disk_space(const DataFolder& folder) {
   constexpr std::uint64_t kLittle = 1 << 20;
   Reserve reserve(folder.reserve());

@@ -39,8 +39,8 @@ struct EngineOptions {
   double heartbeat_timeout_s = 4;  ///< a worker that is silent for this time counts as lost
   /// A lease without progress for this time is revoked, and its rows are given to another worker.
   double progress_timeout_s = 30;
-  /// After a restart, nothing is leased for this time unless all workers of the previous run have
-  /// connected again.
+  /// After a restart, nothing is leased until all workers of the previous run have connected again,
+  /// or until this time has passed.
   double reattach_grace_s = 6;
   /// Share of the bands of native workers that two machines render, [0, 1].
   double audit_share = 0.01;
@@ -122,8 +122,9 @@ class Engine {
   /// Returns the present image of a job that is not over, every row_step-th row, `row_step` >= 1.
   /// NOT_FOUND: no such job, or none of its bands is stored.
   void preview(JobId job, std::uint32_t row_step, std::function<void(absl::StatusOr<Image>)> done);
-  /// Returns the workers of the rows that are rendered, in the order of rows. After a restart, a
-  /// worker's name is empty in a job that is not over until the worker sends another band.
+  /// Returns the workers of the rows that are rendered, in the order of rows. After a restart, the
+  /// names of the workers are empty in the jobs that are not over. A name becomes known again when
+  /// the worker sends another band.
   void rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done);
   /// Returns a part of the result of a job: its image, the number of samples of each pixel
   /// (kSamples, of adaptive jobs), or the mean of the first samples (kFirst; store/finished.h).

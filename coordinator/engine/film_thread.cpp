@@ -1,7 +1,7 @@
 // A film holds the sums of all pixels of a job's image. For each job, work() brings the film up to
 // date: it builds the film again if that is needed, adds the bands that wait, reports complete
-// passes, and sends the image if it was requested. If one of these steps fails, the remaining steps
-// wait for retry().
+// passes (ranges of samples of the whole image), and sends the image if it was requested. If one of
+// these steps fails, the remaining steps wait for retry().
 
 #include "coordinator/engine/film_thread.h"
 
@@ -222,9 +222,10 @@ FilmThread::Added FilmThread::added(const IncomingBand& incoming, const RowRange
 }
 
 /// Builds a film of the bands whose samples end at or before `samples`. The bands are read from the
-/// log. A band cannot be removed from an existing film, because nodes of samples that were merged
-/// have become one sum. Bands that the log no longer holds are left out and reported. Fails if the
-/// film cannot be created, or the log cannot be read for a reason other than damage.
+/// log. A band cannot be removed from an existing film, because the film adds neighbouring ranges
+/// of samples and keeps only their common sum. Bands that the log no longer holds are left out and
+/// reported. Fails if the film cannot be created, or the log cannot be read for a reason other than
+/// damage.
 absl::StatusOr<Film> FilmThread::film_until(JobId id, OneJob& job, std::uint64_t samples) {
   ASSIGN_OR_RETURN(Film film, new_film(id, job));
   std::vector<std::size_t> damaged;

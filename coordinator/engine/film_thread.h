@@ -31,7 +31,8 @@ class FilmThread {
   FilmThread(const DataFolder& folder, SchedulerInbox& scheduler, StoreInbox& store)
       : folder_(folder), scheduler_(scheduler), store_(store) {}
 
-  /// Announces a job. `adaptive`: the film also measures the error of each half tile.
+  /// Announces a job. `adaptive`: the film also measures the error of each half tile (half of the
+  /// pixels of a square of 16 x 16).
   void add_job(JobId job, const RenderSettings& settings, bool adaptive = false);
   /// Announces a pass that ends at `samples`. The pass is reported when the film contains all of
   /// it.

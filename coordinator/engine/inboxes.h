@@ -1,9 +1,10 @@
 #pragma once
 
 // The messages that the engine's threads send to each other. SchedulerThread, StoreThread and
-// FilmThread call the inboxes of the others. Engine implements each inbox by posting to the mailbox
-// of its thread, so a call never blocks. The messages of one sender arrive in the order in which
-// they were sent. Tests implement inboxes that record the calls.
+// FilmThread call the inboxes of the other threads. Engine implements each inbox by posting to the
+// mailbox of its thread, so a call never blocks. The messages of one sender arrive in the order in
+// which they were sent. Tests implement inboxes that record the calls. Most messages are about a
+// band: a range of rows and samples of a job that a worker has rendered.
 
 #include <cstdint>
 #include <vector>
@@ -46,7 +47,8 @@ class StoreInbox {
   /// Writes a band to its job's log.
   virtual void append(IncomingBand incoming) = 0;
   /// Computes the digests of a band's rows and sends band_stored. Does not write the band, because
-  /// all of its rows are stored already: the second result is only compared with the first.
+  /// all of its rows are stored already. The new digests are only compared with those of the stored
+  /// rows.
   virtual void compare(IncomingBand incoming) = 0;
   virtual void write_result(JobId job, Finished finished) = 0;
   /// Called when the job's log was found damaged. Later bands are appended after the last sound

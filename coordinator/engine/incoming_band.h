@@ -38,8 +38,10 @@ struct IncomingBand {
   bool browser = false;       ///< a browser sent it
   std::uint64_t process = 0;  ///< id of the worker process (scheduler/api/worker_process.h)
   BandPixels pixels;
-  std::string worker;        ///< name of the worker, from action::AddToFilm
-  TileSamples tiles = {};    ///< samples of the band's half tiles, from action::AddToFilm
+  std::string worker;  ///< name of the worker, from action::AddToFilm
+  /// How many samples each half tile of the band takes (half of the pixels of a square of 16 x 16),
+  /// from action::AddToFilm.
+  TileSamples tiles = {};
   double render_s = 0;       ///< seconds in which the worker rendered it
   double cpu_s = 0;          ///< CPU seconds of the worker's threads
   bool written = false;      ///< it is in the job's log; false: all of its rows were stored already

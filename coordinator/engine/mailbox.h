@@ -52,7 +52,7 @@ class Mailbox {
   std::thread thread_;
 };
 
-/// Calls methods of an object on the thread of a mailbox, which is the object's only user.
+/// Calls methods of an object on the thread of a mailbox. Only this thread uses the object.
 template <class T>
 class Posting {
  public:

@@ -108,7 +108,8 @@ void SchedulerThread::note(const Record& record) {
   } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
     known_[pass->job].pass_ends.push_back(pass->samples.last);
   } else if (const auto* changed = std::get_if<record::StateChanged>(&record)) {
-    if (const auto known = known_.find(changed->job); known != known_.end()) {  // else a sequence
+    // A sequence changes its state too, but is not in known_.
+    if (const auto known = known_.find(changed->job); known != known_.end()) {
       known->second.state = changed->state;
     }
   } else if (const auto* forgotten = std::get_if<record::JobForgotten>(&record)) {
@@ -210,9 +211,10 @@ void SchedulerThread::disk_is_full(const absl::Status& status) {
   if (!disk_status_.ok()) {
     return;
   }
-  disk_status_ = absl::ResourceExhaustedError(absl::StrCat(
-      "the coordinator's disk is full: ", status.message(),
-      "; jobs are paused and nothing new is taken until there is room: cancel jobs, or free some"));
+  disk_status_ = absl::ResourceExhaustedError(
+      absl::StrCat("the coordinator's disk is full: ", status.message(),
+                   "; jobs are paused and nothing new is taken until there is room: cancel jobs, "
+                   "or free disk space"));
   spdlog::error("{}", disk_status_.ToString());
   has_disk_space_ = false;
   pause_all(disk_status_);

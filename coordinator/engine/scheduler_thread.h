@@ -95,8 +95,9 @@ class SchedulerThread {
     JobState state = JobState::kRunning;
     std::vector<std::uint64_t> pass_ends;  ///< samples at which its planned passes end
   };
-  /// Runs one step of the scheduler and puts its records and effects into the commit queue.
-  /// `incoming`: the band that the input is about, if any.
+  /// Runs one step of the scheduler and puts its records and effects into the commit queue, where
+  /// records wait for the journal and effects wait for the records. `incoming`: the band that the
+  /// input is about, if any.
   Step run(const Input& input, IncomingBand* incoming = nullptr);
   /// Puts the records of a step and its actions, as effects, into the commit queue.
   void absorb(const Step& step, IncomingBand* incoming);

@@ -1,6 +1,6 @@
-// restore() replays the journal, then the band log of each job that is not final (the file with the
-// bands that workers have rendered). Each band goes to the scheduler. Its rows that are still
-// wanted go to the film of its job.
+// restore() replays the journal. For each job that is not final, it then replays the band log,
+// which is the file with the bands that workers have rendered. Each band goes to the scheduler. The
+// rows of the band that are still wanted go to the film of the job.
 
 #include <spdlog/spdlog.h>
 

@@ -12,9 +12,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Checks a band that a worker sent. INVALID_ARGUMENT: it is not a band of an image with these
-/// settings, some of its pixels are missing, or its pixels or counters contradict `tiles`, the
-/// samples of the half tiles of the band.
+/// Checks a band that a worker sent. `tiles`: how many samples each half tile of the band takes
+/// (half of the pixels of a square of 16 x 16). INVALID_ARGUMENT: it is not a band of an image with
+/// these settings, some of its pixels are missing, or its pixels or counters contradict `tiles`.
 absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings,
                         const TileSamples& tiles) {
   if (absl::Status valid = validate(pixels.band, settings); !valid.ok()) {
@@ -23,8 +23,8 @@ absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings
   const std::size_t sums = std::size_t{pixels.band.rows.count()} * settings.width * 3;
   if (pixels.width != settings.width || pixels.sums.size() != sums) {
     return absl::InvalidArgumentError(
-        absl::StrCat("the band's pixels are ", pixels.sums.size(), " sums of rows of ",
-                     pixels.width, " pixels; it must be ", sums, " of ", settings.width));
+        absl::StrCat("the band has ", pixels.sums.size(), " sums in rows of ", pixels.width,
+                     " pixels; it must have ", sums, " sums in rows of ", settings.width));
   }
   absl::Status valid = check_left_out(pixels, tiles);
   valid.Update(check_counters(pixels, tiles));

@@ -131,8 +131,8 @@ void StoreThread::write_result(JobId id, const Finished& finished) {
   // An error here is only logged, because the image is valid without the attribution.
   if (const absl::Status status = write_attribution(finished.attribution, folder_.attribution(id));
       !status.ok()) {
-    spdlog::warn("job={} the names of those who rendered its rows could not be stored: {}", id,
-                 status.ToString());
+    spdlog::warn("job={} the names of the workers that rendered its rows could not be stored: {}",
+                 id, status.ToString());
   }
   absl::Status written;
   if (finished.first) {
@@ -164,7 +164,7 @@ absl::StatusOr<StoredResult> StoreThread::read_result(JobId id, FinishedPart par
     return absl::IsNotFound(first.status())
                ? absl::NotFoundError(absl::StrCat(
                      "there is no first part of the samples of job ", id,
-                     ": it has too few of them, or was rendered by an earlier version"))
+                     ": the job has too few samples, or was rendered by an earlier version"))
                : std::move(first);
   }
   absl::StatusOr<StoredResult> result = coordinator::read_result(folder_.result(id));

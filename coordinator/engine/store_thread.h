@@ -70,8 +70,11 @@ class StoreThread {
     std::optional<BandLog> log;         ///< opened at the first band
     std::vector<IncomingBand> written;  ///< bands that are in the log, but not synced to disk
   };
+  /// Writes the band to the job's log, and sets `offset` and `written` of the band.
   absl::Status write(OpenJob& job, IncomingBand& incoming);
+  /// Opens the job's log if it is not open.
   absl::Status open_log(JobId id, OpenJob& job);
+  /// Syncs the job's log, which MUST be open, and answers the bands in OpenJob::written.
   void settle(OpenJob& job);
 
   const DataFolder& folder_;

@@ -108,7 +108,8 @@ absl::StatusOr<std::uint64_t> check_package(const DigestHex& digest_hex, BlobSto
   ASSIGN_OR_RETURN(const std::string manifest, read_manifest(digest_hex, blobs));
   RETURN_IF_ERROR(package_info(manifest).status());
   ASSIGN_OR_RETURN(const std::vector<BlobRef> refs, package_blobs(manifest));
-  // The collector must not remove the blobs before the scheduler has the job.
+  // The manifest and the blobs are marked as used, because the collector must not remove them
+  // before the scheduler has the job.
   ASSIGN_OR_RETURN(const wire::Digest manifest_digest, wire::digest_from_hex(digest_hex));
   blobs.touch(manifest_digest);
   std::uint64_t bytes = manifest.size();

@@ -27,8 +27,8 @@ class Watchers {
 
   /// Calls the watchers of changed jobs, at most ten times per second and job, and all watchers at
   /// least once a second. A final state is always delivered, and is the last. Delivers NOT_FOUND if
-  /// the job was forgotten. `hold_final`: do not deliver final states, because they are not
-  /// durable.
+  /// the job was forgotten. `hold_final`: if true, final states wait for a later call, because they
+  /// are not on disk yet.
   void update(ViewOf view_of, bool hold_final, Time now);
 
  private:

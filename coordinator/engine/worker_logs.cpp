@@ -58,10 +58,10 @@ absl::StatusOr<std::vector<std::string>> WorkerLogs::of(const std::string& worke
     }
     names.push_back(name);
   }
-  return absl::NotFoundError(
-      absl::StrCat("no worker '", worker, "' has sent lines of its log; ",
-                   names.empty() ? "no other worker has either"
-                                 : absl::StrCat("these have: ", absl::StrJoin(names, ", "))));
+  return absl::NotFoundError(absl::StrCat(
+      "no worker '", worker, "' has sent lines of its log; ",
+      names.empty() ? "no other worker has either"
+                    : absl::StrCat("these workers have: ", absl::StrJoin(names, ", "))));
 }
 
 }  // namespace bandsaw::coordinator

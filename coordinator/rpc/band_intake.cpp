@@ -1,6 +1,7 @@
 // Assembles a band (the pixels of some rows and samples) from the chunks in which it arrives. The
-// first chunk has the header. begin() checks its fields, then takes the size of the band from the
-// budget for bands, before any byte of the band is kept. take() checks the digest and the values.
+// first chunk has the header. begin() checks the fields of the header, then takes the size of the
+// band from the memory budget for bands, before any byte of the band is kept. take() checks the
+// digest and the values of the whole band.
 
 #include "coordinator/rpc/band_intake.h"
 

@@ -42,10 +42,10 @@ class BrowserAccess {
 
   /// Returns the present link; std::nullopt: there is none, or it has ended.
   std::optional<Link> present() EXCLUDES(mutex_);
-  /// Makes a link that ends after `seconds`; if there is a link already, only changes the time when
-  /// it ends. INVALID_ARGUMENT: not in [1, kMaxSeconds]. FAILED_PRECONDITION: there is no
-  /// dashboard. Other errors: the file cannot be written; the present link is unchanged. Waits for
-  /// the disk.
+  /// Makes a link that ends after `seconds`. If there is a valid link already, only changes the
+  /// time at which it ends. INVALID_ARGUMENT: `seconds` is not in [1, kMaxSeconds].
+  /// FAILED_PRECONDITION: there is no dashboard. Other errors: the file cannot be written; the
+  /// present link is unchanged. Waits for the disk.
   absl::StatusOr<Link> make(double seconds) EXCLUDES(mutex_);
   /// Ends the present link, if there is one. The link is refused from the moment at which this
   /// function returns. Waits for the disk.

@@ -40,6 +40,7 @@ absl::Status check_text(const char* field, const std::string& text, std::size_t 
   return absl::OkStatus();
 }
 
+/// Checks and converts a lease that a worker still holds when it connects.
 absl::StatusOr<WorkerHello::Held> held_lease(const farm::Held& message) {
   WorkerHello::Held held{.job = message.job(),
                          .band = {},
@@ -90,7 +91,8 @@ absl::StatusOr<SequenceSpec> sequence_spec(const farm::SubmitSequenceRequest& re
   spec.name = request.name();
   ASSIGN_OR_RETURN(spec.settings, image_settings(request.settings()));
   if (is_guide(spec.settings.integrator)) {
-    return absl::InvalidArgumentError("integrator: the guides of the denoiser are no images");
+    return absl::InvalidArgumentError(
+        "integrator: a sequence cannot render the guides of the denoiser, which are no images");
   }
   ASSIGN_OR_RETURN(spec.stop, stop_rule_of(request.stop()));
   spec.fixed_seed = request.fixed_seed();

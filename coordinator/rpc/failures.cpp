@@ -1,4 +1,4 @@
-// Counts wrong secrets of each address within a minute from the first one.
+// Counts the wrong secrets that each address sends within a minute from its first wrong secret.
 
 #include "coordinator/rpc/failures.h"
 

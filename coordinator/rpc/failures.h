@@ -16,8 +16,9 @@ class Failures {
   explicit Failures(std::size_t most) : most_(most) {}
 
   enum class Verdict { kFirst, kMore, kTooMany };
-  /// Counts one more failure of the address. Returns kFirst for the first one in its minute,
-  /// kTooMany if there were more than `most` in this minute, otherwise kMore.
+  /// Counts one more failure of the address. The first failure begins a minute, and so does the
+  /// first failure after this minute. Returns kFirst for a failure that begins a minute, kTooMany
+  /// if there were more than `most` failures in this minute, otherwise kMore.
   Verdict add(const std::string& address, double now);
 
  private:

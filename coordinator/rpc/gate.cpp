@@ -1,5 +1,5 @@
-// Compares the secret in a call's metadata with those of the identity, and counts wrong secrets per
-// address.
+// Compares the secret in a call's metadata with the secrets in the farm's identity, and counts
+// wrong secrets per address.
 
 #include "coordinator/rpc/gate.h"
 
@@ -65,9 +65,9 @@ absl::Status Gate::check(const grpc::CallbackServerContext& context, link::Role 
     return absl::PermissionDeniedError(
         role == link::Role::kWorker
             ? "this join string is for workers: submitting, watching and cancelling need the "
-              "farm's own (file `farm` in the coordinator's data folder)"
-            : "this join string is for users: a worker needs the workers' one (file `join` in the "
-              "coordinator's data folder)");
+              "users' join string (file `farm` in the coordinator's data folder)"
+            : "this join string is for users: a worker needs the workers' join string (file `join` "
+              "in the coordinator's data folder)");
   }
   return absl::OkStatus();
 }

@@ -29,6 +29,7 @@ absl::StatusOr<MemoryBudget::Share> share_for(Engine& engine, std::uint32_t widt
                    (bytes >> 20) + 1, " MiB; try again when a download has ended"));
 }
 
+/// Reads a part of the result of a finished job, after taking its memory from the budget.
 absl::StatusOr<HeldImage> finished_image(Engine& engine, const JobView& job, FinishedPart part) {
   const RenderSettings& settings = job.spec.settings;
   ASSIGN_OR_RETURN(MemoryBudget::Share share, share_for(engine, settings.width, settings.height));
@@ -47,8 +48,8 @@ void shrink(HeldImage& held, std::uint32_t across, std::uint32_t down) {
   }
 }
 
-/// Returns the job of the frame that was done last, or else of the first frame that is being
-/// rendered.
+/// Returns the job of the frame that was done last. If no frame is done, returns the job of the
+/// first frame that is being rendered.
 absl::StatusOr<JobView> frame_to_show(Engine& engine, JobId sequence) {
   using Frames = absl::StatusOr<std::vector<FrameView>>;
   ASSIGN_OR_RETURN(const std::vector<FrameView> frames,
@@ -97,7 +98,7 @@ absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::ui
     shrink(held, step, step);
     return held;
   }
-  // The preview has every step-th row already; only its columns are reduced below.
+  // Engine::preview() returns only every step-th row, so shrink() has to reduce only the columns.
   const std::uint32_t rows = (settings.height - 1) / step + 1;
   ASSIGN_OR_RETURN(MemoryBudget::Share share, share_for(engine, settings.width, rows));
   using Part = absl::StatusOr<Image>;

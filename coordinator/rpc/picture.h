@@ -21,8 +21,8 @@ struct HeldImage {
 };
 
 /// Returns the finished image, or another part of the result (FinishedPart). Errors: those of
-/// Engine::result. This function and those below also return RESOURCE_EXHAUSTED if images that are
-/// viewed or downloaded at the same time leave too little memory.
+/// Engine::result. Also returns RESOURCE_EXHAUSTED, as picture_of() and preview_of() do, if images
+/// that are viewed or downloaded at the same time leave too little memory.
 absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job,
                                     FinishedPart part = FinishedPart::kImage);
 

@@ -15,8 +15,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
-static_assert(sizeof(Rgb) == 3 * sizeof(float), "pixels are copied as they are");
+static_assert(std::endian::native == std::endian::little,
+              "tev's numbers are little-endian and are copied without conversion");
+static_assert(sizeof(Rgb) == 3 * sizeof(float), "a pixel is three floats without padding");
 
 constexpr std::chrono::seconds kTevTimeout{5};
 constexpr std::size_t kPacketPixels = 1 << 18;  // a packet of 3 MB

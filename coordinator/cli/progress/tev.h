@@ -1,9 +1,9 @@
 #pragma once
 
-// Client of the viewer tev (https://github.com/Tom94/tev), which shows images that other programs
-// send, for --tev. Its protocol has packets over TCP. Each begins with the length of the whole
-// packet in 32 bits and the operation in one byte; the fields of the operation follow. Numbers are
-// little-endian; strings end with a zero byte.
+// Client of the viewer tev (https://github.com/Tom94/tev), for the option --tev. The viewer shows
+// images that other programs send. Its protocol has packets over TCP. Each packet begins with the
+// length of the whole packet in 32 bits and the operation in one byte. The fields of the operation
+// follow. Numbers are little-endian, and strings end with a zero byte.
 
 #include <cstdint>
 #include <string>

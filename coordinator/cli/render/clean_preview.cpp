@@ -41,8 +41,9 @@ absl::StatusOr<std::optional<Image>> CleanPreview::of(const Film& film, std::uin
                      .first_share = {},
                      .albedo = guides_->albedo,
                      .shape = guides_->shape};
-  // The share is the part of a pixel's samples that is in `first`. It differs little among the
-  // pixels that become one, so the value of the first of them is used.
+  // `first` is the mean of about half of each pixel's samples, and the share is the exact part. The
+  // share differs little among the pixels that are reduced to one pixel, so the share of the top
+  // left one is used.
   for (std::uint32_t y = 0; y < input.mean.height; ++y) {
     for (std::uint32_t x = 0; x < input.mean.width; ++x) {
       input.first_share.push_back(first->share[std::size_t{y} * step * film.width() + x * step]);

@@ -28,7 +28,7 @@ class CleanPreview {
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop) {}
 
   /// Returns the image of the samples in `film`, without noise and reduced to at most `most_side`
-  /// pixels a side. Returns std::nullopt until every pixel has more than one block (8) of samples.
+  /// pixels a side. Returns std::nullopt until every pixel has more than one block of 8 samples.
   /// The first call renders the guides. `most_side` MUST be above 0 and the same in all calls.
   /// Errors as render_image.
   absl::StatusOr<std::optional<Image>> of(const Film& film, std::uint32_t most_side);

@@ -30,8 +30,9 @@ class LocalMeter {
   /// Reports that samples [0, samples) of each pixel are done. `error`: std::nullopt if unknown.
   void passed(std::uint64_t samples, const std::optional<ErrorEstimate>& error, Clocks now)
       EXCLUDES(mutex_);
-  /// Reports the relative RMSE that the stop rule compares with its target. It is needed only with
-  /// --denoise, where that is the error of the clean image and not the error given to passed().
+  /// Reports the relative RMSE of the clean image. This is called only with --denoise, because the
+  /// stop rule then compares the error of the clean image with its target. Without --denoise, the
+  /// stop rule compares the error given to passed().
   void measured(std::uint64_t samples, double error) EXCLUDES(mutex_);
   /// Adds the counters (rays, bad samples, …) of rows that are done.
   void add(const Counters& counters) EXCLUDES(mutex_);

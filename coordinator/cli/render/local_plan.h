@@ -14,8 +14,8 @@
 namespace bandsaw::coordinator {
 
 /// In an adaptive render the plan also has the number of samples of each half tile (half of the
-/// pixels of a square of 16 x 16). The order of calls is: next(), tiles(), render the pass; then,
-/// if wants_tiles(), plan().
+/// pixels of a square of 16 x 16). For each pass, the caller calls next() and tiles(), and renders
+/// the pass. Then it calls plan() if wants_tiles() returns true.
 class LocalPlan {
  public:
   /// `grid`: the size of the image; only adaptive stop rules need it.
@@ -42,7 +42,8 @@ class LocalPlan {
   }
 
  private:
-  /// Returns the first planned pass. If none is planned, first plans passes for samples [from, to).
+  /// Removes the first planned pass and returns it. If no pass is planned, plans the passes for
+  /// samples [from, to) before that.
   std::optional<SampleRange> first_of(std::uint64_t from, std::uint64_t to);
 
   StopRule stop_;

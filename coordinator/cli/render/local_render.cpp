@@ -83,8 +83,8 @@ absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const R
   std::vector<BandPixels> bands;
   std::vector<SampleRange> nodes = maximal_nodes(samples);
   if (nodes.front().blocks() > 1) {
-    // `stitch` estimates the error of the whole image from these halves, as `render` does without
-    // --rows.
+    // A node is a range of samples that are summed as one. `stitch` estimates the error of the
+    // whole image from the two halves of the first node, as `render` does without --rows.
     const Halves halves = split(nodes.front());
     nodes.front() = halves.right;
     nodes.insert(nodes.begin(), halves.left);

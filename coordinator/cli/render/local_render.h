@@ -39,10 +39,11 @@ struct LocalJob {
 /// LocalJob::error_of.
 absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop);
 
-/// Renders samples [0, samples) of some rows. The samples are divided into the largest nodes of the
-/// tree by which samples are added (maximal_nodes in renderlib/render/band.h). The first node is
-/// divided into its two halves, because the error estimate needs them. Returns bands for each of
-/// these ranges of samples, with as many rows as a band may have. Errors: as render_whole().
+/// Renders samples [0, samples) of some rows. The samples of a pixel are added in a binary tree,
+/// whose nodes are ranges of samples. The samples are divided into the largest nodes (maximal_nodes
+/// in renderlib/render/band.h). The first node is divided into its two halves, because the error
+/// estimate needs them. Returns bands for each of these ranges of samples, with as many rows as a
+/// band may have. Errors: as render_whole().
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
                                                     std::uint64_t samples);
 

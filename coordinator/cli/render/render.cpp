@@ -134,7 +134,7 @@ class LocalRun {
       if (options_.verbosity.preview) {
         preview.emplace(*scene, spec_.settings, pool_, stop_);
         display_.note(
-            "the preview is cleaned with coarse guides; the picture is cleaned at the end");
+            "the preview is denoised with rough guide images; the picture is denoised at the end");
       }
     }
     if (views_.any()) {
@@ -168,7 +168,7 @@ class LocalRun {
   }
 
   /// Removes the noise of the image, whose pixels have `samples` samples, and stores the result in
-  /// clean_, unless it is there already.
+  /// clean_. Does nothing if clean_ has the result for this number of samples already.
   absl::Status clean(const Scene& scene, const Film& film, std::uint64_t samples) {
     if (clean_ && clean_->samples == samples) {
       return absl::OkStatus();
@@ -263,6 +263,7 @@ class LocalRun {
 }  // namespace
 
 ExitCode run(const RenderOptions& options, Process& process) {
+  // Ignores SIGPIPE, so that the image is written even if the reader of standard output has ended.
   outlive_reader();
   const Console& console = process.console;
   const std::vector<std::string> outputs = outputs_of(options);

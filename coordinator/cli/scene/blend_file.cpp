@@ -122,6 +122,8 @@ absl::Status killed(const std::string& path, const ChildOutcome& outcome) {
              : absl::OkStatus();
 }
 
+/// Returns the error of a Blender that has written no scene. `output`: the text that it has
+/// printed.
 absl::Status no_scene(const std::string& path, const std::string& output) {
   return absl::InvalidArgumentError(
       absl::StrCat(name_of(path), ": Blender made no scene of it: ", last_error_line(output)));

@@ -10,10 +10,10 @@
 namespace bandsaw::coordinator {
 
 /// Returns the settings of `scene`, in which the options that are given replace the scene's values.
-/// If only a width or a height is given, the other side keeps the scene's aspect ratio, rounded to
-/// the nearest pixel. The seed of a frame is the sum of --seed and the number of the frame, unless
-/// --fixed-seed is given. INVALID_ARGUMENT: the settings are out of range, such as an image that is
-/// too large.
+/// If only one of width and height is given, the other one is computed from the scene's aspect
+/// ratio and rounded to the nearest pixel. The seed of a frame is the sum of --seed and the number
+/// of the frame, unless --fixed-seed is given. INVALID_ARGUMENT: the settings are out of range,
+/// such as an image that is too large.
 absl::StatusOr<RenderSettings> image_settings(const ImageOptions& options,
                                               const PackageInfo& scene);
 

@@ -36,9 +36,10 @@ fs::path output_of(const ImportOptions& options) {
   return unpacked.stem() += ".textproto";
 }
 
-/// Returns the files to write beside the scene file. Files in the folder of the converted scene are
-/// copied, unless the scene file is written to that folder. PERMISSION_DENIED: a file is not in
-/// that folder, for example because a symbolic link leads out of it.
+/// Returns the files to write beside the scene file: those that the importer has written, and those
+/// that are in the folder of the converted scene. The latter stay where they are if the scene file
+/// is written to the same folder. PERMISSION_DENIED: a file that should be in the folder of the
+/// converted scene is not there, for example because a symbolic link leads out of this folder.
 absl::StatusOr<std::vector<Output>> outputs_of(const SceneFiles& files, const std::string& scene,
                                                const fs::path& target_folder) {
   std::error_code error;

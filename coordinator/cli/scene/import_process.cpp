@@ -75,7 +75,8 @@ absl::Status judge(const ChildOutcome& outcome, const std::string& file, double 
         "%s: reading it took longer than %g s; it is damaged or too large", name, seconds));
   }
   if (signal == SIGXFSZ) {
-    return absl::ResourceExhaustedError(absl::StrCat(name, ": becomes larger than a blob may be"));
+    return absl::ResourceExhaustedError(
+        absl::StrCat(name, ": a file that the importer makes of it is too large"));
   }
   if (signalled) {
     return absl::DataLossError(absl::StrCat(name, ": the importer crashed (signal ", signal, ", ",
@@ -164,9 +165,10 @@ std::vector<std::string> outermost(std::vector<std::string> names) {
   return names;
 }
 
-// Parses a list of files that the importer has written (renderlib/import/main.cpp): in each line
-// "made" (the importer has written the file) or "found" (it has not) and a name. The names are
-// checked, because a foreign file may have taken control of the importer.
+// Parses a list of files that the importer has written (renderlib/import/main.cpp). Each line has a
+// name after the word "made" (the importer has written the file) or "found" (the importer has not
+// written the file). The names are checked, because a foreign file may have taken control of the
+// importer.
 absl::StatusOr<std::vector<ListedFile>> read_file_list(const std::string& list) {
   std::vector<ListedFile> files;
   int made = 0;
@@ -315,9 +317,8 @@ absl::StatusOr<std::unique_ptr<ImportSession>> ImportSession::start(const std::s
   ASSIGN_OR_RETURN(std::shared_ptr<const ScratchFolder> folder,
                    ScratchFolder::make("import", limits.scratch));
   choices.frame = 0;
-  // This process limits the time of each frame. The importer's own limit is for all frames
-  // together. The importer does not know how many frames will come, so the limit is more than they
-  // can need.
+  // This process limits the time of each frame. The importer limits its total CPU time, but does
+  // not know how many frames will come. So its limit is larger than any sequence can need.
   constexpr std::uint64_t kCpuSeconds = 100'000'000;
   ASSIGN_OR_RETURN(auto importer,
                    Coprocess::start(importer_arguments(program, "frames", scene, folder->path(),

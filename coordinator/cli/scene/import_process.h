@@ -91,7 +91,7 @@ struct SceneFiles {
 /// If `scene_path` is a zip file, imports the scene `choices.inside` in it. If `choices.inside` is
 /// empty, imports the only scene in the zip file. This scene is searched for in the first of these
 /// groups that has a file: .textproto; .pbrt and .xml; .pbrt.gz; .glb and .gltf; .json; other
-/// models. Of this group, only the files with the fewest folders in their path count.
+/// models. Of this group, only the files with the fewest folders in their paths are considered.
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});

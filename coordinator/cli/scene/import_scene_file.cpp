@@ -86,7 +86,8 @@ absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verb
 
 absl::StatusOr<DecodedScene> decode_scene_file(const std::string& scene, Verbosity verbosity,
                                                Process& process, const SceneChoices& choices) {
-  // Without a listener, a signal would end the program before the folder is removed.
+  // Without a listener, a signal would end the program before the temporary folder of the package
+  // is removed.
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
   ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(scene, verbosity, process, choices));

@@ -14,6 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Imports the scene of the options, builds it, and returns its summary.
 absl::StatusOr<SceneSummary> summary_of_file(const InfoOptions& options, Process& process) {
   // Quiet, because the summary contains the warnings.
   ASSIGN_OR_RETURN(DecodedScene decoded,

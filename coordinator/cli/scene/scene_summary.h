@@ -40,8 +40,8 @@ struct SceneSummary {
   std::uint64_t tree_bytes = 0;     ///< size of the BVHs; 0: not built
 };
 
-/// Summarises a scene; kinds that do not occur are omitted. `package_bytes` is stored as it is;
-/// tree_bytes stays 0.
+/// Summarises a scene. The lists omit kinds that do not occur. `package_bytes`: the size of the
+/// manifest and the blobs, for SceneSummary::package_bytes. SceneSummary::tree_bytes stays 0.
 SceneSummary summary_of(const SceneDescription& scene, const PackageInfo& info,
                         std::uint64_t package_bytes);
 

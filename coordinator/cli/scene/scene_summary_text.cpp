@@ -42,11 +42,11 @@ std::vector<std::string> summary_text(const SceneSummary& summary) {
                                  " surfaces")),
       line("camera", summary.camera),
       line("cameras", info.model_cameras.empty()
-                          ? "none of a model"
+                          ? "none in a model file"
                           : absl::StrCat(printable(absl::StrJoin(info.model_cameras, ", ")),
                                          " (--camera NAME)")),
-      line("shapes",
-           absl::StrCat(text(summary.shapes), "; ", summary.triangles, " triangles as placed")),
+      line("shapes", absl::StrCat(text(summary.shapes), "; ", summary.triangles,
+                                  " triangles in all placements")),
       line("bounds",
            summary.bounds.empty()
                ? "none"
@@ -61,7 +61,7 @@ std::vector<std::string> summary_text(const SceneSummary& summary) {
       line("background", summary.background),
       line("media", text(summary.media)),
       line("memory", absl::StrCat(bytes(summary.geometry_bytes), " of geometry, ",
-                                  bytes(summary.tree_bytes), " of trees, ",
+                                  bytes(summary.tree_bytes), " of BVHs, ",
                                   bytes(summary.texture_bytes), " of texels; a pixel takes 48 B")),
       line("size", absl::StrCat(bytes(summary.package_bytes), " to send"))};
   if (info.warnings.empty()) {

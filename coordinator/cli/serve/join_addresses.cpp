@@ -1,6 +1,7 @@
-// join_addresses() returns the addresses for a join string. If the coordinator listens on all
-// addresses, these are the addresses of this machine. Real interfaces come first, virtual ones
-// second and loopback last. In each of these groups IPv4 comes before IPv6.
+// join_addresses() returns the addresses for a join string (the line by which a worker or a command
+// finds and joins the farm). If the coordinator listens on all addresses, these are the addresses
+// of this machine. Real interfaces come first, virtual ones second and loopback last. In each of
+// these groups IPv4 comes before IPv6.
 
 #include "coordinator/cli/serve/join_addresses.h"
 
@@ -86,7 +87,7 @@ std::vector<std::string> join_addresses(const std::string& host, int port,
   }
   std::vector<LocalAddress> sorted = local;
   std::erase_if(sorted, [&](const LocalAddress& address) { return address.ipv6 && !every; });
-  if (sorted.empty()) {  // no interface is up, not even loopback, which may come up later
+  if (sorted.empty()) {  // no interface is up; loopback may come up later
     return {absl::StrCat("127.0.0.1:", port)};
   }
   std::stable_sort(sorted.begin(), sorted.end(),

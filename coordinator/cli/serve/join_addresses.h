@@ -22,11 +22,11 @@ struct LocalAddress {
 /// need a scope. INTERNAL: the system's error.
 absl::StatusOr<std::vector<LocalAddress>> local_addresses();
 
-/// Returns at most 8 addresses HOST:PORT for a join string, the best one first. `host` is what the
-/// coordinator listens on. If it is 0.0.0.0, the result is every IPv4 address in `local`; if it is
-/// [::], every address in `local`. These begin with real interfaces; those of containers and
-/// bridges follow, and loopback is last. If there is none, the result is 127.0.0.1. Any other host
-/// is the only one in the result.
+/// Returns at most 8 addresses HOST:PORT for a join string, the best one first. `host`: the host on
+/// which the coordinator listens. If it is 0.0.0.0, the result is every IPv4 address in `local`. If
+/// it is [::], the result is every address in `local`. Addresses of real interfaces come first,
+/// then those of containers and bridges, then loopback. If `local` has no such address, the result
+/// is 127.0.0.1. If `host` is any other host, the result is only this host.
 std::vector<std::string> join_addresses(const std::string& host, int port,
                                         const std::vector<LocalAddress>& local);
 

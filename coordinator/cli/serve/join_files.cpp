@@ -1,4 +1,5 @@
-// Writes the join strings to the files of the data folder, and renews the secret of one role.
+// Writes the join strings (lines by which workers and users connect to the farm) to the files of
+// the data folder, and renews the secret of one role (workers or users).
 
 #include "coordinator/cli/serve/join_files.h"
 
@@ -57,7 +58,7 @@ absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link
     }
   }
   ASSIGN_OR_RETURN(link::Identity identity, link::renew_secret(data_folder, role));
-  if (!present) {
+  if (!present) {  // the addresses of the farm are unknown, so no join string is written
     return RenewedSecret{std::move(identity), ""};
   }
   present->secret = secret_of(identity, role);

@@ -37,9 +37,9 @@ absl::Status give_to_owner(const std::string& folder, const std::string& file) {
   return absl::OkStatus();
 }
 
-/// Renews the secret in the folder and revokes the link for browsers. Returns the path of the file
-/// with the new join string; empty: none was written, and the next `serve` writes it.
-/// FAILED_PRECONDITION: a coordinator is using the folder.
+/// Renews the secret in the folder, and revokes the link by which browsers join the farm. Returns
+/// the path of the file with the new join string. The path is empty if no join string was written;
+/// then the next `serve` writes it. FAILED_PRECONDITION: a coordinator is using the folder.
 absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role role) {
   ASSIGN_OR_RETURN(const DataFolder locked, DataFolder::open(folder));
   RETURN_IF_ERROR(link::remove_browser_link(folder));

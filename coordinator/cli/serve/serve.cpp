@@ -39,7 +39,8 @@ struct JoinStrings {
 /// All that runs, and what is printed about it.
 struct Serving {
   std::unique_ptr<Engine> engine;
-  // The link for browsers; destroyed after the dashboard and the server, which use it.
+  // The link by which browsers join the farm. Destroyed after the dashboard and the server, which
+  // use it.
   std::unique_ptr<BrowserAccess> browsers;
   std::unique_ptr<ServedDashboard> web;  // destroyed before the engine
   // Destroyed after the server, which uses it.
@@ -92,7 +93,7 @@ absl::Status unless_full(const absl::Status& written) {
   return absl::OkStatus();
 }
 
-/// Starts everything and writes the files with the join strings.
+/// Starts the engine, the dashboard and the server, and writes the files with the join strings.
 absl::StatusOr<Serving> start(const ServeOptions& options) {
   Serving serving;
   std::string folder = options.data;
@@ -181,7 +182,7 @@ ExitCode run(const ServeOptions& options, Process& process) {
                                     url.empty() ? "" : absl::StrCat(" · dashboard ", url)));
   if (!url.empty()) {
     process.console.line(
-        absl::StrCat("dashboard: the link in ", dashboard_file(serving->folder), " logs in"));
+        absl::StrCat("dashboard: to log in, open the link in ", dashboard_file(serving->folder)));
     process.console.line("phones and other browsers join by the link of:  bandsaw link");
   }
   if (options.insecure) {
@@ -193,7 +194,7 @@ ExitCode run(const ServeOptions& options, Process& process) {
     process.console.line(absl::StrCat("or where there is no bandsaw-worker:  ", serving->line));
   } else if (!serving->web->workers.empty()) {
     process.console.line(
-        "with --web 0.0.0.0:8787 a line is printed that fetches and starts a worker");
+        "with --web 0.0.0.0:8787, a shell line that fetches and starts a worker is printed here");
   }
   process.interrupts.wait();
   process.console.line("stopping; jobs continue when the coordinator is started again");

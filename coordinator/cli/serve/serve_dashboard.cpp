@@ -99,7 +99,8 @@ BrowserProgram load_browsers() {
   return *std::move(program);
 }
 
-/// Starts the dashboard. Returns nullptr if the user gave no address and no port can be used.
+/// Starts the dashboard. If the user gave no address, tries the default port, then any free port,
+/// and returns nullptr if none can be used.
 absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, Engine& engine,
                                                  const link::Identity& identity,
                                                  const WorkerPrograms& workers,

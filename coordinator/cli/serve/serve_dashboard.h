@@ -26,8 +26,9 @@ struct ServedDashboard {
   /// `serve` sets it. Without a dashboard, removes the file.
   absl::Status write_link(const std::string& data_folder, const link::Identity& identity) const;
 
-  /// Returns the dashboard's address in the form of the users' join string (proto/link/join.h);
-  /// empty: there is no dashboard.
+  /// Returns the dashboard's address as the users' join string has it (proto/link/join.h):
+  /// HOST:PORT, or only PORT if the dashboard listens on all addresses of the machine. Returns an
+  /// empty text if there is no dashboard.
   std::string place(const ServeOptions& options) const;
 
   /// Returns the line to paste on a machine without a worker (cli/machines/worker_line.h). `join`:

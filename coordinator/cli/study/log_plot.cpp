@@ -134,8 +134,9 @@ class Panel {
     return out;
   }
 
-  /// Returns true if the legend goes to the top left, false if it goes to the bottom left. It goes
-  /// to the half in which the left 40 % of the diagram has fewer points.
+  /// Returns true if the legend goes to the top left, false if it goes to the bottom left. Counts
+  /// the points in the left 40 % of the diagram. The legend goes to the half, upper or lower, that
+  /// has fewer of these points.
   bool names_on_top() const {
     int below = 0;
     for (const PlotLine& line : panel_.lines) {

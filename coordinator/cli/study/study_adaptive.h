@@ -21,9 +21,10 @@ struct AdaptiveImage {
   double rays = 0;  ///< number of all rays
 };
 
-/// Renders with `samples` per pixel on average. The pilot gives every pixel the same number of
-/// samples. This is a sixteenth of `samples`, rounded down to whole blocks, but at least 32 and at
-/// most `samples`. CANCELLED: `stop` was set; RESOURCE_EXHAUSTED: out of memory.
+/// Renders with `samples` per pixel on average. First renders a pilot, in which every pixel gets
+/// the same number of samples: a sixteenth of `samples`, rounded down to whole blocks of 8 samples,
+/// but at least 32 and at most `samples`. CANCELLED: `stop` was set. RESOURCE_EXHAUSTED: out of
+/// memory.
 absl::StatusOr<AdaptiveImage> render_adaptively(const Scene& scene, const RenderSettings& settings,
                                                 std::uint64_t samples, Pool& pool,
                                                 const std::atomic<bool>& stop);

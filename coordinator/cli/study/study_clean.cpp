@@ -14,7 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// An estimated error is counted as right if it is between these multiples of the true one.
+/// An estimated error is counted as right if it is between these multiples of the true error.
 constexpr double kMinRatio = 0.7;
 constexpr double kMaxRatio = 1.5;
 

@@ -21,16 +21,16 @@ struct CleanPoint {
   double clean_cpu_s = 0;
   double raw_flip = 0;  ///< mean FLIP; HDR-FLIP if the reference has values that no screen shows
   double clean_flip = 0;
-  /// For each seed, the estimated RMSE of the clean image divided by the true one. The part that
-  /// the noise of the reference causes is subtracted from the true one. A seed for which nothing
-  /// remains is omitted.
+  /// For each seed, the estimated RMSE of the clean image divided by its true RMSE. The part of the
+  /// true RMSE that the noise of the reference causes is subtracted. If nothing remains of the true
+  /// RMSE, the seed is omitted.
   std::vector<double> error_ratios = {};
 
   /// Returns the relMSE of the image as rendered divided by that of the clean one; 0: unknown.
   double gain() const { return clean_mse > 0 ? raw_mse / clean_mse : 0; }
-  /// Returns the ratio of gain() for equal CPU time, as if the image as rendered had been given the
-  /// CPU time of the clean one. The relMSE of such an image is not measured. It is estimated as
-  /// `raw_mse` scaled by 1 / time.
+  /// Returns gain() for equal CPU time, as if the image as rendered had been given the CPU time of
+  /// the clean image. The relMSE of such an image is not measured. It is estimated as `raw_mse`
+  /// scaled by 1 / time.
   double gain_in_equal_time() const {
     return clean_cpu_s > 0 ? gain() * raw_cpu_s / clean_cpu_s : 0;
   }

@@ -179,7 +179,8 @@ class Study {
     return line;
   }
 
-  /// Returns true if an image so far used path guiding or photon maps.
+  /// Returns true if an image so far used path guiding, photon maps or portals (openings through
+  /// which the background lights a room).
   bool guides() const { return guides_; }
 
  private:

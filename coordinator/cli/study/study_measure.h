@@ -22,12 +22,15 @@ namespace bandsaw::coordinator {
 /// How an image is rendered. All methods except kPixelStops and kClean have the same expected
 /// value.
 enum class Method {
-  kFull,       ///< as in `bandsaw render`
-  kNoGuiding,  ///< neither path guiding nor photon maps; only where kFull uses one of them
-  kNoMis,      ///< no MIS: BSDF sampling counts only the emission that light sampling cannot reach
-  kNoLights,   ///< BSDF sampling only: no next-event estimation
-  kAdaptive,   ///< more samples where there is more noise, with about the same total
-  /// Independent random numbers instead of Owen-scrambled nets; neither guiding nor photon maps.
+  kFull,  ///< as in `bandsaw render`
+  /// Without path guiding, photon maps and portals (openings through which the background lights a
+  /// room). Measured only where kFull uses one of them.
+  kNoGuiding,
+  kNoMis,     ///< no MIS: BSDF sampling counts only the emission that light sampling cannot reach
+  kNoLights,  ///< BSDF sampling only: no next-event estimation
+  kAdaptive,  ///< more samples where there is more noise, with about the same total
+  /// Independent random numbers instead of Owen-scrambled nets. Without path guiding, photon maps
+  /// and portals.
   kIndependent,
   /// As kIndependent, except that each pixel stops when 1.96 standard errors of its mean are at
   /// most a given fraction of the mean. This is tested at multiples of 16 samples. Many ray tracers

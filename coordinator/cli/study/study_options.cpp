@@ -31,7 +31,8 @@ void add_study(CLI::App& app, RawOptions& raw) {
   app.add_option("--seeds", raw.seeds, "Images of each kind, to average over [default: 4]")
       ->type_name("K");
   app.add_option("--reference", raw.reference_samples,
-                 "Samples of the image that is compared with [default: 16 times --samples]")
+                 "Samples per pixel of the reference image, with which all others are compared "
+                 "[default: 16 times --samples]")
       ->type_name("N");
   app.add_option("--seed", raw.seed, "The first seed [default: 0]")->type_name("N");
   app.add_option("--width", raw.width, "Pixels; the height keeps the aspect ratio [default: 96]")
@@ -40,7 +41,7 @@ void add_study(CLI::App& app, RawOptions& raw) {
   app.add_flag("--every-object", raw.every_object,
                "Also test each ray against every object; small scenes only");
   app.add_flag("--denoise", raw.compare_clean,
-               "Compare clean images with those as rendered, instead of the techniques");
+               "Measure denoised images and the same images as rendered, instead of techniques");
   app.add_flag("--quiet", raw.quiet, "Print only the table and errors");
 }
 
