@@ -10,7 +10,7 @@
 
 namespace bandsaw::coordinator {
 
-std::optional<SampleRange> LocalPlan::first_of(std::uint64_t from, std::uint64_t to) {
+std::optional<SampleRange> LocalPlan::take_pass(std::uint64_t from, std::uint64_t to) {
   if (passes_.empty()) {
     const std::vector<SampleRange> planned = passes_between(from, to);
     passes_.assign(planned.begin(), planned.end());
@@ -23,10 +23,10 @@ std::optional<SampleRange> LocalPlan::first_of(std::uint64_t from, std::uint64_t
 
 std::optional<SampleRange> LocalPlan::next(std::uint64_t samples, double error, double seconds) {
   if (!passes_.empty()) {
-    return first_of(samples, samples);
+    return take_pass(samples, samples);
   }
   if (const auto* rule = std::get_if<StopAtSamples>(&stop_)) {
-    return samples < rule->samples ? first_of(samples, rule->samples) : std::nullopt;
+    return samples < rule->samples ? take_pass(samples, rule->samples) : std::nullopt;
   }
   if (const auto* rule = std::get_if<StopAtError>(&stop_)) {
     const bool reached = error >= 0 && error <= rule->relative_rmse;
@@ -34,7 +34,7 @@ std::optional<SampleRange> LocalPlan::next(std::uint64_t samples, double error, 
       return std::nullopt;
     }
     const double target = next_target(rule->relative_rmse, rule->adaptive && !schedule_);
-    return first_of(samples, next_checkpoint(samples, error, target, rule->max_samples));
+    return take_pass(samples, next_checkpoint(samples, error, target, rule->max_samples));
   }
   const auto& rule = std::get<StopAtTime>(stop_);
   if (samples == 0) {

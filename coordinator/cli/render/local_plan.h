@@ -44,7 +44,7 @@ class LocalPlan {
  private:
   /// Removes the first planned pass and returns it. If no pass is planned, plans the passes for
   /// samples [from, to) before that.
-  std::optional<SampleRange> first_of(std::uint64_t from, std::uint64_t to);
+  std::optional<SampleRange> take_pass(std::uint64_t from, std::uint64_t to);
 
   StopRule stop_;
   TileGrid grid_;
