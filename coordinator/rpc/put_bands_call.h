@@ -28,10 +28,13 @@ class PutBandsCall final
   link::Role role() const override { return link::Role::kWorker; }
 
  private:
+  /// Adds a chunk to the band, then reads the next chunk, or hands a complete band to the engine.
   absl::Status take(const farm::BandChunk& chunk) EXCLUDES(mutex_);
   void read_next() EXCLUDES(mutex_);
   /// Marks the band as given to the engine. Returns false if the call is over.
   bool hand_over() EXCLUDES(mutex_);
+  /// Called by the engine when it is done with the band. Writes the outcome to the worker, or ends
+  /// the call if the engine returned an error.
   void answer(const absl::StatusOr<BandOutcome>& outcome) EXCLUDES(mutex_);
   /// Finishes the call if it is to end and no band is with the engine.
   void advance() REQUIRES(mutex_);

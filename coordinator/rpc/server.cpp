@@ -135,7 +135,7 @@ class Server::Impl {
   int port() const { return port_; }
 
  private:
-  const link::Identity identity_;  ///< at the start; later only the secrets change
+  const link::Identity identity_;  ///< key, certificate and first secrets; `gate_` renews secrets
   Gate gate_;
   // files_ and images_ are destroyed after server_, because calls that end post tasks to them.
   FileExecutor files_;

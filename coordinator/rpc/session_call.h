@@ -5,8 +5,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Serves Work.Session, the stream of messages between a worker and the coordinator, by gRPC. The
-/// engine receives `lost` exactly once, in OnDone, after which no message of the stream can arrive.
+/// Serves Work.Session, the gRPC stream of messages between a worker and the coordinator. When the
+/// stream is over, SelfOwned::OnDone calls done(), which tells the engine that the worker is lost.
+/// gRPC calls OnDone exactly once, and no message of the stream can arrive after that.
 class SessionCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::FromWorker, farm::ToWorker>, SessionCall>,
       public WorkerSession,

@@ -25,9 +25,9 @@ namespace bandsaw::coordinator {
 class LongStream {
  public:
   virtual ~LongStream() = default;
-  /// Ends the call with this status as soon as the write or the task in progress has ended; nothing
-  /// is started after it. May be called on any thread. If it is called more than once, the first
-  /// status counts.
+  /// Ends the call with this status as soon as the write or the task in progress has ended. Nothing
+  /// is started after that. May be called on any thread. If stop() is called more than once, the
+  /// first status counts.
   virtual void stop(const absl::Status& why) = 0;
   /// The role whose secret opened the stream.
   virtual link::Role role() const = 0;
@@ -130,8 +130,8 @@ auto* admitted(const ServiceDependencies& deps, const grpc::CallbackServerContex
 }
 
 /// Runs a unary RPC if the caller has the secret of `role`. `handle` is called with the reactor. If
-/// it returns an error, the call ends with it; otherwise `handle` MUST ensure that Finish is
-/// called.
+/// `handle` returns an error, the call ends with this error. Otherwise `handle` MUST ensure that
+/// Finish is called.
 template <class Handle>
 grpc::ServerUnaryReactor* unary(const ServiceDependencies& deps,
                                 grpc::CallbackServerContext& context,

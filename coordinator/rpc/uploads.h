@@ -28,7 +28,9 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
   std::optional<absl::Status> take(bool ok);
   /// Called when take() has returned `ended`. Reads the next chunk, or ends the call.
   void after_task(std::optional<absl::Status> ended) EXCLUDES(mutex_);
+  /// Checks a chunk and appends its bytes to the blob.
   absl::Status add(const farm::BlobChunk& chunk);
+  /// Checks that all bytes have arrived, and commits the blob.
   absl::Status end();
   /// Finishes the call if it is to end and no task is in progress.
   void advance() REQUIRES(mutex_);

@@ -20,7 +20,8 @@ class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatu
   link::Role role() const override { return link::Role::kFarm; }
 
  private:
-  /// Returns false if no more statuses are wanted.
+  /// Called by the engine with each new state of the job. Returns false if no more states are
+  /// wanted.
   bool changed(const absl::StatusOr<JobView>& job) EXCLUDES(mutex_);
   /// Unless a write is in progress, sends the state that waits, or finishes the call if it is to
   /// end.

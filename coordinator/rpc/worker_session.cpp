@@ -1,5 +1,5 @@
 // received() checks a message and forwards it to the engine. send() queues a message for the
-// worker, and advance() gives the transport the next one when it is free.
+// worker. When the transport is free, advance() gives it the next message of the queue.
 
 #include "coordinator/rpc/worker_session.h"
 

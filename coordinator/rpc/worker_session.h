@@ -27,6 +27,7 @@ class WorkerSession : public WorkerLink {
   WorkerSession(Engine& engine, std::string peer, bool browser)
       : engine_(engine), peer_(std::move(peer)), browser_(browser) {}
 
+  /// `epoch`: name of this run of the coordinator.
   void welcome(const action::Welcome& welcome, const std::string& epoch) override;
   void refuse(const action::Refuse& refuse) override;
   void lease(const action::Lease& lease) override;

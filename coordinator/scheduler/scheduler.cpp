@@ -94,7 +94,8 @@ void Scheduler::on(const input::BandStored& in) {
   if (worker != nullptr) {
     measure(*worker, *job, in);
     worker->on_job[job->id].failures = 0;
-    // Suspect bands and browsers say nothing about how often native workers crash by chance.
+    // A suspect band (one that a worker held when it was lost) says nothing about how often native
+    // workers crash by chance, and neither does a browser.
     if (!job->is_suspect(in.band) && !worker->browser) {
       crashes_.count_band();
     }

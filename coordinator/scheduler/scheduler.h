@@ -50,7 +50,8 @@ class Scheduler {
   // on disk and their damage, then `replayed` once, then step for inputs.
   void replay(const Record& record);
   void replay(const input::BandStored& band);
-  /// `bytes` of a job's band log, > 0, belong to no whole band. Users see this in `bandsaw why`.
+  /// Notes that `bytes` bytes (> 0) of a job's band log, the file of its stored bands, belong to no
+  /// whole band. Users see this in `bandsaw why`.
   void replay_damage(JobId job, std::uint64_t bytes);
   /// Ends the replay. The actions of the step continue jobs that were finishing.
   Step replayed(Time now);
@@ -58,11 +59,13 @@ class Scheduler {
   /// Returns the rows of a band that the job still wants; empty: all are stored. std::nullopt: the
   /// job is final or unknown, or the band is not a part of one of its passes.
   std::optional<std::vector<RowRange>> wanted(JobId job, const Band& band) const;
-  /// Returns the samples that each half tile of the band takes (adaptive jobs;
-  /// renderlib/render/tile_samples.h); all samples of the band if the job or its pass is unknown.
+  /// Returns the samples that each half tile (half of the pixels of a 16 x 16 tile) of the band
+  /// takes. They differ only in adaptive jobs. If the job or its pass is unknown, each half tile
+  /// takes all samples of the band.
   TileSamples tiles(JobId job, const Band& band) const;
 
-  /// Returns the smallest list of records that replays to the durable state.
+  /// Returns the smallest list of records whose replay gives the durable state, that is, the state
+  /// that survives a restart.
   std::vector<Record> snapshot() const;
 
   /// Returns how a job or sequence is shown to users; std::nullopt: there is none.

@@ -1,6 +1,7 @@
-// clean_jobs() returns the jobs whose images the denoiser needs beside the image itself. Their
-// request ids are hashes of what they render, so that jobs of several users with the same work are
-// one job.
+// clean_jobs() returns the jobs whose images the denoiser needs in addition to the image itself:
+// the guides (images of the albedo, and of the normals and distances), and for few samples also an
+// image of half of the samples. The request id of such a job is a hash of what it renders. So if
+// several users need the same image, they share one job.
 
 #include "coordinator/scheduler/api/clean_jobs.h"
 
@@ -41,7 +42,7 @@ absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t sampl
   if (!computes_radiance(settings.integrator)) {
     return absl::FailedPreconditionError(
         absl::StrCat("images of the integrator ", integrator_name(settings.integrator),
-                     " are not cleaned: they have no noise of light"));
+                     " are not cleaned: only images of light are denoised"));
   }
   if (samples < 2) {
     return absl::FailedPreconditionError(

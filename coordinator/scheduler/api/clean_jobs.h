@@ -14,21 +14,21 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the name of a job that is made in addition to another job: `name`, the name of the other
-/// job, then `suffix`, a few words. If both together are longer than the name of a job may be,
-/// `name` is cut between two characters.
+/// Returns the name of a job that is made in addition to another job: first `name`, which is the
+/// name of the other job, then `suffix`, a few words. If this is longer than the name of a job may
+/// be, `name` is shortened by whole characters.
 std::string with_suffix(const std::string& name, const std::string& suffix);
 
 /// Bounds of the number of samples of the guides.
 inline constexpr std::uint64_t kMinGuideSamples = 8;
 inline constexpr std::uint64_t kMaxGuideSamples = 32;
 
-/// Returns the number of samples per pixel of the guides of an image with `samples` samples, at
-/// least 1: about a quarter as many, within the bounds, and not more than the image has. More
-/// samples would improve the clean image too little for the time that they cost
-/// (renderlib/denoise/NOTES.md). The number is a power of two unless the image has fewer than 8
-/// samples. So the number rarely changes when an image is rendered further, and new guides are
-/// rarely needed.
+/// Returns the number of samples per pixel of the guides of an image with `samples` samples per
+/// pixel, where `samples` is at least 1. The guides get about a quarter of `samples`, within the
+/// bounds, but never more than `samples`. More samples would improve the clean image too little for
+/// the time that they cost (renderlib/denoise/NOTES.md). The number is a power of two unless the
+/// image has fewer than 8 samples. So the number rarely changes when an image is rendered further,
+/// and new guides are rarely needed.
 std::uint64_t guide_samples(std::uint64_t samples);
 
 /// Checks if an image with this many samples per pixel can be denoised. FAILED_PRECONDITION: the

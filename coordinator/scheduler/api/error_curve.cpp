@@ -19,7 +19,7 @@ namespace {
 constexpr double kMinFall = 0.5;
 constexpr double kMaxFall = 0.75;
 
-/// Returns the first point whose error is above 0, that is, not of a black or a perfect image.
+/// Returns the first point whose error is above 0. The error of a black or a perfect image is 0.
 ErrorCurve::const_iterator begin_of(const ErrorCurve& curve) {
   return std::find_if(curve.begin(), curve.end(),
                       [](const ErrorPoint& point) { return point.estimate.at_most() > 0; });

@@ -39,13 +39,14 @@ double fall_of(const ErrorCurve& curve);
 
 /// Returns the relative RMSE plus its margin (ErrorEstimate::at_most) at this many samples per
 /// pixel, > 0. Between points it is interpolated. Beyond the last point it is the error at half the
-/// samples, multiplied by 2^-fall_of(curve). This repeats the steps of the last octave: a complete
-/// net of 2^k samples has a smaller error than a power law through other sample counts predicts.
-/// The curve MUST have a point whose error is not 0.
+/// samples, multiplied by 2^-fall_of(curve). So the shape of the last octave repeats in the
+/// following octaves. This shape is not a plain power law, because a complete net of 2^k samples
+/// has a smaller error than a power law through other sample counts predicts. The curve MUST have a
+/// point whose error is not 0.
 double error_at(const ErrorCurve& curve, double samples);
 
 /// Returns the samples per pixel at which error_at is at most `target`, > 0. std::nullopt: the
-/// curve has no point or is of a black image, or more than kMaxSamples would be needed.
+/// curve has no point or belongs to a black image, or more than kMaxSamples would be needed.
 std::optional<double> samples_until(const ErrorCurve& curve, double target);
 
 /// Returns the CPU seconds until error_at is at most `target`. CPU seconds are taken as

@@ -21,9 +21,9 @@ inline constexpr FrameNumber kMaxFrameNumber = 1'000'000'000;
 /// both included; a step may follow, as in 1:240:2 or 1-240x2. Returns the numbers in ascending
 /// order, each once. INVALID_ARGUMENT: an item is neither a number nor a range; a range runs
 /// backwards or has a step below 1; a number is beyond kMaxFrameNumber; there are more than
-/// kMaxFrames different numbers, or more than twice as many with the repeated ones; there is no
-/// number. The message begins with the item, or with the list if only the list as a whole is too
-/// long.
+/// kMaxFrames different numbers; there are more than 2 * kMaxFrames numbers, where repeated numbers
+/// count each time; there is no number. The message begins with the item, or with the list if only
+/// the list as a whole is too long.
 absl::StatusOr<std::vector<FrameNumber>> parse_frames(absl::string_view text);
 
 /// Returns a short list of numbers and ranges in the form that parse_frames reads. `numbers` MUST

@@ -27,8 +27,9 @@ struct StopAtError {
   bool adaptive = false;
   friend bool operator==(const StopAtError&, const StopAtError&) = default;
 };
-/// Once this much time has passed since the job's first lease, the job ends with the passes that
-/// are complete then, but not before the first pass is complete.
+/// The job ends when this much time has passed since its first lease. The image has the passes that
+/// are complete at that time. If no pass is complete by then, the job ends once its first pass is
+/// complete.
 struct StopAtTime {
   double seconds = 0;  ///< > 0
   std::uint64_t max_samples = kMaxSamples;

@@ -28,7 +28,7 @@ struct JobWorkerView {
 /// The part of an image that one worker process rendered.
 struct WorkerShare {
   WorkerProcessId process = 0;
-  std::string name;           ///< empty: the process has not connected in this epoch
+  std::string name;           ///< empty: not connected in this run of the coordinator
   std::uint64_t samples = 0;  ///< pixel samples
   double cpu_s = 0;           ///< summed over its threads
   friend bool operator==(const WorkerShare&, const WorkerShare&) = default;
@@ -48,8 +48,8 @@ struct JobView {
   std::string reason;
   double fraction = 0;  ///< part of the work that is done, [0, 1]
   /// Seconds since its first lease. The times between runs of the coordinator do not count. The
-  /// times in which the job was paused do not count either; for a sequence, only pauses by a user
-  /// are such times.
+  /// times in which the job was paused do not count either. Of the pauses of a sequence, only those
+  /// by a user are left out.
   double elapsed_s = 0;
   double remaining_s = -1;              ///< negative: unknown
   double samples_per_s = 0;             ///< pixel samples, recently; 0 for a final job

@@ -5,7 +5,9 @@
 //
 // A band is a range of rows and samples of an image, the unit of work; a lease gives it to one
 // worker. A pass is a range of samples of the whole image. A session is one stream of a worker. The
-// film holds the sums of all pixels of a job. More terms: proto/README.md, Glossary.
+// film holds the sums of all pixels of a job. A half tile is half of the pixels of a 16 x 16 tile;
+// in an adaptive job, half tiles take different numbers of samples. More terms: proto/README.md,
+// Glossary.
 
 #include <cstdint>
 #include <optional>

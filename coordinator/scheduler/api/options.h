@@ -34,14 +34,16 @@ struct SchedulerOptions {
   /// Seconds that a worker should need for a band (the rows and samples of one lease); bands near
   /// the end of a job are shorter.
   double band_target_s = 1;
-  /// Minimum number of machines that must be lost while they render the same suspect band before
-  /// its job fails. More are required on farms that lose many workers, or of which little is known
-  /// (CrashRate in liveness/crash_attribution.h).
+  /// Minimum number of machines that must be lost at the same suspect band before its job fails. A
+  /// band becomes suspect when a worker that holds it is lost. More machines are required on farms
+  /// that lose many workers, or of which little is known (CrashRate in
+  /// liveness/crash_attribution.h).
   std::size_t min_crashes_per_band = 3;
   /// Share of the bands of native workers that a second machine renders, to compare the results
   /// (model/audit.h); in [0, 1].
   double audit_share = 0;
-  double browser_audit_share = 0;  ///< the same for the bands of browsers
+  /// Share of the bands of browsers that a second machine renders; in [0, 1].
+  double browser_audit_share = 0;
   Browsers browsers = Browsers::kAlso;
   /// Name of this run of the coordinator; workers report it with the leases that they hold.
   std::string epoch;

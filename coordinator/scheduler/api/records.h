@@ -46,8 +46,8 @@ struct SamplesFixed {
   JobId job = 0;
   std::uint64_t samples = 0;
 };
-/// The state of a job or of a sequence. (`job` may be a sequence also in PriorityChanged,
-/// HoldChanged, TimeSpent and JobForgotten.)
+/// The state of a job or of a sequence. In PriorityChanged, HoldChanged, TimeSpent and
+/// JobForgotten, `job` may be a sequence as well.
 struct StateChanged {
   JobId job = 0;
   JobState state = JobState::kRunning;
@@ -63,7 +63,8 @@ struct HoldChanged {
   JobId job = 0;
   bool held = false;
 };
-/// Time that the job has been worked on, in all epochs together. The last record of a job counts.
+/// Time that the job has been worked on, in all runs of the coordinator together. The last record
+/// of a job counts.
 struct TimeSpent {
   JobId job = 0;
   double elapsed_s = 0;

@@ -13,10 +13,10 @@
 
 namespace bandsaw::coordinator {
 
-/// The specification of a sequence by its submitter. The scenes of the frames are sent one by one
-/// afterwards (input::AddFrames).
+/// The specification of a sequence by its submitter. No sequence has the JobId of a job. The scenes
+/// of the frames are sent one by one afterwards (input::AddFrames).
 struct SequenceSpec {
-  std::string request_id;  ///< as in JobSpec; sequences and jobs share the ids
+  std::string request_id;  ///< chosen by the submitter: the same id means the same sequence
   std::string name;
   RenderSettings settings;          ///< settings of all frames; the seed is that of frame 0
   StopRule stop;                    ///< stop rule of each frame
@@ -64,8 +64,8 @@ struct FrameView {
   FrameState state = FrameState::kExpected;
   JobId job = 0;       ///< its frame job; 0: none
   std::string reason;  ///< why it failed last, also if it is tried again
-  /// Number of the frame's last change. In each epoch, all changes of all frames of the sequence
-  /// are numbered together, from 1 on; 0: the frame has not changed.
+  /// Number of the frame's last change. In each run of the coordinator, all changes of all frames
+  /// of the sequence are numbered together, from 1 on. 0: the frame has not changed.
   std::uint64_t changed = 0;
 };
 

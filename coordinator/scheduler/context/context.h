@@ -26,7 +26,8 @@ class Context {
  public:
   explicit Context(SchedulerOptions scheduler_options);
 
-  /// Changes the durable state by a record, new or replayed. It changes in no other way.
+  /// Changes the durable state by a record, new or replayed. The durable state changes in no other
+  /// way.
   void apply(const Record& record);
 
   /// Applies a new record and adds it to the step.
@@ -36,7 +37,7 @@ class Context {
     step_.records.emplace_back(std::in_place_type<R>, std::move(record));
   }
   /// Adds an action to the step. The variant is constructed in place, because g++ 12 warns about
-  /// alternatives of a moved variant that it does not hold.
+  /// the alternatives that a moved variant does not hold.
   template <class A>
   void act(A action) {
     step_.actions.emplace_back(std::in_place_type<A>, std::move(action));

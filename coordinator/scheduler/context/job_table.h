@@ -51,7 +51,8 @@ class JobTable {
   const std::set<JobId>& active() const { return active_; }
   void set_final(JobId id) { active_.erase(id); }
 
-  /// Running jobs that may have free rows or waiting audits. All other running jobs have neither.
+  /// Running jobs that may have free rows or waiting audits (second renderings of stored rows, to
+  /// compare). All other running jobs have neither.
   const std::set<Rank>& leasable() const { return leasable_; }
   /// MUST be called when rows become free or audits begin to wait. No effect unless the job is
   /// running.

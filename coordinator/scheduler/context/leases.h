@@ -21,8 +21,8 @@ struct Lease {
   WorkerId worker = 0;
   Band band;
   /// For a backup task: id of the original lease. The backup task renders a part of the original
-  /// lease's band as well. The original lease goes on and owns the rows in the coverage. 0: this is
-  /// no backup task.
+  /// lease's band as well. The original lease goes on and owns the rows (model/coverage.h). 0: this
+  /// is no backup task.
   LeaseId backup_of = 0;
   /// A second rendering of stored rows, to compare (model/audit.h); it owns no rows.
   bool audit = false;
@@ -40,8 +40,9 @@ struct Lease {
 
 class Leases {
  public:
-  /// The first id depends on the epoch, so that the ids of two epochs are different with high
-  /// probability. That matters because leases of an earlier epoch are adopted with their ids.
+  /// The first id depends on the epoch (one run of the coordinator), so that the ids of two epochs
+  /// are different with high probability. That matters because a worker that reconnects after a
+  /// restart may keep a lease of an earlier epoch, with its id.
   explicit Leases(const std::string& epoch);
 
   /// Returns an id that no lease has.

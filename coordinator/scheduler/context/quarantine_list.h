@@ -55,7 +55,7 @@ class QuarantineList {
                                             const std::string& reported_name) const;
   /// Returns true if kMaxBrowsers browsers are under quarantine.
   bool too_many_browsers() const;
-  /// A process can be quarantined before it has connected since the coordinator started. Then its
+  /// A process that has not connected since the coordinator started can be quarantined. Then its
   /// entry has no name. Returns the record that adds the name which `worker` reports to the entry
   /// of its process. Returns std::nullopt if the process has no entry or the entry has a name.
   std::optional<record::WorkerQuarantined> missing_name(const WorkerHello& worker) const;

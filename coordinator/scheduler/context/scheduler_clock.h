@@ -11,6 +11,8 @@ class SchedulerClock {
   /// `max_timeout_step`: maximum advance of the timeout clock by one input, in seconds.
   explicit SchedulerClock(double max_timeout_step) : max_timeout_step_(max_timeout_step) {}
 
+  /// Sets both clocks to the time of an input. A time before that of the last input counts as no
+  /// time passed.
   void advance(Time now) {
     const double passed = started_ && now > wall_ ? now - wall_ : 0;
     wall_ = started_ ? wall_ + passed : now;

@@ -1,8 +1,8 @@
 #pragma once
 
-// The connected workers, and for a while those that have left; and which of them can take a lease
-// (the assignment of a band of rows and samples to a worker). Times are of one of the two clocks in
-// scheduler_clock.h.
+// Keeps the connected workers and, for a while, the workers that have left. Lists the workers that
+// can take a lease (the assignment of a band of rows and samples to a worker). Each time is of one
+// of the two clocks in scheduler_clock.h.
 
 #include <cstddef>
 #include <cstdint>
@@ -54,7 +54,7 @@ struct Worker {
     MeanRate speed;              ///< pixel samples per second, for display
     MeanRate work_rate;          ///< work per second (model/row_costs.h), by which bands are sized
     std::uint32_t bands = 0;     ///< bands of the job that were measured
-    std::uint32_t failures = 0;  ///< since it last stored a band of the job
+    std::uint32_t failures = 0;  ///< bands that it failed since it last stored one
   };
   std::map<JobId, OnJob> on_job;
 

@@ -21,9 +21,9 @@ class AuditLeases {
       : context_(context), ledger_(ledger), eligibility_(eligibility), barrier_(barrier) {}
 
   /// Returns true if the worker may render the audit's band. Its machine must not have returned a
-  /// result for the band, except if the audit is disputed and no other machine is left: then it may
-  /// render the band once more. Native workers audit all bands. Browsers audit only bands of other
-  /// browsers, and only if no native worker is there (Context::only_browsers).
+  /// result for the band, except if the audit is disputed and no other machine is left: then the
+  /// worker may render the band once more. Native workers audit all bands. Browsers audit only
+  /// bands of other browsers, and only if no native worker is there (Context::only_browsers).
   bool may_render(const Worker& worker, const Job& job, const Audit& audit) const;
   /// Returns the first waiting audit that the worker may render; nullptr: none.
   Audit* next_for(const Worker& worker, Job& job) const;
@@ -36,7 +36,7 @@ class AuditLeases {
   void give_up(const Lease& lease, const Worker& worker, const std::string& reason);
   /// Returns true if an audit may still find that stored rows are wrong. Then the job must not end,
   /// and its error must not be compared with its target. An audit that no machine can render does
-  /// not block, unless it is disputed.
+  /// not block, unless it is doubtful (Audit::doubtful).
   bool block(const Job& job) const;
 
  private:

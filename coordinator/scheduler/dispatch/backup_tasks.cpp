@@ -143,9 +143,9 @@ std::vector<Worker*> BackupTasks::helpers(const Job& job, const Lease& lease,
   return able;
 }
 
-/// Moves a lease that is not begun to the fastest helper, if the helper would finish the first band
-/// that it cuts from the lease before the present worker would finish the lease. The rows outside
-/// that band become free.
+/// Ends a lease that is not begun, so that its rows become free, and gives the fastest helper a
+/// band of free rows. Does this only if the helper would finish a first band of the lease's rows
+/// before the present worker would finish the lease.
 bool BackupTasks::steal(const Straggler& late, std::vector<Worker*>& idle) {
   const Lease lease = *context_.leases.find(late.lease);
   Job& job = context_.jobs.at(lease.job);

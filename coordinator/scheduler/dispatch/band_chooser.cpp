@@ -2,7 +2,7 @@
 // the job (rows and samples that are neither leased nor stored) that this worker may have, and cuts
 // a band from its first rows, of the size that size_band() computes. Two kinds of rows are treated
 // differently. Probes are a few rows spread over the image that are rendered first. Suspect rows
-// are those that a worker held when it was lost, so that they may have crashed it: they are never
+// are rows that a worker held when it was lost, so they may have crashed the worker. They are never
 // in a band with other rows.
 
 #include "coordinator/scheduler/dispatch/band_chooser.h"

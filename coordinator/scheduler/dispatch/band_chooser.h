@@ -50,7 +50,8 @@ class BandChooser {
       : context_(context), eligibility_(eligibility) {}
 
   /// Returns the next probe (dispatch/probes.h), or else the first free band that is not left to
-  /// other workers (Eligibility); std::nullopt: there is none for this worker. Counts the probe.
+  /// other workers (Eligibility); std::nullopt: there is none for this worker. Counts the probes
+  /// that it returns or skips (Job::probes).
   std::optional<Band> choose(Job& job, const Worker& worker) const;
   /// Returns the same as choose(), but never a probe.
   std::optional<Band> choose_free(const Job& job, const Worker& worker) const;

@@ -62,9 +62,9 @@ bool Dispatcher::offer_frames(Worker& worker, const Sequence& sequence) {
 }
 
 /// Grants the worker a lease of a band of the job. Returns false if the job has no band for this
-/// worker. Returns true without a lease if the band is suspect and the worker holds other leases: a
-/// suspect band is given only to a worker that holds nothing else, so that the crash can be
-/// attributed to the band if that worker is lost as well.
+/// worker. Returns true without a lease if the band is suspect (an earlier worker was lost while it
+/// held the band) and the worker holds other leases. A suspect band is given only to a worker that
+/// holds nothing else. So if that worker is lost as well, its crash can be attributed to the band.
 bool Dispatcher::offer(Worker& worker, Job& job) {
   if (!job.any_free() && !planner_.plan_timed(job) && !job.audit_waits()) {
     context_.jobs.unmark_leasable(job);
@@ -89,6 +89,7 @@ bool Dispatcher::offer(Worker& worker, Job& job) {
   return true;
 }
 
+/// Returns true if the worker has a lease of a suspect band.
 bool Dispatcher::holds_suspect(const Worker& worker) const {
   return std::any_of(worker.leases.begin(), worker.leases.end(), [&](LeaseId id) {
     const Lease& lease = *context_.leases.find(id);

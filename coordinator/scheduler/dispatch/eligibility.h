@@ -1,8 +1,8 @@
 #pragma once
 
 // Decides whether a worker may render a job, and a band (a range of rows and samples) of it. A
-// worker leaves two kinds of bands to other workers, while there are any that can render them:
-// bands that it failed, and bands during which its machine was lost.
+// worker leaves a band to other workers, while there are any that can render it, if the worker
+// failed the band, or if its machine was lost while it rendered the band.
 
 #include <cstdint>
 #include <vector>
@@ -15,10 +15,10 @@ class Eligibility {
  public:
   /// A worker that failed this many bands of a job in a row gets no more bands of this job.
   static constexpr std::uint32_t kMaxFailuresPerWorker = 3;
-  /// Bytes of memory that a loaded scene takes, per byte of its package, at most. For a mesh: its
-  /// package has 18 bytes per triangle (12 of indices, 6 of vertices), and its acceleration
-  /// structure takes 54 more (renderlib/accel/README.md). Textures take as many bytes in memory as
-  /// in the package.
+  /// Maximum number of bytes of memory that a loaded scene takes per byte of its package. A mesh
+  /// has 18 bytes per triangle in its package (12 of indices, 6 of vertices), and its acceleration
+  /// structure takes 54 more bytes per triangle (renderlib/accel/README.md). Textures take as many
+  /// bytes in memory as in the package.
   static constexpr std::uint64_t kMemoryPerPackageByte = 4;
 
   explicit Eligibility(const Context& context) : context_(context) {}
@@ -31,8 +31,8 @@ class Eligibility {
   bool may_render(const Worker& worker, const Job& job) const;
   /// Returns true if many bands of the job wait for an audit (a second render, to compare). Then
   /// browsers get no more bands of the job until native workers have done some of these audits.
-  /// Without this limit, bands would be stored without the audit for which they are selected
-  /// (Job::kMaxAudits).
+  /// Without this limit, the job's audits would reach Job::kMaxAudits, and further bands that are
+  /// selected for an audit would be stored without one.
   bool audits_lag(const Job& job) const;
   /// Returns true if the scene of the job fits into the worker's memory.
   static bool fits(const Worker& worker, const Job& job);
@@ -50,7 +50,7 @@ class Eligibility {
   bool another_machine(const Job& job, const Band& band) const;
 
   /// Returns the bands of the job that this worker must leave to others: those that it failed, if
-  /// someone_else() may render them, and those during which its machine was lost, if
+  /// someone_else() may render them, and those that its machine was rendering when it was lost, if
   /// another_machine() may render them.
   std::vector<Band> left_to_others(const Job& job, const Worker& worker) const;
   /// Returns true if `band` overlaps a band that this worker must leave to others.

@@ -35,7 +35,7 @@ std::vector<Job*> FrameChooser::order_for(const Worker& worker, const Sequence& 
   }
   const auto free = static_cast<std::size_t>(
       std::count_if(fresh.begin(), fresh.end(), [](const Job* job) { return job->any_free(); }));
-  // At least one frame for each worker is left that no worker renders yet.
+  // For each worker, at least one frame is left that no worker renders yet.
   const bool many =
       free + sequence.counts().of(FrameState::kWaiting) >= context_.available.eligible();
   for (std::vector<Job*>* jobs : {&fresh, &others}) {

@@ -35,7 +35,7 @@ void LeaseLedger::add(Worker& worker, Job& job, const Pass& pass, Lease lease) {
 
 void LeaseLedger::start_clocks(Job& job) {
   const Time now = context_.clock.wall();
-  if (job.state == JobState::kPaused) {  // a worker that reconnects still holds a lease of it
+  if (job.state == JobState::kPaused) {  // a worker that reconnected holds a lease of the job
     return;
   }
   if (!job.clock.runs()) {
@@ -123,7 +123,7 @@ void LeaseLedger::note_progress(const Worker& worker, std::size_t from) {
 
 /// The lease `ended` has ended. Each of its backup tasks becomes the owner of the rows of the
 /// backup task's band that are not stored. A backup task is revoked instead if all rows of its band
-/// are stored, or if another lease owns samples of the rows that are not.
+/// are stored, or if another lease owns samples of its rows that are not stored.
 void LeaseLedger::promote_backups(Job& job, LeaseId ended) {
   const std::set<LeaseId> backups = job.backups;
   for (const LeaseId id : backups) {

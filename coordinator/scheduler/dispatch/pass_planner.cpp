@@ -1,7 +1,7 @@
 // A pass is a range of samples that is rendered for the whole image. For a job with a fixed number
 // of samples all passes are planned at once. For a job with an error target they are planned up to
-// the next checkpoint. For a job with a time limit a pass is planned when there is nothing else to
-// lease.
+// the next checkpoint, a number of samples at which the error is compared with the target. For a
+// job with a time limit a pass is planned when there is nothing else to lease.
 
 #include "coordinator/scheduler/dispatch/pass_planner.h"
 

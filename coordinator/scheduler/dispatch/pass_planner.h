@@ -15,7 +15,7 @@ class PassPlanner {
   PassPlanner(Context& context, LeaseLedger& ledger) : context_(context), ledger_(ledger) {}
 
   /// Plans the passes that need no measurements, unless they are planned already: all passes of a
-  /// job with a number of samples, the first ones of other jobs.
+  /// job with a fixed number of samples, only the first passes of any other job.
   void plan_first(Job& job);
   /// Plans passes up to this number of samples per pixel.
   void plan_until(Job& job, std::uint64_t samples);

@@ -2,7 +2,8 @@
 
 // Probes: bands of a few rows, spread over the image, that are rendered first. The other rows are
 // rendered after them, from the top. The render times of the probes predict the remaining time of
-// the job. Probes do not change the cost map, which is learnt from the other bands.
+// the job. Probes do not change the cost map (the relative costs of rows), which is learnt from the
+// other bands.
 
 #include <cstdint>
 
@@ -28,7 +29,8 @@ inline RowRange probe(std::uint32_t height, std::uint32_t number) {
 /// Returns true if the band is a probe: if it begins at the first row of one. Other bands cannot
 /// begin there, because they are cut around probes.
 inline bool is_probe(std::uint32_t height, const Band& band) {
-  const std::uint32_t number = band.rows.first * kProbes / height;  // the only possible one
+  // The number of the only probe that can begin at this row.
+  const std::uint32_t number = band.rows.first * kProbes / height;
   return band.samples.first == 0 && number < probes_of(height) &&
          band.rows.first == probe(height, number).first;
 }

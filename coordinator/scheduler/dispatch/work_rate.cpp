@@ -80,8 +80,8 @@ void measure(Worker& worker, Job& job, const input::BandStored& in) {
   if (!is_probe(job.spec.settings.height, in.band)) {
     measure_work_rate(worker, job, in);
   }
-  // Mean number of pixel samples in a row. RowTimes takes the time of one pixel sample in each row
-  // of the band.
+  // Mean number of pixel samples in a row. The time is divided by it, because RowTimes::measure()
+  // expects the time of one pixel sample in each row of the band.
   const double columns = static_cast<double>(samples) / in.band.rows.count();
   job.row_times.measure(in.band.rows, in.render_s * worker.threads / columns);
 }

@@ -78,9 +78,11 @@ void JobLifecycle::note_error(const Job& job, std::uint64_t samples, const Error
   }
 }
 
-/// At a checkpoint, decides whether the job ends here, plans its tiles if it is time, and plans the
-/// passes up to the next checkpoint. The error after a pass that is no checkpoint is ignored,
-/// because it depends on the workers' speed whether the error after such a pass is measured.
+/// At a checkpoint, decides whether the job ends here, and plans the passes up to the next
+/// checkpoint. In an adaptive job, also plans how many samples each half tile (half of the pixels
+/// of a 16 x 16 tile) takes, once the error is small enough for this. The error after a pass that
+/// is no checkpoint is ignored, because whether such an error is measured depends on the workers'
+/// speed.
 void JobLifecycle::evaluate_checkpoint(Job& job, const input::PassMerged& merged) {
   const auto* rule = std::get_if<StopAtError>(&job.spec.stop);
   const std::uint64_t samples = merged.samples;

@@ -1,7 +1,8 @@
 #pragma once
 
 // Requests of users about jobs: submit, cancel, pause, resume, priority, forget. A request that
-// fails is answered with a status (Context::answer). These statuses are the errors named below.
+// fails is answered with an error status (Context::answer). The comments of the functions name
+// these statuses.
 
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/dispatch/lease_ledger.h"

@@ -270,8 +270,8 @@ void Sequences::advance() {
   }
 }
 
-/// `open_frames`: number of frame jobs that count against kMaxOpenFrames; those that are made here
-/// are added to it.
+/// Brings one sequence up to date. `open_frames`: number of frame jobs that count against
+/// kMaxOpenFrames. The frame jobs that are made here are added to it.
 void Sequences::advance(Sequence& sequence, std::size_t& open_frames) {
   while (const Sequence::Frame* failed = sequence.next_to_retry()) {
     wait_again(sequence, failed->number, failed->failures + 1, failed->reason);

@@ -41,8 +41,8 @@ class Sequences {
   /// Forgets the final sequences among these jobs, with all their frames. Skips all other jobs.
   void forget(const input::Forget& in);
 
-  /// Tries failed frames again, makes the next frame jobs, and ends sequences of which no frame is
-  /// left. MUST be called in each step before work is given to workers.
+  /// Tries failed frames again, makes the next frame jobs, and ends sequences of which each frame
+  /// is done or has failed. MUST be called in each step before work is given to workers.
   void advance();
   /// Journals the elapsed times at intervals, as JobLifecycle::note_time.
   void note_times();

@@ -51,7 +51,7 @@ void StoredBands::free_damaged(Job& job, const input::BandsDamaged& in) {
   for (const auto& [band, process] : in.bands) {
     const Pass* pass = job.pass_of(band);
     if (pass == nullptr || !pass->has_stored(band, process)) {
-      continue;  // freed since
+      continue;  // the band has already been freed
     }
     close_audits(job, band, process);
     context_.emit(record::BandLost{job.id, band, process});

@@ -21,8 +21,9 @@ class StoredBands {
   /// Frees the damaged bands that are still counted as stored. A job that is finishing runs again,
   /// because the film could not make its image.
   void free_damaged(Job& job, const input::BandsDamaged& in);
-  /// After a restart: journals which audited bands are missing from the band log. The same process
-  /// may render such a band again, and the new result must be audited too.
+  /// After a restart: journals which audited bands (whose result a second machine has confirmed)
+  /// are missing from the band log, the file of the job's stored bands. The same process may render
+  /// such a band again, and the new result must be audited too.
   void note_missing_audited(const Job& job);
 
  private:

@@ -112,7 +112,7 @@ void BandFailures::check_renderable(Job& job) {
     return;
   }
   if (!eligibility_.native_gave_up(job)) {
-    return;  // the job waits for a worker; unable_since stays as it is
+    return;  // the job waits for a worker; unable_since is not changed
   }
   const Time now = context_.clock.timeout_clock();
   job.unable_since = job.unable_since.value_or(now);

@@ -30,7 +30,8 @@ class BandFailures {
   void band_failed(const input::BandFailed& in);
   /// Ends each lease that made no progress for the progress timeout. The timeout is longer while a
   /// finished band is being uploaded. The end counts as a failure of the worker, except for the
-  /// lease of an audit, which another machine gets instead.
+  /// lease of an audit (a second rendering of stored rows, to compare): another machine gets the
+  /// audit instead.
   void check_progress();
   /// Fails a job that no connected worker may render any more, once workers have had time to
   /// reconnect.

@@ -31,8 +31,8 @@ class CrashRate {
   void add_crash() { add(crashes_); }
 
   /// Returns how many workers must be lost at one band before the band is blamed. Each of them must
-  /// have held nothing else. The number is the smallest with which the probability that all were
-  /// lost for other reasons is at most kMistake. It is at least `min_crashes`, and at most
+  /// have held nothing else. The number is the smallest for which the probability that all of them
+  /// were lost for other reasons is at most kMistake. It is at least `min_crashes`, and at most
   /// kMaxRequired unless `min_crashes` is larger. `own`: number of counted crashes at this very
   /// band, which are left out of the rate.
   std::size_t required(std::size_t min_crashes, std::size_t own) const;
@@ -76,7 +76,7 @@ class CrashAttribution {
   Context& context_;
   const Eligibility& eligibility_;
   JobLifecycle& lifecycle_;
-  CrashRate rate_;  ///< measured in this epoch
+  CrashRate rate_;  ///< measured in this run of the coordinator
 };
 
 }  // namespace bandsaw::coordinator

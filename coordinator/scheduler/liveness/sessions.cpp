@@ -173,9 +173,10 @@ void Sessions::reconcile_leases(Worker& worker, const std::vector<WorkerHello::H
 }
 
 /// Confirms a lease of this epoch (run of the coordinator). Adopts a lease of an earlier epoch,
-/// with its id, if rows of its band are wanted. A finished band is adopted even if another worker
-/// holds a lease of the same rows. An unfinished band is adopted only if no worker does. Returns
-/// false if the worker must drop the lease.
+/// that is, grants it again with its id, if rows of its band are wanted (not stored). A lease of a
+/// finished band is adopted even if other workers hold leases of these rows. A lease of an
+/// unfinished band is adopted only if no other worker holds one. Returns false if the worker must
+/// drop the lease.
 bool Sessions::keep_lease(Worker& worker, const WorkerHello::Held& held) {
   Job* job = context_.jobs.find(held.job);
   Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(held.band);

@@ -1,7 +1,7 @@
 #pragma once
 
-// An audit: a band (a range of rows and samples) that is rendered by two machines, whose row
-// digests are compared.
+// An audit renders a band (a range of rows and samples) on a second machine and compares the
+// digests of its rows with those of the first result.
 //
 // Rendering is a pure function, so results that differ prove that a machine is wrong. Two machines
 // that agree are assumed to be right, because two wrong results would differ from each other. A
@@ -27,8 +27,8 @@ namespace bandsaw::coordinator {
 
 /// Returns true if the band is selected for an audit. `share`: the share of all bands that is
 /// selected, [0, 1]. The selection is a hash of the band and of the submitter's request id. Workers
-/// never see the request id, so none can predict which bands are audited; and every epoch selects
-/// the same bands.
+/// never see the request id, so none can predict which bands are audited. Every epoch (run of the
+/// coordinator) selects the same bands.
 bool is_audited(const JobSpec& spec, const Band& band, double share);
 
 /// Origin of a result: the worker process, and its machine under the name that the worker reports.
@@ -52,8 +52,8 @@ class Audit {
     Reporter reporter;
     std::vector<std::uint64_t> digests;  ///< one per row
     bool repeated = false;               ///< the machine rendered it again with the same digests
-    /// The result is of an earlier epoch, and its machine has not connected in this epoch, although
-    /// the journal names the machine.
+    /// The result is of an earlier epoch. The journal names its machine, which has not connected in
+    /// this epoch.
     bool away = false;
   };
   struct Verdict {

@@ -1,8 +1,8 @@
 // The rows of a pass (a range of samples of the whole image) are cut into strips, and the samples
-// of each strip into cells. Each cell has one owner: a lease, or it is free, or stored. A change
-// cuts strips at the first and the last row of a band (a range of rows and samples), changes the
-// cells of the strips in between, merges cells and strips that have become equal, and keeps the
-// counts of samples.
+// of each strip into cells. Each cell is a node, that is, an aligned power-of-two number of blocks
+// of 8 samples. It is owned by one lease, or free, or stored. A change cuts strips at the first and
+// the last row of a band (a range of rows and samples), changes the cells of the strips in between,
+// merges cells and strips that have become equal, and keeps the counts of samples.
 
 #include "coordinator/scheduler/model/coverage.h"
 

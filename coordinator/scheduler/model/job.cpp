@@ -41,7 +41,8 @@ const Pass* Job::pass_of(const Band& band) const {
     return nullptr;
   }
   const Pass& pass = *std::prev(after);
-  // A range that ends inside a block is a node only at the end of the pass.
+  // A range that ends inside a block of 8 samples is a node of the summation tree only at the end
+  // of the pass.
   const bool whole_blocks = band.samples.last % kBlockSamples == 0;
   const bool node = band.samples.last <= pass.samples.last && is_node(band.samples) &&
                     (whole_blocks || band.samples.last == pass.samples.last);

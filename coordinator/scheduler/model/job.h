@@ -59,9 +59,9 @@ class Job {
   /// Appends a pass; it MUST begin where the last one ends.
   void add_pass(const SampleRange& samples);
   /// Sets the number of samples of each half tile (half of the pixels of a 16 x 16 tile) in the
-  /// passes that are added from now on.
+  /// passes that are added later.
   void plan_tiles(TilePlan plan);
-  /// Makes the job end after this many samples: removes the passes beyond.
+  /// Makes the job end after this many samples: removes all later passes.
   void fix_samples(std::uint64_t samples);
   /// Frees everything that the process stored in any pass, and drops its share and the audits of
   /// its bands. Returns false if it had stored nothing.
@@ -124,13 +124,14 @@ class Job {
   Time held_at = 0;    ///< timeout clock: when `held` changed last
   std::string reason;  ///< why the job is in its state
   std::string notice;  ///< the last event that users should know of, shown while the job runs
-  std::string damage;  ///< damage of its bands on disk, in this epoch
+  std::string damage;  ///< damage of its bands on disk, in this epoch (run of the coordinator)
   std::uint64_t damaged_bands = 0;             ///< found while the coordinator ran, in this epoch
   std::optional<std::uint64_t> fixed_samples;  ///< the job ends after this many samples per pixel
   std::vector<Pass> passes;                    ///< from sample 0 on, without gaps
-  std::optional<TilePlan> tile_plan;           ///< for an adaptive job, after its pilot
-  bool image_requested = false;                ///< WriteResult was returned in this epoch
-  bool bands_on_disk = false;                  ///< bands were stored and not dropped
+  /// For an adaptive job, once its pilot (the samples from which the plan is made) is complete.
+  std::optional<TilePlan> tile_plan;
+  bool image_requested = false;  ///< WriteResult was returned in this epoch
+  bool bands_on_disk = false;    ///< bands were stored and not dropped
 
   double error = -1;  ///< at `error_samples`; negative: unknown
   std::uint64_t error_samples = 0;

@@ -55,7 +55,8 @@ class RowDigests {
 struct Pass {
   SampleRange samples;
   Coverage coverage;  ///< who owns each sample of each row
-  TileSamples tiles;  ///< samples of all half tiles of the image
+  /// Samples that each half tile (half of the pixels of a 16 x 16 tile) of the image takes.
+  TileSamples tiles;
   /// For each tile row, the number of samples that its pixels take, divided by the number that they
   /// would take with uniform sampling; empty: 1 for each.
   std::vector<float> tile_row_shares;

@@ -1,9 +1,11 @@
-// Passes are aligned ranges of blocks whose lengths are powers of two, so that they are nodes of
-// the summation tree. A checkpoint is a number of samples at which the error is compared with the
-// target. It is where the target is expected to be reached (error ~ samples^-1/2), but limited to
-// an eighth to a quarter more samples than the last checkpoint. It is later if the target cannot be
-// reached in this range even if the error falls as 1 / samples. If the error is unknown, the next
-// checkpoint has twice the samples of the last one.
+// Passes are aligned ranges of blocks (of 8 samples) whose lengths are powers of two. So each pass
+// is a node of the summation tree (renderlib/render/band.h). A checkpoint is a number of samples at
+// which the error is compared with the target. next_checkpoint() assumes that the error falls as
+// samples^-1/2 and computes at how many samples the error then reaches the target. It limits this
+// number to the range from 9/8 to 5/4 of the last checkpoint. Then it assumes the fastest possible
+// fall, samples^-1, and computes again at how many samples the error reaches the target. If this
+// second number is larger, it is the next checkpoint. If the error is unknown, the next checkpoint
+// has twice the samples of the last one.
 
 #include "coordinator/scheduler/model/pass_plan.h"
 
@@ -88,12 +90,12 @@ std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target
 }
 
 bool time_to_plan_tiles(double error, double target) {
-  return error >= 0 && error <= next_target(target, true);
+  return error >= 0 && error <= next_target(target, /*tiles_to_plan=*/true);
 }
 
 double next_target(double target, bool tiles_to_plan) {
-  // Ratio of the error at which tiles are planned to the target. Its square, 16, is a ratio of
-  // numbers of samples.
+  // Tiles are planned once the error is at most this many times the target. With random sampling, a
+  // 4 times smaller error needs 16 times the samples.
   constexpr double kPilotErrorRatio = 4;
   return tiles_to_plan ? kPilotErrorRatio * target : target;
 }

@@ -81,8 +81,8 @@ class Sequence {
   std::size_t done_before = 0;     ///< frames that were done at the last restart_clock()
   double elapsed_then = 0;         ///< seconds: elapsed() at the last restart_clock()
   Totals done;                     ///< samples, counters and CPU time of the frames that are done
-  double worst_error = -1;         ///< largest error of those frames; negative: unknown
-  std::uint32_t workers_used = 0;  ///< largest number of workers of one of those frames
+  double worst_error = -1;         ///< largest error of the frames that are done; negative: unknown
+  std::uint32_t workers_used = 0;  ///< largest number of workers of a frame that is done
   /// Row costs and work rate of the frame that was done last; the next frame jobs start with them.
   CostMap cost;
   MeanRate work_rate;

@@ -20,7 +20,8 @@ std::optional<std::string> broken_leases(const Context& context) {
     const Pass* pass = job->pass_of(lease.band);
     if (pass == nullptr ||
         (lease.backup_of == 0 && !lease.audit) != pass->coverage.holds(lease.band, id)) {
-      return absl::StrCat("lease ", id, " owns nothing of its band, or is a backup task that does");
+      return absl::StrCat("lease ", id,
+                          " should own a part of its band and does not, or the reverse");
     }
     const auto is_its_audit = [&id = id, &lease = lease](const Audit& a) {
       return a.lease == id && a.band() == lease.band;
@@ -130,7 +131,8 @@ std::optional<std::string> broken_job(const Context& context, const Job& job) {
   std::uint64_t end = 0;
   for (const Pass& pass : job.passes) {
     if (pass.samples.first != end || !is_node(pass.samples)) {
-      return absl::StrCat("the pass after sample ", end, " does not follow it as a node");
+      return absl::StrCat("the pass after sample ", end,
+                          " does not begin there or is not a node of the summation tree");
     }
     end = pass.samples.last;
     if (auto broken = broken_pass(context, job, pass)) {

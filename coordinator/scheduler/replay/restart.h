@@ -32,11 +32,13 @@ class Restart {
   /// Adds a band that was found on disk: its rows become stored, unless the worker process that
   /// rendered them is quarantined.
   void add_band(const input::BandStored& band);
-  /// Notes for users that this many bytes of the job's band log are damaged.
+  /// Notes for users that this many bytes of the job's band log (the file of its stored bands) are
+  /// damaged.
   void note_damage(JobId id, std::uint64_t bytes);
   /// Ends the replay: begins the reconnect barrier (nothing is leased until former workers are
   /// back), opens the audits of disputed rows again, compares duplicate bands, and continues each
-  /// job. A job that was begun with another pixel version fails.
+  /// job. A job that was begun with another pixel version (a number that changes whenever rendered
+  /// pixels change) fails.
   void finish();
 
  private:

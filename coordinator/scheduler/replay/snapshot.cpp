@@ -8,7 +8,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Appends the passes, and the tile plan before the first pass that it applies to.
+/// Appends the passes, and the tile plan before the first pass that it applies to. The tile plan
+/// says how many samples each half tile (half of the pixels of a 16 x 16 tile) takes.
 void add_passes(const Job& job, std::vector<Record>& out) {
   bool plan_added = !job.tile_plan;
   for (const Pass& pass : job.passes) {
@@ -63,7 +64,7 @@ void add_job(const Job& job, std::vector<Record>& out) {
   }
 }
 
-/// Appends the records of a sequence that MUST precede those of its frame jobs.
+/// Appends the records of a sequence. They MUST come before the records of its frame jobs.
 void add_sequence(const Sequence& sequence, std::vector<Record>& out) {
   out.push_back(record::SequenceAdded{sequence.id, sequence.spec, sequence.pixel_version});
   if (sequence.priority != 0) {

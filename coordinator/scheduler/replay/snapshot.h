@@ -9,7 +9,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the smallest list of records that replays to the durable state.
+/// Returns the smallest list of records whose replay gives the durable state, that is, the state
+/// that survives a restart.
 std::vector<Record> snapshot(const Context& context);
 
 }  // namespace bandsaw::coordinator

@@ -48,8 +48,8 @@ void Quarantine::impose(const Reporter& reporter, const std::string& cause) {
   }
 }
 
-/// Adds those processes of the reporter's machine that returned a result of an open audit, also in
-/// an earlier epoch.
+/// Adds those processes of the reporter's machine that returned a result of an open audit (a
+/// comparison of results that has no verdict yet), also in an earlier run of the coordinator.
 void Quarantine::add_earlier_processes(const Reporter& reporter,
                                        std::set<WorkerProcessId>& processes) const {
   for (const JobId id : context_.jobs.active()) {

@@ -18,8 +18,8 @@ class Quarantine {
       : context_(context), ledger_(ledger), sessions_(sessions) {}
 
   /// Quarantines the machine of the reporter (the origin of a result), that is, all worker
-  /// processes that report its name. Jobs whose image was requested keep their rows, since the
-  /// image may be written already.
+  /// processes that report its name. `reason` continues a sentence that begins with the machine's
+  /// name. Jobs whose image was requested keep their rows, since the image may be written already.
   void impose(const Reporter& reporter, const std::string& reason);
   /// A user quarantines a worker or machine by its name. NOT_FOUND: no known worker has the name.
   void request(const input::Quarantine& in);

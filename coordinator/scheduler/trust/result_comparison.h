@@ -25,8 +25,9 @@ class ResultComparison {
   /// opens an audit for a row that differs, and quarantines machines that are proved wrong. No
   /// effect once the job's image was requested, because its rows cannot be replaced any more.
   void compare(Job& job, const Pass& pass, const input::BandStored& in, const Reporter& reporter);
-  /// After a restart: opens an audit again for each journalled dispute about a row that is stored.
-  /// MUST be called when the job's bands on disk are replayed.
+  /// After a restart: opens an audit again for each journalled dispute (two machines returned
+  /// different digests) about a row that is stored. MUST be called after the job's bands on disk
+  /// were replayed.
   void reopen_disputes(Job& job);
 
  private:

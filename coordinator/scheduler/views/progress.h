@@ -14,8 +14,8 @@ double fraction_done(const Job& job, Time now);
 
 /// Returns the remaining time in seconds; negative: unknown. For a job with a time limit, it is the
 /// rest of that time. For other jobs, it is the thread time of all samples to come, divided by the
-/// number of threads that work on the job. The thread time comes from measured render times, not
-/// from costs.
+/// number of threads that work on the job. The thread time comes from measured render times of rows
+/// (RowTimes), not from their relative costs (CostMap).
 double remaining_s(const Context& context, const Job& job, Time now);
 
 /// Returns the workers that have leases of the job, sorted by name.

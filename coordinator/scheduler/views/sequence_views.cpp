@@ -59,8 +59,9 @@ const Job* first_of_paused(const Context& context, const Sequence& sequence) {
   return first;
 }
 
-/// Adds to the view each worker that renders a frame, once, with the first of its frames in its
-/// state. Adds the workers' speeds to the view's speed. Sorts the workers by name.
+/// Adds each worker that renders a frame to the view, once. The state of a worker names the first
+/// of the frames that it renders. Adds the workers' speeds to the view's speed. Sorts the workers
+/// by name.
 void add_workers(const Context& context, const Sequence& sequence, JobView& view) {
   std::set<std::string> named;
   for (const JobId id : sequence.open_jobs()) {

@@ -114,6 +114,7 @@ JobView Views::view(const Job& job, Time now) const {
   view.remaining_s = remaining_s(context_, job, now);
   view.samples_per_s = over ? 0 : job.throughput.per_second(now);
   view.samples_done = totals.samples;
+  // The pixels of an adaptive job take different numbers of samples, so their mean is shown.
   const bool uneven = job.tile_plan || (over && is_adaptive(job.spec.stop));
   view.samples_per_pixel = uneven ? totals.samples / job.pixels() : job.complete_samples();
   view.error = over && job.summary ? job.summary->error : job.error;
