@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
-# Measures Bandsaw on this machine: its kernel against Embree, error against time, and the cost of each feature of a scene.
+# Measures Bandsaw on this machine: the speed of its kernel, which traces rays, against Embree; the error of images against
+# time; the growth of time and memory with the size of a scene; the efficiency against Cycles; and the cost of each feature
+# of a scene. --quick leaves out the last two.
 # Usage: deploy/bench.sh [--quick] [FOLDER]    (default out/bench; about a quarter of an hour on two cores, --quick: two minutes)
 # Writes to the folder: bench.md (all tables), kernel.txt, study.csv, study.svg, growth.json, growth_*.svg.
-# Embree's columns are included if libembree-dev is installed, Cycles' lines if blender is. BANDSAW_BUILD=DIR: the build to use; otherwise build/release, made here.
+# Embree's columns are included if libembree-dev is installed, and Cycles' lines if blender is installed.
+# BANDSAW_BUILD=DIR: the build to use; without it, the script makes and uses build/release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 quick=
@@ -27,17 +30,17 @@ fi
 section() { printf '\n## %s\n\n' "$1"; }
 {
   printf '# %s, %s threads, %s\n' "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)" "$(nproc)" "$(git describe --always --dirty)"
-  section 'The kernel: millions of rays a second, and times Embree'
+  section 'The kernel: millions of rays a second, and the speed of Bandsaw divided by that of Embree'
   echo '```'
   "$build/tests/kernel_bench" "${meshes[@]}" | tee "$folder/kernel.txt"
   echo '```'
   section 'Error against time'
   "$build/bin/bandsaw" study --samples "$samples" --seeds "$seeds" --quiet -o "$folder/study.csv" -o "$folder/study.svg" \
     "$gallery/cornell.textproto" "$gallery/spheres.textproto" "$gallery/mesh.textproto" "$gallery/books/one_weekend.textproto"
-  section 'Growth'
+  section 'Growth of time and memory with the size of a scene'
   "$build/tests/growth_bench" $quick "$folder"
   if [ -z "$quick" ]; then
-    section 'Beside Cycles'
+    section 'Efficiency of Bandsaw and of Cycles'
     tests/bench/peers.sh "$build/bin/bandsaw"
     section 'Cost of each feature for a scene that does not use it'
     "$build/tests/features_bench" "$gallery/cornell.textproto" "$gallery/spheres.textproto" "$gallery/mesh.textproto"

@@ -43,7 +43,7 @@ absl::StatusOr<std::vector<RowsBy>> read_attribution(const std::string& path) {
     const std::uint64_t first = fields.number("first", kMaxSide);
     const std::uint64_t last = fields.number("last", kMaxSide);
     if (first < before || last <= first) {
-      fields.refuse(absl::StrCat("rows ", first, " to ", last, " after row ", before));
+      fields.refuse(absl::StrCat("rows ", first, " to ", last, " cannot follow row ", before));
       break;
     }
     attribution.push_back({{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)},

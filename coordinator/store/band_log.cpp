@@ -201,7 +201,7 @@ absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offs
   std::memcpy(&size, head.data() + kBandRecordMagic.size(), sizeof size);
   if (size < head.size() || size > kMaxRecordBytes) {
     return absl::DataLossError(absl::StrCat(path, ": no record begins at byte ", offset,
-                                            ": it would have ", size, " bytes"));
+                                            ", because it would have ", size, " bytes"));
   }
   std::vector<std::byte> bytes(size);
   RETURN_IF_ERROR(file.read(offset, absl::MakeSpan(bytes)));

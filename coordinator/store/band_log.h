@@ -17,8 +17,8 @@ namespace bandsaw::coordinator {
 /// Result of reading a log.
 struct BandLogReport {
   std::uint64_t records = 0;  ///< complete records, passed to the callback
-  /// Bytes that belong to no complete record: skipped, or truncated if they are at the end (but see
-  /// BandLog::open).
+  /// Number of bytes that belong to no complete record. They are skipped. If they are at the end of
+  /// the log, they are truncated, unless the disk could not read some bytes of the log.
   std::uint64_t damaged_bytes = 0;
 };
 

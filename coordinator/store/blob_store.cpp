@@ -163,8 +163,8 @@ absl::Status BlobStore::Writer::commit() {
   if (!right && earlier_ > 0) {
     return absl::DataLossError(absl::StrCat(
         "blob ", digest_.hex(), " has another digest: the ", earlier_,
-        " bytes of an earlier upload were damaged, or those sent now; all were removed, send "
-        "the whole blob again"));
+        " bytes of an earlier upload or the bytes sent now were damaged; all bytes were removed; "
+        "send the whole blob again"));
   }
   if (!right) {
     return absl::InvalidArgumentError(

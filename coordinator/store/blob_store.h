@@ -28,8 +28,8 @@ class BlobStore : public BlobSource {
 
   /// Returns true if the whole blob is stored.
   bool has(const wire::Digest& digest) const;
-  /// Returns the number of bytes that are kept of an interrupted upload of a blob that is not
-  /// stored.
+  /// Returns how many bytes an interrupted upload of the blob has left. Returns 0 if it left none,
+  /// or while an upload of the blob is in progress.
   std::uint64_t partial(const wire::Digest& digest) const { return partials_->size(digest); }
 
   /// Returns the blob, memory-mapped. Its digest is checked at the first call since the process
@@ -87,7 +87,7 @@ class BlobStore : public BlobSource {
     StagedFile file_;
   };
   /// Starts writing a blob. `offset` > 0 resumes after that many bytes of an earlier upload.
-  /// FAILED_PRECONDITION: fewer bytes are there. RESOURCE_EXHAUSTED: the blob is too large, or the
+  /// FAILED_PRECONDITION: fewer bytes are stored. RESOURCE_EXHAUSTED: the blob is too large, or the
   /// disk has no space for it.
   absl::StatusOr<Writer> write(const wire::Digest& digest, std::uint64_t size,
                                std::uint64_t offset = 0);

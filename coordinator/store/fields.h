@@ -1,7 +1,7 @@
 #pragma once
 
-// Named values as text, for journal records and small files: a line "name value" for each, in a
-// fixed order. Text values are escaped as in C.
+// Writes and reads named values as text, for journal records and small files. Each value is a line
+// "name value", and the lines have a fixed order. Text values are escaped as in C.
 
 #include <charconv>
 #include <cstdint>
@@ -43,6 +43,8 @@ class FieldReader {
   void refuse(std::string reason);
 
  private:
+  /// Takes the next line and returns the value in it. If the line has another name, sets the error
+  /// and returns an empty text.
   absl::string_view value_of(absl::string_view name);
   absl::string_view rest_;
   absl::Status status_;

@@ -1,6 +1,7 @@
 #pragma once
 
-// The results of a finished job, which the film's thread hands to the store.
+// The results of a finished job. The film's thread, which adds the bands of jobs to their images,
+// hands the results to the store.
 
 #include <optional>
 #include <vector>

@@ -14,14 +14,14 @@ namespace bandsaw::coordinator {
 class Journal {
  public:
   virtual ~Journal() = default;
-  /// Appends all of the records or none. OK: they are on disk, after all records appended before.
-  /// Any other status, such as RESOURCE_EXHAUSTED: none of them is in the journal; the same append
-  /// may be retried.
+  /// Appends all of the records or none. OK: they are on disk, and they follow the records of all
+  /// earlier appends. Any other status, such as RESOURCE_EXHAUSTED: none of them is in the journal,
+  /// and the same append may be retried.
   virtual absl::Status append(absl::Span<const Record> records) = 0;
   /// Calls `each` with every record in the order written. DATA_LOSS names a record that is damaged
   /// or of an unknown kind.
   virtual absl::Status replay(absl::FunctionRef<void(const Record&)> each) = 0;
-  /// Atomically replaces all records by these. Errors as append.
+  /// Atomically replaces all records of the journal by `records`. Errors as append.
   virtual absl::Status rewrite(absl::Span<const Record> records) = 0;
   /// Returns the number of records in the journal.
   virtual std::uint64_t size() const = 0;

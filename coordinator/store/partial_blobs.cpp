@@ -1,5 +1,5 @@
-// A partial blob is a file named by its digest. While an upload writes to it, a Claim holds it; a
-// second upload of the same blob gets a file of its own.
+// A partial blob is a file named by the digest of the whole blob. While an upload writes to the
+// file, a Claim holds it. A second upload of the same blob at that time gets another file.
 
 #include "coordinator/store/partial_blobs.h"
 

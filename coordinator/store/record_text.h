@@ -20,8 +20,8 @@ struct RecordText {
 /// Returns the text of a record, which from_text() can parse.
 RecordText to_text(const Record& record);
 
-/// Parses a record. DATA_LOSS names the field: unknown kind or field, missing field, value out of
-/// range.
+/// Parses a record. DATA_LOSS: the kind or a field is unknown, or a field is missing, malformed or
+/// out of range. The message names it.
 absl::StatusOr<Record> from_text(const RecordText& text);
 
 }  // namespace bandsaw::coordinator

@@ -1,5 +1,6 @@
 // Text of records about audits, damaged bands and quarantine: for each kind a function that writes
-// the fields, and one that reads them in the same order.
+// the fields, and one that reads them in the same order. In an audit, a second machine renders a
+// stored band again, and the results are compared.
 
 #include "coordinator/store/record_text_parts.h"
 

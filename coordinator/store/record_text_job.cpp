@@ -1,5 +1,6 @@
-// Text of records about jobs and sequences: their specifications, the plans of adaptive jobs, and
-// the scenes of frames. The functions write and read the fields in the same order.
+// Text of records about jobs and sequences: their specifications, the plans of adaptive jobs (how
+// many samples each part of the image gets), and the scenes of frames. The functions write and read
+// the fields in the same order.
 
 #include "coordinator/store/record_text_parts.h"
 

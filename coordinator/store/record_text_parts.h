@@ -1,8 +1,8 @@
 #pragma once
 
 // Functions that write and read groups of journal records as text fields. They are parts of
-// record_text.cpp, which converts all records. Each read function reads the output of the write
-// function of the same name; FieldReader keeps its first error.
+// record_text.cpp, which converts all records. Each function read_X reads the output of write_X.
+// The FieldReader keeps the first error.
 
 #include <optional>
 
@@ -17,6 +17,8 @@ namespace bandsaw::coordinator {
 void write_job(FieldWriter& out, const record::JobAdded& added);
 record::JobAdded read_job(FieldReader& in);
 
+/// Writes the plan of an adaptive job: the samples that each pixel gets before the plan, and one
+/// digit for each half of a tile, its level, which determines how many samples it gets.
 void write_tiles(FieldWriter& out, const record::TilesPlanned& r);
 /// Reports an error in `in` if a level is not a hexadecimal digit in lower case.
 record::TilesPlanned read_tiles(FieldReader& in);

@@ -16,7 +16,7 @@ class Reserve {
  public:
   static constexpr std::uint64_t kBytes = 16ull << 20;
 
-  /// `path` of the file, which may exist from an earlier run.
+  /// `path`: path of the file, which may exist from an earlier run.
   explicit Reserve(std::string path) : path_(std::move(path)) {}
 
   /// Creates the file unless it exists with its full size. RESOURCE_EXHAUSTED: the disk has too

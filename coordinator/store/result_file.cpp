@@ -39,7 +39,7 @@ absl::Status damaged(const std::string& path, const std::string& how) {
 
 absl::Status write_result(const Image& image, const std::string& folder, const std::string& path) {
   BANDSAW_CHECK(image.pixels.size() == std::size_t{image.width} * image.height,
-                "an image is whole");
+                "an image has width x height pixels");
   const absl::Span<const std::byte> pixels = std::as_bytes(std::span(image.pixels));
   Header header{.width = image.width, .height = image.height};
   std::memcpy(header.magic, kMagic, sizeof kMagic);

@@ -18,7 +18,7 @@ namespace bandsaw::coordinator {
 /// (Film::first_part), or the number of samples of each pixel.
 enum class FinishedPart { kImage, kFirst, kSamples };
 
-/// A part of a result as it is kept: linear RGB float.
+/// A part of a result, with pixels in linear RGB float as in the file.
 struct StoredResult {
   Image image;
   wire::Digest digest;   ///< digest of the pixels' bytes

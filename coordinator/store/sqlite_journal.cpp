@@ -30,6 +30,7 @@ std::string seal(std::uint64_t sequence, const RecordText& text) {
       .substr(0, 16);
 }
 
+/// Returns a column of a row as text; empty if the value is NULL.
 std::string column(sqlite3_stmt* row, int index) {
   const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(row, index));
   return text == nullptr

@@ -38,6 +38,8 @@ class SqliteJournal : public Journal {
 
   SqliteJournal(sqlite3* database, std::string path)
       : database_(database), path_(std::move(path)) {}
+  /// Sets SQLite's modes, checks the file's version and integrity, and reads the last sequence
+  /// number.
   absl::Status prepare_file();
   absl::Status check_version();
   absl::Status execute(const char* sql);

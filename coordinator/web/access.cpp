@@ -65,6 +65,7 @@ std::string pass_of(const std::string& secret) {
   return absl::BytesToHexString({reinterpret_cast<const char*>(digest.data()), size});
 }
 
+/// Refuses a POST that a page of another site may have sent.
 absl::Status check_post(const HttpRequest& request) {
   if (!request.has_header(kOurHeader)) {
     return absl::PermissionDeniedError(absl::StrCat("a POST needs the header ", kOurHeader));
@@ -75,8 +76,8 @@ absl::Status check_post(const HttpRequest& request) {
   return absl::OkStatus();
 }
 
-/// Returns true for requests that need no login: the page, its files and the login itself. Requests
-/// below /join, which are among them, are checked by their handlers.
+/// Returns true for requests that need no login: the page, its files, the workers' programs, the
+/// login itself, and all requests below /join. The handlers of /join check their requests.
 bool is_open(const HttpRequest& request) {
   return request.path == "/api/login" ||
          (request.path != "/metrics" && !absl::StartsWith(request.path, "/api/"));

@@ -1,7 +1,9 @@
 #pragma once
 
-// Access control of the dashboard. Everybody who can reach the port may read the page itself; all
-// other requests need a login, and requests that change anything must come from the page.
+// Access control of the dashboard. Everybody who can reach the port may read the pages, their files
+// and the workers' programs. The handlers of /join, for browsers that render, check their requests.
+// All other requests except the login itself need a login. A POST from a page of another site is
+// refused.
 
 #include <string>
 
@@ -49,6 +51,7 @@ class Access {
   absl::Status check_login(const HttpRequest& request) EXCLUDES(mutex_);
   /// Checks that this is the users' secret. `address`: the sender's address. Errors as log_in().
   absl::Status check_secret(const std::string& secret, const std::string& address) REQUIRES(mutex_);
+  /// Returns the value of the header Set-Cookie that sets the cookie for `seconds`; 0: deletes it.
   std::string cookie(const HttpRequest& request, const std::string& value, long seconds) const;
 
   const bool secure_;

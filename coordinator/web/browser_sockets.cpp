@@ -88,7 +88,7 @@ std::string offered_secret(const HttpRequest& request) {
 
 /// One session. The base class has the protocol and the queue of messages; this class has the
 /// WebSocket. Its members are used by the thread of `io` only, except where the base class says
-/// otherwise. The engine may keep the object a while longer than the server exists.
+/// otherwise. The engine may keep the object for a while after the server was destroyed.
 class BrowserSocket final : public WorkerSession,
                             public std::enable_shared_from_this<BrowserSocket> {
  public:

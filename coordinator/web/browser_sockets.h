@@ -1,7 +1,8 @@
 #pragma once
 
-// The sessions of browsers that render: each has one WebSocket (RFC 6455), and one thread serves
-// all of them. A session carries the same messages as that of a native worker (Work.Session).
+// The sessions of browsers that render. Each session has one WebSocket (RFC 6455), and one thread
+// serves all sessions. A session carries the same messages as the session of a native worker
+// (Work.Session).
 
 #include <chrono>
 #include <cstddef>
@@ -15,7 +16,7 @@
 namespace bandsaw::coordinator {
 
 struct BrowserSocketLimits {
-  std::size_t sockets = 256;  ///< more are refused
+  std::size_t sockets = 256;  ///< maximum number; further ones are refused
   /// Maximum time for the handshake, and for closing.
   std::chrono::milliseconds handshake{10'000};
   /// A browser that sends nothing for this long has vanished. The server pings after half of this

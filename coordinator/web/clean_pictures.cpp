@@ -43,8 +43,8 @@ absl::Status check(const JobView& job) {
 
 /// Returns for each pixel the share of its samples that is in the first part, with which the
 /// denoiser estimates errors. `counts`: the numbers of samples of an adaptive job's pixels. An
-/// image of at most 8 samples has no parts. For such an image, a job of its own renders half of the
-/// samples.
+/// image of at most 8 samples has no parts. For such an image, an additional job renders half of
+/// the samples.
 std::vector<float> shares_of(const JobView& job, const std::optional<HeldImage>& counts,
                              std::size_t pixels) {
   if (counts) {

@@ -1,8 +1,8 @@
 #pragma once
 
 // Clean, that is denoised, pictures of finished jobs (renderlib/denoise). The denoiser needs
-// guides, which are images of the albedo and the shape of the surfaces. The farm renders the guides
-// as jobs of their own. The filter runs on the coordinator.
+// guides, which are images of the albedo and the shape of the surfaces. The farm renders each guide
+// as a separate job. The filter runs on the coordinator.
 
 #include <cstdint>
 #include <functional>
@@ -51,7 +51,7 @@ class CleanPictures {
   absl::StatusOr<State> start(JobId job) EXCLUDES(mutex_);
   /// Returns the state, and starts the filter when the guides are done. NOT_FOUND: no such job.
   absl::StatusOr<State> state(JobId job) EXCLUDES(mutex_);
-  /// Returns a file of the clean picture with at most about `most_side` pixels per side.
+  /// Returns a file of the clean picture with at most `most_side` pixels per side.
   /// `most_side` = 0: the picture is not reduced. An EXR file has the layers `raw` and `error`, as
   /// `bandsaw render --denoise` writes it. FAILED_PRECONDITION: the state is not kReady. Errors as
   /// picture_of (coordinator/rpc/picture.h).

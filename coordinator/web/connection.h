@@ -53,8 +53,8 @@ class Connection {
   Attempt try_read(char* bytes, std::size_t size);
   Attempt try_write(const char* bytes, std::size_t size);
 
-  /// Ends the sending direction. With TLS the peer is told so, because otherwise it cannot tell the
-  /// end from a connection that somebody has cut.
+  /// Ends the sending direction. With TLS, sends close_notify, because without it the peer cannot
+  /// distinguish this end from a connection that somebody has cut.
   void end_sending();
   /// Ends the sending direction and reads what the peer still sends, because closing a socket with
   /// unread bytes would make the system discard the response.

@@ -1,8 +1,8 @@
 #pragma once
 
 // The dashboard of `bandsaw serve`: a web page and the requests that it makes to the engine (the
-// scheduler and the store). It uses plain HTTP on loopback and TLS elsewhere, and always needs a
-// login by the users' secret.
+// scheduler and the store). It uses plain HTTP on loopback and TLS elsewhere. Users log in by the
+// users' secret, and browsers that render use the secret of their link.
 
 #include <memory>
 #include <string>
@@ -22,7 +22,7 @@ namespace bandsaw::coordinator {
 struct DashboardOptions {
   std::string host = "127.0.0.1";  ///< address or name; IPv6 without brackets
   int port = 8787;                 ///< 0: a free one
-  bool insecure = false;           ///< plain HTTP also beyond loopback
+  bool insecure = false;           ///< uses plain HTTP on other addresses than loopback too
   std::string gallery;             ///< folder of scene files; may be missing
   ImportScene import_scene;
   WorkerPrograms workers;             ///< programs for machines that are to join
@@ -44,6 +44,7 @@ class Dashboard {
   /// and every connection is closed, because it may use the old one.
   void renew(const link::Identity& identity);
   int port() const;
+  /// Returns true if the dashboard uses TLS.
   bool secure() const;
 
  private:

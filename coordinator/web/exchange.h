@@ -1,6 +1,6 @@
 #pragma once
 
-// One request of a connection and its response: HTTP/1.1 by Boost.Beast.
+// Serves one HTTP/1.1 request of a connection, with Boost.Beast.
 
 #include <vector>
 

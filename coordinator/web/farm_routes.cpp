@@ -29,7 +29,8 @@ web::Overview overview(Engine& engine) {
   web::Overview overview;
   overview.set_version(BANDSAW_VERSION);
   std::vector<JobView> jobs = all_jobs(engine);
-  // Guides of clean pictures (clean_pictures.h) are shown with their job; `bandsaw jobs` lists
+  // The page shows the guides of a clean picture (images for the denoiser, clean_pictures.h) with
+  // the job of that picture. So the jobs that render guides are left out here. `bandsaw jobs` lists
   // them.
   std::erase_if(jobs, [](const JobView& job) { return is_guide(job.spec.settings.integrator); });
   std::sort(jobs.begin(), jobs.end(), [](const JobView& a, const JobView& b) {

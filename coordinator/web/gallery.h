@@ -25,7 +25,7 @@ class Gallery {
   explicit Gallery(const std::string& folder);
 
   const std::vector<GalleryScene>& scenes() const { return scenes_; }
-  /// nullptr: no such scene.
+  /// Returns the scene of this name; nullptr: no such scene.
   const GalleryScene* find(const std::string& name) const;
 
  private:

@@ -43,7 +43,7 @@ std::string decoded(absl::string_view text, bool plus_is_space) {
 
 struct ByteRange {
   std::uint64_t first = 0;
-  std::uint64_t last = 0;  ///< inclusive; less than `first` where there are no such bytes
+  std::uint64_t last = 0;  ///< inclusive; less than `first`: the body has no such bytes
 };
 
 /// Parses the header Range for a body of `size` bytes; std::nullopt if it is not one valid range of
@@ -69,6 +69,7 @@ std::optional<ByteRange> range_of(absl::string_view header, std::uint64_t size) 
   return first >= size ? ByteRange{1, 0} : ByteRange{first, std::min(last, size - 1)};
 }
 
+/// Returns the value of the first field of this name, ignoring case; empty: there is none.
 std::string first_of(const std::vector<HttpField>& fields, absl::string_view name) {
   const auto found = std::find_if(fields.begin(), fields.end(), [&](const HttpField& field) {
     return absl::EqualsIgnoreCase(field.first, name);

@@ -60,9 +60,10 @@ struct HttpReply {
 /// Returns a response 200 that owns this body.
 HttpReply text_reply(std::string text, std::string type);
 
-/// Applies the header Range of a GET (RFC 9110, section 14) to a response 200: returns the one
-/// range that it names (206), no bytes if the range begins beyond the end (416), or all bytes
-/// (several ranges, another unit, If-Range). Returns other responses unchanged.
+/// Applies the header Range of a GET (RFC 9110, section 14) to a response 200. If the header names
+/// one range of bytes, returns these bytes (206), or no bytes if the range begins beyond the end
+/// (416). In all other cases, and if the request has the header If-Range, returns the response
+/// unchanged.
 HttpReply with_range(const HttpRequest& request, HttpReply reply);
 
 /// Returns the response to a request. Called on one of the server's threads; may wait.

@@ -1,7 +1,8 @@
 #pragma once
 
-// The HTTP server of the dashboard: one request per connection, a limited number of threads and of
-// connections from one address, a deadline for each connection, TLS with keys from memory.
+// The HTTP server of the dashboard. It serves one request per connection, and each connection has a
+// deadline. The number of threads is fixed, and the number of connections from one address is
+// limited. The keys for TLS come from memory, not from files.
 
 #include <map>
 #include <string>
@@ -46,7 +47,8 @@ class HttpServer {
   /// many connections; then the caller must close the connection.
   bool enter(int socket, const std::string& address) EXCLUDES(mutex_);
   void leave(int socket) EXCLUDES(mutex_);
-  /// Waits after a failed accept; `error`: its errno. Returns false if the server is being stopped.
+  /// Call after a failed accept; `error`: its errno. If file descriptors or memory have run out,
+  /// waits a moment. Returns false if the server is being stopped.
   bool may_accept_again(int error) EXCLUDES(mutex_);
 
   const TlsContext tls_;

@@ -81,6 +81,7 @@ absl::StatusOr<farm::ListFramesReply> frames(Engine& engine, const HttpRequest& 
   return reply;
 }
 
+/// Renders all failed frames of a sequence again. Returns the sequence after this change.
 absl::StatusOr<farm::JobStatus> retry(Engine& engine, const HttpRequest& request) {
   ASSIGN_OR_RETURN(const JobId id, job_of(request));
   ASSIGN_OR_RETURN(const JobView view, blocking_call<Changed>([&](auto answer) {

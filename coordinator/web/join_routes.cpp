@@ -93,6 +93,7 @@ absl::StatusOr<BandIntake> read_band(const HttpBody& body, BrowserLeases& leases
   return intake;
 }
 
+/// Reads a band from the body and gives it to the engine. Returns what the engine did with it.
 absl::StatusOr<farm::PutBandReply> take_band(Engine& engine, BrowserLeases& leases,
                                              const HttpBody& body) {
   ASSIGN_OR_RETURN(BandIntake intake, read_band(body, leases, engine.bands()));

@@ -110,8 +110,8 @@ std::string metrics(const std::vector<JobView>& jobs, const std::vector<WorkerVi
            [](const JobView& job) { return job.fraction; });
   add_jobs(out, "bandsaw_job_error", "Estimated relative RMSE of a job's image.", jobs,
            [](const JobView& job) { return job.error; });
-  add_jobs(out, "bandsaw_job_bands_audited", "Bands that two machines rendered alike.", jobs,
-           [](const JobView& job) { return static_cast<double>(job.bands_audited); });
+  add_jobs(out, "bandsaw_job_bands_audited", "Bands that two machines rendered with equal results.",
+           jobs, [](const JobView& job) { return static_cast<double>(job.bands_audited); });
   add_jobs(out, "bandsaw_job_samples_per_second", "A job's pace.", jobs,
            [](const JobView& job) { return job.samples_per_s; });
   return std::move(out).text();

@@ -28,9 +28,9 @@ class Pictures {
   explicit Pictures(Engine& engine) : engine_(engine) {}
 
   /// Returns a file of the job's present image, which is at most a second old. If the job is done,
-  /// it is the finished image. The image has at most about `most_side` pixels per side. NOT_FOUND:
-  /// there is no such job, or none of its bands is there. All three functions return
-  /// RESOURCE_EXHAUSTED in the cases of picture_of (coordinator/rpc/picture.h).
+  /// it is the finished image. The image has at most `most_side` pixels per side. NOT_FOUND: there
+  /// is no such job, or no band of the job is stored. All three functions return RESOURCE_EXHAUSTED
+  /// in the cases of picture_of (coordinator/rpc/picture.h).
   absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side, ImageFormat format)
       EXCLUDES(making_);
   /// Returns the finished image. Errors as Engine::result.

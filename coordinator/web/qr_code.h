@@ -18,7 +18,7 @@ struct QrCode {
   int side = 0;                      ///< modules
   std::vector<bool> dark;            ///< side x side, rows from the top
 
-  /// Returns false beyond the code, so that a drawing may begin at -kMargin.
+  /// Returns false for a place outside of the code, so that a drawing may begin at -kMargin.
   bool is_dark(int x, int y) const {
     return x >= 0 && y >= 0 && x < side && y < side && dark[static_cast<std::size_t>(y * side + x)];
   }

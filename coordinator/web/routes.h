@@ -1,7 +1,8 @@
 #pragma once
 
-// Each function adds the handlers of one part of the dashboard to the router; Dashboard calls all
-// of them. Access is checked before a handler runs. proto/web.proto has the messages of each path.
+// Each function add_X adds the handlers of one part of the dashboard to the router; Dashboard calls
+// all of them. The arguments MUST outlive the server's threads. Access is checked before a handler
+// runs. proto/web.proto has the messages of each path.
 
 #include "coordinator/engine/engine.h"
 #include "coordinator/rpc/browser_access.h"
@@ -21,8 +22,7 @@ namespace bandsaw::coordinator {
 /// Adds the page's files, which are embedded in the program.
 void add_page(Router& router);
 /// Adds the workers' programs: /bandsaw-worker/MACHINE for the architecture of that name,
-/// /bandsaw-worker for the coordinator's own. Here and below, the arguments MUST outlive the
-/// server's threads.
+/// /bandsaw-worker for the coordinator's own architecture.
 void add_worker_programs(Router& router, const WorkerPrograms& programs);
 void add_login(Router& router, Access& access);
 void add_farm(Router& router, Engine& engine);

@@ -9,9 +9,10 @@
 namespace bandsaw::coordinator {
 
 /// Reads `width` (pixels), `title` (the job's name, cleaned and cut by clean_text), and `scene`
-/// (the name of the scene file in a zip). Reads one of `error` (0.02: two percent), `time`
-/// (seconds) and `samples` (a pixel), which ends the job; without any of them, the job has 64
-/// samples. INVALID_ARGUMENT: a parameter is out of range; the message names it.
+/// (the name of the scene file in a zip). `error` (0.02 means two percent), `time` (seconds) or
+/// `samples` (number for each pixel) determines when the job ends. Without any of these three, the
+/// job renders 64 samples for each pixel. INVALID_ARGUMENT: a parameter is out of range; the
+/// message names it.
 absl::StatusOr<SceneRequest> scene_request(const HttpRequest& request);
 
 }  // namespace bandsaw::coordinator

@@ -1,8 +1,8 @@
 #pragma once
 
-// Makes a job of a scene file that the dashboard has received or the gallery has. A confined
-// process, the importer, reads the file. The function that runs it is passed in (ImportScene),
-// because only the command `serve` knows where the importer is.
+// Makes a job of a scene file that the dashboard has received or that belongs to the gallery. A
+// confined process, the importer, reads the file. The function that runs it is passed in
+// (ImportScene), because only the command `serve` knows where the importer is.
 
 #include <atomic>
 #include <cstdint>

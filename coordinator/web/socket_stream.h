@@ -101,6 +101,7 @@ class SocketStream {
  private:
   using Socket = boost::asio::posix::stream_descriptor;
 
+  /// Returns the first buffer of the sequence that is not empty; an empty one if there is none.
   template <class Buffer, class Buffers>
   static Buffer first_of(const Buffers& buffers) {
     for (const Buffer buffer : boost::beast::buffers_range_ref(buffers)) {

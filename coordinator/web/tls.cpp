@@ -1,4 +1,5 @@
-// Makes OpenSSL's server context from the certificate and the key of the farm, in memory.
+// Makes OpenSSL's server context from the certificate and the key of the farm. Both are read from
+// memory, not from files.
 
 #include "coordinator/web/tls.h"
 

@@ -35,7 +35,7 @@ constexpr absl::string_view other_machine_name(Machine machine) {
   return machine == Machine::kX86_64 ? "amd64" : "arm64";
 }
 
-/// Returns the architecture of either name; std::nullopt if there is none.
+/// Returns the architecture that has this name in either spelling; std::nullopt: none has it.
 constexpr std::optional<Machine> machine_named(absl::string_view name) {
   for (const Machine machine : kMachines) {
     if (name == machine_name(machine) || name == other_machine_name(machine)) {

@@ -42,12 +42,15 @@ class Views {
   JobView view(const Job& job, Time now) const;
   /// Returns the reason why no worker may render the job.
   std::string nobody_reason(const Job& job) const;
+  /// Returns why an idle worker may render no job that has bands to give; may be empty.
   std::string idle_reason(const Worker& worker) const;
+  /// Returns the reason why the worker may not render the job.
   std::string refusal(const Worker& worker, const Job& job) const;
-  /// Returns machines that are under quarantine and have not connected in this epoch.
+  /// Returns machines that are under quarantine and have not connected since the coordinator
+  /// started.
   std::vector<WorkerView> absent_quarantined() const;
-  /// Returns the reason why a job without leases waits, or the notice of a job with leases; may be
-  /// empty.
+  /// Returns why a running job without leases waits. If no reason is known, or for any other job,
+  /// returns Job::notice, the last event that users should know of, which may be empty.
   std::string waiting_reason(const Job& job) const;
   std::vector<std::string> why_of_sequence(const Sequence& sequence, Time now) const;
   std::vector<std::string> why_of_state(const Job& job, Time now) const;

@@ -27,8 +27,8 @@ export function load(img, source) {
 }
 
 /// Shows a list: `parent` has one part for each item, in the same order. `parts`: a Map from the keys of the
-/// items to the parts of the last call. A new item's part is make(item) = {element, update(item), leave?()};
-/// every part is updated; parts without an item are removed.
+/// items to the parts of the last call. For a new item, make(item) returns its part, {element, update(item),
+/// leave?()}. Every part is updated with its item. A part whose item is no longer in the list is removed.
 export function keyed(parent, parts, items, keyOf, make) {
   const seen = new Set();
   items.forEach((item, i) => {

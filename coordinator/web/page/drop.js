@@ -39,7 +39,9 @@ export function takeDrops() {
   const veil = el("div", {id: "drop", hidden: true}, el("p", {}, "Drop a scene to render it: a .zip with its files, .glb, .textproto, .pbrt or .xml"));
   document.body.append(veil);
   const hasFiles = (event) => event.dataTransfer?.types.includes("Files") && !document.querySelector("nav").hidden;
-  let depth = 0;  // elements under the pointer: each is entered before the last one is left
+  // Number of elements that the dragged file has entered and not left. It is above 0 as long as the file is
+  // over the window, because the file enters an element before it leaves the last one.
+  let depth = 0;
   const on = (name, action) => window.addEventListener(name, (event) => {
     if (!hasFiles(event)) return;
     event.preventDefault();

@@ -36,7 +36,7 @@ function cell(frame, choose) {
 /// Returns {element, update(status), leave()} for the job `id`, which has frames.
 export function frames(id) {
   let epoch = "";        // the run of the coordinator that answered last
-  let after = "0";       // the largest `changed` of its frames; a text, because it has 64 bits
+  let after = "0";       // number of the newest change that was received; a text, because it has 64 bits
   let all = [];          // numbers, ascending
   const known = new Map();  // number -> frame
   const cells = new Map();  // number -> part of the strip

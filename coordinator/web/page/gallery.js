@@ -14,7 +14,8 @@ function screenWidth() {
 
 let width = screenWidth();
 let samples = "16";
-// The titles of the gallery's subfolders; "": scenes in no subfolder.
+// The titles of the gallery's subfolders; "": scenes in no subfolder. `books` has scenes of the books "Ray Tracing in One
+// Weekend" and its sequels. `study` has scenes of another author's study of ray tracing on phones.
 const groups = {"": "Scenes", books: "The books", hard_light: "Hard light", study: "The phone study"};
 const groupOf = (name) => (name.includes("/") ? name.split("/")[0] : "");
 

@@ -18,7 +18,7 @@ const calls = {
   begin: ({scene, manifest}) => program.json("renderer_begin_scene", renderer, scene, new Uint8Array(manifest)),
   blob({digest, bytes}) {
     const data = new Uint8Array(bytes);
-    // The renderer owns the memory from now on, so place() is called here, and not by run(), which would free it.
+    // The renderer takes the ownership of the memory. So place() is called here, and not by run(), which would free the memory.
     const answer = program.run("renderer_add_blob", renderer, digest, program.place(data), data.length);
     program.read(answer);
   },

@@ -95,8 +95,8 @@ export class Renderer {
     return this.scenes.has(scene);
   }
 
-  /// Returns the number of rows at whose multiples bands of the scene should be divided, and marks
-  /// the scene as the one that was used last. The scene must be loaded.
+  /// Returns the row step of the scene: a band should be divided only at rows that are multiples of
+  /// this number. Marks the scene as the one that was used last. The scene must be loaded.
   rowStep(scene) {
     const known = this.scenes.get(scene);
     this.scenes.delete(scene);

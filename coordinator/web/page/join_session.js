@@ -92,7 +92,7 @@ function updatePhase() {
   const held = tasks.size;
   const rendering = [...tasks.values()].some((task) => task.rowsGiven > task.first);
   if (pausedWhy) {
-    if (held > 0) setPhase("pausing", `${pausedWhy} The rows that it has begun are finished first.`);
+    if (held > 0) setPhase("pausing", `${pausedWhy} The rows that this tab has begun are finished first.`);
     else setPhase("paused", pausedWhy);
   } else if (!connected) {
     setPhase("connecting", state.phase === "connecting" ? state.text : "Connecting to the coordinator …");
@@ -329,8 +329,8 @@ function failed(renderer, task, error) {
 }
 
 /// Must be called when a scene whose blobs have `sceneBytes` bytes has ended a renderer, probably
-/// because there was too little memory. From now on, offers the coordinator memory for scenes of at
-/// most three quarters of this size.
+/// because there was too little memory. After this call, the tab offers the coordinator memory for
+/// scenes of at most three quarters of this size.
 function takeOnlySmaller(job, sceneBytes) {
   tooLarge = `The scene of job ${job} needs more memory than this browser gives; other machines render it.`;
   mostSceneMemory = Math.min(mostSceneMemory, 0.75 * MEMORY_PER_BLOB_BYTE * sceneBytes);

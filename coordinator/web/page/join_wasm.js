@@ -79,8 +79,8 @@ export class Program {
     return at;
   }
 
-  /// Calls the function `bandsaw_NAME` and returns its result. Numbers among the arguments are
-  /// passed as they are, texts and bytes as an address and a length.
+  /// Calls the function `bandsaw_NAME` and returns its result. A number among the arguments is
+  /// passed unchanged. A text or bytes are passed as the address and the length of a copy.
   run(name, ...args) {
     const placed = [];
     const flat = args.flatMap((arg) => {

@@ -13,7 +13,8 @@ function draw(tag, attributes, words = "") {
   return element;
 }
 
-/// Returns the marks of an axis: 1, 2 and 5 times powers of ten within [low, high], or the powers alone if these are too many.
+/// Returns the marks of an axis within [low, high]: 1, 2 and 5 times the powers of ten. If these are more than six marks, returns
+/// only the powers of ten.
 function ticks(low, high) {
   const out = [];
   for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); ++power) {

@@ -17,7 +17,7 @@ class BandsawPreferences(bpy.types.AddonPreferences):
         name="Farm", subtype="PASSWORD",
         description="The users' join string (bsw1-f-…): the line in the file `farm` of the coordinator's data folder, or the name of a file that has it")
     web: bpy.props.StringProperty(
-        name="Dashboard", description="HOST:PORT of the coordinator's dashboard. Empty: as the farm's string says")
+        name="Dashboard", description="HOST:PORT of the coordinator's dashboard. Empty: the address in the farm's string")
 
     def draw(self, context):
         column = self.layout.column()
@@ -51,7 +51,7 @@ class BandsawSettings(bpy.types.PropertyGroup):
     error: bpy.props.FloatProperty(name="Error", default=2.0, min=0.01, max=100.0, subtype="PERCENTAGE", description="Error of the image in percent, before it is denoised")
     denoise: bpy.props.BoolProperty(
         name="Denoise", default=True,
-        description="Remove the noise of the finished image. The image as rendered is kept in the pass Noisy Image, and the estimated error of both is told")
+        description="Remove the noise of the finished image. The image as rendered is kept in the pass Noisy Image, and the estimated errors of both images are reported")
 
 
 class BANDSAW_PT_sampling(bpy.types.Panel):

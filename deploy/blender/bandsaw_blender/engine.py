@@ -14,7 +14,7 @@ from . import bandsaw, scene as scenes
 # the farm renders for it (bandsaw.Job.layer).
 PASSES = (("use_pass_z", "Depth", 1, "Z", "VALUE", "depth"), ("use_pass_normal", "Normal", 3, "XYZ", "VECTOR", "normals"),
           ("use_pass_diffuse_color", "DiffCol", 3, "RGB", "COLOR", "albedo"))
-NOISY = "Noisy Image"  # the pass with the image as rendered, if it is denoised; named as that of Cycles
+NOISY = "Noisy Image"  # the pass that keeps the image as rendered if the image is denoised; Cycles has a pass of the same name
 PATIENCE = 60.0  # seconds for which the engine tries to reach a lost coordinator
 
 last_warnings = []  # warnings of the last render, for the panel

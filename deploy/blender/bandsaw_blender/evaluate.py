@@ -148,6 +148,8 @@ class Evaluator:
         self.points.used.add(name)
         return array
 
+    # Returns the uv map `name` as vectors (n, 3) whose third component is 0. If the points do not
+    # know this name, returns their active map. Raises NeedsCoordinates if they do not have the map.
     def uv(self, name):
         uv = self.points.uv.get(name, self.points.uv.get(""))
         if uv is None:
@@ -200,7 +202,7 @@ class Evaluator:
         if output.name in ("Normal", "True Normal"):
             return self.need("world_normal", "normals")
         if output.name == "Backfacing":
-            self.warn(f'"Backfacing" of the node "{node.name}" is not shown; both sides are as the front')
+            self.warn(f'"Backfacing" of the node "{node.name}" is not shown; both sides are shaded as the front')
             return np.zeros(1)
         raise Unsupported(f'"{output.name}" of the node "{node.name}"')
 
