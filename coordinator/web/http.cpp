@@ -70,7 +70,7 @@ std::optional<ByteRange> range_of(absl::string_view header, std::uint64_t size) 
 }
 
 /// Returns the value of the first field of this name, ignoring case; empty: there is none.
-std::string first_of(const std::vector<HttpField>& fields, absl::string_view name) {
+std::string value_of_first(const std::vector<HttpField>& fields, absl::string_view name) {
   const auto found = std::find_if(fields.begin(), fields.end(), [&](const HttpField& field) {
     return absl::EqualsIgnoreCase(field.first, name);
   });
@@ -79,7 +79,9 @@ std::string first_of(const std::vector<HttpField>& fields, absl::string_view nam
 
 }  // namespace
 
-std::string HttpRequest::header(absl::string_view name) const { return first_of(headers, name); }
+std::string HttpRequest::header(absl::string_view name) const {
+  return value_of_first(headers, name);
+}
 
 bool HttpRequest::has_header(absl::string_view name) const {
   return std::any_of(headers.begin(), headers.end(), [&](const HttpField& field) {

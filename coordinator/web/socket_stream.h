@@ -46,14 +46,14 @@ class SocketStream {
 
   template <class Buffers, class Token>
   auto async_read_some(const Buffers& buffers, Token&& token) {
-    return start(first_of<boost::asio::mutable_buffer>(buffers), token,
+    return start(first_filled<boost::asio::mutable_buffer>(buffers), token,
                  [](Connection& connection, const boost::asio::mutable_buffer& buffer) {
                    return connection.try_read(static_cast<char*>(buffer.data()), buffer.size());
                  });
   }
   template <class Buffers, class Token>
   auto async_write_some(const Buffers& buffers, Token&& token) {
-    return start(first_of<boost::asio::const_buffer>(buffers), token,
+    return start(first_filled<boost::asio::const_buffer>(buffers), token,
                  [](Connection& connection, const boost::asio::const_buffer& buffer) {
                    return connection.try_write(static_cast<const char*>(buffer.data()),
                                                buffer.size());
@@ -103,7 +103,7 @@ class SocketStream {
 
   /// Returns the first buffer of the sequence that is not empty; an empty one if there is none.
   template <class Buffer, class Buffers>
-  static Buffer first_of(const Buffers& buffers) {
+  static Buffer first_filled(const Buffers& buffers) {
     for (const Buffer buffer : boost::beast::buffers_range_ref(buffers)) {
       if (buffer.size() > 0) {
         return buffer;
