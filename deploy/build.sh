@@ -1,5 +1,6 @@
-# To be sourced in the root folder of the checkout: sets `build` to the build folder of the programs. Unless BANDSAW_BUILD
-# names one, installs the packages of install.sh's LIST and builds.
+# To be sourced in the root folder of the checkout: sets `build` to the build folder of the programs. This is the folder that
+# BANDSAW_BUILD names. If BANDSAW_BUILD is not set, installs the packages of LIST (one of the lists of deploy/install.sh, such as demo),
+# and builds in build/release.
 # Usage: . deploy/build.sh LIST
 build=${BANDSAW_BUILD:-}
 if [ -z "$build" ]; then

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # Runs a farm on this machine: installs what is needed, builds, starts a coordinator and three workers on loopback, renders a
 # scene with a real model and writes the picture.
-# Usage: deploy/demo.sh [FOLDER]   (default: out/demo; gets the picture, the scene and the logs)
+# Usage: deploy/demo.sh [FOLDER]
+#   FOLDER: where the picture, the scene and the logs are written (default: out/demo)
 # BANDSAW_BUILD=DIR: use that build; nothing is installed or built.
+# BANDSAW_DEMO_SAMPLES=N: samples per pixel (default: 64).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-out/demo}

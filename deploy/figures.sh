@@ -2,8 +2,9 @@
 # Makes the comparison figures of the gallery's README again, and the pictures of the main README.
 # Usage: deploy/figures.sh samples|defocus|lights|density|tone|strip|all|sheet [FOLDER [WIDTH [SCENE...]]]
 #   (default: out/figures, the width of one picture 300)
-# strip: the pictures of the main README, each a file of its own, of that width (480 by default).
-# sheet: every scene of the gallery, or those given, as thumbnails of at most that width (160 by default); prints the place of each.
+# strip: the pictures of the main README, each a file of its own, WIDTH pixels wide (default: 480).
+# sheet: one picture with thumbnails of all scenes of the gallery, or of the SCENEs. Each thumbnail is at most WIDTH pixels wide
+#   (default: 160). Prints the names of the scenes in each row.
 # BANDSAW_BUILD=DIR: the build to use; otherwise build/release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -71,6 +72,7 @@ figure_defocus() {
   side_by_side defocus 4 lens pinhole
 }
 
+# The left half is rendered without light sampling, so paths hit lamps only by chance. The right half is rendered with it.
 figure_lights() {
   render $gallery/cornell.textproto chance --samples 16 --integrator path_scattering
   render $gallery/cornell.textproto asked --samples 16

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 or 13 that building, testing, packing or the demo need, if any is missing.
 # Usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64|wasm
-#   browser  what the tests of that label need besides `test`, 700 MB
-#   blender  what the tests of that label need besides `test`, 700 MB
-#   clang    what the presets clang and fuzz need besides `test`
-#   old_cpu  the emulator of that label's test
+#   browser  the list `test`, and what the tests with the label browser need in addition, 700 MB
+#   blender  the list `test`, and what the tests with the label blender need in addition, 700 MB
+#   clang    the list `test`, and what the presets clang and fuzz need in addition
+#   old_cpu  the list `test`, and the emulator for the test with the label old_cpu
 #   arm64    the cross compiler, Debian's libraries for ARM64 and an emulator, 800 MB; it adds the architecture to this system,
-#            and updates those of its libraries that must have one version in all architectures
+#            and updates the system's libraries that must have the same version in all architectures
 #   wasm     clang and the C++ library for WebAssembly, and node for the tests, 500 MB
 set -euo pipefail
 

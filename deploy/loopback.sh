@@ -12,12 +12,12 @@ stop() {
 }
 trap stop EXIT
 
-# serve_here LOG [OPTION...]: starts the coordinator and waits until it is ready; $data/join and $data/farm are its join strings.
+# serve_here LOG [OPTION...]: starts the coordinator and waits until it is ready; $data/join and $data/farm are the files with its join strings.
 serve_here() {
   local log=$1
   bandsaw serve --data "$data" --listen 127.0.0.1:0 "${@:2}" >"$log" 2>&1 &
   pids+=($!)
-  until [ -s "$data/farm" ]; do  # written last
+  until [ -s "$data/farm" ]; do  # the file that the coordinator writes last
     kill -0 "${pids[0]}" 2>/dev/null || { cat "$log" >&2; exit 1; }
     sleep 0.05
   done

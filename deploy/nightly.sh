@@ -46,7 +46,7 @@ commit=$(git describe --always --dirty)
 readonly kSkipped=77  # as CTest's SKIP_RETURN_CODE
 
 skip() { echo "skipped: $*"; exit $kSkipped; }
-# tests BUILD-FOLDER CTEST-OPTION...: runs the tests; `row` reads the summary.
+# tests BUILD-FOLDER CTEST-OPTION...: runs the tests. `row` reads CTest's summary in the log.
 tests() { ctest --test-dir "$1" --no-tests=error --output-on-failure --parallel "$(nproc)" "${@:2}"; }
 # preset NAME TARGET...: configures and builds.
 preset() {
@@ -106,7 +106,8 @@ debian() {
 part_debian12() { debian bookworm; }
 part_debian13() { debian trixie; }
 
-# Compares the hashes of same_bits.txt for both compilers of both releases, and for a lower optimisation level.
+# Checks that builds by both compilers of both Debian releases, and a build with a lower optimisation level, render images with the hashes
+# of tests/hard_cases/same_bits.txt.
 part_compilers() {
   deploy/install.sh clang && tests/hard_cases/compilers.sh clang dev || return
   bare_possible || skip "Debian 13's compilers: no root or no debootstrap"
@@ -131,6 +132,7 @@ part_calibration() {
     tests/statistical/calibrate.sh build/release/bin/bandsaw build/calibration --minutes "$calibration_minutes"
 }
 
+# count SED-SCRIPT FILE: prints the sum of the numbers that the script prints for the file.
 count() { sed -n "$1" "$2" | awk '{ sum += $1 } END { print sum + 0 }'; }
 
 # row PART STATUS SECONDS LOG: prints a line of the table. Counts come from CTest's summary in the log.

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Builds the Debian packages bandsaw and bandsaw-worker. With --try: installs them into a bare Debian 12 (debootstrap; root),
-# runs a farm there, removes them and lists what is left.
+# Builds the Debian packages bandsaw and bandsaw-worker. With --try: installs them into a bare Debian 12, runs a farm in
+# it, removes the packages and lists the files that are left. --try needs debootstrap and root.
 # Usage: deploy/packages.sh [--try] [--worker FILE]... [FOLDER]   (default: out/packages)
 # --worker FILE: the program bandsaw-worker of a build for another architecture. It gets a package of its own, bandsaw-worker-arm64 or
-# bandsaw-worker-amd64, which lets a coordinator on the architecture of this build hand it out.
+# bandsaw-worker-amd64. With this package, a coordinator on the architecture of this build hands out FILE to workers of the other
+# architecture.
 # BANDSAW_BUILD=DIR: use that build; nothing is installed or built.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds everything and runs the tests: those of the label `default`, or of the labels given.
+# Builds everything and runs the tests that have the label `default`, or one of the LABELs.
 # Usage: deploy/test.sh [--strict] [LABEL...]    (--strict: the compilers' warnings are errors)
 set -euo pipefail
 cd "$(dirname "$0")/.."

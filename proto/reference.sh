@@ -7,7 +7,9 @@ cd "$(dirname "$0")"
 reference() {
   # kind[d]: message, enum or oneof, whichever is open at depth d; open[d]: its name. pending: the comment above the next field or message.
   # about[name]: what the reference says on a message.
-  # rows[name, k], row_words[name, k]: its field k (of an enum: the start of a table row), and what the reference says on it.
+  # rows[name, k]: the name of field k of a message, or the start of the table row for word k of an enum.
+  # row_words[name, k]: what the reference says on the field or word. row_type[name, k]: the field's type, and 1 if it is repeated.
+  # row_one[name, k]: 1 if the field is in a oneof.
   awk '
     function escaped(text) { gsub(/\|/, "\\|", text); return text }
     function joined(a, b) { return a == "" ? b : b == "" ? a : a " " b }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the add-on's zip, with deploy/python/bandsaw.py in it. Usage: make.sh [FILE.zip] (default: out/bandsaw_blender.zip)
+# Makes the zip of the add-on for Blender, with deploy/python/bandsaw.py in it. Usage: make.sh [FILE.zip] (default: out/bandsaw_blender.zip)
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 out=$(realpath -m "${1:-$here/../../out/bandsaw_blender.zip}")

@@ -16,7 +16,7 @@ has() { grep -q -e "$1" <<<"$built" || { echo "missing: $1" >&2; exit 1; }; }
 for kind in Namespace Service StatefulSet Deployment NetworkPolicy; do
   has "^kind: $kind\$"
 done
-# The host name in the join string: the pod's name below the service of its StatefulSet.
+# The host name in the join string consists of the pod's name and the name of the service of its StatefulSet.
 has '^  name: coordinator$'
 has '^  serviceName: bandsaw$'
 has '^        - 0.0.0.0:7878$'

@@ -64,8 +64,9 @@ class Refused(BandsawError):
 
 class JoinString:
     """The parts of a users' join string: `addresses` ((host, port), the farm's gRPC port), `web`
-    ((host or None, port) of the dashboard, or None: not named), `certificate` (SHA-256, 32 bytes; None: the farm
-    runs with --insecure) and `secret`. proto/link/join.h describes the form."""
+    ((host, port) of the dashboard; host is None if the string names only the port; `web` is None if it names
+    neither), `certificate` (SHA-256, 32 bytes; None: the farm runs with --insecure) and `secret`.
+    proto/link/join.h describes the form."""
 
     def __init__(self, text):
         rest = text.strip()
@@ -349,12 +350,14 @@ _REFERENCES[".fbx"] = _REFERENCES[".3ds"] = (
     rb'(?i)(?<![^\x00-\x1f"])([^\x00-\x1f"]+?\.(?:png|jpe?g|tga|bmp|tiff?|exr|hdr|webp|dds|gif))')
 _ALSO_QUOTED = {".textproto": rb"'([^'\n]+)'"}  # a second pattern, for names in single quotes
 _SCENES = (".textproto", ".json", ".pbrt", ".xml")  # scene files; files with other suffixes belong to models
-_NAMES_FROM_THE_TOP = (".pbrt", ".xml")  # an included file names files relative to the folder of the scene; its own folder is tried too
+# In scenes of these formats, an included file names files relative to the scene's folder. The folder of the included file is tried too.
+_NAMES_FROM_THE_TOP = (".pbrt", ".xml")
 
 
 def _files_of(scene):
-    """Returns the name of the scene file, and a dictionary from the names of it and of the files that it
-    refers to, directly or not, to their paths. Names are relative to the scene's folder."""
+    """Finds the scene file and all files that it refers to, directly or through other files. Returns
+    the name of the scene file, and a dictionary that has the path of each file under its name. Names
+    are relative to the folder of the scene file."""
     if not os.path.isfile(scene):
         raise BandsawError(f"there is no scene {scene}")
     folder, main = os.path.split(os.path.abspath(scene))
@@ -567,10 +570,11 @@ class Job:
         return None
 
     def clean_state(self):
-        """Returns the state of the clean image, a dictionary: `state` ("none": it was not requested, "guides", "filtering", "ready", "failed"),
-        `fraction` of the guides that is rendered (0 to 1), `reason` of a failure; when it is ready, the estimated errors as fractions
-        (0.02: two percent), `error_raw` of the image as rendered and `error_clean`, and `bias_share`, the part of the squared
-        `error_clean` that is bias."""
+        """Returns the state of the clean (denoised) image as a dictionary. `state` is "none" (the image was not requested), "guides" (the farm
+        renders the guides, see clean()), "filtering", "ready" or "failed". `fraction` is the fraction of the guides that is rendered (0 to 1).
+        `reason` says why the cleaning failed. The other values are known when the image is ready. `error_raw` is the estimated error of the
+        image as rendered, and `error_clean` is that of the clean image; both are fractions (0.02: two percent). `bias_share` is the part
+        of the squared `error_clean` that is bias."""
         message = self.farm.request_json("GET", self._path("/clean"))
         return {"state": message.get("state", "none"), "fraction": float(message.get("fraction", 0)), "reason": message.get("reason", ""),
                 "error_raw": float(message.get("relative_rmse_raw", 0)), "error_clean": float(message.get("relative_rmse_clean", 0)),

@@ -13,8 +13,7 @@ skip() { echo "skipped: $*"; exit 77; }
 for program in munged slurmctld slurmd sbatch; do
   command -v "$program" >/dev/null || skip "$program is not here (packages slurm-wlm, munge)"
 done
-# slurmd must be run by root.
-[ "$(id -u)" -eq 0 ] || skip "slurmd takes root"
+[ "$(id -u)" -eq 0 ] || skip "slurmd must be run by root"
 
 dir=$(mktemp -d)
 pids=()
@@ -110,8 +109,8 @@ bandsaw submit "$scene" "${settings[@]}" -o "$dir/farm.pfm" >"$dir/submit.log" 2
 submit=$!
 until_true 30 log_holds "${first}_1" 'rendered job='
 
-# Like a shared disk of a cluster with several architectures: worker.sbatch gets the path shared/bandsaw-worker, which does not exist, and
-# must run the file whose name ends with the architecture of the node.
+# The folder `shared` is like a shared disk of a cluster with several architectures. worker.sbatch gets the path shared/bandsaw-worker, which
+# does not exist. It must run the file whose name ends with the architecture of the node.
 mkdir "$dir/shared"
 cp "$programs/bandsaw-worker" "$dir/shared/bandsaw-worker-$(uname -m)"
 second=$(start_workers 3-4 "$dir/shared/bandsaw-worker")
@@ -133,7 +132,7 @@ echo "a cancelled worker drained"
 scancel --batch --signal=TERM "${second}_4"
 until_true 40 is_gone "${second}_4"
 log_holds "${second}_4" 'drain'
-echo "a worker whose time ends drained"
+echo "a worker drained before its time limit"
 
 wait "$submit"
 bandsaw render "$scene" "${settings[@]}" -o "$dir/here.pfm" >/dev/null

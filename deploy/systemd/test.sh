@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks the units and the packages' script: a worker stops before the coordinator of its machine; a new or upgraded package restarts the
-# right services; systemd accepts the units and rates their confinement as safe. Exit status 77: systemd-analyze is not installed, so the
-# last two were not checked.
+# right services; systemd accepts the units and rates their confinement as safe. Exit status 77: systemd-analyze is not installed, so
+# systemd's checks of the units were skipped.
 # Usage: deploy/systemd/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

@@ -1,5 +1,5 @@
-// Wrappers of OpenSSL's functions: each frees what it allocates, and returns OpenSSL's error as a
-// status.
+// Wrappers of OpenSSL's functions. Each wrapper frees what it allocates. If OpenSSL fails, it
+// returns an error.
 
 #include "proto/link/certificate.h"
 
@@ -30,10 +30,13 @@ absl::Status failed(absl::string_view what) {
   return absl::InternalError(absl::StrCat("OpenSSL cannot ", what));
 }
 
+/// Returns an empty buffer in memory, to which OpenSSL can write.
 Bio memory() { return {BIO_new(BIO_s_mem()), &BIO_free_all}; }
+/// Returns a buffer from which OpenSSL reads `text`, without a copy.
 Bio memory_of(const std::string& text) {
   return {BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), &BIO_free_all};
 }
+/// Returns what OpenSSL has written to the buffer.
 std::string text_of(const Bio& bio) {
   char* data = nullptr;
   const long size = BIO_get_mem_data(bio.get(), &data);

@@ -98,10 +98,10 @@ absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseco
                                   const std::function<bool()>& stopped) {
   std::vector<std::string> reasons;
   std::size_t wrong = 0;  // number of addresses that presented another certificate
-  // True if one of these addresses is on another machine. If only servers on this machine present
-  // another certificate, the wanted farm may still exist. The reason is that this machine may run
-  // another farm, and that the join string names addresses that every machine has (loopback,
-  // bridges for containers).
+  // True if one of the addresses that `wrong` counts is on another machine. If only servers on this
+  // machine present another certificate, the wanted farm may still exist. The reason is that this
+  // machine may run another farm, and that the join string names addresses that every machine has
+  // (loopback, bridges for containers).
   bool wrong_elsewhere = false;
   for (const std::string& address : join.addresses) {
     const Deadline deadline{std::chrono::steady_clock::now() + timeout, stopped};

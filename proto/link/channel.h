@@ -37,8 +37,8 @@ struct Connected {
 /// Stops soon after `stopped` returns true (UNAVAILABLE); see Deadline.
 /// Verifies the server's identity only; a wrong secret or role is detected by the first call.
 /// UNAVAILABLE: no address answered, or this machine's clock is outside the certificate's validity
-/// (the message gives the reason for each address). UNAUTHENTICATED: a server on another machine
-/// presented another certificate, or the servers at all addresses did.
+/// (the message gives the reason for each address). UNAUTHENTICATED: a server on another machine,
+/// or the server at every address, presented a certificate other than that of the join string.
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout,
                                   const std::function<bool()>& stopped = {});
 

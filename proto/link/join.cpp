@@ -1,5 +1,6 @@
-// Parses the string from both ends: version and role from the front, secret and digest, which have
-// fixed lengths, from the back; the addresses are between them.
+// Parses a join string (join.h) from both ends. Version and role are taken from the front. The
+// secret and the digest, which have fixed lengths, are taken from the back. The addresses,
+// and after them the dashboard if it is named, remain in between.
 
 #include "proto/link/join.h"
 
@@ -22,6 +23,7 @@ namespace {
 
 /// Every join string begins with this; the number is the version of the format.
 constexpr char kForm[] = "bsw1-";
+/// Stands in place of the digest if the coordinator has no TLS.
 constexpr char kPlain[] = "plain";
 constexpr std::size_t kDigestLength = 43;  // 32 bytes, base64url without padding
 constexpr std::size_t kMaxAddresses = 8;

@@ -29,8 +29,8 @@ struct Hasher::Context {
 #else
 namespace {
 
-// Aborts after an error of OpenSSL. Hashing memory with a digest that OpenSSL always has fails only
-// if its installation is broken.
+// Aborts after an error of OpenSSL. Every OpenSSL has SHA-256, so hashing bytes in memory fails
+// only if the installation of OpenSSL is broken.
 void require(int openssl_result) {
   if (openssl_result != 1) {
     std::abort();

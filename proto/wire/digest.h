@@ -1,6 +1,7 @@
 #pragma once
 
-// SHA-256: the name of a blob and the checksum of a band.
+// SHA-256 digests. A blob (a part of a scene package) is named by its digest. The digest of a band
+// is the checksum of the pixels that a worker sends.
 
 #include <array>
 #include <compare>

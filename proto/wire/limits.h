@@ -1,7 +1,7 @@
 #pragma once
 
-// Upper bounds of all messages and files, in one place. If data exceeds one, the error is
-// INVALID_ARGUMENT or RESOURCE_EXHAUSTED with the name and the value of the bound; data is never
+// Upper bounds of all messages and files, in one place. If data exceeds a bound, the error is
+// INVALID_ARGUMENT or RESOURCE_EXHAUSTED with the name and the value of the bound. Data is never
 // truncated silently. Bounds of an image are in renderlib/render/settings.h.
 
 #include <cstddef>
@@ -20,7 +20,8 @@ inline constexpr std::uint64_t kBandBytes = 64ull << 20;      ///< pixels of one
 inline constexpr std::size_t kBlobsPerPackage = 100'000;
 inline constexpr std::size_t kDigestsPerMessage = 10'000;
 inline constexpr std::size_t kFramesPerMessage = 1'000;  ///< frames whose scenes are sent together
-inline constexpr std::size_t kActiveJobs = 1'000;  ///< jobs that are not final, without frame jobs
+/// Jobs in a state that is not final. The jobs of the frames of a sequence are not counted.
+inline constexpr std::size_t kActiveJobs = 1'000;
 inline constexpr std::size_t kWorkers = 4'096;
 inline constexpr std::size_t kBandsPerWorker = 16;  ///< leased to one worker at the same time
 inline constexpr std::size_t kThreadsPerWorker = 4'096;
@@ -34,6 +35,6 @@ inline constexpr std::size_t kLogLineBytes = 500;
 inline constexpr std::size_t kLogLinesKept = 200;
 /// Total size of all workers' logs that the coordinator keeps.
 inline constexpr std::size_t kLogBytesKept = 64 << 20;
-inline constexpr std::size_t kReasonBytes = 2'000;  ///< an error's or a dismissal's text
+inline constexpr std::size_t kReasonBytes = 2'000;  ///< a reason or another text for display
 
 }  // namespace bandsaw::wire

@@ -1,6 +1,6 @@
 // Sorts the centres of a range of items (boxes with a number) into 16 bins on each axis. For each
-// bin it computes the number of its items and their bounding box. Then sweeps over the bins of each
-// axis from both sides to find the plane between two bins with the lowest cost.
+// bin it computes the number of its items and their bounding box. Then it sweeps over the bins of
+// each axis from both sides to find the plane between two bins with the lowest cost.
 
 #include "renderlib/accel/best_split.h"
 
@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the number of packs for `count` items.
+/// Returns the number of packs (leaves of up to kPackSize primitives) that `count` items need.
 double packs_of(std::uint32_t count) {
   return static_cast<double>((count + kPackSize - 1) / kPackSize);
 }

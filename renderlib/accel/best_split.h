@@ -30,10 +30,11 @@ class Binning {
  public:
   static constexpr std::uint32_t kBins = 16;
 
-  /// `centres` is the bounding box of the items' twice_centre().
+  /// `centres` is the bounding box of the items' twice_centre(), which is lo + hi of an item's box.
   explicit Binning(const LaneBox& centres);
 
-  /// Returns false if all centres have about the same coordinate, so that no plane separates them.
+  /// Returns false if all centres have about the same coordinate on this axis, so that no plane
+  /// separates them.
   bool has_extent(std::size_t axis) const { return has_extent_[axis]; }
   /// Returns in lanes 0 to 2 the bin plus a fraction, in [0, kBins - 1] for any centre.
   Float8 place(Float8 centre) const {

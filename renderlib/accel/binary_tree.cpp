@@ -1,7 +1,7 @@
 // The tree is built from the root down: a range of items (boxes with a number) is partitioned in
-// two, and so on. Large ranges are partitioned level by level by all threads. As soon as a range is
-// small enough, it becomes a task, whose subtree one thread builds. The subtrees are then joined to
-// the upper tree.
+// two, and so on. Large ranges are partitioned level by level by all threads; their nodes are the
+// upper tree. As soon as a range is small enough, it becomes a task, whose subtree one thread
+// builds. The subtrees are then joined to the upper tree.
 
 #include "renderlib/accel/binary_tree.h"
 

@@ -18,6 +18,7 @@ bool used(const WideNode& node, std::size_t child) {
   return node.bounds[0][child] <= node.bounds[3][child];
 }
 
+/// Replaces the bounds of the child by a box that every ray enters.
 void open(WideNode& node, std::size_t child) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     node.bounds[axis][child] = -kFarthest;

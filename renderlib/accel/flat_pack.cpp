@@ -1,5 +1,6 @@
-// Fills a pack with triangles and keeps `size`, the bound of the edges' components on which the
-// error bound of the float filter depends (README.md, "Triangles"; u is 2^-24).
+// Fills a pack with triangles and updates its `size`, which bounds the components of all edges. The
+// error bound of the float filter depends on `size` (README.md, "Triangles"). In the comments, u is
+// 2^-24.
 
 #include "renderlib/accel/flat_pack.h"
 

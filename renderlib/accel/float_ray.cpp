@@ -28,7 +28,7 @@ constexpr double kSteepest = 0x1p60;
 constexpr std::size_t kRow = sizeof(WideNode::bounds[0]);
 /// An error bound far above the error of float underflow.
 constexpr double kTiny = 0x1p-100;
-/// Rounds up a value that was rounded to float.
+/// A positive value times this factor, rounded to float, is not below the value.
 constexpr double kUp = 1 + 0x1p-22;
 
 }  // namespace

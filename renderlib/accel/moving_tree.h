@@ -19,7 +19,9 @@ struct MovingInstance {
 };
 
 struct MovingTree {
-  WideTree tree;                       ///< bounds at the beginning; its `reach` covers all times
+  /// Has the bounds at the time when the shutter opens. Its `reach`, the largest absolute
+  /// coordinate of any bound, covers all times.
+  WideTree tree;
   NodeChanges changes;                 ///< how far each bound moves until the shutter closes
   std::vector<MovingInstance> moving;  ///< by the index of the leaf
 

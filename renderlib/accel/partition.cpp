@@ -33,8 +33,8 @@ bool is_deep(const Range& range) {
   return range.depth + static_cast<std::size_t>(std::bit_width(range.count())) + 2 >= kMaxTreeDepth;
 }
 
-/// Moves the median along the widest axis to the middle. Ties are broken by kind and index, so that
-/// the tree does not depend on the sorting algorithm.
+/// Reorders the items, so that the half with the lower centres on the widest axis comes first. Ties
+/// are broken by kind and index, so that the tree does not depend on the sorting algorithm.
 void halve(absl::Span<TreeItem> items, const FloatBox& centres) {
   std::size_t axis = 0;
   for (std::size_t k = 1; k < 3; ++k) {

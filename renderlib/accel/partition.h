@@ -20,7 +20,7 @@ struct Range {
   std::size_t depth;  ///< 1 for the root
   std::size_t list;   ///< index in TwoLists of the list that holds the items, 0 or 1
   LaneBox box;
-  LaneBox centres;  ///< bounding box of twice_centre()
+  LaneBox centres;  ///< bounding box of lo + hi of all items (twice_centre())
 
   std::uint32_t count() const { return end - first; }
 };

@@ -1,7 +1,7 @@
 // Fills the lanes of a pack one after the other. Numbers are rounded to float so that the float
-// test cannot miss a sphere that the exact test hits. For this, radii are rounded upwards. `reach`,
-// the largest sum of a centre's |coordinates| and the radius, bounds the rounding error of the
-// centres.
+// test cannot miss a sphere that the exact test hits. For this, radii are rounded upwards. The
+// float test bounds the rounding errors of the centres by means of `reach`. This is at least the
+// sum of the centre's |coordinates| and the radius of every sphere.
 
 #include "renderlib/accel/sphere_pack.h"
 

@@ -201,7 +201,8 @@ inline bool trace_prototype(const Prototype& prototype, const Interval& shutter,
              : trace_deforming(*prototype.deforming, shutter, ray, instance, world, query);
 }
 
-/// Traces a prototype in its own space; `to_object` maps the world to it.
+/// Transforms the ray by `to_object` from the world to the space of the prototype (a mesh or a
+/// group), and traces it through the prototype.
 template <class Query>
 inline bool trace_placed(const Prototype& prototype, const Transform& to_object,
                          const Interval& shutter, const Ray& ray, std::uint32_t instance,

@@ -27,6 +27,8 @@ def exr(pixels):
         attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
         attribute(b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)),
         attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)), b"\0"))
+    # After the header, the file has a table with the offset of each row, then the rows. Each row has its number, its size in bytes (`line`)
+    # and its values.
     line = 12 * width
     first = len(head) + 8 * height
     offsets = (first + (8 + line) * np.arange(height)).astype("<u8")
@@ -45,6 +47,7 @@ def png(codes):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
+    # Each row begins with a byte 0, which says that it is not filtered.
     lines = np.zeros((height, 1 + width * channels), dtype=np.uint8)
     lines[:, 1:] = codes.reshape(height, -1)
     head = struct.pack(">IIBBBBB", width, height, 8, 0 if channels == 1 else 2, 0, 0, 0)
@@ -52,11 +55,11 @@ def png(codes):
 
 
 def srgb_codes(linear):
-    """Returns 8-bit sRGB of linear values."""
+    """Converts linear values to 8-bit sRGB."""
     x = np.clip(linear, 0, 1)
     return (255 * np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.power(x, 1 / 2.4) - 0.055) + 0.5).astype(np.uint8)
 
 
 def linear(srgb):
-    """Returns linear values of sRGB in [0, 1]."""
+    """Converts sRGB values in [0, 1] to linear values."""
     return np.where(srgb <= 0.04045, srgb / 12.92, np.power((np.maximum(srgb, 0) + 0.055) / 1.055, 2.4))

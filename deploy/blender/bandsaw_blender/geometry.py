@@ -7,7 +7,7 @@ import numpy as np
 
 
 class Vertices:
-    """Vertices of a mesh: `positions` (v, 3); `normals` (v, 3), or None: the mesh is flat everywhere."""
+    """Vertices of a mesh: `positions` (v, 3); `normals` (v, 3), or None if the mesh is flat everywhere."""
 
     def __init__(self, positions, normals):
         self.positions, self.normals = positions, normals
@@ -20,10 +20,10 @@ class Triangles:
     """The triangles of a mesh with one material slot, with v vertices and t triangles.
 
     `positions` (v, 3); `normals` (v, 3), or None if the mesh is flat everywhere. `uvs`: a list of
-    arrays (v, 2), in which 0 is at the bottom of an image; at most two of them are written to
-    files. `indices` (t, 3). `undeformed` (v, 3): positions of the vertices without modifiers and
-    shape keys; None: the same as `positions`. `ends`: None, or the Vertices when the shutter opens
-    and when it closes; all other fields are those at the time of the frame."""
+    arrays (v, 2), whose second coordinate is 0 at the bottom of an image; at most two of them are
+    written to files. `indices` (t, 3). `undeformed` (v, 3): positions of the vertices without
+    modifiers and shape keys; None: the same as `positions`. `ends`: None, or the Vertices when the
+    shutter opens and when it closes; all other fields are those at the time of the frame."""
 
     def __init__(self, positions, normals, uvs, indices, undeformed=None, ends=None):
         self.positions, self.normals, self.uvs, self.indices, self.undeformed, self.ends = positions, normals, uvs, indices, undeformed, ends
@@ -152,8 +152,8 @@ def _indexed(pose, uvs, corners, of_corner, ends):
     vertices.
 
     One corner of each vertex represents it. New vertices are made only for the corners that differ
-    from the representative of their vertex, so a mesh without seams is as fast as one without
-    uvs."""
+    from the representative of their vertex, so a mesh without seams is converted as fast as
+    one without uvs."""
     flat, vertex = corners.reshape(-1), of_corner.reshape(-1)
     poses = [pose, *(ends or ())]
     per_corner = [each.normals for each in poses if each.normals is not None] + uvs
@@ -255,7 +255,8 @@ class Atlas:
     `uvs` (3 t, 2): the places of the triangles' corners in the image. `triangle` (side * side): the
     index of the triangle at each texel, rows from the bottom; -1 for a texel without a triangle.
     `weights` (side * side, 3): the barycentric coordinates of each texel's centre in that triangle.
-    The texels around a triangle belong to it too; some of their coordinates are negative."""
+    The texels around a triangle belong to it too; some of their barycentric coordinates are
+    negative."""
 
     def __init__(self, triangles, most_side=1024):
         pairs = (triangles + 1) // 2
@@ -267,7 +268,7 @@ class Atlas:
         number = np.arange(triangles)
         corner = np.stack([(number // 2) % columns, (number // 2) // columns], axis=1) * self.cell
         # The first triangle of a pair lies at the lower left, the second one at the upper right; both keep away from the diagonal and from
-        # the cell's edges, so that bilinear look-ups see only texels of their own triangle.
+        # the cell's edges, so that a bilinear look-up in a triangle sees only texels that belong to this triangle.
         near, far = 1.0, self.cell - 2.0
         first = np.array([[near, near], [far - 1, near], [near, far - 1]])
         second = self.cell - first
@@ -281,6 +282,7 @@ class Atlas:
         pair = cy * columns + cx
         self.triangle = np.where(pair < pairs, 2 * pair + upper, -1)
         self.triangle = np.where(self.triangle < triangles, self.triangle, -1)
+        # The place of each texel's centre in its cell. The upper triangle of a pair is rotated by 180 degrees to the place of the lower one.
         px, py = np.where(upper, self.cell - lx, lx), np.where(upper, self.cell - ly, ly)
         b, c = (px - near) / (far - 1 - near), (py - near) / (far - 1 - near)
         self.weights = np.stack([1 - b - c, b, c], axis=1)

@@ -3,10 +3,10 @@
     blender -b -Y FILE.blend --python-expr "import sys; sys.path.insert(0, ZIP); from bandsaw_blender import headless; headless.main(FOLDER, NAME, FRAME)"
 
 FRAME is optional: without it the scene is at the frame that is saved in the file. If it is "-", frames are read from standard input, one a line.
-Each of them is answered with the line "bandsaw: done" on standard output; the folder then has the files of that frame alone.
+Each of them is answered with the line "bandsaw: done" on standard output. The folder then contains only the files of that frame.
 
-Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that is not shown as it is. If it fails,
-writes FOLDER/error with one line instead."""
+Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that Bandsaw does not show as
+Blender does. If it fails, writes FOLDER/error with one line instead."""
 
 import os
 import shutil
@@ -55,6 +55,7 @@ def write(folder, made):
         file.writelines(warning.replace("\n", " ") + "\n" for warning in made.warnings)
 
 
+# Writes the message of an error to FOLDER/error.
 def fail(folder, message):
     with open(os.path.join(folder, "error"), "w", encoding="utf-8") as file:
         file.write(message.replace("\n", " ") + "\n")

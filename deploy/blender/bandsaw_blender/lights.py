@@ -1,7 +1,7 @@
 """Converts Blender's lights, world and volumes to those of a scene file. Powers become radiances, intensities and irradiances; Blender's manual,
-"Light Objects", and deploy/blender/README.md define the units. `out` is the scene.Scene in the making. In add_*(), `thing` is the light's object,
-`placed` its matrix, `place` its position and `toward` the direction in which it shines, all in the axes of scene files, and `tint` is its colour
-times its power."""
+"Light Objects", and deploy/blender/README.md define the units. `out` is the scene.Scene in the making. In add_*(), `thing` is the light's object.
+Its matrix `placed`, its position `place` and the direction `toward`, in which it shines, are in the axes of scene files. `tint` is the light's
+colour times its power."""
 
 import math
 
@@ -72,8 +72,8 @@ def finish_suns(out, center, radius):
     """Adds the suns that have a size, as disks far outside the scene. `center` and `radius` are
     those of a sphere around the scene."""
     for toward, angle, tint in out.suns:
-        # For a point of the scene at distance `radius` from the disk's axis, the direction to the
-        # disk differs by about 1 / 4,096 radian.
+        # The disk is so far away that, seen from any point of the scene, the direction to its
+        # centre differs from the disk's axis by at most about 1 / 4,096 radian.
         distance = 4096 * max(radius, 1e-3)
         half = angle / 2
         radiance = tint / (math.pi * math.sin(half) ** 2)
@@ -114,7 +114,8 @@ def add_area(out, thing, placed, place, toward, tint):
         return
     if getattr(light, "spread", math.pi) < math.pi - 1e-3:
         out.warn(f'the spread of the area light "{thing.name}" is not shown')
-    radiance = tint / (area * (math.pi if bpy.app.version >= (4, 0) else 4))  # before Blender 4.0 the power was not that of a Lambertian emitter
+    # A Lambertian emitter of this power has the radiance power / (pi area). Before Blender 4.0, the radiance of an area light is power / (4 area).
+    radiance = tint / (area * (math.pi if bpy.app.version >= (4, 0) else 4))
     if not round_one:
         # The normal u x v of the quad must be along the light's -z, also if the light is mirrored.
         u, v = (across, along) if across.cross(along).dot(Vector(toward)) > 0 else (along, across)

@@ -42,8 +42,8 @@ def _hash_floats(*keys):
 
 
 def _offset(seed):
-    """Returns the shift (3) of the points by which Blender gets another, independent noise for each
-    `seed`."""
+    """Returns a vector (3) for each `seed`. Blender adds it to the points, so that noises with
+    different seeds are independent."""
     one = np.full(1, seed, dtype=np.float32)
     return 100 + 100 * np.array([_hash_floats(one, np.full(1, k, dtype=np.float32))[0] for k in (0, 1, 2)])
 
@@ -86,6 +86,7 @@ def fractal(p, detail, roughness, lacunarity=2.0):
         amplitudes += amplitude
         amplitude *= min(max(roughness, 0.0), 1.0)
         scale *= lacunarity
+    # If `detail` is not whole, interpolates between the sums without and with one more octave.
     rest = detail - whole
     if rest == 0:
         return total / amplitudes
@@ -102,7 +103,8 @@ def texture(p, detail, roughness, distortion, lacunarity=2.0):
 
 
 def voronoi(p, randomness):
-    """Returns the Voronoi Texture F1 with Euclidean distance: distance (n), colour and position (n, 3)."""
+    """Returns the Voronoi Texture of Blender's kind F1, which finds the nearest point by Euclidean
+    distance. Returns the distance (n), the colour (n, 3) and the position (n, 3) of this point."""
     cell = np.floor(p)
     best, chosen, place = np.full(len(p), 1e30), np.zeros_like(p), np.zeros_like(p)
     for x in (-1, 0, 1):

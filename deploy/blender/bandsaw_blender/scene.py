@@ -301,7 +301,8 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
     corners = [2 * x0 / width - 1, 2 * x1 / width - 1, 2 * y0 / height - 1, 2 * y1 / height - 1]
     flat = data.type == "ORTHO"
     message = view(camera.matrix_world)
-    # The edges of the image, in the camera's axes. For a perspective camera they are measured at distance 1.
+    # The edges of the image, in the camera's axes. For a perspective camera they are measured at distance 1. Column `offset` of the projection
+    # matrix has the shift of the lens.
     axes = (0, 0, 1, 1)  # the axis, x or y, of each edge
     offset = 3 if flat else 2
     sign = -1 if flat else 1
@@ -387,7 +388,7 @@ def parts_of(out, thing, mesh, matrix, ends):
     names = [""] + [name for name in uv_names(materials) if name]
     parts = []
     pieces = geometry.triangles_of(mesh, names, ends)
-    # The names of the uv maps that the triangles have, in the same order.
+    # The names of the uv maps in Triangles.uvs, in the same order.
     real = [layer.name for layer in geometry.uv_layers(mesh, names)]
     size = np.array(mesh.texspace_size, dtype=float) * 2
     low = np.array(mesh.texspace_location, dtype=float) - size / 2

@@ -15,7 +15,7 @@ MOST_BAKED = 2048  # largest side of an image that is baked over the uvs, in tex
 
 
 class Value:
-    """A colour or number: `constant` (an array of 3), or `texture` (a message of a scene file, black and white where it is a number)."""
+    """A colour or a number. It has either `constant`, an array of 3, or `texture`, a message of a scene file. A texture that is a number is grey."""
 
     def __init__(self, constant=None, texture=None):
         self.constant = None if constant is None else np.broadcast_to(np.asarray(constant, dtype=float), (3,)).copy()
@@ -61,10 +61,11 @@ def rgb(values):
 
 
 class Surface:
-    """A material in the making. `kind`: the name of a field of the message Material, or "" for a
-    surface that does nothing except emit, or "transparent". `fields`: the fields of that field's
-    message. `emission`: a Value or None; `opacity`: a Value; `normal`: the normal map, a Value or
-    None, with `normal_scale`. A Surface of the kind "mix" also has `parts`, its two Surfaces."""
+    """A material in the making. `kind`: "" for a surface that does nothing except emit,
+    "transparent", or the name of the field of the message Material that holds the material's
+    parameters. `fields`: these parameters. `emission`: a Value or None; `opacity`: a Value;
+    `normal`: the normal map, a Value or None, with `normal_scale`. A Surface of the kind "mix" also
+    has `parts`, its two Surfaces."""
 
     def __init__(self, kind, **fields):
         self.kind, self.fields = kind, fields
@@ -531,7 +532,8 @@ class Shader:
         elif tint.is_constant(1):
             made = Surface("dielectric", index_of_refraction=index, roughness_texture=roughness.message())
         else:
-            # The base colour's square root tints each passage through the surface.
+            # A principled surface tints each passage of light by the square root of its base colour.
+            # So the base colour is the square of the tint.
             made = Surface("principled", base_color_texture=tint.times(tint).message(), spec_trans={"value": 1.0},
                            roughness=parameter(roughness), index_of_refraction=max(index, 1.0001))
         self.set_normal(made, node)
@@ -623,7 +625,7 @@ class Shader:
             f0 = ((index - 1) / (index + 1)) ** 2
             if output.name == "Facing" or self.kinds(node) != ("BSDF_DIFFUSE", "BSDF_GLOSSY"):
                 self.warn(f'the node "{output.node.name}" depends on the view; its mean is used')
-            return Value(f0 + (1 - f0) / 21 if output.name != "Facing" else 0.5)  # the mean of Schlick's Fresnel over a cosine
+            return Value(f0 + (1 - f0) / 21 if output.name != "Facing" else 0.5)  # the cosine-weighted mean of Schlick's Fresnel
         return self.value(node.inputs[0], True)
 
     # Returns the types of the two shader nodes that a Mix Shader mixes; "" for an input without a
