@@ -27,7 +27,7 @@ inline unsigned enter_children(const WideNode& node, const FloatRay& ray, float 
                                  Float(ray.near_offset[k]));
     const Float out = about_fused(Float::load(node.plane(ray.far[k])), Float(ray.far_factor[k]),
                                   Float(ray.far_offset[k]));
-    // A NaN is the first operand, so it is ignored.
+    // max() and min() return their second operand if the first is NaN, so a NaN bounds nothing.
     first = max(in, first);
     last = min(out, last);
   }
@@ -182,7 +182,8 @@ template <bool kSorted, class Enter, class Leaf>
   }
 }
 
-/// Does the same for a tree whose boxes do not move.
+/// This overload is for a tree whose boxes do not move. It passes enter_children() to the overload
+/// above.
 template <bool kSorted, class Leaf>
 [[gnu::always_inline]] inline bool traverse(const WideTree& tree, const FloatRay& ray,
                                             const float& bound, Leaf&& leaf) {

@@ -37,7 +37,7 @@ using TreeItems = HugeVector<TreeItem>;
 
 /// A box as -lo in lanes 0 to 2 and hi in lanes 4 to 6, so that a union is a single max. Lanes 3
 /// and 7 are unspecified: they may hold the bits of an index. Read as a float, these bits may be a
-/// denormal number, which would make products slow.
+/// denormal number, and products of denormal numbers are slow.
 class LaneBox {
  public:
   LaneBox() : lanes_(-FloatBox::kInf) {}

@@ -11,11 +11,12 @@
 
 namespace bandsaw {
 
-/// The kind of the contents of a leaf, which are all of one kind. Flats are triangles and quads.
+/// Kind of a leaf, which contains primitives of one kind or one instance. Flats are triangles and
+/// quads.
 enum class LeafKind : std::uint32_t { kFlats, kSpheres, kInstance, kDisks };
 
-/// Reference from a node: to another node or to a leaf, i.e. one pack of primitives or one
-/// instance.
+/// Refers to a node or to a leaf. A leaf is one instance or one pack, i.e. up to eight primitives
+/// that a ray tests together.
 class ChildRef {
  public:
   static constexpr std::uint32_t kMaxLeaves = 1u << 29;

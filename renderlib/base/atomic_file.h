@@ -17,10 +17,10 @@ namespace bandsaw {
 /// the target is unchanged, unless only the sync of the folder failed.
 absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes);
 
-/// Gives its final name to a file that another program has written. `part` is that file and is in
-/// the folder of `path`. The function syncs `part`, renames it to `path`, replacing a file there,
-/// and syncs the folder. Returns the system's error. After an error `part` still exists, unless
-/// only the sync of the folder failed.
+/// Gives the file `part`, which another program has written, its final name `path`. Both are in
+/// the same folder. The function syncs `part`, renames it to `path`, and syncs the folder. A file
+/// that already has the name `path` is replaced. Returns the system's error. After an error `part`
+/// still exists, unless only the sync of the folder failed.
 absl::Status name_file(const std::string& part, const std::string& path);
 
 /// Returns OK if write_file_atomically() could begin: the folder exists and is writable, the path

@@ -2,7 +2,7 @@
 
 // std::vector for tables of megabytes that are read in random order. From 2 MiB on, its memory is
 // on huge pages if the system provides them, so that a read seldom misses the TLB. (WebAssembly has
-// no pages.) resize() and similar functions default-initialise new elements, so memory is not
+// no huge pages.) resize() and similar functions default-initialise new elements, so memory is not
 // written twice.
 
 #if !defined(__wasm__)

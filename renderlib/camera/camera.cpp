@@ -110,7 +110,7 @@ struct Axes {
     right = is_mirrored(camera) ? -right : right;
   }
   Vec3 forward;
-  Vec3 right;  ///< direction to the right in the image; opposite for a mirrored camera
+  Vec3 right;  ///< points to the right in the image, i.e. to the left of the view if mirrored
   Vec3 up;
 };
 

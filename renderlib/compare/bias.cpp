@@ -1,5 +1,7 @@
-// Collects the differences of each block's groups of pixels, computes Student's t of their mean,
-// and counts the blocks whose t is too large to be noise.
+// Collects the differences between image and reference for each block (a tile of 16 x 16 pixels),
+// computes Student's t of their mean, and counts the blocks whose t is too large to be noise. The
+// mean difference of a group of pixels is one value, because pixels of one group may share paths.
+// Each half of a tile's pixels (a half tile) has its own groups (render/pixel_groups.h).
 
 #include "renderlib/compare/bias.h"
 

@@ -9,12 +9,11 @@
 
 namespace bandsaw {
 
-/// Result of the test. Blocks are the tiles of 16 x 16 pixels (render/tile_samples.h). The values
-/// tested are mean differences in luminance over the groups of pixels that may share paths
-/// (render/pixel_groups.h), because the noise of different groups is independent. For each block,
-/// Student's t of the mean is computed from the values' spread, which includes the noise of the
-/// reference.
-/// Blocks of fewer than 8 values are left out.
+/// Result of the test. Blocks are the tiles of 16 x 16 pixels (render/tile_samples.h). Pixels of
+/// one group may share paths (render/pixel_groups.h), and the noise of different groups is
+/// independent. So the mean difference in luminance of the pixels of one group is one value. For
+/// each block, Student's t of the mean is computed from the spread of the block's values, which
+/// includes the noise of the reference. Blocks of fewer than 8 values are left out.
 struct BiasTest {
   std::uint32_t blocks = 0;
   /// t of the whole image: the mean over all values divided by its standard error. |t| above 4 is

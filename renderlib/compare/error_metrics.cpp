@@ -52,8 +52,8 @@ struct PixelError {
   double largest = 0;           ///< largest absolute difference
 };
 
-/// Adds the channels of a pixel whose two values are finite to `sums`, and the number of the other
-/// channels to `not_finite`. Returns the errors of the pixel.
+/// Adds each channel that is finite in both images to `sums`, and counts the other channels in
+/// `not_finite`. Returns the errors of the pixel.
 PixelError add_pixel(const Rgb& image, const Rgb& reference, Sums& sums,
                      std::uint64_t& not_finite) {
   const float a[3] = {image.r, image.g, image.b};
@@ -70,8 +70,9 @@ PixelError add_pixel(const Rgb& image, const Rgb& reference, Sums& sums,
   return error;
 }
 
-// Returns the mean of `sums`, which holds one sum for each pixel, without the largest thousandth of
-// them. The number left out is rounded up, but a single sum is not left out. Reorders `sums`.
+// Returns the mean of `sums` without the largest thousandth of the sums. `sums` holds one sum for
+// each pixel. The number of sums left out is rounded up, but if there is only one sum, it is kept.
+// Reorders `sums`.
 double trimmed_mean(std::vector<double>& sums) {
   const std::size_t worst = sums.size() < 2 ? 0 : (sums.size() + 999) / 1000;
   std::nth_element(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(worst), sums.end(),

@@ -8,8 +8,9 @@
 
 namespace bandsaw {
 
-/// Metrics over all channels of all pixels where both values are finite; a is the image, b the
-/// reference, linear RGB. If there is no such value, the metrics from rmse to psnr are NaN.
+/// Metrics over all channel values that are finite in both images. In the formulas, a is a value of
+/// the image and b is the value of the reference, in linear RGB. If no value is finite in both
+/// images, the metrics from rmse to psnr are NaN.
 struct ErrorMetrics {
   double rmse = 0;  ///< sqrt(mean((a - b)^2))
   /// rmse / |mean(b)|; 0 if rmse is 0, otherwise infinite if mean(b) is 0.

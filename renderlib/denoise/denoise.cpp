@@ -74,8 +74,8 @@ struct Strip {
   FitOutputs fits;
 };
 
-/// Chooses between the filters and the rendered value in a strip. Coordinates and maps cover the
-/// rows for which there are filtered values: row 0 is planes_.wanted.first.
+/// Chooses between the filters and the rendered value in a strip. Coordinates and maps cover only
+/// the rows that were filtered: row 0 of a map is row planes_.wanted.first of the planes.
 class Selection {
  public:
   Selection(const Strip& strip, Pool& pool)
@@ -121,8 +121,8 @@ class Selection {
   bool is_rendered(int x, int y) const;
   /// Returns half `h` of the result at a pixel, for channel `c`.
   float mixed(int x, int y, std::size_t h, std::size_t c) const;
-  /// Returns the pixel of the result: the rendered value, or the mean of both mixed halves by
-  /// their shares of the samples.
+  /// Returns the pixel of the result: the rendered value, or the mean of both mixed halves,
+  /// weighted by their shares of the samples.
   Rgb value_of(int x, int y) const;
   /// Adds a pixel to the sums if it has finite parts. If the filters did not use it, because it is
   /// negative or too bright, it is added as it was rendered.
@@ -243,7 +243,7 @@ void Selection::add_pixel(int x, int y, RowSums& sums) const {
 }
 
 void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
-  const int first = strip_.first + planes_.wanted.first;  // row of the image: row 0 of the maps
+  const int first = strip_.first + planes_.wanted.first;  // row of the image that is map row 0
   const RowSpan rows{strip_.rows.first - first, strip_.rows.last - first};
   Map errors(size_.pixels());
   Map variances(size_.pixels());

@@ -22,9 +22,9 @@ struct DenoiseInput {
   Image shape;   ///< guide: normal and distance, by the integrator kGuideShape
 };
 
-/// Estimated errors over all channels of the pixels whose values are finite, in the image and in
-/// both parts of the samples. All members are 0 if there is no such pixel. "Raw" is the image as
-/// rendered, "clean" is the result.
+/// Estimated errors of the image as rendered ("raw") and of the result ("clean"). A pixel counts,
+/// with all three channels, if it is finite in the image and in both parts of the samples. All
+/// members are 0 if no pixel counts.
 struct CleanError {
   double mean = 0;        ///< mean value of the image
   double rmse_raw = 0;    ///< RMSE of the image as rendered
@@ -51,9 +51,9 @@ struct Denoised {
   CleanError total;
 };
 
-/// Removes the noise. `fit` is the fit() of any kernel (render/kernel.h). The pixel stays as it was
-/// rendered where the estimated error of the filtered value is not below that of the rendered
-/// value, and where a value is negative, above 1e15 or not finite.
+/// Removes the noise. `fit` is the fit() of any kernel (render/kernel.h). A pixel stays as it was
+/// rendered if the estimated error of its filtered value is not below that of its rendered value.
+/// It also stays as it was rendered if one of its values is negative, above 1e15 or not finite.
 ///
 /// The image is filtered in strips of `strip_rows` rows, an even number. If `strip_rows` is 0, a
 /// strip has about a quarter of a megapixel. In addition to input and result, denoise() needs less

@@ -1,6 +1,9 @@
 // Every second pixel of every second row is a centre. TileFit fits a linear function of the
 // position and the guides at each centre, eight centres at a time (a Float8 holds one number for
 // each). Evaluation then computes each pixel's value from the functions of the centres around it.
+//
+// The guides are albedo, normal and depth. Even and odd columns of pixels are stored apart
+// (split_plane.h): `parity` is 0 for even columns and 1 for odd columns.
 
 #include "renderlib/denoise/fit.h"
 
@@ -80,7 +83,7 @@ class TileFit {
  private:
   /// Fits eight centres, of which the first is (column, row). In the tile it is column i of row j.
   void fit_centres(int column, int row, int i, int j);
-  /// Solves the equations of both halves and stores the coefficients. `row` is one of the models.
+  /// Solves the equations of both halves and stores the coefficients. `row` is a row of the models.
   void store(int column, int row, std::size_t filter, NormalEquations (&equations)[2]);
 
   const FitInput& input_;
@@ -197,8 +200,9 @@ class Evaluation {
     Float8 values[2][3];
     Float8 weights[2];
   };
-  /// Adds the models of eight centres to the sums of the eight pixels (2 (i + lane) + parity, y).
-  /// The centres are at column i + lane + k of centres and at row cy of pixels.
+  /// Evaluates the models of eight centres at eight pixels, one for each lane, and adds the values
+  /// to the sums. The pixel of a lane is (2 (i + lane) + parity, y).
+  /// Its centre is (2 (i + lane + k), cy).
   void add_centres(int i, int parity, int y, int k, int cy, Sums& sums) const;
   /// Computes the eight pixels (2 (i + lane) + parity, y).
   void evaluate(int i, int parity, int y);

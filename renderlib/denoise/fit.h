@@ -1,9 +1,9 @@
 #pragma once
 
-// First-order regression of an image's two halves on its guides, with weights from the opposite
-// half (Bitterli et al. 2016, "Nonlinearly Weighted First-order Regression for Denoising Monte
-// Carlo Renderings", section 4). The two halves are not parts of the area of the image: each is a
-// whole image, the means of one of two independent parts of the samples of each pixel.
+// First-order regression of an image's two halves on its guides (albedo, normal and depth), with
+// weights from the opposite half (Bitterli et al. 2016, "Nonlinearly Weighted First-order
+// Regression for Denoising Monte Carlo Renderings", section 4). The samples of each pixel are
+// divided into two independent parts. A half is a whole image: the means of one of these parts.
 //
 // For every second pixel of every second row (a centre) and each half, a linear function of the
 // position and the guides is fitted to the pixels of a window, by weighted least squares. The

@@ -3,7 +3,8 @@
 // Internal to fit(): the sizes of windows and tiles, distances between patches, and least squares.
 // A centre is a pixel at which a function is fitted, one of every two by two pixels (fit.h). A
 // patch is the square around a pixel by which pixels are compared. A half is the image of one of
-// two parts of the samples.
+// two parts of the samples. Even and odd columns of pixels are stored apart (split_plane.h): parity
+// 0 means the even columns, and parity 1 the odd columns.
 
 #include <cstddef>
 #include <vector>

@@ -1,5 +1,6 @@
-// Estimates the error of a denoised image from denoised images of the two parts of its samples. The
-// estimate needs no other knowledge of the filter, for example OpenImageDenoise.
+// Estimates the error of a denoised image from denoised images of the two parts of its samples. It
+// needs to know nothing else about the filter, so any filter can be used, for example
+// OpenImageDenoise.
 
 #include "renderlib/denoise/halves.h"
 

@@ -12,10 +12,10 @@ namespace bandsaw {
 Image second_part(const DenoiseInput& input);
 
 /// Returns `clean` with an estimate of its error. `clean_first` and `clean_second` are the two
-/// parts of the samples, each cleaned alone with the same guides. Each depends on its own part
-/// only, so the squared error of their mean can be estimated without bias, as for the filters of
-/// denoise(). A filter that gets all samples at once does better, so the estimate is an upper
-/// bound. All images have the size of `input.mean`.
+/// parts of the samples, each cleaned alone with the same guides (images of albedo, normal and
+/// depth). Each depends on its own part only, so the squared error of their mean can be estimated
+/// without bias, as for the filters of denoise(). A filter that gets all samples at once has a
+/// smaller error, so the estimate is an upper bound. All images have the size of `input.mean`.
 Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Image& clean_first,
                               const Image& clean_second, Pool& pool);
 

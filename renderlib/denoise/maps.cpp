@@ -1,4 +1,5 @@
-// Smooths maps: by a box filter, and by weights that fall with differences of the guides.
+// Smooths maps: by a box filter, and by weights that fall with differences of the guides (albedo,
+// normal and depth).
 
 #include "renderlib/denoise/maps.h"
 
@@ -8,7 +9,8 @@
 namespace bandsaw {
 namespace {
 
-// Differences of the guides that count as a distance of 1; that of the depth is relative.
+// For each guide, the difference that counts as a distance of 1. The difference of the depth is
+// relative to the depth.
 constexpr float kAlbedoReach = 0.3f;
 constexpr float kNormalReach = 0.2f;
 constexpr float kDepthReach = 0.1f;

@@ -1,5 +1,5 @@
 // Splits the samples into two halves, limits single bright pixels, estimates variances, and scales
-// the guides to [0, 1].
+// the guides (albedo, normal and depth) to [0, 1].
 
 #include "renderlib/denoise/prepare.h"
 
@@ -173,8 +173,9 @@ FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const R
   smooth(noise, size, 1, pool);
   smooth(around, size, 3, pool);
   for (std::size_t h = 0; h < 2; ++h) {
-    // The variance of a half is inversely proportional to its number of samples. So the first half
-    // has the part 1 - share of the variance of the difference, and the second half the part share.
+    // The variance of a half is inversely proportional to its number of samples, and the variances
+    // of both halves add up to the variance of their difference. So the variance of the first half
+    // is this sum times (1 - share), and the variance of the second half is this sum times share.
     out.variance[h] = plane_of(size, pool, [&](int x, int y) {
       const std::size_t i = size.index(x, y);
       const float share = std::clamp(input.first_share[first_pixel + i], 0.0f, 1.0f);

@@ -1,7 +1,7 @@
 #pragma once
 
 // Prepares images for fit() (fit.h): planes of their two halves (the means of two parts of the
-// samples), of the variances and of the guides.
+// samples), of the variances and of the guides (albedo, normal and depth).
 
 #include "renderlib/denoise/denoise.h"
 #include "renderlib/denoise/maps.h"

@@ -1,7 +1,8 @@
 #pragma once
 
-// A plane of floats whose even and odd columns are stored apart: the filter (fit.cpp) processes
-// every second pixel, and then eight such pixels are adjacent in memory and load as one vector.
+// A plane of floats whose even and odd columns are stored apart. The filter (fit.cpp) processes
+// every second pixel. In this order eight such pixels are adjacent in memory and load as one
+// vector.
 
 #include <cstddef>
 

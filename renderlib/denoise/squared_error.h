@@ -10,10 +10,11 @@ namespace bandsaw {
 /// of the samples: `a` from the first, `b` from the second. `first` and `second` are the unfiltered
 /// means of the parts, and `share` is the share of the first part in the samples.
 ///
-/// Let v be the variance of a part's value. E (a - second)^2 = error^2(a) + v(second), because the
-/// parts are independent, and v(second) = share (first - second)^2 on average. The same holds with
-/// the parts exchanged. The squared error of the mean, share a + (1 - share) b, is the mean of the
-/// squared errors of `a` and `b` with the same weights, minus share (1 - share) (a - b)^2.
+/// Let E be the expectation and v the variance of a part's value. Because the parts are
+/// independent, E (a - second)^2 = error^2(a) + v(second), and v(second) = share (first - second)^2
+/// on average. For `b` and `first` the equations hold with the parts exchanged. The squared error
+/// of the mean, share a + (1 - share) b, is the mean of the squared errors of `a` and `b` with the
+/// same weights, minus share (1 - share) (a - b)^2.
 template <class T>
 T squared_error(T a, T b, T first, T second, T share) {
   const T squared_difference = (first - second) * (first - second);

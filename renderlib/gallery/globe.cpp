@@ -24,10 +24,11 @@ constexpr Vec3 kTundra{142, 134, 112};
 constexpr Vec3 kRock{112, 98, 86};
 constexpr Vec3 kIce{240, 244, 248};
 
-/// Offset of noise lookups, so that no lattice point lies at a pole.
+/// These offsets are added to the points at which noise is evaluated, so that no lattice point of
+/// the noise lies at a pole.
 constexpr Vec3 kLandAt{11.3, 4.7, 8.1};
 constexpr Vec3 kRainAt{-5.2, 9.4, 2.6};
-constexpr double kContinents = 1.35;  // features of the coarsest octave per radius
+constexpr double kContinents = 1.35;  // frequency of the coarsest octave: features per radius
 constexpr double kSeaLevel = 0.06;
 constexpr double kShelfDepth = 0.075;
 

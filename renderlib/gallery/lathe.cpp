@@ -1,5 +1,5 @@
-// Places rings of vertices at the points of the profile, two at an edge that stays sharp, and joins
-// neighbouring rings by faces.
+// Places a ring of vertices at each point of the profile, or two rings where an edge stays sharp,
+// and joins neighbouring rings by faces.
 
 #include "renderlib/gallery/lathe.h"
 
@@ -25,8 +25,8 @@ struct Ring {
   double v = 0;  ///< of the uv coordinates
 };
 
-/// The rings of a profile's pieces: a piece spans the rings `low` and `low` + 1. Two pieces that
-/// join smoothly share a ring.
+/// The rings of a profile's pieces (the lines between consecutive points). Piece i lies between the
+/// rings low[i] and low[i] + 1. Two pieces that join smoothly share a ring.
 struct Rings {
   std::vector<Ring> rings;
   std::vector<std::size_t> low;

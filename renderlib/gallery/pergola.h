@@ -4,9 +4,9 @@
 
 namespace bandsaw::gallery {
 
-/// Returns a pergola over a pool as glTF: one cube, placed as pillars, beams and slats; lengths in
-/// metres. It has three cameras: "gate" and "corner", two nodes that share the camera "walker", and
-/// "plan", an orthographic one from above.
+/// Returns a pergola over a pool as glTF: one cube, placed as pillars, beams and slats. Lengths are
+/// in metres. Three nodes have a camera: "gate" and "corner" share the perspective camera "walker",
+/// and "plan" has an orthographic camera that looks down from above.
 std::string pergola();
 
 }  // namespace bandsaw::gallery

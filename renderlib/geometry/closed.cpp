@@ -15,7 +15,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns for each vertex the lowest index of the vertices that are at its position at all times.
+/// Returns a representative for each vertex: the vertex of lowest index among those that have the
+/// same position at all times.
 std::vector<std::uint32_t> welded(const Mesh& mesh) {
   const auto place = [&](std::uint32_t vertex) {
     return std::pair(mesh.positions[vertex],

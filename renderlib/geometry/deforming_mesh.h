@@ -28,7 +28,7 @@ struct ShutterTime {
 
   /// Interpolates linearly between two numbers. A part of the change is added to the number at the
   /// nearer end, and the sum is rounded once. So the result is exact at both ends, never outside of
-  /// them, and constant if they are equal.
+  /// the range between the two numbers, and constant if the numbers are equal.
   float between(float at_open, float at_close) const {
     return fused(at_close - at_open, factor, from_close ? at_close : at_open);
   }

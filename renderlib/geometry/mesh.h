@@ -16,10 +16,12 @@ struct Mesh {
   std::vector<std::array<float, 2>> uvs;                ///< empty, or one per position
   std::vector<std::array<float, 2>> uvs2 = {};          ///< second set: empty, or one per position
   std::vector<std::array<float, 3>> colors = {};  ///< linear RGB >= 0: empty, or one per position
-  /// For a mesh that deforms during the shutter interval (geometry/deforming_mesh.h): the positions
-  /// at its end, one per position; `positions` are those at its beginning. Otherwise empty.
+  /// Empty unless the mesh deforms during the shutter interval (geometry/deforming_mesh.h). Then
+  /// these are the vertex positions at the end of the interval, one for each element of
+  /// `positions`, which are the vertex positions at its beginning.
   std::vector<std::array<float, 3>> positions_at_close = {};
-  /// The same for the normals. If empty, the normals do not change.
+  /// Normals at the end of the shutter interval, one per position. If empty, the normals do not
+  /// change.
   std::vector<std::array<float, 3>> normals_at_close = {};
 };
 

@@ -1,4 +1,5 @@
-// The constructor makes one part for each instance. operator[] finds the part by bisection.
+// The constructor makes one part for the loose shapes (of no instance) and one for each instance,
+// unless the part would have no wanted primitive. operator[] finds the part by bisection.
 
 #include "renderlib/geometry/primitive_list.h"
 

@@ -12,9 +12,9 @@
 namespace bandsaw {
 
 /// The primitives whose material belongs to a set, in the order of their ids: first the loose
-/// shapes, then those of each instance. The instances of a group share the list of the group's
-/// primitives. So time and memory grow with the sum of the numbers of instances and of stored
-/// primitives, and not with their product.
+/// shapes (of no instance), then the primitives of each instance. The instances of a group share
+/// the list of the group's primitives. So time and memory grow with the sum of the numbers of
+/// instances and of stored primitives, and not with their product.
 class PrimitiveList {
  public:
   /// `wanted`: for each material, whether its primitives belong to the list.
@@ -38,7 +38,8 @@ class PrimitiveList {
            std::uint64_t primitives);
 
   std::vector<Part> parts_;  ///< those that have primitives
-  /// Primitives of each group whose shapes have materials of their own; kNoGroup: the loose shapes.
+  /// Numbers of the wanted primitives of a group, if an instance keeps the materials of the group's
+  /// shapes. The entry of kNoGroup is for the loose shapes.
   std::map<GroupId, std::vector<std::uint32_t>> chosen_;
 };
 

@@ -10,9 +10,9 @@
 
 namespace bandsaw {
 
-/// Identifies a primitive of the scene. Instance 0 stands for the loose shapes of the world,
-/// instance i + 1 for Geometry::instances[i]. `primitive` numbers the triangles of its mesh, or the
-/// shapes in the order of geometry/shapes.h, Shapes.
+/// Identifies a primitive of the scene. Instance 0 stands for the loose shapes of the world (shapes
+/// of no mesh and no group), instance i + 1 for Geometry::instances[i]. `primitive` numbers the
+/// triangles of its mesh, or the shapes in the order of geometry/shapes.h, Shapes.
 struct PrimitiveId {
   std::uint32_t instance = 0xffffffffu;
   std::uint32_t primitive = 0xffffffffu;

@@ -98,8 +98,8 @@ Placement::Placement(const Transform& t) {
     cofactors[i] = cross(rows[(i + 1) % 3], rows[(i + 2) % 3]);
   }
   determinant = dot(rows[0], cofactors[0]);
-  // The condition number is |M| |M^-1| = norm(rows) norm(cofactors) / |determinant|. It is above
-  // the limit even if the determinant is nothing but rounding error.
+  // The condition number is |M| |M^-1| = norm(rows) norm(cofactors) / |determinant|. This quotient
+  // is above the limit even if the determinant consists only of rounding error.
   squashes = !(norm(rows) * norm(cofactors) <= kMaxPlainCondition * std::abs(determinant));
   if (squashes) {
     for (std::size_t i = 0; i < 3; ++i) {

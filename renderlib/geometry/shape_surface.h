@@ -14,8 +14,9 @@ namespace bandsaw {
 
 /// Returns true if `v` has a direction: it is neither zero nor infinite nor NaN.
 inline bool has_direction(const Vec3& v) { return max_abs(v) > 0 && is_finite(v); }
-/// Returns `v` times a power of two, exactly, so that its longest component is in [1, 4). If that
-/// component is below 2^-1023, the result's is below 1; zero and infinity stay as they are.
+/// Returns `v` times a power of two, exactly, so that its longest component is in [1, 4). If
+/// the longest component of `v` is below 2^-1023, that of the result is below 1. Zero and infinity
+/// stay zero and infinity.
 inline Vec3 near_one(const Vec3& v) {
   const std::uint64_t exponent = std::bit_cast<std::uint64_t>(max_abs(v)) >> 52;
   return v * std::bit_cast<double>((2046 - std::min<std::uint64_t>(exponent, 2045)) << 52);

@@ -103,7 +103,8 @@ inline constexpr MaterialId kOwnMaterial{0xffffffffu};
 struct Instance {
   MeshId mesh{};  ///< unspecified if there is a group
   MaterialId material{};
-  Transform to_world;  ///< invertible (math/transform.h); to `frame` if there is one
+  /// Leads to the world, or to `frame` if there is one; invertible (math/transform.h).
+  Transform to_world;
   GroupId group = kNoGroup;
   FrameId frame = kNoFrame;  ///< the frame it moves with (geometry/frame.h)
 };

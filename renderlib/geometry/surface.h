@@ -27,7 +27,7 @@ struct SurfacePoint {
   /// Directions in which u and v grow, of any length; zero unless set by add_uv_directions().
   Vec3 along_u;
   Vec3 along_v;
-  Vec3 along_u2;  ///< the same for uv2
+  Vec3 along_u2;  ///< as along_u and along_v, for uv2
   Vec3 along_v2;
   MaterialId material{};
   PrimitiveId id;
@@ -38,10 +38,10 @@ struct SurfacePoint {
   /// own space (README.md, "Squashed space"). If an instance squashes space, it also depends on how
   /// much the instance squashes along this normal.
   double offset = 0;
-  /// Vector from the position to the origin of rays that leave outwards; those that leave inwards
-  /// start on the other side. It is geometric_normal times `offset`, except if an instance squashes
-  /// space. In squashed space that product could lead past the primitive, so `away` is
-  /// perpendicular to the primitive in the primitive's own space.
+  /// Vector from the position to the origin of rays that leave outwards. Rays that leave inwards
+  /// start at the position minus this vector. It is geometric_normal times `offset`, except if an
+  /// instance squashes space. In squashed space that product could lead past the primitive, so
+  /// `away` is perpendicular to the primitive in the primitive's own space.
   Vec3 away;
   double t = 0;     ///< Hit::t
   double time = 0;  ///< time of the ray that hit it; rays from here have the same time
@@ -62,8 +62,8 @@ void prepare_surfaces(Geometry& geometry);
 SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit,
                         bool sphere_uv = true);
 
-/// Sets along_u and along_v, or those of the second uv set if `second`. They stay zero if the uvs
-/// of a mesh's triangle have no area.
+/// Sets along_u and along_v, or along_u2 and along_v2 if `second` is true. They stay zero if the
+/// uvs of a mesh's triangle have no area.
 void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point);
 
 /// Does the same as add_uv_directions(), but for every kind of shape the vectors have the lengths

@@ -125,7 +125,7 @@ void add_uv_derivatives(const Geometry& geometry, bool second, SurfacePoint& poi
   add_uv_directions(geometry, second, point);
   const std::uint32_t placed = point.id.instance;
   if (placed != 0 && geometry.instances[placed - 1].group == kNoGroup) {
-    return;  // the directions of a mesh have their lengths
+    return;  // the directions on a mesh already have the lengths of the derivatives
   }
   const Shapes& shapes =
       placed == 0 ? geometry : *group_of(geometry, geometry.instances[placed - 1]);

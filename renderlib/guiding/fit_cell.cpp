@@ -1,7 +1,8 @@
-// Fits the balls of a cell (guiding_cell.h) to its records. The directions of the light, as seen
-// from the cell's middle, begin as one cluster. Clusters are split as long as a split explains the
-// records better. Each cluster that is not too wide becomes a ball. Then cross-validation finds the
-// share of the directions that should be sampled towards the balls.
+// Fits the balls of a cell (guiding_cell.h) to its records. A record is light that arrived at a
+// point, and a ball is a region of space from which a part of the light comes. The directions of
+// the light, as seen from the cell's middle, begin as one cluster. Clusters are split as long as a
+// split explains the records better. Each cluster that is not too wide becomes a ball. Then
+// cross-validation finds the share of the directions that should be sampled towards the balls.
 
 #include <algorithm>
 #include <cmath>
@@ -184,11 +185,11 @@ Cluster cluster_of(const Place& place, absl::Span<const Seen> seen, std::size_t 
   }
   mean /= cluster.weight;
   spread /= cluster.weight;
-  // The cone contains the farthest direction, with a margin for few records. But it is at most
-  // twice as wide as the mean tells (uniform directions in a cone have half of its 1 - cos on
-  // average), so that single directions far from the axis do not widen it. Where light comes from
-  // several distances, its direction changes relative to the axis when the point moves within the
-  // cell.
+  // The cone contains the farthest direction, with a margin for few records. Uniform directions in
+  // a cone have half of its 1 - cos on average, so the mean suggests 2 * mean for the cone. At most
+  // twice this is used, so that single directions far from the axis do not widen the cone. The last
+  // term widens the cone where light comes from several distances. There the direction of the light
+  // changes relative to the axis when the point moves within the cell.
   const auto n = static_cast<double>(last - first);
   const double cone = std::min(farthest * (1 + 3 / n), 4 * mean) + place.extent2 * spread / 2;
   cluster.one_minus_cos = std::clamp(cone, 4e-6, 2.0);

@@ -1,5 +1,5 @@
-// Keeps the newest fields and maps. While one thread makes a field or maps, it holds the mutex, and
-// all other callers wait.
+// Keeps the newest guiding fields and photon maps of a scene. While one thread makes a field or
+// maps, it holds the mutex, and all other callers wait.
 
 #include "renderlib/guiding/guiding_cache.h"
 

@@ -37,7 +37,9 @@ struct TrainedGuiding {
   Portals portals;
   std::uint64_t paths = 0;    ///< training paths from the camera
   std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
-  std::uint64_t rays = 0;     ///< rays of paths, photons, pilots and the first photon map
+  /// Rays of training paths, of photons, of pilots (short trials that show whether guiding and maps
+  /// pay), and of the first photon map.
+  std::uint64_t rays = 0;
   /// The surfaces at which the photons of maps start; null: no light comes from maps.
   std::shared_ptr<const PhotonSources> sources;
 };
@@ -55,7 +57,9 @@ struct PhotonMapKey {
 /// were made.
 struct TracedMaps {
   PhotonMap caustics;  ///< empty if caustics are left to paths
-  PhotonMap indirect;  ///< light that receivers scattered (integrate/indirect_photons.h)
+  /// Light that receivers (surfaces whose sampled lobes are all wide) scattered
+  /// (integrate/indirect_photons.h).
+  PhotonMap indirect;
   /// In scene units. A path takes indirect light from `indirect` if its length since the last
   /// receiver is at least this distance. It is 0 if `indirect` is empty, which is then never used.
   double gather_distance = 0;

@@ -27,7 +27,8 @@ struct GuidingBall {
   float weight = 0;  ///< share of the light, > 0; the weights of a cell sum to 1 at most
 };
 
-/// fit_cell() makes a cell, and a GuidingField (guiding_field.h) holds many cells.
+/// fit_cell() makes a cell from records of light that arrived at points (guiding_record.h). A
+/// GuidingField (guiding_field.h) holds many cells.
 struct GuidingCell {
   std::uint32_t count = 0;  ///< number of balls
   float irradiance = 0;     ///< at the place, estimated from the cell's records
@@ -84,6 +85,7 @@ class GuidingCones {
  private:
   std::uint32_t count_;
   double share_;
+  /// Adds the cones of a cell, which is sampled with the probability `share`.
   void add(const GuidingCell& cell, double share, const Vec3& position, const Vec3& normal);
 
   static constexpr std::uint32_t kMaxCones = 2 * kMaxBalls;

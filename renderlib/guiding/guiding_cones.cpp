@@ -1,5 +1,6 @@
-// Each ball of a cell, as seen from a point, is a cone of directions. A cone is chosen with a
-// probability in proportion to the light of its ball, and a direction uniformly within it.
+// A cell (guiding_cell.h) is a few balls in space from which light arrives at a place. Each ball,
+// as seen from a point, is a cone of directions. A cone is chosen with a probability in proportion
+// to the light of its ball, and then a direction is chosen uniformly within the cone.
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
-// Builds a binary tree over the records: a range is halved along its longest axis until it has few
-// enough records. In each leaf the records are divided by the main direction of their normal into
-// up to six cells, and fit_cell() is called for each.
+// Builds a binary tree over the records (light that arrived at points of surfaces). The box around
+// a range of records is halved at its longest side, until each range has few enough records. In
+// each leaf the records are divided into up to six cells, by the axis direction that is closest to
+// their normal. Then fit_cell() fits each cell.
 
 #include "renderlib/guiding/guiding_field.h"
 

@@ -27,14 +27,16 @@ constexpr int kMaxTreeDepth = 48;
 /// A place is divided at a random point of its longest side: between kFirstPart and 1 - kFirstPart
 /// of the length.
 constexpr double kFirstPart = 3.0 / 8;
-/// In even places (see below) of at most kMaxPhotonsOfEven photons, each disk has the part
-/// kDiskPartOfEven of the area of its place.
+/// In even places (defined at kDeviations) of at most kMaxPhotonsOfEven photons, each disk has the
+/// part kDiskPartOfEven of the area of its place.
 constexpr std::uint32_t kMaxPhotonsOfEven = 1024;
 constexpr double kDiskPartOfEven = 1.0 / 4;
-// A place is even if its photons are as good as uniform on a flat surface. Two conditions hold in
-// the place and in all places below it. The difference between the powers of its two parts deviates
-// from the expected one by at most kDeviations standard deviations plus kSlope of their sum. The
-// sum of the normals is at least kMinFlatness times as long as it would be for equal normals.
+// A place is even if its photons are nearly uniform on a flat surface. This is so if two conditions
+// hold for the place and for all places into which it is divided. First, the difference between the
+// powers of its two parts deviates from the difference that is expected of uniform photons by at
+// most kDeviations standard deviations plus kSlope times the sum of both powers. Second, the sum of
+// the normals is at least kMinFlatness times as long as it would be for equal normals. A place that
+// is not divided counts as even.
 constexpr double kDeviations = 3.5;
 constexpr double kSlope = 0.1;
 constexpr double kMinFlatness = 0.97;
@@ -93,7 +95,7 @@ struct Place {
   double power = 0;        ///< sum of the luminances
   double squares = 0;      ///< sum of the squared luminances
   Vec3 normal;             ///< sum of the normals, by luminance
-  bool even = false;       ///< true for an even place, as described above
+  bool even = false;       ///< true for an even place, as defined at kDeviations
 
   std::uint32_t count() const { return last - first; }
 };

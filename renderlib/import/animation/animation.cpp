@@ -67,7 +67,7 @@ absl::StatusOr<std::optional<std::size_t>> choose(const AnimationChoice& choice,
   };
   return absl::NotFoundError(absl::StrCat(
       "has no animation \"", choice.name, "\"; ",
-      names.empty() ? "it has none" : "there are " + absl::StrJoin(names, ", ", quoted)));
+      names.empty() ? "it has no animations" : "there are " + absl::StrJoin(names, ", ", quoted)));
 }
 
 }  // namespace bandsaw
