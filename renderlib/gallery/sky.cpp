@@ -13,10 +13,10 @@
 namespace bandsaw::gallery {
 namespace {
 
-/// An environment without texels, of one image of this size or of six. It converts texels to
-/// directions.
-struct Frame {
-  Frame(Environment::Kind kind, std::uint32_t width, std::uint32_t height) {
+/// The layout of an environment map, without texels: one image of the given size, or six for a
+/// cube. direction_of() needs it to convert a position in an image to a direction.
+struct EnvironmentLayout {
+  EnvironmentLayout(Environment::Kind kind, std::uint32_t width, std::uint32_t height) {
     ImageTexture image;
     image.width = width;
     image.height = height;
@@ -33,8 +33,8 @@ struct Frame {
 
 /// Draws one image of an environment (`face` 0 to 5 of a cube, otherwise 0). A texel is the mean of
 /// `sky` in kFine x kFine directions.
-Image draw(Rgb (*sky)(const Vec3&), const Frame& frame, std::uint32_t face, std::uint32_t width,
-           std::uint32_t height) {
+Image draw(Rgb (*sky)(const Vec3&), const EnvironmentLayout& layout, std::uint32_t face,
+           std::uint32_t width, std::uint32_t height) {
   constexpr int kFine = 8;
   Image image{width, height, {}};
   for (std::uint32_t y = 0; y < height; ++y) {
@@ -43,7 +43,7 @@ Image draw(Rgb (*sky)(const Vec3&), const Frame& frame, std::uint32_t face, std:
       for (int i = 0; i < kFine * kFine; ++i) {
         const EnvironmentPlace place{face, x + (i % kFine + 0.5) / kFine,
                                      y + (i / kFine + 0.5) / kFine};
-        sum += sky(direction_of(frame.environment, frame.textures, place));
+        sum += sky(direction_of(layout.environment, layout.textures, place));
       }
       image.pixels.push_back(sum * (1.0f / (kFine * kFine)));
     }
@@ -72,7 +72,8 @@ float cover(const Vec3& unit, double from) {
 }
 
 Image equirectangular(Rgb (*sky)(const Vec3&), std::uint32_t rows) {
-  return draw(sky, Frame(Environment::Kind::kEquirectangular, 2 * rows, rows), 0, 2 * rows, rows);
+  return draw(sky, EnvironmentLayout(Environment::Kind::kEquirectangular, 2 * rows, rows), 0,
+              2 * rows, rows);
 }
 
 }  // namespace
@@ -117,7 +118,8 @@ Image evening_sky_map(std::uint32_t rows) { return equirectangular(evening_sky, 
 Image dusk_sky_map(std::uint32_t rows) { return equirectangular(dusk_sky, rows); }
 
 Image evening_sky_side(std::uint32_t face, std::uint32_t side) {
-  return draw(evening_sky, Frame(Environment::Kind::kCube, side, side), face, side, side);
+  return draw(evening_sky, EnvironmentLayout(Environment::Kind::kCube, side, side), face, side,
+              side);
 }
 
 }  // namespace bandsaw::gallery
