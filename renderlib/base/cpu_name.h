@@ -4,8 +4,8 @@
 
 namespace bandsaw {
 
-/// Returns Linux's name of the processor, for display: "AMD EPYC-Milan Processor"; "unknown CPU" if
-/// Linux reports none.
+/// Returns Linux's name of the processor for display, for example "AMD EPYC-Milan Processor".
+/// Returns "unknown CPU" if Linux reports no name.
 std::string cpu_name();
 
 }  // namespace bandsaw

@@ -12,7 +12,7 @@ namespace bandsaw {
 bool float_mode_is_default() {
 #if defined(__x86_64__)
   constexpr unsigned kFlags = 0x3f;      // status flags, which do not affect rounding
-  constexpr unsigned kDefault = 0x1f80;  // all exceptions masked, to nearest, no flushing
+  constexpr unsigned kDefault = 0x1f80;  // exceptions masked, round to nearest, denormals kept
   return (_mm_getcsr() & ~kFlags) == kDefault;
 #elif defined(__aarch64__)
   std::uint64_t fpcr = 0;  // Arm Architecture Reference Manual, FPCR: no bit is set by default

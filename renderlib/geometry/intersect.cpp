@@ -68,9 +68,10 @@ bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing) {
   return hit_second;
 }
 
-// Solves a t^2 - 2 b t + c = 0, where c = |f|^2 - r^2 is the variable `product`. The discriminant
-// (b^2 - a c) / a is computed as r^2 minus the squared distance of the centre from the ray's line,
-// because this form does not cancel.
+// Let f be the ray's origin relative to the centre. The function solves a t^2 - 2 b t + c = 0,
+// where c = |f|^2 - r^2 is the variable `product`. The discriminant (b^2 - a c) / a is computed as
+// r^2 minus the squared distance of the centre from the ray's line, because this form does not
+// cancel.
 bool intersect(const TracedRay& ray, const Sphere& sphere, bool starts_on_it, Crossing& crossing) {
   const Vec3 f = Vec3{ray.origin[0], ray.origin[1], ray.origin[2]} - sphere.center;
   const Vec3 d = {ray.direction[0], ray.direction[1], ray.direction[2]};

@@ -23,8 +23,8 @@ constexpr double kMaxPieces = 64;
 /// sampled times than at the sampled times.
 constexpr double kRoundingFactor = 8;
 
-/// Upper bounds for a point that moves: of its distance from the origin, and of the lengths of its
-/// first and second derivative with respect to time.
+/// Upper bounds for a moving point: for its distance from the origin, its speed, and the length of
+/// the second derivative of its position with respect to time.
 struct Course {
   double distance = 0;
   double speed = 0;  ///< first derivative
@@ -71,8 +71,8 @@ Course through(const Key& a, const Key& b, const Course& c) {
 }
 
 /// Returns the bounds for a point after the motion and the placement of a frame. `c` holds the
-/// bounds for the point before. The result holds for an interval that contains `time` and no key of
-/// the frame in its interior.
+/// bounds for the point before both. The result holds for an interval that contains `time` and no
+/// key of the frame in its interior.
 Course through(const Frame& frame, double time, const Course& c) {
   const auto after = std::upper_bound(frame.keys.begin(), frame.keys.end(), time,
                                       [](double t, const Key& key) { return t < key.time; });

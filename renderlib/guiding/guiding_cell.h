@@ -61,8 +61,9 @@ struct GuidingShares {
   double photons = 0;
 };
 
-/// Returns the shares. Photons get the share of their light in all light, at least an eighth and at
-/// most a half, or 0 if their light is hardly noticeable.
+/// Returns the shares. The share of photons is the part of their light in all light, limited to
+/// [1/8, 1/2], or 0 if their light is hardly noticeable. The share of paths is GuidingCell::share
+/// times the rest, 1 minus the share of photons.
 GuidingShares shares_of(const GuidingCells& cells);
 
 /// Cells as seen from a point: cones of directions, from which paths sample.
