@@ -158,7 +158,7 @@ RayGenerator::RayGenerator(const Camera& camera, int width, int height,
     : kind_(std::holds_alternative<OrthographicCamera>(camera) ? Kind::kParallel
             : std::get<PerspectiveCamera>(camera).aperture > 0 ? Kind::kLens
                                                                : Kind::kPinhole),
-      now_(std::visit([&](const auto& c) { return project(c, width, height); }, camera)),
+      at_open_(std::visit([&](const auto& c) { return project(c, width, height); }, camera)),
       shutter_(shutter_of(camera)) {
   if (at_close) {
     at_close_ = std::visit([&](const auto& c) { return project(c, width, height); }, *at_close);
@@ -208,7 +208,7 @@ RayGenerator::Projection RayGenerator::project(const OrthographicCamera& camera,
 
 RayGenerator::Projection RayGenerator::between(double share) const {
   const auto mixed = [share](const auto& a, const auto& b) { return a + (b - a) * share; };
-  const Projection& a = now_;
+  const Projection& a = at_open_;
   const Projection& b = *at_close_;
   Projection out;
   out.origin = mixed(a.origin, b.origin);
@@ -241,7 +241,7 @@ RayGenerator::Projection RayGenerator::between(double share) const {
 }
 
 Ray RayGenerator::ray(double x, double y, double lens_u, double lens_v, double share) const {
-  Ray ray = ray_now(at_close_ ? between(share) : now_, x, y, lens_u, lens_v);
+  Ray ray = ray_now(at_close_ ? between(share) : at_open_, x, y, lens_u, lens_v);
   ray.time = std::min(shutter_.open + share * (shutter_.close - shutter_.open), shutter_.close);
   return ray;
 }
@@ -250,7 +250,7 @@ std::optional<LensView> RayGenerator::lens_view(double x, double y, double share
   if (kind_ != Kind::kLens) {
     return std::nullopt;
   }
-  const Projection now = at_close_ ? between(share) : now_;
+  const Projection now = at_close_ ? between(share) : at_open_;
   return LensView::make(now.origin, now.forward, now.lens_radius, now.focus_distance,
                         now.corner + now.dx * x + now.dy * y);
 }

@@ -143,7 +143,7 @@ class RayGenerator {
   Ray ray_now(const Projection& now, double x, double y, double lens_u, double lens_v) const;
 
   Kind kind_;
-  Projection now_;                      ///< when the shutter opens
+  Projection at_open_;                  ///< when the shutter opens
   std::optional<Projection> at_close_;  ///< when it closes; std::nullopt: the camera does not move
   Shutter shutter_;
 };
