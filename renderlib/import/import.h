@@ -52,9 +52,9 @@ struct ImportChoices {
 absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const ImportChoices& choices);
 
 /// Reads a scene file (*.textproto, *.json), a scene of pbrt-v4 (*.pbrt, *.pbrt.gz) or Mitsuba
-/// (*.xml), or a single model, which is framed under a default sky unless it has cameras and
-/// lights. Only files below the folder of `path` (for Mitsuba, below `choices.folder` if it is set)
-/// are read. An invalid value is INVALID_ARGUMENT, for example
+/// (*.xml), or a single model. A model without a camera gets a camera that frames it, and a model
+/// without a light source gets a default sky. Only files below the folder of `path` (for Mitsuba,
+/// below `choices.folder` if it is set) are read. An invalid value is INVALID_ARGUMENT, for example
 /// "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1"; a file that is missing or
 /// outside of the folder is NOT_FOUND or PERMISSION_DENIED with its name. `memory` is passed to the
 /// imports of all frames of one scene. Models, image textures and the foreign scene are kept from

@@ -265,11 +265,12 @@ absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
   if (draft.shutter == Shutter{} && !draft.out.scene.geometry.instances.empty()) {
     return MovingCamera{framed(draft.out, draft.shutter)};
   }
-  // A draft has a shutter interval at time 0 until one is set.
+  // The shutter of a new draft opens and closes at time 0, so the model is read in its pose at 0.
   SceneDraft at_zero(draft.folder, draft.file, draft.memory);
   ASSIGN_OR_RETURN(Model model, read_model(real, false, at_zero, animation));
   if (model.instances.empty()) {
-    // The rest pose is an error if it hides the model too; then the camera is the default one.
+    // If the rest pose hides the model too, read_model() returns an error. An empty model then
+    // makes framed() return the default camera.
     model = read_model(real, false, at_zero).value_or(Model{});
   }
   at_zero.out.scene.geometry.instances = model.instances;

@@ -46,14 +46,17 @@ Curve::Place Curve::place_of(double time) const {
   return {key, key + 1, (time - times_[key]) / (times_[key + 1] - times_[key])};
 }
 
+/// Returns the numbers of a key. For kCubic, `values_` holds three groups of numbers for each key:
+/// the tangent before the key, the value, and the tangent after the key.
 absl::Span<const double> Curve::value(std::size_t key) const {
   const bool cubic = interpolation_ == Interpolation::kCubic;
   const std::size_t first = cubic ? (3 * key + 1) * width_ : key * width_;
   return absl::MakeConstSpan(values_).subspan(first, width_);
 }
 
-/// Returns the change of component `number` per unit of time at a key. For kCubic there are two
-/// tangents, one before the key and one after it.
+/// Returns the change of component `number` per unit of time at a key. For kCubic the curve stores
+/// two tangents of each key: one before the key (`before` is true) and one after it. For kSmooth a
+/// key has one tangent, that of Catmull and Rom.
 double Curve::tangent(std::size_t key, std::size_t number, bool before) const {
   if (interpolation_ == Interpolation::kCubic) {
     return values_[(3 * key + (before ? 0 : 2)) * width_ + number];

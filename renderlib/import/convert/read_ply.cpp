@@ -30,7 +30,7 @@ enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDoub
 struct PlyProperty {
   std::string name;
   Type type = Type::kFloat;
-  std::optional<Type> count = std::nullopt;  ///< of a list: type of its length
+  std::optional<Type> count = std::nullopt;  ///< type of a list's length; absent: no list
 };
 
 struct Element {
@@ -161,7 +161,7 @@ absl::Status add_property(const std::vector<absl::string_view>& words, Header& h
   } else if (words.size() == 3) {
     ASSIGN_OR_RETURN(property.type, type_of(words[1]));
   } else {
-    return damaged("a property is not as the format says");
+    return damaged("a property needs a type and a name, or \"list\", two types and a name");
   }
   property.name = std::string(words.back());
   header.elements.back().properties.push_back(property);

@@ -1,8 +1,8 @@
 #pragma once
 
 // Makes boundaries of media: closed meshes that separate a medium, such as smoke or the inside of
-// glass, from its surroundings. They are used for models of a scene file that a medium fills, and
-// for glass of glTF.
+// glass, from its surroundings. They are used for models that a scene file fills with a medium,
+// and for glass of glTF.
 
 #include <optional>
 
@@ -12,8 +12,8 @@ namespace bandsaw {
 
 /// Makes a boundary, filled with the medium `inside`, from an instance of a mesh of the scene. Adds
 /// the mesh, with its normals outwards, to the meshes of Media::boundaries, unless it is already
-/// there. Returns the instance to add to Media::boundaries, which has the place of `placed`;
-/// std::nullopt if the mesh is not closed.
+/// there. Returns an instance with the place of `placed`, which the caller adds to
+/// Media::boundaries. Returns std::nullopt if the mesh is not closed.
 std::optional<Instance> mesh_boundary(const Instance& placed, MediumId inside, SceneDraft& draft);
 
 }  // namespace bandsaw

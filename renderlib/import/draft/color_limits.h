@@ -1,7 +1,7 @@
 #pragma once
 
 // Maximum values of a channel of a reflectance, a radiance, and a texture of heights. They apply to
-// scenes of all formats. Products of a few channels above these values would overflow.
+// scenes of all formats. Products of a few radiances or heights above these values would overflow.
 
 namespace bandsaw {
 

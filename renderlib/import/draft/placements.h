@@ -25,7 +25,8 @@ struct Contents {
   std::size_t size() const { return seen.instances.size() + filled.instances.size(); }
 };
 
-/// Maximum number of placements. There is a limit, because each placement is part of the manifest.
+/// Maximum number of placements. There is a limit, because each placement is part of the manifest,
+/// the message that describes a scene package.
 inline constexpr std::size_t kMaxPlacements = 500'000;
 
 /// Place of an instance in a Placements: the transform to the frame `frame` or, if that is

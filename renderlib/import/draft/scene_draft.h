@@ -54,7 +54,8 @@ struct SceneDraft {
   std::map<std::string, MediumId> media;            ///< keyed by name in the scene file
   /// Grids of media, keyed by their description in the scene file.
   std::map<std::string, GridId> volumes;
-  /// Meshes of the boundaries of media, keyed by the equal mesh of the scene.
+  /// Meshes of the boundaries of media (closed surfaces around a medium). The key is the mesh of
+  /// the scene from which the boundary is made, or an id that no mesh of the scene has.
   std::map<MeshId, MeshId> boundary_meshes;
   /// Models that have been read, keyed by file, by whether the scene replaces their materials, and
   /// by animation.
@@ -62,7 +63,7 @@ struct SceneDraft {
   /// Cameras of the models. If a model is placed several times, its first placement counts.
   std::vector<FoundCamera> cameras;
   Shutter shutter;            ///< of the frame that is imported, in the scene's time
-  AnimationChoice animation;  ///< animation of models whose entry names none
+  AnimationChoice animation;  ///< for models for which the scene file names none
 
   Contents world;
   /// Destination of the shapes and placements that are read: the scene, or a group while it is read

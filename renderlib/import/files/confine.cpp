@@ -115,7 +115,8 @@ std::vector<sock_filter> program() {
       jump(kEqual, kArchitecture, 1, 0),
       statement(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
       statement(kLoad, offsetof(seccomp_data, nr)),
-      // On x86-64, the x32 numbers are aliases of the same calls; other architectures have none.
+      // On x86-64, call numbers from kX32 up are aliases of the same calls (x32 ABI), so they fail.
+      // Other architectures have no such numbers.
       jump(kAtLeast, kX32, 0, 1),
       answer(EPERM),
       // clone3 fails with ENOSYS, so that the C library falls back to clone, whose flags can be
@@ -179,7 +180,7 @@ absl::Status limit(__rlimit_resource resource, std::uint64_t most, const char* w
 
 absl::Status limit_resources(const Confinement& to) {
   RETURN_IF_ERROR(limit(RLIMIT_CORE, 0, "cannot limit core dumps"));
-  // More than enough: files are read whole, one after the other.
+  // 64 files are more than enough, because files are read whole, one after the other.
   RETURN_IF_ERROR(limit(RLIMIT_NOFILE, 64, "cannot limit open files"));
   RETURN_IF_ERROR(limit(RLIMIT_CPU, to.cpu_seconds, "cannot limit CPU time"));
   RETURN_IF_ERROR(limit(RLIMIT_FSIZE, to.file_bytes, "cannot limit file sizes"));

@@ -1,5 +1,5 @@
-// Decodes percent-encoded file names: replaces each "%" with two hexadecimal digits by the byte
-// that they give.
+// Decodes percent-encoded file names. Each "%" and the two hexadecimal digits after it become one
+// byte, whose value the digits give.
 
 #include "renderlib/import/files/percent.h"
 

@@ -25,9 +25,10 @@ class SceneFolder {
   /// Returns the real path of the regular file to which a file in `folder` refers by `name`.
   /// `folder` is absolute, and is this folder or lies below it. Messages do not contain the
   /// referring file; they contain `name`, unless it is empty or has a zero byte. Returns
-  /// PERMISSION_DENIED if the path is absolute or outside the scene's folder, also by a symbolic
-  /// link, or if the process may not access it, NOT_FOUND if there is no such file, and
   /// INVALID_ARGUMENT if the name is empty, has a zero byte or is not that of a regular file.
+  /// Returns PERMISSION_DENIED if the name is an absolute path, if it leads outside of the scene's
+  /// folder, directly or through a symbolic link, or if the process may not access the file.
+  /// Returns NOT_FOUND if there is no such file.
   absl::StatusOr<std::string> resolve(const std::string& name, const std::string& folder) const;
 
   /// As resolve(). If resolve() fails and `name` has no slash, searches `folder`, without its
@@ -38,9 +39,9 @@ class SceneFolder {
 
   const std::string& path() const { return path_; }
 
-  /// From now on, resolve() adds each file that it finds to `files`, which maps the name below this
-  /// folder to the real path. After a call with nullptr, files are no longer added. `files` MUST
-  /// outlive the calls of resolve().
+  /// After this call, resolve() adds each file that it finds to `files`, which maps the file's path
+  /// relative to this folder to its real path. After a call with nullptr, files are no longer
+  /// added. `files` MUST outlive the calls of resolve().
   void record_to(std::map<std::string, std::string>* files) { found_ = files; }
 
  private:

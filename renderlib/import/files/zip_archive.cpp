@@ -28,7 +28,7 @@ constexpr std::size_t kLocalHeaderBytes = 30;
 constexpr std::size_t kEndBytes = 22;
 constexpr std::size_t kEnd64Bytes = 56;
 constexpr std::size_t kLocator64Bytes = 20;
-constexpr std::uint32_t kIn64 = 0xffffffff;  // the number is in the zip64 record
+constexpr std::uint32_t kIn64 = 0xffffffff;  // the number is in the zip64 extra field
 constexpr std::uint64_t kMaxNameBytes = 1000;
 
 absl::Status damaged(absl::string_view what) {

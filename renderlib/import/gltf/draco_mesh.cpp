@@ -87,8 +87,9 @@ class Dequantizer {
   Dequantizer(const draco::PointAttribute& from, const AccessorShape& shape)
       : from_(from), shape_(shape) {}
 
-  /// Returns the unit vector of octahedral coordinates in [0, largest_] whose middle is +x (Cigolle
-  /// et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors").
+  /// Returns the unit vector of the octahedral coordinates (s, t) in [0, largest_]^2. The middle of
+  /// this square is the direction +x (Cigolle et al. 2014, "A Survey of Efficient Representations
+  /// for Independent Unit Vectors").
   std::array<float, kMaxComponents> direction(float s, float t) const {
     const float scale = 2.0f / static_cast<float>(largest_);
     float y = s * scale - 1;

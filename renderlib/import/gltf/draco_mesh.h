@@ -31,10 +31,10 @@ class DracoMesh {
   std::size_t vertices() const;
   /// Returns three indices for each triangle, each below vertices().
   std::vector<std::uint32_t> indices() const;
-  /// Returns the attribute with the number `id` in the stream, with the number of components of
-  /// `shape`; integers are normalised as `shape` says. Returns INVALID_ARGUMENT if there is no such
-  /// attribute, if it has fewer components than `shape`, or if the count of `shape` is not
-  /// vertices().
+  /// Returns the values of the attribute with the number `id` in the stream, `shape.components`
+  /// floats for each vertex. Integers are normalised as `shape` says. Returns INVALID_ARGUMENT if
+  /// there is no such attribute, if it has fewer components than `shape`, or if the count of
+  /// `shape` is not vertices().
   absl::StatusOr<std::vector<float>> floats(std::size_t id, const AccessorShape& shape) const;
   /// As floats(), for an attribute of integers, which are clamped to [0, 2^32 - 1]. Returns
   /// INVALID_ARGUMENT also for an attribute of floats.

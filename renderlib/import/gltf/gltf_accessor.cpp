@@ -114,7 +114,7 @@ absl::Status replace_sparse(const Json& root, const Json& sparse, const Accessor
   const Json* with = object(sparse, "values");
   ASSIGN_OR_RETURN(const std::size_t count, whole_of(sparse, "count", place));
   if (indices == nullptr || with == nullptr || count > shape.count) {
-    return damaged(place, "has no indices or no values, or more of them than elements");
+    return damaged(place, "has no indices or no values, or a count above that of the accessor");
   }
   ASSIGN_OR_RETURN(const std::size_t type, whole_of(*indices, "componentType", place));
   const Component component = static_cast<Component>(type);

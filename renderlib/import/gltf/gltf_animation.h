@@ -1,6 +1,7 @@
 #pragma once
 
-// Reads animations of a glTF 2.0 file: all interpolations, any component type of the outputs.
+// Reads animations of a glTF 2.0 file. All interpolations of glTF are supported, and the values of
+// keys may have any component type.
 
 #include <cstddef>
 #include <string>

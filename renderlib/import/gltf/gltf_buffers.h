@@ -21,7 +21,7 @@ std::optional<std::string> data_of_uri(absl::string_view uri);
 
 class Buffers {
  public:
-  /// All arguments MUST outlive this object. `folder` is the folder of the model, which is the
+  /// `file` and `scene` MUST outlive this object. `folder` is the folder of the model, which is the
   /// scene's folder or lies below it.
   Buffers(const GltfFile& file, const SceneFolder& scene, std::string folder)
       : file_(file), scene_(scene), folder_(std::move(folder)) {}

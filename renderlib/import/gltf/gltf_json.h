@@ -54,8 +54,8 @@ absl::StatusOr<std::size_t> whole_of(const Json& in, absl::string_view name,
 
 /// Returns the object with number `index` of the root's list `name`; nullptr if there is none.
 const Json* item(const Json& root, absl::string_view name, double index);
-/// Returns the object of the root's list `name` whose index is `in.member`; nullptr if there is
-/// none.
+/// Returns the object of the root's list `name` whose index is the value of the member `member` of
+/// `in`; nullptr if there is none.
 const Json* item_of(const Json& root, absl::string_view name, const Json& in,
                     absl::string_view member);
 

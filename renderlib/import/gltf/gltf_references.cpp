@@ -26,7 +26,8 @@ constexpr const char* kLists[] = {"accessors", "buffers",   "bufferViews", "came
                                   "images",    "materials", "meshes",      "nodes",
                                   "samplers",  "scenes",    "skins",       "textures"};
 
-/// A member of a list's objects, and the list to which its index (or list of indices) refers.
+/// A member of a list's objects, and the list to which its index (or list of indices) refers. A
+/// Reference with an empty `list` is for a single object, which is passed to check_member().
 struct Reference {
   const char* list;
   const char* member;

@@ -18,7 +18,8 @@ void decode_octahedral(std::string& bytes, std::size_t stride);
 /// Decodes elements of 8 bytes to normalised integers of a unit quaternion. An element has three of
 /// the four components and the index of the missing one.
 void decode_quaternions(std::string& bytes);
-/// Decodes numbers of 4 bytes, an exponent of 8 bits above a mantissa of 24 bits, to floats.
+/// Decodes numbers of 4 bytes to floats. The upper 8 bits are the exponent, the lower 24 bits the
+/// mantissa.
 void decode_exponential(std::string& bytes);
 
 }  // namespace bandsaw::gltf

@@ -38,7 +38,8 @@ absl::Status check_required(const Json& root) {
       return absl::InvalidArgumentError(
           absl::StrCat("it requires the extension ", name,
                        ", which is not read; convert it to a file without that extension, with "
-                       "`gltf-transform copy`, `ktxdecompress` or `webp`"));
+                       "`gltf-transform copy`, `gltf-transform ktxdecompress` or "
+                       "`gltf-transform webp`"));
     }
   }
   return absl::OkStatus();
@@ -138,7 +139,8 @@ class Rewriter {
     return pose;
   }
 
-  /// Gives each pose of a mesh a mesh of its own, which shares the accessors.
+  /// Copies each mesh that nodes pose differently, once for each pose after the first, so that each
+  /// mesh has one pose. The copies share the accessors.
   void separate_poses() {
     // Index of the mesh in the document, keyed by its index in the file and by the pose.
     std::map<std::pair<std::size_t, Json>, std::size_t> posed;

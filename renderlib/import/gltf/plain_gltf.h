@@ -1,7 +1,7 @@
 #pragma once
 
 // Rewrites a glTF 2.0 file so that any reader understands it: attributes are floats, except for
-// joints, which are 16-bit integers; indices are 32-bit; nothing is sparse, compressed or outside
+// joints, which are 16-bit integers; indices are 32-bit; no array is sparse, compressed or outside
 // of one buffer. model/model.cpp lets Assimp read the result.
 
 #include <cstddef>

@@ -45,8 +45,8 @@ absl::Status check_shape(const std::string& attribute, const AccessorShape& shap
                                                  attribute, " needs ", semantic.least_components));
 }
 
-/// Adds an alpha of 1 to colours of three channels, so that its default does not depend on the
-/// program that reads the document.
+/// Adds an alpha of 1 to colours of three channels. Without it, each program that reads the
+/// document would use its own default of alpha.
 std::vector<float> with_alpha(const std::vector<float>& rgb) {
   std::vector<float> rgba;
   rgba.reserve(rgb.size() / 3 * 4);

@@ -20,9 +20,10 @@ class PlainMeshes {
   PlainMeshes(const Json& root, Buffers& buffers, PlainBuffer& out)
       : root_(root), buffers_(buffers), out_(out) {}
 
-  /// Returns meshes[index] with accessors of `out`. Omits tangents and attributes that glTF does
-  /// not define. Returns INVALID_ARGUMENT if counts or types of attributes do not match, or if an
-  /// index is not below the number of vertices.
+  /// Adds the arrays of meshes[index] of the file to `out`, and returns the mesh with the numbers
+  /// of the new accessors. Omits tangents and attributes that glTF does not define. Returns
+  /// INVALID_ARGUMENT if counts or types of attributes do not match, or if an index is not below
+  /// the number of vertices.
   absl::StatusOr<Json> mesh(std::size_t index);
 
   /// Returns 1 + the largest joint to which a vertex of meshes[index] refers with a weight other

@@ -235,6 +235,7 @@ ImageTexture texture_of(Pixels<T> pixels, const Shape& shape, int channels,
   return image;
 }
 
+/// Decodes a Radiance file (HDR) to linear floats.
 absl::StatusOr<ImageTexture> decode_radiance(absl::string_view bytes) {
   Endless source{bytes};
   Shape shape;
@@ -270,6 +271,7 @@ absl::StatusOr<Pixels<stbi_uc>> decode_pixels(absl::string_view bytes, int chann
   return pixels;
 }
 
+/// Decodes a file of an 8-bit format to an sRGB texture with `channels` channels.
 absl::StatusOr<ImageTexture> decode_bytes(absl::string_view bytes, int channels) {
   Shape shape;
   ASSIGN_OR_RETURN(Pixels<stbi_uc> pixels, decode_pixels(bytes, channels, shape));

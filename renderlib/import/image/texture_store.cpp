@@ -57,9 +57,10 @@ ImageTexture with_texels(const ImageTexture& image, Format format, std::uint8_t 
 }
 
 /// Converts a height map to a normal map. The height is the image's mean channel: a code divided by
-/// 255, or a float. `strength` is the height in texels of the value 1; finite. Slopes are central
-/// differences, with the image's wrap mode at the borders (Blinn 1978, "Simulation of Wrinkled
-/// Surfaces"). The result is float, because 8 bits cannot represent the slope of one code.
+/// 255, or a float. `strength`, a finite number, is the height of the value 1, measured in texels
+/// of the image. Slopes are central differences, with the image's wrap mode at the borders (Blinn
+/// 1978, "Simulation of Wrinkled Surfaces"). The result is float, because 8 bits cannot represent
+/// the slope of one code.
 ImageTexture normals_of_heights(const ImageTexture& heights, double strength) {
   const std::size_t width = heights.width;
   const std::size_t height = heights.height;
@@ -92,9 +93,10 @@ ImageTexture normals_of_heights(const ImageTexture& heights, double strength) {
   return with_texels(heights, Format::kFloat32, 3, std::move(texels));
 }
 
-/// Converts an image to an index_map. F0 is the reflectance along the normal. With the index_map,
-/// it is the F0 of `index` (> 1) times the luminance of the image. The result has one channel of 8
-/// bits, or of floats if the image has floats.
+/// Converts an image to an index_map, which varies the index of refraction over a surface. The
+/// image holds factors of F0, the reflectance along the normal. A material with `index` (> 1) and
+/// this index_map has, at each point, the F0 of `index` times the luminance of the image. The
+/// result has one channel of 8 bits, or of floats if the image has floats.
 ImageTexture index_map_of_reflectance(const ImageTexture& amounts, double index) {
   const double root = (index - 1) / (index + 1);  // square root of F0
   const std::size_t count = std::size_t{amounts.width} * amounts.height;

@@ -58,7 +58,8 @@ class BsdfReader {
   absl::Status conductor(const Parameters& from, Draft& draft);
   absl::Status plastic(const Parameters& from, Draft& draft);
   absl::Status diffuse_transmission(const Parameters& from, Draft& draft);
-  /// Reads a highlight of version 0.x as a coat of plastic with the given alpha.
+  /// Converts a phong or ward bsdf of version 0.x, a diffuse surface with a highlight, to rough
+  /// plastic with the given alpha.
   absl::Status highlight(const Parameters& from, double alpha, Draft& draft);
   absl::Status phong(const Parameters& from, Draft& draft);
   absl::Status ward(const Parameters& from, Draft& draft);

@@ -1,6 +1,7 @@
 #pragma once
 
-// Converts the bsdfs and area emitters of Mitsuba's shapes to materials of our scene file.
+// Converts the bsdfs and area emitters of Mitsuba's shapes to materials of a Bandsaw scene
+// file.
 
 #include <map>
 #include <set>
@@ -16,7 +17,7 @@ namespace bandsaw::mitsuba {
 
 /// The result of converting a surface of Mitsuba.
 struct SurfaceMaterial {
-  std::string name;  ///< name of our material; empty: there is no surface (null)
+  std::string name;  ///< name of the made material; empty: there is no surface (null)
   /// The geometry must be turned over, because the index of refraction is larger outside.
   bool turned = false;
 };

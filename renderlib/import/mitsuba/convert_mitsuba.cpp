@@ -1,4 +1,4 @@
-// Converts a Mitsuba scene to a scene file of ours. The objects are converted in the order sensor,
+// Converts a Mitsuba scene to a Bandsaw scene file. The objects are converted in the order sensor,
 // integrator, shapes, emitters. Materials, textures and media are converted where they are used.
 
 #include "renderlib/import/mitsuba/convert_mitsuba.h"

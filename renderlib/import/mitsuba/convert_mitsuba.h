@@ -9,7 +9,7 @@
 
 namespace bandsaw {
 
-/// Returns the scene as a scene file of ours. Errors name file and line: "kitchen.xml:17: …".
+/// Returns the scene as a Bandsaw scene file. Errors name file and line: "kitchen.xml:17: …".
 /// INVALID_ARGUMENT: the scene is broken, or a bound is exceeded. NOT_FOUND, PERMISSION_DENIED: a
 /// file that the scene includes cannot be read.
 absl::StatusOr<ConvertedScene> convert_mitsuba(const ForeignScene& from);

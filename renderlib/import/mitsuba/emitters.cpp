@@ -175,8 +175,8 @@ std::uint32_t rows_for_one(const Image& image) {
 }
 
 /// Resamples the rows of an environment map, which MUST have at least two rows. In Mitsuba, the
-/// centres of the first and last row are at the poles; in the result, the outer edges of these rows
-/// are. `mirrored` exchanges left and right.
+/// centres of the first and last row are at the poles. In the result, the outer edges of the first
+/// and last row are at the poles. `mirrored` exchanges left and right.
 Image with_rows_between_poles(const Image& from, bool mirrored) {
   Image to{from.width, rows_for_one(from) * from.height, {}};
   to.pixels.resize(std::size_t{to.width} * to.height);
@@ -247,8 +247,8 @@ absl::Status environment(const Parameters& from, scene::Scene& scene, Conversion
 
 absl::Status sky(const Parameters& from, scene::Scene& scene, Conversion& to) {
   to.warn(from.place(), absl::StrCat("emitter \"", from.object().type,
-                                     "\" is shown as a gradient from white to blue, with z up "
-                                     "shown as y up"));
+                                     "\" is shown as a gradient from white to blue, with y "
+                                     "as the upward axis instead of z"));
   scene::Gradient& gradient = *scene.mutable_background()->mutable_gradient();
   set_color(gray(1), gradient.mutable_bottom());
   set_color({0.5f, 0.7f, 1}, gradient.mutable_top());

@@ -13,7 +13,7 @@
 namespace bandsaw::mitsuba {
 
 struct FoundFile {
-  std::string name;  ///< relative to the folder of the import, as a scene file of ours names it
+  std::string name;  ///< relative to the folder of the import, as Bandsaw scene files name it
   std::string path;  ///< real path
 };
 

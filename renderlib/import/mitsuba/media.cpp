@@ -115,6 +115,8 @@ class MediumReader {
     return Coefficient{*color};
   }
 
+  /// Reads a volume, which is constant or a grid. A volume of unknown type becomes the constant 1,
+  /// with a warning.
   absl::StatusOr<Coefficient> volume(const Object& object) {
     const Parameters from(object);
     Coefficient out;

@@ -19,10 +19,10 @@ class Media {
   /// Media are added to `scene`. Both MUST outlive this object.
   Media(scene::Scene& scene, Conversion& to) : scene_(scene), to_(to) {}
 
-  /// Returns the name of our medium, which is added if it is new. Mitsuba places grids in the
-  /// world; Bandsaw places them in the space of the shape. `to_world` is the placement of the
-  /// shape. Fails for an unknown type of medium, for a wrong parameter and for a grid file that
-  /// cannot be found; the message names file and line.
+  /// Returns the name that `medium` has in the Bandsaw scene. Adds the medium if it is new. Mitsuba
+  /// places grids in the world; Bandsaw places them in the space of the shape. `to_world` is the
+  /// placement of the shape. Fails for an unknown type of medium, for a wrong parameter and for a
+  /// grid file that cannot be found; the message names file and line.
   absl::StatusOr<std::string> medium_of(const Object& medium, const Transform& to_world);
 
  private:

@@ -1,6 +1,6 @@
 // Converts the mesh files of a Mitsuba scene. Reads a mesh as Mitsuba would, and changes the
-// properties that our importer would read differently (orientation, normals, uvs). Attributes of
-// vertices or triangles become an image with four texels for each triangle.
+// properties that Bandsaw's importer would read differently (orientation, normals, uvs). Attributes
+// of vertices or triangles become an image with four texels for each triangle.
 
 #include "renderlib/import/mitsuba/meshes.h"
 
@@ -143,13 +143,13 @@ absl::StatusOr<MeshFile> Meshes::file_of(const MeshRequest& request) {
   ASSIGN_OR_RETURN(const std::shared_ptr<const SourceMesh> mesh, read(request));
   const bool has_normals = !mesh->mesh.normals.empty();
   const bool faceted = request.face_normals || mesh->faceted;
-  // A mirroring placement turns the normals that Mitsuba computes. It computes them for face
-  // normals and for a mesh without normals.
+  // Mitsuba computes the normals itself for a mesh with face normals and for a mesh without
+  // normals. A placement that mirrors turns these computed normals to the other side.
   const bool turned = request.turned != (request.mirrored && (faceted || !has_normals));
-  // The relation of the uvs if our importer reads the file itself.
+  // The relation of the mesh's uvs to Mitsuba's if Bandsaw's importer reads the file unchanged.
   const UvFrame natural =
       request.type == "obj" && request.flip_v ? UvFrame::kFlipped : UvFrame::kSame;
-  // True if our importer reads the same normals, sides and uvs from the file as Mitsuba.
+  // True if Bandsaw's importer reads the same normals, sides and uvs from the file as Mitsuba.
   const bool as_it_is = request.type != "serialized" && has_normals != faceted && !turned &&
                         !request.handed && !request.closed && request.attributes.empty() &&
                         (request.type == "obj" || !request.flip_v) && is_oriented(mesh->mesh);

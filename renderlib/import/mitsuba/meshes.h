@@ -1,7 +1,7 @@
 #pragma once
 
-// Converts mesh files of Mitsuba scenes. A file that our importer reads as Mitsuba does is used
-// unchanged. For any other file, a new file is made.
+// Converts mesh files of Mitsuba scenes. If Bandsaw's importer reads a file as Mitsuba does, the
+// file is used unchanged. For any other file, a new file is made.
 
 #include <map>
 #include <memory>

@@ -18,7 +18,7 @@ absl::Status BsdfReader::parameter(const Parameters& from, const std::string& na
   scene::Parameter& to = *field();
   if (varying.texture && most > 1) {
     // The texels of a texture of numbers are at most 1. So the texture is divided by `most`, and
-    // the value `most` multiplies it.
+    // the field `value`, which multiplies the texture, is set to `most`.
     *to.mutable_texture()->mutable_product()->mutable_a() = *std::move(varying.texture);
     *to.mutable_texture()->mutable_product()->mutable_b() =
         constant_texture(gray(static_cast<float>(1 / most)));

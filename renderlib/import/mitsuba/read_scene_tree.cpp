@@ -188,7 +188,7 @@ class Reader {
     return document.document_element();
   }
 
-  /// Returns the attribute with its parameters replaced.
+  /// Returns the attribute with each parameter ("$name") replaced by its value.
   absl::StatusOr<std::string> attribute(const pugi::xml_node& node, const char* name,
                                         const Source& source) {
     std::string value = node.attribute(name).value();
@@ -535,7 +535,8 @@ class Reader {
   }
 
   /// Checks `object` and the objects that it contains and refers to: none may contain itself, and
-  /// none except scenes and shapes may have more than kMaxParts parts. Sets their sizes.
+  /// none except scenes and shapes may have more than kMaxParts parts. Stores in sizes_ how many
+  /// objects each object contains.
   absl::Status check_cycles(const Object& object, int depth) {
     if (depth > kMaxNesting) {
       return error_at(object.place, absl::StrCat("objects are nested more than ", kMaxNesting,

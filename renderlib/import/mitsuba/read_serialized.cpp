@@ -206,6 +206,7 @@ absl::StatusOr<SourceMesh> read_serialized(absl::string_view bytes, std::int64_t
   if (offset > bytes.size() || bytes.size() - offset < 4) {
     return damaged("a mesh begins behind the end of the file");
   }
+  // The compressed data follow the magic number and the version, which have 2 bytes each.
   Inflater in(bytes.substr(offset + 4));
   ASSIGN_OR_RETURN(const std::uint32_t flags, in.number<std::uint32_t>());
   if (version == kVersion4) {

@@ -56,9 +56,9 @@ Rgb rgb_of(const std::vector<double>& numbers) {
 
 absl::Status add_sample(Spectrum& spectrum, double nanometres, double value) {
   if (!spectrum.samples.empty() && nanometres <= spectrum.samples.back().nanometres) {
-    return absl::InvalidArgumentError(absl::StrCat("the wavelengths of a spectrum must increase, ",
-                                                   nanometres, " is after ",
-                                                   spectrum.samples.back().nanometres));
+    return absl::InvalidArgumentError(
+        absl::StrCat("the wavelengths of a spectrum must increase: ", nanometres, " follows ",
+                     spectrum.samples.back().nanometres));
   }
   spectrum.samples.push_back({nanometres, value});
   return absl::OkStatus();

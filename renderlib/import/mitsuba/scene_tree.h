@@ -76,8 +76,8 @@ struct Object {
 
 struct SceneTree {
   const Object* root = nullptr;
-  bool is_old = false;                              ///< its version is 0.x, not 2 or 3
-  std::deque<Object> objects;                       ///< owns them
+  bool is_old = false;         ///< its version is 0.x, not 2 or 3
+  std::deque<Object> objects;  ///< all objects; `root` and properties point to them
   std::vector<std::unique_ptr<std::string>> files;  ///< names of the files, for Place::file
   std::vector<std::string> warnings;                ///< warnings about elements that are not known
 };

@@ -1,13 +1,13 @@
-// Converts the shapes of a Mitsuba scene to those of our scene files. add_kind() calls one function
-// for each type of shape. Some shapes become meshes: those whose type our scene files do not have
-// (cylinders), and those whose orientation or uv coordinates our shape cannot have (spheres turned
-// inside out, textured disks).
+// Converts the shapes of a Mitsuba scene to those of Bandsaw scene files. add_kind() calls one
+// function for each type of shape. A shape becomes a mesh if scene files have no such type
+// (cylinders), or if the type in scene files cannot have the orientation or the uv coordinates of
+// the shape (spheres turned inside out, textured disks).
 //
-// A surface is turned if Mitsuba's outside is the inside of our shape. It is turned if the shape
-// has flip_normals or if its material exchanges the two sides (SurfaceMaterial::turned), but not if
-// both hold. For a rectangle, a transform that mirrors (determinant < 0) also exchanges the sides.
-// `open` is a copy of the surface without its interior, because a shape that is not closed cannot
-// contain a medium.
+// A surface is turned if Mitsuba's outside is the inside of Bandsaw's shape. It is turned if the
+// shape has flip_normals or if its material exchanges the two sides (SurfaceMaterial::turned), but
+// not if both hold. For a rectangle, a transform that mirrors (determinant < 0) also exchanges the
+// sides. `open` is a copy of the surface without its interior, because a shape that is not closed
+// cannot contain a medium.
 
 #include "renderlib/import/mitsuba/shapes.h"
 
@@ -403,8 +403,8 @@ absl::Status ShapeReader::add_sphere(const Parameters& from, const Surface& surf
     return add_made_mesh(from, placed, sphere_mesh(), target);
   }
   const bool uv = needs_uv(surface.bsdf, surface.emitter);
-  // The axes below turn our sphere so that its poles and the seam of its uvs are where Mitsuba's
-  // are. Then only v runs in the other direction.
+  // The transform `axes` turns Bandsaw's sphere so that its poles and the seam of its uvs are where
+  // those of Mitsuba's sphere are. Then only v runs in the other direction.
   const TexturedSurface textured{UvFrame::kFlipped, {}};
   ASSIGN_OR_RETURN(const SurfaceMaterial material,
                    materials_.material_of(surface.bsdf, surface.emitter, textured));

@@ -24,8 +24,8 @@ struct SourceMesh {
 inline constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 
 /// Reads a Wavefront OBJ: vertices, normals, uvs and polygons; materials and groups are ignored.
-/// `flip_v`: in the file v = 0 is the bottom row, as is usual in OBJ files, so v becomes 1 - v. An
-/// error is INVALID_ARGUMENT and names the line.
+/// `flip_v` says that v = 0 is the bottom row in the file, as is usual in OBJ files; v then becomes
+/// 1 - v. An error is INVALID_ARGUMENT and names the line.
 absl::StatusOr<SourceMesh> read_obj(absl::string_view bytes, bool flip_v);
 /// Reads a PLY (convert/read_ply.h). `flip_v` as in read_obj(). Returns INVALID_ARGUMENT if the
 /// file is damaged.

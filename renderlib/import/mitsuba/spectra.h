@@ -24,7 +24,7 @@ absl::StatusOr<Spectrum> sampled_spectrum(const Parameters& from);
 absl::StatusOr<double> index_of_refraction(const Parameters& from, const std::string& name,
                                            const std::string& otherwise);
 
-/// Complex index of refraction, for each channel.
+/// Complex index of refraction for each channel: `eta` is its real part, `k` its imaginary part.
 struct MetalIndex {
   Rgb eta;
   Rgb k;
