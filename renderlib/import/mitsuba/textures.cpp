@@ -40,8 +40,9 @@ absl::StatusOr<Affine> to_uv_of(const Parameters& from) {
                  {whole.m[1][0], whole.m[1][1], whole.m[1][3]}}};
 }
 
-/// Returns the map `m` rewritten from our uv to our texture coordinates, in which v = 0 is the
-/// bottom row of the texture. `frame` states the direction of the surface's v.
+/// `m` maps Mitsuba's uv to Mitsuba's texture coordinates, in which v = 0 is the top row of the
+/// image. Returns the map from our uv to our texture coordinates, in which v = 0 is the bottom row.
+/// `frame` states whether our v is Mitsuba's v or 1 - v.
 Affine in_our_frame(const Affine& m, UvFrame frame) {
   Affine to = {{m[0], {-m[1][0], -m[1][1], 1 - m[1][2]}}};
   if (frame == UvFrame::kFlipped) {

@@ -152,7 +152,8 @@ absl::Status set_sensor(const Object& sensor, scene::Scene& scene, Conversion& t
   }
   const Frame frame = frame_of(to_world);
   set(frame.position, camera.mutable_position());
-  // The point is so far ahead that the sum keeps the precision of the direction.
+  // The point `look_at` is so far ahead that the sum of position and direction keeps the precision
+  // of the direction.
   const double ahead = std::max(1.0, max_abs(frame.position));
   set(frame.position + frame.ahead * ahead, camera.mutable_look_at());
   set(frame.up, camera.mutable_up());
@@ -165,7 +166,7 @@ absl::Status set_sensor(const Object& sensor, scene::Scene& scene, Conversion& t
   from.objects("sampler");  // the number of samples is chosen when a scene is rendered
   const double uneven = std::abs(frame.scale.x - frame.scale.y);
   if (frame.skewed || uneven > 1e-6 * frame.scale.x) {
-    to.warn(from.place(), "a sensor with unequal scale or shear is shown without them");
+    to.warn(from.place(), "the unequal scale or the shear of the sensor is left out");
   }
   if (sensor.type == "orthographic") {
     // Without a scale, Mitsuba's orthographic camera shows a width of 2 scene units.
@@ -218,6 +219,7 @@ absl::Status set_integrator(const Object& integrator, scene::Scene& scene, Conve
                                          " shows only light sources; max_depth 2, which is "
                                          "direct light, is used instead"));
     }
+    // These integrators do not count the passage through a thin pane towards max_depth.
     to.passages_are_free = type == "volpath" || type == "volpathmis";
     // Mitsuba's limit counts the segments of a path; Bandsaw's counts the vertices between them.
     out.set_max_depth(static_cast<std::uint32_t>(

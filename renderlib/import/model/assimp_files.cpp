@@ -38,7 +38,7 @@ class BytesStream : public Assimp::IOStream {
     const std::size_t base = origin == aiOrigin_SET   ? 0
                              : origin == aiOrigin_CUR ? at_
                                                       : bytes_.size();
-    // Offsets from the end and backwards are passed as wrapped unsigned numbers.
+    // Assimp passes a negative offset as a wrapped unsigned number, and the sum wraps back.
     const std::size_t target = base + offset;
     if (target > bytes_.size()) {
       return aiReturn_FAILURE;

@@ -12,7 +12,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kVerticalFov = 35;      // degrees: little distortion
+constexpr double kVerticalFov = 35;      // in degrees; a small angle distorts little
 constexpr double kMargin = 0.94;         // share of the image that the model may fill
 const Vec3 kToCamera = {0.55, 0.38, 1};  // from the model: front, a little right and above
 

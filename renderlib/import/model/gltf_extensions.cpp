@@ -43,8 +43,7 @@ constexpr absl::string_view kKnown[] = {
     "KHR_materials_diffuse_transmission",
 };
 
-/// Returns the extensions that the file uses and that are not in kKnown, so that they have no
-/// effect.
+/// Returns the extensions that the file uses and that are not in kKnown. They have no effect.
 std::vector<std::string> ignored_extensions(const gltf::Json& root) {
   std::vector<std::string> names;
   for (const gltf::Json& used : gltf::items(root, "extensionsUsed")) {

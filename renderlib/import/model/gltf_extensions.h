@@ -61,14 +61,17 @@ struct GltfExtensions {
   std::vector<GltfMaterial> materials;
   std::vector<GltfAtNode> cameras;  ///< cameras of the default scene; empty for glTF 1
   std::vector<GltfAtNode> lights;   ///< lights of the default scene; empty for glTF 1
-  std::map<std::size_t, std::vector<std::size_t>> bones;  ///< as in GltfLoadOrder
+  /// Assimp's number of a mesh -> Assimp's numbers of its bones' nodes (GltfLoadOrder::bones).
+  std::map<std::size_t, std::vector<std::size_t>> bones;
   std::size_t scenes = 1;
-  std::map<std::size_t, std::size_t> nodes;  ///< as in GltfLoadOrder
+  /// Index of a node in the file -> Assimp's number of the node.
+  std::map<std::size_t, std::size_t> nodes;
   std::size_t lights_with_range = 0;  ///< lights with KHR_lights_punctual's range, which is ignored
 };
 
-/// Reads the JSON of a file. `root` is PlainGltf::root (gltf/plain_gltf.h). It is the JSON of a
-/// plain glTF file, whose references have been checked, or of a glTF 1 file, which is not checked.
+/// Reads the JSON of a file. `root` is PlainGltf::root (gltf/plain_gltf.h). For glTF 2 it is the
+/// JSON of the rewritten file, whose references have been checked. The JSON of a glTF 1 file is
+/// neither rewritten nor checked.
 GltfExtensions read_gltf_extensions(const gltf::Json& root);
 
 }  // namespace bandsaw

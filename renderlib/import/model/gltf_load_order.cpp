@@ -41,7 +41,7 @@ class Walk {
         const Json* mesh = item_of(root_, "meshes", *node, "mesh");
         add_mesh(mesh);
         if (const Json* skin = item_of(root_, "skins", *node, "skin"); skin && mesh) {
-          skins_[mesh] = skin;  // a plain document has one skin for each mesh
+          skins_[mesh] = skin;  // a mesh has one skin in a document of gltf/plain_gltf.h
         }
         add(item_of(root_, "cameras", *node, "camera"), numbers_[node], cameras_, order.cameras);
         if (const Json* light = extension(*node, kLights);

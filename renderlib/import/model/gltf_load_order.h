@@ -30,8 +30,8 @@ struct GltfLoadOrder {
   std::vector<const gltf::Json*> materials;
   std::vector<GltfAtNode> cameras;
   std::vector<GltfAtNode> lights;  ///< KHR_lights_punctual
-  /// Nodes of the bones, as GltfAtNode::node, keyed by Assimp's mesh number; absent for a mesh
-  /// without a skin, and empty for a mesh with a bone outside the scene.
+  /// The nodes of each mesh's bones, as GltfAtNode::node, keyed by Assimp's mesh number. A mesh
+  /// without a skin is absent. A mesh with a bone outside the scene has an empty list.
   std::map<std::size_t, std::vector<std::size_t>> bones;
   /// GltfAtNode::node of each node of the scene, keyed by its index in the file.
   std::map<std::size_t, std::size_t> nodes;

@@ -41,7 +41,7 @@ struct LoadedModel {
   const aiScene* scene = nullptr;
   GltfExtensions gltf;  ///< set for a glTF file
   std::vector<std::string> animation_names;
-  std::optional<Animation> animation;  ///< the chosen one
+  std::optional<Animation> animation;  ///< the chosen animation; std::nullopt: none
   StillMeshes still_meshes;            ///< still meshes that were converted
 };
 

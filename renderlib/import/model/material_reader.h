@@ -63,10 +63,10 @@ class MaterialReader {
   absl::StatusOr<TextureId> opacity_map(Slot slot);
   /// Returns a normal map that is computed from the height map in the slot.
   absl::StatusOr<TextureId> bump_map(Slot slot);
-  /// Returns a texture for MetallicRoughness::index_map with which F0 is the texel of the slot
-  /// times the F0 of `index` (> 1).
+  /// Returns a texture for MetallicRoughness::index_map. With it, the reflectance at normal
+  /// incidence (F0) is that of the index of refraction `index` (> 1) times the texel of the slot.
   absl::StatusOr<TextureId> index_map(Slot slot, double index);
-  /// Returns true if a height map actually contains normals, which is common.
+  /// Returns true if the height map in the slot contains normals instead of heights, as is common.
   bool holds_normals(Slot slot) const;
 
   /// Adds a warning such as "its specular map is left out".

@@ -53,8 +53,8 @@ absl::Status read_failure(const std::string& name, const RefusedFiles& refused,
   absl::ConsumePrefix(&reason, "Fatal Error: ");
   if (absl::StrContains(reason, "bad_alloc")) {
     return absl::ResourceExhaustedError(absl::StrCat(
-        name, ": needs more memory than reading a file may take: it is too large, or damaged, so ",
-        "that it claims more than it has"));
+        name, ": needs more memory than reading a file may take: the file is too large, or it is ",
+        "damaged and claims more data than it has"));
   }
   return absl::InvalidArgumentError(absl::StrCat(
       name, ": cannot be read: ", reason.empty() ? "it is damaged or not supported" : reason));
@@ -82,7 +82,7 @@ void warn_of_unused(const std::vector<std::string>& animations, ModelFile& file)
     file.warn(absl::StrCat("has the animations ", absl::StrJoin(animations, ", ", quoted),
                            file.animation
                                ? absl::StrCat("; \"", file.animation->name, "\" is shown")
-                               : "; the rest pose is shown: --frame shows them"));
+                               : "; the rest pose is shown: --frame shows an animation"));
   }
   warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");
   warn(file.gltf.lights_with_range, "ranges of lights (light goes on for ever) are");

@@ -48,7 +48,8 @@ bool shines(const MaterialReader& reader, double exponent) {
 double opacity_of(MaterialReader& reader, bool mapped) {
   const double opacity = reader.number("$mat.opacity", 0, 1).value_or(1);
   if (opacity == 0 && !mapped) {
-    // This is the most common mistake of exporters: transparency and opacity are exchanged.
+    // The most common mistake of exporters is to exchange transparency and opacity. So an opacity
+    // of 0 is taken as 1.
     reader.unsupported("it is not there at all (opacity 0), which is taken as a mistake");
     return 1;
   }

@@ -35,7 +35,7 @@ struct ModelFile {
   const GltfExtensions& gltf;                 ///< set for kGltf
   const MtlOptions& mtl;                      ///< set for kObj
   const ColladaLenses& lenses;                ///< set for COLLADA
-  const std::optional<Animation>& animation;  ///< the chosen one; none: the rest pose
+  const std::optional<Animation>& animation;  ///< the chosen one; std::nullopt: rest pose
   StillMeshes& still_meshes;
   SceneDraft& draft;
   UnsupportedFeatures unsupported = {};

@@ -14,10 +14,11 @@
 namespace bandsaw {
 
 /// Returns the glass of a material (MetallicRoughness) that bounds a volume: smooth or rough, with
-/// its absorption. `index_of_refraction` is the index without the effect of KHR_materials_specular,
-/// which changes the reflection only and is part of the material's own index. Returns std::nullopt
-/// if the material has no volume or no transmission. Returns std::nullopt with a warning if the
-/// material is not fully transmissive, is a metal or is not opaque.
+/// its absorption. The index of refraction of `material` includes the effect of
+/// KHR_materials_specular, which changes only the reflection. The index of the glass is
+/// `index_of_refraction`, which does not include this effect. Returns std::nullopt if the material
+/// has no volume or no transmission. Returns std::nullopt with a warning if the material is not
+/// fully transmissive, is a metal or is not opaque.
 std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Material& material,
                                              double index_of_refraction);
 

@@ -45,7 +45,8 @@ Rgb intensity_of(const aiLight& from, ModelFile& file) {
   }
   const float at_one = from.mAttenuationConstant + from.mAttenuationLinear + square;
   file.warn(absl::StrCat("the light \"", from.mName.C_Str(),
-                         "\" falls off with the square of the distance here, from 1 unit on"));
+                         "\" gets a falloff with the square of the distance, with the same ",
+                         "intensity at 1 unit"));
   return brightness_of(from) * (at_one > 0 && std::isfinite(at_one) ? 1 / at_one : 1.0f);
 }
 
@@ -66,7 +67,7 @@ std::size_t directional_lights(const Model& model) {
 bool is_place(const Vec3& p) { return is_finite(p) && max_abs(p) <= 1e30; }
 
 /// Returns true for formats in which the angles of a spot light span its whole cones. In other
-/// formats, such as glTF, they reach from the axis to the edge. Assimp passes both on as they are.
+/// formats, such as glTF, the angles reach from the axis to the edge. Assimp does not convert them.
 bool has_whole_angles(const ModelFile& file) {
   constexpr absl::string_view kSuffixes[] = {".fbx", ".dae", ".3ds", ".ase", ".blend"};
   return std::any_of(std::begin(kSuffixes), std::end(kSuffixes), [&](absl::string_view suffix) {

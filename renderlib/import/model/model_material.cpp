@@ -1,5 +1,5 @@
-// Chooses how a material of a model is read: unlit, metallic-roughness, or older kinds. Textures
-// without a counterpart are reported.
+// Chooses how a material of a model is read: unlit, metallic-roughness, or older kinds. Adds
+// warnings for textures that are not rendered.
 
 #include "renderlib/import/model/model_material.h"
 

@@ -177,9 +177,9 @@ bool has_clear_colors(const aiMesh& from) {
          any([](const aiColor4D& c) { return c.a != 0; });
 }
 
-// Returns the transforms of a mesh's bones; std::nullopt if a bone has no node. Names need not be
-// unique, so the bones are found by the numbers in GltfExtensions::bones if these are known, and
-// only otherwise by name.
+// Returns the transforms of a mesh's bones; std::nullopt if a bone has no node. If
+// GltfExtensions::bones has the numbers of the bones' nodes, the nodes are found by number.
+// Otherwise they are found by name, although names need not be unique.
 std::optional<std::vector<Transform>> bone_places(const ModelFile& file, unsigned number,
                                                   const NodePlaces& places) {
   const aiMesh& mesh = *file.scene.mMeshes[number];
@@ -200,8 +200,8 @@ std::optional<std::vector<Transform>> bone_places(const ModelFile& file, unsigne
   return bones;
 }
 
-/// Returns the weights of a mesh's morph targets at a time; empty: they are not animated, so the
-/// weights in the file hold.
+/// Returns the weights of a mesh's morph targets at a time. Returns an empty list if they are not
+/// animated; then the weights in the file are used.
 std::vector<double> weights_of(const ModelFile& file, unsigned mesh, const NodePlaces& places,
                                double time) {
   const auto node = places.of_meshes.find(mesh);

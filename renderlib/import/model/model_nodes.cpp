@@ -82,8 +82,8 @@ bool has_usable_cameras(const ModelFile& file) {
          absl::EndsWithIgnoreCase(file.path, ".fbx");
 }
 
-/// Returns the keys of a node's motion during the shutter interval. Returns no keys if the keys
-/// cannot be interpolated, because one flattens the node or because only some mirror it.
+/// Returns the keys of a node's motion during the shutter interval. Returns no keys if they cannot
+/// be interpolated. This is so if a key flattens the node, or if only some of the keys mirror it.
 std::vector<Key> keys_of(const NodeMotion& motion, const Shutter& shutter) {
   std::vector<double> times = motion.times_between(shutter.open, shutter.close);
   if (!motion.is_linear()) {

@@ -1,8 +1,8 @@
 #pragma once
 
 // Computes the pose of a model at a time: where its nodes are, and the vertices of its morph
-// targets and skins. Without an animation this is the rest pose: the weights of the file, and every
-// bone at its node.
+// targets and skins. Without an animation the model has its rest pose: the morph targets have the
+// weights of the file, and each node has the transform that the file gives it.
 
 #include <cstddef>
 #include <map>

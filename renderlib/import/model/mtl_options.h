@@ -20,8 +20,8 @@ struct MtlOptions {
   std::set<std::string> ignored;  ///< options that are not supported, such as "-mm"
 };
 
-/// Adds the options in the text of an MTL file. A missing number of -s is 1, and of -o is 0. Lines
-/// that are not understood are skipped.
+/// Adds the options in the text of an MTL file. If an option has too few numbers, the missing ones
+/// are 1 for -s and 0 for -o. Lines that are not understood are skipped.
 void add_mtl_options(absl::string_view text, MtlOptions& to);
 
 }  // namespace bandsaw

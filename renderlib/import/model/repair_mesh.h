@@ -1,6 +1,6 @@
 #pragma once
 
-// Repairs defects of foreign meshes that can be repaired without guessing what was meant.
+// Repairs those defects of imported meshes that need no guess at what was meant.
 
 #include <cstddef>
 
@@ -8,8 +8,8 @@
 
 namespace bandsaw {
 
-/// Removes all vertices that no triangle uses if any vertex of the mesh is not finite, because a
-/// package may contain only finite vertices.
+/// If any vertex of the mesh is not finite, removes all vertices that no triangle uses. The reason
+/// is that a package, the form in which a scene is sent, may contain only finite vertices.
 void drop_unused_vertices(Mesh& mesh);
 
 /// Replaces each normal that is zero or not finite by the area-weighted mean of the normals of its

@@ -1,5 +1,5 @@
 // Helps all parts of the conversion of a pbrt scene: converts colours and spectra of parameters to
-// linear RGB, writes values into messages, and stores warnings.
+// linear RGB, writes values into the protobuf messages of our scene file, and stores warnings.
 
 #include "renderlib/import/pbrt/builder.h"
 

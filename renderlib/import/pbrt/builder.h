@@ -88,7 +88,7 @@ struct Builder {
   std::set<std::string> warned;
 };
 
-// Write values into messages of a scene file.
+// These functions write values into the protobuf messages of our scene file.
 void set_rgb(const Rgb3& rgb, scene::Color* to);
 scene::Texture constant_texture(const Rgb3& rgb);
 void set_matrix(const Transform& t, google::protobuf::RepeatedField<double>* to);
@@ -145,7 +145,7 @@ absl::StatusOr<std::optional<scene::Texture>> float_texture(const Parameters& pa
                                                             const std::string& name,
                                                             Builder& builder);
 /// Adds the texture to our scene under a name that begins with `name`, and returns a reference to
-/// it. A constant texture is not added but returned as it is.
+/// it. A constant texture is not added; the function returns it unchanged.
 scene::Texture named_texture(const std::string& name, scene::Texture texture, Builder& builder);
 /// Returns an upper bound of the values of a texture. The textures to which `texture` refers by
 /// name MUST have been added by named_texture().

@@ -61,6 +61,8 @@ std::string encoded(const Image& image) {
                     : std::string();
 }
 
+/// Returns the image in `file`. If the file is missing, returns std::nullopt after a warning that
+/// ends with `instead`.
 absl::StatusOr<std::optional<Image>> read_picture(const std::string& file, const LightSource& from,
                                                   absl::string_view instead) {
   ASSIGN_OR_RETURN(const auto bytes, read_or_warn(file, from.place(), instead, from.builder));
@@ -181,7 +183,8 @@ absl::Status projection(const LightSource& from) {
   const double side = std::min(width, height);
   const double half_height = half * height / side;
   double power = 0;
-  // The area of a pixel at distance 1; times cos^3 it is the pixel's solid angle.
+  // `cell` is the area of a pixel at distance 1. Times cos^3 of the angle to the axis, it is the
+  // solid angle of the pixel.
   const double cell = 4 * half * half / (side * side);
   for (std::size_t y = 0; y < image->height; ++y) {
     for (std::size_t x = 0; x < image->width; ++x) {

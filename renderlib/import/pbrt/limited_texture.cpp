@@ -93,7 +93,7 @@ struct Limiter {
     const double most = largest_value(from, builder) * most_of(factor);
     if (most > 1) {
       builder.warn(place, absl::StrCat("a texture reaches ", most,
-                                       "; it is scaled so that it reaches 1 instead of clamped"));
+                                       "; instead of being clamped, it is scaled to reach 1"));
       for (double& channel : factor) {
         channel *= 0.9999999 / most;  // the product must not exceed 1 by rounding
       }

@@ -1,9 +1,9 @@
-// Computes Loop's subdivision surfaces, for pbrt's shape loopsubdiv. Each level splits a triangle
-// into four: old vertices move to weighted means of their neighbours, new vertices are weighted
-// means of an edge and the two vertices opposite to it. After the last level, the vertices move to
-// their limits, at which the normal is the cross product of two tangents. The weights are those of
-// Loop 1987, and on boundaries and for limits those of Hoppe et al. 1994, "Piecewise Smooth Surface
-// Reconstruction", appendix A.
+// Computes Loop's subdivision surfaces, for pbrt's shape loopsubdiv. Each level splits every
+// triangle into four. An old vertex moves to a weighted mean of itself and its neighbours. A new
+// vertex is a weighted mean of the ends of an edge and of the two vertices opposite to the edge.
+// After the last level, the vertices move to their limits, at which the normal is the cross product
+// of two tangents. The weights are those of Loop 1987. On boundaries and for limits, they are those
+// of Hoppe et al. 1994, "Piecewise Smooth Surface Reconstruction", appendix A.
 
 #include <algorithm>
 #include <cmath>

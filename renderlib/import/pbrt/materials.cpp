@@ -104,8 +104,8 @@ absl::Status diffuse_transmission(const MaterialSource& from, Surface& to) {
   reflectance = scaled(std::move(reflectance));
   transmittance = scaled(std::move(transmittance));
   if (reflectance.has_color() && transmittance.has_color()) {
-    // In pbrt the sum may exceed 1. The factor 0.9999999 below is there so that the scaled sum does
-    // not exceed 1 by rounding.
+    // In pbrt the sum may exceed 1. The factor 0.9999999 keeps the scaled sum from exceeding
+    // 1 by rounding.
     bool is_bright = false;
     for (int c = 0; c < 3; ++c) {
       const double sum = reflectance.color().rgb(c) + transmittance.color().rgb(c);
@@ -210,6 +210,8 @@ absl::Status read_kind(const MaterialSource& from, const std::string& type, Surf
 
 /// Reads a normal map and a displacement.
 absl::Status read_bumps(const MaterialSource& from, Surface& to) {
+  // True if the material may have the fields normal_texture and bump_texture. A mix and glTF's
+  // material may not have them, but glTF's material has a field of its own for a normal map.
   const bool has_fields = !to.material.has_mix() && !to.material.has_gltf() && !to.is_null;
   ASSIGN_OR_RETURN(const std::string normals, from.parameters.text("normalmap", ""));
   if (!normals.empty()) {

@@ -122,6 +122,7 @@ absl::Status read_uniform_grid(const MediumParts& from, const Transform& to_shap
   return absl::OkStatus();
 }
 
+/// Marks all parameters as used, so that none of them causes a further warning.
 void use_all(const Parameters& parameters) {
   for (const Parameter& parameter : parameters.list) {
     parameter.is_used = true;

@@ -84,7 +84,8 @@ Vec2 octahedral_of(const Vec3& d) {
 }
 
 Image equirectangular(const Sky& sky, const Transform& to_light) {
-  // The equator gets as many pixels as the octahedral square has on it: two per column.
+  // In each column of the octahedral square, two pixels lie on the equator. The equator of the
+  // result gets as many pixels in total.
   const std::uint32_t width = std::clamp<std::uint32_t>(
       sky.is_octahedral ? 2 * sky.image.width : sky.image.width, 8, kMaxWidth);
   Image out;

@@ -43,7 +43,8 @@ absl::StatusOr<std::set<std::string>> fill_open_media(const std::string& of_came
 }
 
 /// Orders the media, because a later medium replaces an earlier one where they overlap. The media
-/// in `filled`, which fill the box around the scene, come first, and the vacuum comes last.
+/// in `filled`, which fill the box around the scene, come first. The vacuum, which is the empty
+/// medium inside of clear glass that lies in a medium, comes last.
 void order_media(const std::set<std::string>& filled, Builder& builder) {
   auto& media = *builder.out.mutable_medium();
   const auto rank = [&filled](const scene::Medium& medium) {

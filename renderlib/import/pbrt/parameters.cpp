@@ -19,7 +19,7 @@ namespace {
 
 struct Type {
   const char* name;
-  const char* same_as;  ///< its name in Parameter::type
+  const char* same_as;  ///< stored in Parameter::type; the same for all names of one type
   bool has_texts;       ///< the values may be strings in quotes
 };
 constexpr std::array kTypes = {
@@ -32,6 +32,7 @@ constexpr std::array kTypes = {
     Type{"blackbody", "blackbody", false}, Type{"string", "string", true},
     Type{"texture", "texture", true},      Type{"spectrum", "spectrum", true}};
 
+/// Appends the value of a token to `to`. A bool may be written with or without quotes.
 absl::Status add_value(const Token& token, bool has_texts, Parameter& to) {
   if (token.kind == Token::Kind::kString) {
     if (!has_texts && to.type != "bool") {

@@ -22,7 +22,7 @@ struct Parameter {
   Place place;
   std::vector<double> numbers = {};     ///< values of number types; bools are 0 and 1
   std::vector<std::string> texts = {};  ///< values of "string", "texture" and named "spectrum"
-  mutable bool is_used = false;
+  mutable bool is_used = false;         ///< set by the accessors; unused parameters cause warnings
 };
 
 /// Parameters by name. The error is INVALID_ARGUMENT, with file and line, for values of a wrong

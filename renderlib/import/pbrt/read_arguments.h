@@ -14,7 +14,7 @@
 
 namespace bandsaw::pbrt {
 
-/// Reads a text in quotes; `what` is the word for it in an error.
+/// Reads a text in quotes. If there is none, the error says what is expected: `what` ("a name").
 absl::StatusOr<std::string> read_quoted(Tokens& tokens, const Place& place, absl::string_view what);
 /// Reads `count` numbers, which may stand in brackets.
 absl::StatusOr<std::vector<double>> read_numbers(Tokens& tokens, const Place& place,
@@ -26,7 +26,8 @@ absl::StatusOr<Transform> read_translation(Tokens& tokens, const Place& place);
 absl::StatusOr<Transform> read_scaling(Tokens& tokens, const Place& place);
 /// Reads an angle in degrees and an axis.
 absl::StatusOr<Transform> read_rotation(Tokens& tokens, const Place& place);
-/// Reads eye, target and up. Returns the transformation from the world to that camera.
+/// Reads the position of a camera, the point at which it looks, and its up vector. Returns the
+/// transformation from the world to the camera.
 absl::StatusOr<Transform> read_look_at(Tokens& tokens, const Place& place);
 
 }  // namespace bandsaw::pbrt

@@ -1,7 +1,7 @@
 // Converts pbrt's shapes. Whole spheres and disks whose uvs do not matter become shapes of our
-// scene. A PLY file is used as it is if nothing about it must change. All other shapes become
-// meshes in made files: PLY files that the converter makes and adds to the scene. Each shape is
-// placed with its material, emission, opacity and the medium inside.
+// scene. A PLY file of the scene is used unchanged if is_plain_file() allows it. All other shapes
+// become meshes in made files: PLY files that the converter makes and adds to the scene. Each shape
+// is placed with its material, emission, opacity and the medium inside.
 
 #include <algorithm>
 #include <cmath>
@@ -250,14 +250,15 @@ absl::Status read_emission(Shape& shape, double area) {
   return absl::OkStatus();
 }
 
-/// Returns true if a PLY file can be used as it is.
+/// Returns true if a PLY file can be used unchanged: the shape is not reversed, emits no light and
+/// transmits none, and the medium is the same on both sides.
 bool is_plain_file(const Shape& shape, const std::string& file, const Sides& sides) {
   return absl::EndsWithIgnoreCase(file, ".ply") && !shape.state.reverse_orientation &&
          shape.state.area_light == nullptr && !shape.state.surface->transmits && !sides.differ();
 }
 
-/// Adds the shape as a mesh: as its own PLY file if this can be used as it is, otherwise as a made
-/// file.
+/// Adds the shape as a mesh: as the scene's PLY file if this can be used unchanged, otherwise as a
+/// made file.
 absl::Status add_mesh(Shape& shape, Sides sides) {
   ASSIGN_OR_RETURN(const std::string file, shape.parameters.text("filename", ""));
   if (shape.type == "plymesh") {

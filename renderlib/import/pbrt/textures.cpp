@@ -30,7 +30,7 @@ scene::Texture product(scene::Texture a, scene::Texture b) {
 struct TextureSource {
   const Parameters& parameters;
   const State& state;
-  bool is_color;
+  bool is_color;  ///< the texture has colours (type "spectrum"); false: numbers (type "float")
   Builder& builder;
 
   const Place& place() const { return parameters.place; }

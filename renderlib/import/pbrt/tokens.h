@@ -13,7 +13,7 @@
 namespace bandsaw::pbrt {
 
 /// Bounds, so that a hostile scene ends with an error.
-inline constexpr std::size_t kMaxIncludes = 32;  ///< files within each other
+inline constexpr std::size_t kMaxIncludes = 32;  ///< files that may be open at the same time
 inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{2} << 30;
 /// Maximum total size of all files.
 inline constexpr std::uint64_t kMaxSceneBytes = std::uint64_t{4} << 30;

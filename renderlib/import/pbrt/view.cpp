@@ -249,7 +249,9 @@ absl::Status read_camera(const ViewSource& view, const Film& film, Builder& buil
   const bool is_square =
       std::abs((screen[1] - screen[0]) / (screen[3] - screen[2]) - aspect) < 1e-9 * aspect &&
       screen[0] == -screen[1] && screen[2] == -screen[3];
-  const double half = is_square && is_whole ? screen[3] : 1;  // of the height, in screen space
+  // Half of the height that the camera would show without a window, in screen space. It is 1 if
+  // there is a window, so that the window's edges are in screen space too.
+  const double half = is_square && is_whole ? screen[3] : 1;
   if (is_flat) {
     camera.mutable_orthographic()->set_height(2 * half * unit);
     in.ignore({"lensradius", "focaldistance"});

@@ -41,6 +41,8 @@ class Field {
     int line = -1;  ///< counted from 0, as in protobuf
     int column = -1;
   };
+  /// Returns the position of the field `name`. If the field is absent or its position is unknown,
+  /// returns that of this message.
   At at(const std::string& name, int index) const;
   absl::Status failure(const At& at, const std::string& path, absl::string_view what) const;
 

@@ -14,8 +14,8 @@ namespace bandsaw {
 
 using Numbers = google::protobuf::RepeatedField<double>;
 
-/// Reads three finite numbers of at most 1e30 in absolute value. The limit is there so that
-/// products of a few of them do not overflow. The field is required.
+/// Reads three finite numbers of at most 1e30 in absolute value, so that products of a few such
+/// numbers do not overflow. The field is required.
 absl::StatusOr<Vec3> read_vec3(const Field& in, const std::string& name, const Numbers& list);
 /// Reads a vector like the first read_vec3(). Returns `otherwise` if the field is absent.
 absl::StatusOr<Vec3> read_vec3(const Field& in, const std::string& name, const Numbers& list,

@@ -19,7 +19,7 @@
 namespace bandsaw {
 namespace {
 
-// Returns the parser's error; for an unknown field, with the known fields.
+// Returns the text of the parser's error. If a field is unknown, the text names the known fields.
 std::string explain(const std::string& message) {
   absl::string_view rest = message;
   const auto until_quote = [&rest] {

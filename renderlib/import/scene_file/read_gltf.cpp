@@ -66,7 +66,8 @@ absl::Status read_metallic_roughness(const Field& in, const scene::Gltf& from, S
   return check_range(in, "roughness", to.roughness.factor, 0, 1);
 }
 
-// A number that is 0 unless it or its texture is present.
+// A number in [0, 1] that may have a texture. An absent number is 1 if there is a texture and 0
+// otherwise.
 struct OptionalNumber {
   const char* name;
   bool given;

@@ -1,6 +1,6 @@
 // Reads the groups and instances of a scene file. A group's shapes and models are read once into a
-// Contents (draft/placements.h); each instance copies its placements, transformed, into the scene
-// or into another group.
+// Contents (draft/placements.h). Each instance of the group copies the placements of this Contents,
+// transformed, into the scene or into another group.
 
 #include "renderlib/import/scene_file/read_groups.h"
 
@@ -187,7 +187,7 @@ absl::StatusOr<const Contents*> find_group(const Field& in, const std::string& n
     names.push_back(known);
   }
   return in.error("of", absl::StrCat("no group is called \"", name, "\"", did_you_mean(name, names),
-                                     "; within a group only earlier ones are known"));
+                                     "; a group may only refer to groups before it"));
 }
 
 /// Adds `what` to `to`, placed by `placement` or, if there are keys, moving according to `keys`.
@@ -218,7 +218,7 @@ absl::Status read_instance(const Field& in, const scene::Instance& from, SceneDr
         "of", absl::StrCat("makes more than ", kMaxPlacements, " placements of meshes and groups"));
   }
   for (const Transform& copy : copies) {
-    // Boundaries of media have no material that could be replaced.
+    // `filled` holds the boundaries of media, which have no material that could be replaced.
     if (!place_copy(group->seen, placement, copy, keys, material, to.seen) ||
         !place_copy(group->filled, placement, copy, keys, std::nullopt, to.filled)) {
       return in.error("scale", "is too large or too small for what is placed");

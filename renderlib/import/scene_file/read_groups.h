@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads groups of a scene file, which are shapes and models with a name, and instances, each of
-// which places a group once or many times.
+// Reads the groups and the instances of a scene file. A group is a named list of shapes, models and
+// instances. An instance places a group once or many times.
 
 #include "absl/status/status.h"
 #include "proto/scene.pb.h"
