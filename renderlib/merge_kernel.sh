@@ -2,10 +2,11 @@
 # Merges a kernel's objects into one object that has one global symbol.
 # Usage: merge_kernel.sh LD OBJCOPY READELF SYMBOL OUTPUT OBJECT...
 #
-# The objects contain inline functions and templates that code compiled for older processors
-# contains too. A linker keeps only one copy of such a function for the whole program, and older
-# processors must be able to run this copy. So all symbols that the objects define become local,
-# except SYMBOL. Undefined symbols are resolved by the rest of the program.
+# A kernel is code that is compiled for newer processors. Its objects contain inline functions
+# and templates that the rest of the program, compiled for older processors, contains too. A linker
+# keeps only one copy of such a function for the whole program, and older processors must be able to
+# run this copy. So all symbols that the objects define become local, except SYMBOL. Undefined
+# symbols are resolved by the rest of the program.
 #
 # Fails if the kernel has code that would run before the program has checked the processor.
 set -eu

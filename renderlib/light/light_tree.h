@@ -1,7 +1,8 @@
 #pragma once
 
 // Light tree: selects one of many lights by descending a binary tree. At each node, a child is
-// selected with a probability in proportion to its importance (light/light_bound.h).
+// selected with a probability in proportion to its importance, an approximate upper bound of its
+// contribution (light/light_bound.h).
 //
 // The method is that of Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with
 // Adaptive Tree Splitting". The tree is built with the surface area orientation heuristic
@@ -32,7 +33,7 @@ class LightTree {
   explicit LightTree(const std::vector<LightBound>& lights);
 
   bool empty() const { return nodes_.empty(); }
-  /// Returns the importance of all lights together. `From`, here and below, is `Receiver` or
+  /// Returns the importance of all lights together. In all functions, `From` is `Receiver` or
   /// `ReceiverSegment`.
   template <typename From>
   double importance(const From& receiver) const;

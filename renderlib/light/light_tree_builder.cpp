@@ -19,13 +19,14 @@
 namespace bandsaw {
 namespace {
 
-/// Orientation cone of a group of lights. Angles in radians; the fields correspond to those of
-/// `LightBound`.
+/// A cone that contains the emission normals of a group of lights, as in `LightBound`. The angles
+/// are in radians.
 struct LightCone {
   Vec3 axis{0, 0, 1};
-  double spread = 0;  ///< in [0, pi]
-  double reach = 0;   ///< in [0, pi / 2]
-  bool two_sided = false;
+  double spread = 0;  ///< half-angle of the cone, in [0, pi]
+  /// Nothing is emitted at a larger angle to a normal; in [0, pi / 2].
+  double reach = 0;
+  bool two_sided = false;  ///< the cone around -axis emits in the same way
 };
 
 /// Added to the spread of a merged cone. It is larger than the rounding error of the angles in one
@@ -254,6 +255,7 @@ class LightTreeBuilder {
   /// Replaces `best` if a split between two of the bins is cheaper. `factor` multiplies the costs.
   static void try_splits(const std::array<Group, kBins>& bins, int axis, double factor,
                          Split& best) {
+    // Element i is the cost of all lights in bins i and higher, or -1 if there are none.
     std::array<double, kBins> above;
     Group group;
     for (std::size_t i = kBins - 1; i > 0; --i) {

@@ -90,8 +90,8 @@ std::vector<LightBound> Lights::add_surfaces() {
   return bounds;
 }
 
-// A group may have many instances and many primitives, so examining it again for each instance
-// would take too long.
+// The result for a group is kept in `known`. Examining a group again for each of its instances
+// would take too long, because it may have many instances and many primitives.
 bool Lights::group_emits(std::uint32_t instance, const std::vector<double>& radiance,
                          std::map<GroupId, bool>& known) const {
   const Instance& placed = geometry_->instances[instance - 1];

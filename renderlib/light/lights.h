@@ -70,8 +70,8 @@ class Lights {
                                     double v) const;
 
   /// Selects a light by its contribution along a segment of a medium, and samples a point on the
-  /// light. The light is where it is at the given time. `choice`, u and v are as in sample().
-  /// Returns std::nullopt if no light contributes.
+  /// light. `time` determines the position of a light that moves. `choice`, u and v are as in
+  /// sample(). Returns std::nullopt if no light contributes.
   std::optional<LightPivot> sample_pivot(const ReceiverSegment& segment, double time, double choice,
                                          double u, double v) const;
 

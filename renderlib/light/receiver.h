@@ -35,8 +35,8 @@ struct Receiver {
   std::optional<Vec3> normal = std::nullopt;
   double time = 0;  ///< lights are evaluated at this time
 
-  /// If set, only lights that may be visible within the cone are sampled, and no distant lights.
-  /// The cone MUST outlive the receiver.
+  /// If this is set, only lights that may be visible within the cone are sampled. Distant lights
+  /// are not sampled then. The cone MUST outlive the receiver.
   const Cone* within = nullptr;
 
   /// Returns true if light can arrive from `direction`, which may have any length.

@@ -2,7 +2,7 @@
 
 // Samples points on emissive shapes as seen from a receiver (light/lights.h): by solid angle where
 // a closed form exists (spheres from outside, rectangles, triangles that are not small), otherwise
-// uniformly over the area.
+// over the area, uniformly except on ellipsoids.
 
 #include <optional>
 

@@ -10,11 +10,15 @@
 
 namespace bandsaw {
 
-/// Returns the albedo, which depends on the kind of material. It is the reflectance of a diffuse
-/// surface, the reflectance of a metal at normal incidence, the reflectance of the surface below
-/// the coat of plastic, the sum of reflectance and transmittance of a sheet, the base colour of a
-/// glTF or principled material, white for a dielectric, and the radiance of an emissive surface,
-/// clamped to 1. Each channel is in [0, 1]. The material MUST NOT be a mixture.
+/// Returns the albedo, which depends on the kind of material:
+/// - diffuse surface: its reflectance,
+/// - metal: its reflectance at normal incidence,
+/// - plastic: the reflectance of the surface below the coat,
+/// - sheet that scatters diffusely: the sum of its reflectance and transmittance,
+/// - glTF or principled material: its base colour,
+/// - dielectric: white,
+/// - emissive surface: its radiance.
+/// Each channel is clamped to [0, 1]. The material MUST NOT be a mixture.
 Rgb albedo_at(const Material& material, absl::Span<const Texture> textures,
               const SurfacePoint& point);
 

@@ -25,18 +25,18 @@ bool reflects(const SidedNormals& normal, const Vec3& wi) {
   return dot(wi, normal.geometric) > 0 && dot(wi, normal.shading) > 0;
 }
 
-/// Returns the normals for specular reflection: the geometric normal replaces the shading normal
-/// where the latter would put wo or its mirror direction on the wrong side. So silhouettes of
-/// coarse meshes lose no light.
+/// Returns the normals for specular reflection. If the shading normal would put wo or its mirror
+/// direction on the wrong side, the geometric normal replaces it. So silhouettes of coarse meshes
+/// lose no light.
 SidedNormals for_mirror(const SidedNormals& normal, const Vec3& wo) {
   const bool usable =
       dot(wo, normal.shading) > 0 && dot(mirrored(wo, normal.shading), normal.geometric) > 0;
   return {normal.geometric, usable ? normal.shading : normal.geometric};
 }
 
-/// Returns the normals for specular reflection and refraction: those of for_mirror(), except that
-/// the geometric normal also replaces the shading normal where the latter would put the refracted
-/// direction on wo's side of the surface.
+/// Returns the normals for specular reflection and refraction. They are those of for_mirror(), with
+/// one more case: if the shading normal would put the refracted direction on wo's side of the
+/// surface, the geometric normal replaces it.
 SidedNormals for_glass(const SidedNormals& normal, const Vec3& wo, double eta) {
   const SidedNormals sided = for_mirror(normal, wo);
   const std::optional<double> cos_t = refracted_cos(dot(wo, sided.shading), eta);

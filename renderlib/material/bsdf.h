@@ -32,9 +32,9 @@ struct DiffuseBsdf {
   Rgb reflectance;
 };
 
-/// Fuzzy metal: the mirror direction plus a uniform point in a ball of radius `fuzz` (Shirley et
-/// al., "Ray Tracing in One Weekend", 10.6); directions below the surface are absorbed. The value
-/// is reflectance times the pdf, so every sample has the same weight.
+/// Fuzzy metal. A sample is the mirror direction plus a uniform point in a ball of radius `fuzz`,
+/// normalised (Shirley et al., "Ray Tracing in One Weekend", 10.6). Samples below the surface are
+/// absorbed. The value is reflectance times the pdf, so every sample has the same weight.
 struct FuzzyMetalBsdf {
   SidedNormals normal;
   Rgb reflectance;

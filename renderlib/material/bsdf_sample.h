@@ -19,11 +19,12 @@ struct BsdfSample {
   Rgb weight;          ///< value / pdf
   double pdf = 0;      ///< 0 if `delta`
   bool delta = false;  ///< a delta direction, for which evaluate() is zero
-  /// For a refraction, (index on the side of wo / index on the side of wi)^2, which is a factor of
-  /// `weight`; otherwise 1. Refraction compresses radiance in the denser medium: L / index^2 is
-  /// invariant along a ray.
+  /// 1, except for a refraction. Then it is (index on the side of wo / index on the side of wi)^2,
+  /// and `weight` contains this factor. Refraction compresses radiance in the denser medium: L /
+  /// index^2 is invariant along a ray.
   double compression = 1;
-  /// The scattering counts towards max_depth (ThinDielectric::free_passage).
+  /// True if the scattering counts towards max_depth. Only light that passes a ThinDielectric with
+  /// `free_passage` does not count.
   bool counts = true;
 };
 

@@ -2,9 +2,10 @@
 
 // The GGX microfacet distribution with height-correlated Smith masking-shadowing (Walter et al.
 // 2007, "Microfacet Models for Refraction through Rough Surfaces"; Heitz 2014, "Understanding the
-// Masking-Shadowing Function", JCGT 3(2), section 6.3), in the local frame of the surface: z is the
-// normal, directions are unit vectors with z > 0. alpha, in [kMinAlpha, 1], is the width of
-// the distribution. microfacets.h has anisotropic facets and Beckmann's distribution.
+// Masking-Shadowing Function", JCGT 3(2), section 6.3). All vectors are in the local frame of the
+// surface, in which z is the normal. Directions are unit vectors with z > 0. alpha is the width of
+// the distribution, in [kMinAlpha, 1]. microfacets.h has anisotropic facets and Beckmann's
+// distribution.
 
 #include <algorithm>
 #include <cmath>

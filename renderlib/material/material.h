@@ -56,7 +56,7 @@ struct Dielectric {
   std::uint32_t priority = 0;
   std::optional<TextureId> roughness_map = std::nullopt;  ///< its luminance multiplies `roughness`
   /// The index is 1 where the map's luminance is 0, index_of_refraction where it is 1, and linear
-  /// in between. Not allowed with a priority: a glass that contains a path has one index.
+  /// in between. Not allowed with a priority, because a nested glass has only one index.
   std::optional<TextureId> index_map = std::nullopt;
   std::optional<Microfacets> surface = std::nullopt;  ///< replaces `roughness`
 };
@@ -104,7 +104,7 @@ struct MetallicRoughness {
 class PlasticCoat;
 
 /// A diffuse surface below a dielectric coat, with the light that is reflected to and fro between
-/// both: `plastic` and `roughplastic` of Mitsuba 3.
+/// the coat and the surface: `plastic` and `roughplastic` of Mitsuba 3.
 struct Plastic {
   TextureId reflectance{};           ///< diffuse reflectance; vertex colours multiply it
   double index_of_refraction = 1.5;  ///< index of the coat, (1, 5]
@@ -181,7 +181,8 @@ struct ThinPrincipled {
   Number sheen = {};
   Number sheen_tint = {};
   Number flatness = {};
-  Number diff_trans = {};  ///< share of the diffuse light that is transmitted: half of Mitsuba's
+  /// Share of the diffuse light that is transmitted. It is half of Mitsuba's parameter diff_trans.
+  Number diff_trans = {};
 };
 
 /// A mixture: at each point one of two materials is present (material/mixture.h). Both precede the

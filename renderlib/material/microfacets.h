@@ -102,7 +102,8 @@ inline double facet_pdf_over_cos(const Vec3& o, const Vec3& h, const Facets& f) 
   return 2 * density / (std::abs(o.z) + facet_stretched(o, f));
 }
 
-/// Returns D(h) G1(o) divided by D(h) G1(o) of GGX, from which sample_facet() samples; 1 for GGX.
+/// Returns D(h) G1(o) of the distribution, divided by D(h) G1(o) of GGX. It corrects for
+/// sample_facet(), which always samples from GGX. For GGX it is 1.
 inline double facet_ratio(const Vec3& o, const Vec3& h, const Facets& f) {
   if (f.distribution == Microfacets::Distribution::kGgx) {
     return 1;

@@ -1,7 +1,8 @@
 #pragma once
 
-// Opacity of a surface at a point: its alpha, and 0 for glass that does not refract and for hidden
-// lamps. Camera and bounce rays are stopped with this probability; shadow rays are attenuated by
+// Opacity of a surface at a point. It is the surface's alpha, except that it is 0 for glass that
+// does not refract and for hidden lamps (emitters that the camera does not see and that stop no
+// light). Camera and bounce rays are stopped with this probability; shadow rays are attenuated by
 // it.
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 #pragma once
 
 // A diffuse surface below a smooth or rough dielectric coat: `plastic` and `roughplastic` of
-// Mitsuba 3. The diffuse part is r / (1 - c r') T(wo) T(wi) / (eta^2 pi) with the reflectance r,
-// the transmittance T of the coat, the internal reflectance c of the coat, and r' = r if nonlinear,
-// else 1 (Weidlich and Wilkie 2007, "Arbitrarily Layered Micro-Facet Surfaces"). The factor 1 /
-// (1 - c r') is the sum of a geometric series, which has a term for each further reflection inside
-// the coat.
+// Mitsuba 3. The diffuse part is r / (1 - c r') T(wo) T(wi) / (eta^2 pi). Here r is the
+// reflectance, T is the transmittance of the coat, c is the internal reflectance of the coat, and
+// r' is r if the material is nonlinear, otherwise 1 (Weidlich and Wilkie 2007, "Arbitrarily Layered
+// Micro-Facet Surfaces"). The factor 1 / (1 - c r') is the sum of a geometric series, which has a
+// term for each further reflection inside the coat.
 
 #include <optional>
 

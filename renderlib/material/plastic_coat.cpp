@@ -24,8 +24,8 @@ struct Shares {
 
 /// Returns the shares that a rough boundary reflects and transmits of light from a direction with
 /// this cosine. They are integrated by the midpoint rule over the unit square from which facets are
-/// sampled. The tail of the distribution lies at the upper end of the second number, so points are
-/// denser at this end.
+/// sampled. Values near 1 of v, the second number, sample the tail of the distribution, so points
+/// are denser near v = 1.
 Shares shares_of(double cos_theta, double eta, const Facets& facets) {
   constexpr int kTurns = 16;
   constexpr int kHeights = 64;

@@ -22,7 +22,7 @@ class PlasticCoat {
   /// The coat at a point where its alpha is `alpha`.
   struct At {
     const PlasticCoat* coat;
-    std::size_t row;      ///< row of the next smaller alpha
+    std::size_t row;      ///< last row whose alpha is at most `alpha`
     double next = 0;      ///< weight of the row after `row`
     bool smooth = false;  ///< the coat is smooth here; no row is used
 

@@ -1,9 +1,9 @@
 #pragma once
 
 // The principled BSDF of Mitsuba 3 for solid bodies: a rough specular reflection that is mixed from
-// a dielectric and a metal, refraction, diffuse light with sheen, and a clear coat. As in its
-// definition, the layers are added up and not attenuated by each other, so bright base colours can
-// reflect more than they receive at grazing angles.
+// a dielectric and a metal, refraction, diffuse light with sheen, and a clear coat. As Mitsuba
+// defines it, the layers are added up, and no layer attenuates another. So at grazing angles,
+// bright base colours can reflect more light than they receive.
 
 #include <array>
 #include <optional>

@@ -12,8 +12,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns true if wi is on the side of the geometric normal that its z in the shading frame
-/// indicates.
+/// Returns true if the geometric normal and the shading normal agree on which side of the surface
+/// wi is. `local_z` is the z of wi in the shading frame.
 bool is_consistent(const RoughDielectricBsdf& bsdf, const Vec3& wi, double local_z) {
   return dot(wi, bsdf.geometric) * local_z > 0;
 }
@@ -68,7 +68,7 @@ BsdfValue evaluate(const RoughDielectricBsdf& bsdf, const Vec3& wi) {
   }
   const bool reflects = i.z > 0;
   // For a refraction, the half vector -(o + eta i) points to the side of smaller index (Walter et
-  // al. 2007, eq. 16); below it is flipped to the side of the normal.
+  // al. 2007, eq. 16). The division by copysign(size, h.z) turns it to the side of the normal.
   Vec3 h = reflects ? o + i : -(o + i * bsdf.eta);
   const double size = length(h);
   if (!(size > 0)) {

@@ -1,7 +1,8 @@
 #pragma once
 
 // The normal that a surface is shaded with: the interpolated normal of the mesh, bent by a normal
-// map or a height map, and kept visible from the viewer.
+// map or a height map, and kept visible from the viewer. The outside of a surface is the side of
+// its geometric normal.
 
 #include "absl/types/span.h"
 #include "renderlib/geometry/surface.h"

@@ -84,7 +84,7 @@ ThinPrincipledBsdf thin_principled_at(const ThinPrincipled& material,
   const double anisotropic = number(material.anisotropic);
   const double roughness = number(material.roughness);
   bsdf.facets = principled_facets(roughness, anisotropic);
-  // Burley 2015, figure 15: a thicker sheet blurs more.
+  // Burley 2015, figure 15: a sheet of larger index blurs the transmitted light more.
   bsdf.straight = principled_facets((0.65 * bsdf.eta - 0.35) * roughness, anisotropic);
   bsdf.frame = facet_frame(point, facing_normal(normal.shading, normal.geometric, wo),
                            bsdf.facets.isotropic());

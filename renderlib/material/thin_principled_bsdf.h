@@ -1,7 +1,8 @@
 #pragma once
 
 // The principled BSDF of Mitsuba 3 for thin sheets: rough reflection and transmission without
-// refraction, and diffuse reflection and transmission. Both sides are the same.
+// refraction, and diffuse reflection and transmission. Both sides of a sheet scatter light in the
+// same way.
 
 #include <array>
 #include <optional>

@@ -5,7 +5,7 @@
 namespace bandsaw {
 
 /// The directions whose angle to an axis is at most the cone's half-angle, which is less than 90
-/// degrees. For example, the directions from a point to a lens.
+/// degrees. An example is a cone that contains the directions from a point to a lens.
 struct Cone {
   Vec3 axis;       ///< unit
   double sin = 0;  ///< sine of the half-angle

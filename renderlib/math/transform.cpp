@@ -11,7 +11,8 @@
 namespace bandsaw {
 namespace {
 
-/// Beyond this condition number, rays that are transformed by a map and back lose their precision.
+/// If the condition number of a map is larger, rays that are transformed by the map and back lose
+/// their precision.
 constexpr double kMaxCondition = 1e12;
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;

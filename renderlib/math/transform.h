@@ -24,8 +24,8 @@ Transform operator*(const Transform& a, const Transform& b);
 Transform translation(const Vec3& by);
 /// Scales each axis by its component of `by`.
 Transform scaling(const Vec3& by);
-/// Returns the rotation by an angle in degrees about `axis` (not zero), counter-clockwise when seen
-/// against the axis.
+/// Returns the rotation by an angle in degrees about `axis` (not zero), counter-clockwise if the
+/// axis points to the viewer.
 Transform rotation(const Vec3& axis, double degrees);
 
 /// Returns the determinant of M.
@@ -35,8 +35,8 @@ double determinant(const Transform& t);
 /// has an element that is not finite, determinant 0, or a condition number above 1e12.
 std::optional<Transform> inverse(const Transform& t);
 
-/// Transforms a normal by a map whose inverse is `inverse`. Returns the transpose of the linear
-/// part of `inverse` times n, which is not a unit vector in general.
+/// Transforms a normal by a map whose inverse is `inverse`. The result is the transpose of the
+/// linear part of `inverse` times n. In general it is not a unit vector.
 Vec3 normal_to_world(const Transform& inverse, const Vec3& n);
 
 }  // namespace bandsaw

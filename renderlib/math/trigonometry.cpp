@@ -13,6 +13,7 @@
 namespace bandsaw {
 namespace {
 
+/// 2 pi and pi / 180, each as the sum of two doubles.
 constexpr TwoDoubles kTwoPi = {0x1.921fb54442d18p+2, 0x1.1a62633145c07p-52};
 constexpr TwoDoubles kDegree = {0x1.1df46a2529d39p-6, 0x1.5c1d8becdd291p-62};
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Vectors of three numbers: positions, directions and normals in double. Colours are Rgb
-// (renderlib/math/rgb.h).
+// Vectors in double: Vec3 for positions, directions and normals, and Vec2 for pairs of coordinates.
+// Colours are Rgb (renderlib/math/rgb.h).
 
 #include <algorithm>
 #include <cmath>

@@ -21,15 +21,15 @@ double mean_extinction(const Medium& medium);
 /// exactly 1 if sigma is 0, for any length.
 double transmittance(double sigma, double length);
 
-/// Returns the integral of exp(-sigma s) over s in [0, length], i.e. an effective length. Infinite
-/// if sigma is 0 and the length is infinite.
+/// Returns the integral of exp(-sigma s) over s in [0, length], i.e. an effective length. It is
+/// infinite if sigma is 0 and the length is infinite.
 double reach(double sigma, double length);
 
 /// Returns the transmittance over `length` by channel.
 Rgb transmittance(const Medium& medium, double length);
 
-/// Returns the radiance that the medium emits along `length`, attenuated by itself, without
-/// scattering. MUST NOT be called with an infinite length if a channel emits and has no extinction.
+/// Returns the radiance that the medium emits along `length`, attenuated by the medium, without
+/// scattering. If a channel emits and has no extinction, the length MUST be finite.
 Rgb own_radiance(const Medium& medium, double length);
 
 }  // namespace bandsaw

@@ -88,8 +88,8 @@ Rgb scaled(const Color& c, double by) {
 /// The table has 2^8 temperatures for each octave. They are the doubles whose fraction is 0 after
 /// its first 8 bits.
 constexpr int kFractionBits = 8;
-/// The exponent and the first 8 bits of the fraction, of the first temperature of the table (64 K)
-/// and of its last temperature (131,072 K).
+/// The first and the last temperature of the table, 64 K and 131,072 K. They are given by the
+/// exponent and the first 8 bits of the fraction of a double.
 constexpr std::uint64_t kFirst = std::bit_cast<std::uint64_t>(64.0) >> (52 - kFractionBits);
 constexpr std::uint64_t kLast = std::bit_cast<std::uint64_t>(131072.0) >> (52 - kFractionBits);
 

@@ -8,7 +8,7 @@
 
 namespace bandsaw {
 
-/// Scales of the light of black bodies of different temperature.
+/// How the light of black bodies of different temperatures is scaled.
 enum class BlackbodyScale {
   kPower,  ///< the luminance is (T / 1000 K)^4 / 1000, with T^4 as in the law of Stefan and
            ///< Boltzmann

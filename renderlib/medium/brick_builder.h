@@ -16,11 +16,11 @@
 namespace bandsaw {
 
 /// Collects bricks: bricks of zeros are left out and equal ones are stored once. The numbers are
-/// stored as 16-bit floats (halves) if each of them can be, otherwise as floats.
+/// stored as 16-bit floats (halves) if each of them is exactly a half, otherwise as floats.
 class BrickBuilder {
  public:
   /// At first all numbers of the grid are 0. `cells` and `channels` MUST be in the ranges of
-  /// VolumeGrid, and the bricks at most kMaxGridBricks.
+  /// VolumeGrid, and there MUST be at most kMaxGridBricks bricks.
   BrickBuilder(const std::array<std::uint32_t, 3>& cells, std::uint32_t channels);
 
   /// Sets the numbers of the brick whose first cell is (8 x, 8 y, 8 z). `numbers` has kBrickCells *

@@ -1,5 +1,5 @@
-// Distances along a ray are sampled with a density proportional to 1 / distance^2 from the pivot,
-// that is, uniformly in the angle under which the pivot sees the ray.
+// Distances along a ray are sampled with a density proportional to 1 / r^2, where r is the distance
+// from the pivot. So they are sampled uniformly in the angle under which the pivot sees the ray.
 
 #include "renderlib/medium/equiangular.h"
 

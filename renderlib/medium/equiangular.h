@@ -13,9 +13,9 @@ class Equiangular {
  public:
   Equiangular() = default;
   /// Samples [0, length] (> 0, may be infinite) along the unit direction `direction` from `origin`,
-  /// for the finite point `pivot`. For a pivot that is very near the ray, the pdf is computed as if
-  /// its distance from the ray were a millionth of `length` (if finite) or of its distance along
-  /// the ray, whichever is larger. So the pdf is finite.
+  /// for the finite point `pivot`. If the pivot is very near the ray, its distance from the ray is
+  /// raised to a minimum, so that the pdf is finite. The minimum is a millionth of the larger of
+  /// two lengths: `length`, if finite, and the pivot's distance from `origin` along the ray.
   Equiangular(const Vec3& origin, const Vec3& direction, double length, const Vec3& pivot);
 
   /// Returns a finite distance in [0, length]; u in [0, 1).

@@ -1,7 +1,8 @@
 #pragma once
 
-// Free-flight sampling in one segment of a homogeneous medium: whether light is scattered there,
-// and at which distance. tracking.h does the same in media that vary in space.
+// Free-flight sampling in one segment of a homogeneous medium. It decides whether light is
+// scattered in the segment, and at which distance. tracking.h does the same in media that vary in
+// space.
 //
 // Light has three channels with three extinction coefficients. A distance is drawn for one channel
 // and weighted by the mean of all channels' pdfs (balance heuristic over wavelengths: Wilkie,

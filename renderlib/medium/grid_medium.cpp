@@ -140,8 +140,8 @@ void GridMedium::find_regions(const MediumGrids& uses, const std::vector<VolumeG
     const auto scale = density ? uses.density->scale : 1.0f;
     to.least = of_density.least * scale;
     to.most = of_density.most * scale;
-    // Whether the factor of the emission (struct MediumGrids) may be above 0, and whether the
-    // temperature may be high enough.
+    // `factor` tells whether the factor f of the emission (struct MediumGrids) may be above 0.
+    // `hot` tells whether the temperature may be high enough to emit.
     const bool factor = emission ? at(*emission).most > 0 : to.most > 0;
     const bool hot = !temperature || double{at(*temperature).most} * uses.temperature->scale +
                                              temperature_offset_ >=

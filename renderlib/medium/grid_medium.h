@@ -47,8 +47,8 @@ struct Coefficients {
 /// Points are given in the medium's space (scene/media.h).
 class GridMedium {
  public:
-  /// `medium` has grids, which are entries of `grids`; all MUST be valid, and the grids MUST
-  /// outlive this object.
+  /// `medium` refers to entries of `grids`. The medium and the grids MUST be valid, and the grids
+  /// MUST outlive this object.
   GridMedium(const Medium& medium, const std::vector<VolumeGrid>& grids);
 
   const Regions& regions() const { return regions_; }

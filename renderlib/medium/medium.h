@@ -1,6 +1,7 @@
 #pragma once
 
-// Participating media: smoke, fog, milk, fire; homogeneous, or varying in space as given by grids.
+// Participating media, such as smoke, fog, milk and fire. A medium is homogeneous, or it varies in
+// space as given by grids.
 
 #include <cstdint>
 #include <optional>
@@ -25,7 +26,7 @@ struct GridUse {
 /// of the grids at a point determine the properties of the medium there. In the equations,
 /// absorption, scattering and emission on the right are those of struct Medium:
 ///
-///   density     = value of the density grid, by channel if it has three; 1 without one
+///   density     = value of the density grid, by channel if it has three; 1 without this grid
 ///   extinction  = density (absorption + scattering)
 ///   scattering  = density scattering; with an albedo grid, extinction times min(its value, 1)
 ///   emission    = emission times f times t

@@ -12,8 +12,8 @@ namespace bandsaw {
 /// direction. |g| < 1.
 double phase(double g, double cosine);
 
-/// Samples a unit direction of travel after scattering, with that pdf. `direction` is the unit
-/// direction before; u, v in [0, 1).
+/// Samples a unit direction of travel after scattering, with the pdf phase(). `direction` is the
+/// unit direction of travel before scattering; u, v in [0, 1).
 Vec3 sample_phase(double g, const Vec3& direction, double u, double v);
 
 }  // namespace bandsaw

@@ -1,7 +1,8 @@
 #pragma once
 
-// Finds the regions of a medium (grid_medium.h) along a ray, one after the other (Amanatides and
-// Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing").
+// Finds the regions of a medium along a ray, one after the other (Amanatides and Woo 1987, "A Fast
+// Voxel Traversal Algorithm for Ray Tracing"). A region is a part of space with bounds of the
+// density (grid_medium.h).
 
 #include <algorithm>
 #include <array>

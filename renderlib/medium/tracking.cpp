@@ -17,7 +17,8 @@ namespace {
 
 using Channels = std::array<double, 3>;
 
-/// Average number of tentative collisions along a region's side where the medium emits.
+/// Where the medium emits, there are on average at least this many tentative collisions along a
+/// region's side.
 constexpr double kCollisionsWhereItEmits = 2;
 /// A flight whose weight is below this share of its first weight takes part in Russian roulette at
 /// each collision, and survives with probability kSurvivalOfLow.

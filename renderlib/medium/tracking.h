@@ -31,7 +31,9 @@ struct Flight {
   bool scattered = false;
   double distance = 0;  ///< where the light was scattered, if it was
   Rgb throughput;       ///< weight of the light that is scattered there, or that passes the segment
-  Rgb emitted;          ///< emission towards the start of the segment, times the weight before it
+  /// Emission towards the start of the segment. At each tentative collision, the emission is
+  /// multiplied by the weight before the collision.
+  Rgb emitted;
 };
 
 /// The first two random numbers of a flight, each in [0, 1). The caller passes them, so that the
@@ -42,7 +44,7 @@ struct FirstCollision {
 };
 
 /// Sends light of weight `throughput` (>= 0, finite) through the first `length` (> 0, may be
-/// infinite) of the ray; it is scattered there or passes.
+/// infinite) of the ray. The light is scattered in this segment or passes it.
 Flight fly(const GridMedium& medium, const GridRay& ray, double length, const Rgb& throughput,
            const FirstCollision& first, NumberStream& numbers);
 

@@ -265,7 +265,7 @@ std::array<float, kChannels> GridReader::interpolate(const Vec3& at) const {
     if (!(p[k] >= 0 && p[k] <= cells_[k])) {
       return Values{};
     }
-    // Truncation is rounding down, because both are positive.
+    // Truncation rounds down, because neither p[k] nor p[k] + 0.5 is negative.
     low[k] = nearest_ ? std::min(static_cast<std::int32_t>(p[k]),
                                  static_cast<std::int32_t>(cells_[k]) - 1)
                       : static_cast<std::int32_t>(p[k] + 0.5) - 1;

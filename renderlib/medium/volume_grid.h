@@ -31,9 +31,9 @@ inline constexpr std::uint64_t kMaxGridBricks = std::uint64_t{1} << 26;  ///< en
 struct VolumeGrid {
   enum class Format { kFloat32, kFloat16 };  ///< IEEE 754, little-endian
   enum class Filter { kLinear, kNearest };   ///< between cell centres, or constant in each cell
-  /// How values are interpolated between the outermost cell centres and the faces of the box: as if
-  /// the cells beyond the faces had the number 0, or the numbers of the outermost cells. Outside of
-  /// the box the value is always 0.
+  /// How values are interpolated between the outermost cell centres and the faces of the box. The
+  /// cells beyond the faces have the number 0 (kZero) or the numbers of the outermost cells
+  /// (kClamp). Outside of the box the value is always 0.
   enum class Border { kZero, kClamp };
 
   std::array<std::uint32_t, 3> cells = {};  ///< size of the box, each in [1, kMaxGridSide]
@@ -77,7 +77,7 @@ absl::StatusOr<float> check_grid(const VolumeGrid& grid);
 /// Returns the number that a half (IEEE 754, 16 bits) has; exact.
 float half_to_float(std::uint16_t half);
 /// Returns the half with this number. If there is none, sets `*exact` to false, and the result has
-/// another number; otherwise leaves `*exact` as it is.
+/// another number. Otherwise `*exact` does not change.
 std::uint16_t float_to_half(float value, bool* exact);
 
 /// Reads the numbers of a grid, which MUST be valid and outlive this object.
@@ -99,8 +99,9 @@ class GridReader {
   /// Returns the place in VolumeGrid::values of the brick whose first cell is (8 x, 8 y, 8 z);
   /// kEmptyBrick if all its numbers are 0.
   std::uint32_t brick(std::uint32_t x, std::uint32_t y, std::uint32_t z) const;
-  /// Returns a number of the brick at the place `brick`, which brick() returned. `number` is cell
-  /// number times channels, plus channel, with cells counted x fastest.
+  /// Returns one number of a stored brick. `brick` is a place that brick() returned, other than
+  /// kEmptyBrick. `number` is cell * channels + channel, where the cells of the brick are counted x
+  /// fastest.
   float stored(std::uint32_t brick, std::uint32_t number) const;
 
  private:

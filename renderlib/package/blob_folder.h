@@ -17,8 +17,8 @@ namespace bandsaw {
 /// SIGBUS ends a process that reads a bad sector of a mapped file.
 absl::StatusOr<wire::Digest> digest_of_file(int fd, std::uint64_t size, const std::string& path);
 
-/// Returns the bytes of an open file, mapped into memory; the file may be closed then. Errors are
-/// those of MappedFile.
+/// Returns the bytes of an open file, mapped into memory. After the call the file may be closed.
+/// Errors are those of MappedFile.
 absl::StatusOr<std::unique_ptr<BlobBytes>> map_blob(const File& file);
 
 /// Each call of get() hashes the file and maps it; nothing is cached. Thread-safe.

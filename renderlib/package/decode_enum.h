@@ -20,7 +20,7 @@ absl::StatusOr<Ours> decode_enum(int value, int first, int last, const std::stri
   return static_cast<Ours>(value - first);
 }
 
-/// Converts an enum as above, with `first` = 1.
+/// Returns decode_enum(value, 1, last, field), for an enum whose 0 means "unspecified".
 template <class Ours>
 absl::StatusOr<Ours> decode_enum(int value, int last, const std::string& field) {
   return decode_enum<Ours>(value, 1, last, field);

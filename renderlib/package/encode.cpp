@@ -194,6 +194,7 @@ class Encoder {
     }
   }
 
+  // Encodes a mesh. If `parts_` knows the mesh, its message is copied and no blobs are added.
   void put_mesh(const std::shared_ptr<const Mesh>& mesh, package::Mesh& to) {
     if (const std::string* known = parts_ != nullptr ? parts_->message_of(*mesh) : nullptr) {
       to.ParseFromString(*known);

@@ -15,7 +15,8 @@
 
 namespace bandsaw {
 
-/// Keeps its parts alive until a package without them is encoded.
+/// Keeps its parts alive until a package without them is encoded. The present package is the one
+/// that is being encoded.
 class EncodedParts {
  public:
   /// Returns true for a mesh of the last package.

@@ -2,8 +2,8 @@
 
 // Scene packages: the form in which a scene is sent over the network. A package is a manifest (a
 // message of proto/package.proto) and the blobs (flat arrays) that it names by their SHA-256. This
-// file encodes scene descriptions, and decodes them with every index, count, value and digest
-// checked.
+// file encodes scene descriptions as packages and decodes packages. Decoding checks every index,
+// count, value and digest.
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// settings_of() fills in the settings that the caller did not state with those of the package.
+// settings_of() takes from the package all settings that the caller did not state.
 
 #include "renderlib/package/settings_of.h"
 

@@ -1,7 +1,7 @@
-// The pilot is the first samples of all pixels. An object of the class Pilot holds the errors that
-// the pilot has over some of the pixels, and suggests a level for each tile. The level stands for a
-// factor on the tile's number of samples. gain() evaluates the suggestion on the errors of other
-// pixels.
+// A half tile is one half of the pixels of a tile (tile_samples.h). The pilot is the first samples
+// of all pixels. An object of the class Pilot holds the errors that the pilot has over some of the
+// pixels, and suggests a level for each tile. The level stands for a factor on the tile's number of
+// samples. gain() evaluates the suggestion on the errors of other pixels.
 
 #include "renderlib/render/adaptive_plan.h"
 
@@ -77,7 +77,8 @@ class Mean {
 /// weight (at most kMaxOverMean times the mean) divided by the root mean square of all weights. It
 /// is rounded to the factor of a level. With these factors, one more sample of a tile reduces the
 /// error as much as one more sample of a tile that is sampled uniformly, such as a tile of the
-/// other half of the image. (There, the reduction depends on the root of the mean variance.)
+/// other half of the image. (For a tile that is sampled uniformly, the reduction depends on the
+/// root of the mean variance.)
 std::vector<int> levels_of(std::vector<double> weights) {
   const auto count = static_cast<double>(weights.size());
   const double most = kMaxOverMean * std::accumulate(weights.begin(), weights.end(), 0.0) / count;
@@ -157,7 +158,8 @@ class Pilot {
 
 /// Returns the predicted gain of the plan: the error of uniform sampling over the error with the
 /// plan, at the same number of samples. There are two errors (absolute and relative); the smaller
-/// gain is returned. Each of the two parts of the pixels is planned from the other.
+/// gain is returned. Each of the two parts of the pixels is planned from the errors of the other
+/// part.
 double gain(const std::array<Pilot, 2>& parts) {
   double samples = 0;
   Mean evenly;

@@ -7,10 +7,10 @@
 // samples can converge to 14 % of its value. Here a pixel's own samples never decide how many
 // samples it gets. The first samples of all pixels are a pilot. A fixed pattern divides the pixels
 // of every tile into an even and an odd half (tile_samples.h). After the pilot, the number of
-// samples is planned once: for the even half of every tile from the pilot of the image's odd pixels
-// alone, and for the odd half from the pilot of the even pixels. The Owen scrambles of different
-// pixels are independent (sampling/sampler.h). So, given the plan, a pixel's value is the mean of
-// all its samples and unbiased.
+// samples is planned once. The plan for the even half of every tile uses the pilot of the image's
+// odd pixels alone, and the plan for the odd half uses the pilot of the even pixels. The Owen
+// scrambles of different pixels are independent (sampling/sampler.h). So, given the plan, a pixel's
+// value is the mean of all its samples and unbiased.
 //
 // Samples are distributed for two errors at once: the mean squared error, which --error bounds, and
 // the mean of squared errors over squared values (relMSE), which corresponds to visible noise in
@@ -64,9 +64,9 @@ struct TilePlan {
 /// result on every machine.
 ///
 /// The pilot itself decides whether the plan is worthwhile. For this test, a plan is made from
-/// entry 0 of HalfTileErrors and evaluated on the errors of entry 1, and vice versa. Unless both
-/// resulting errors (absolute and relative) are well below the errors of uniform sampling with as
-/// many samples, all levels of the half of the image are 6.
+/// entry 0 of HalfTileErrors and evaluated on the errors of entry 1, and vice versa. If one of the
+/// resulting errors (absolute or relative) is not well below that of uniform sampling with as many
+/// samples, all levels in the planned half of the image are 6.
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
 

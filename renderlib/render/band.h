@@ -18,8 +18,8 @@ namespace bandsaw {
 
 inline constexpr std::uint64_t kBlockSamples = 8;
 
-/// The samples [first, last) of a node. `first` is a multiple of 8. In blocks, counting a
-/// truncated last block as whole, the range is aligned and its length is a power of two.
+/// The samples [first, last) of a node. `first` is a multiple of 8. Counted in blocks (a truncated
+/// last block counts as a whole one), the range is aligned and its length is a power of two.
 struct SampleRange {
   std::uint64_t first = 0;
   std::uint64_t last = 0;
@@ -71,8 +71,8 @@ absl::Status validate(const Band& band, const RenderSettings& settings);
 struct Counters {
   std::uint64_t rays = 0;
   /// Number of samples that were NaN, infinite or negative. They are left out of the sums, and the
-  /// mean of the other samples of their block replaces them. The three fields below locate the
-  /// first of them in (row, x, sample) order.
+  /// mean of the other samples of their block replaces them. bad_x, bad_y and bad_sample locate the
+  /// first bad sample in (row, x, sample) order.
   std::uint64_t bad_samples = 0;
   std::uint32_t bad_x = 0;
   std::uint32_t bad_y = 0;
@@ -80,18 +80,19 @@ struct Counters {
   std::uint64_t negative_samples = 0;  ///< bad samples that are finite but negative
   /// Number of samples whose path was cut off at max_depth, so that its remaining light is missing.
   std::uint64_t truncated_paths = 0;
-  /// Scene::dropped_primitives; the same in all bands of a scene.
+  /// Number of primitives that were removed because no ray can hit them
+  /// (Scene::dropped_primitives). The same in all bands of a scene.
   std::uint64_t dropped_primitives = 0;
-  /// The techniques that path tracing used besides light and BSDF sampling: a sum of the flags
-  /// below. The same in all bands of an image.
+  /// The techniques that path tracing used besides light and BSDF sampling: a sum of flags,
+  /// kPathGuiding to kIndirectMaps. The same in all bands of an image.
   std::uint32_t techniques = 0;
   static constexpr std::uint32_t kPathGuiding = 1;
   static constexpr std::uint32_t kPhotonMaps = 2;
   static constexpr std::uint32_t kPortals = 4;
   static constexpr std::uint32_t kIndirectMaps = 8;
   static constexpr std::uint32_t kAllTechniques = 15;
-  /// Number of rays of the training of path guiding and of its pilots. The same in all bands of an
-  /// image, so add() does not sum it.
+  /// Number of rays of the training of path guiding and of its pilots (short trials that decide
+  /// whether guiding pays). The same in all bands of an image, so add() does not sum it.
   std::uint64_t training_rays = 0;
 
   /// Adds the counters of other samples of the same image.

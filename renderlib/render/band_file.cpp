@@ -82,8 +82,8 @@ absl::Status check(const BandRecord& record) {
     return absl::InvalidArgumentError(absl::StrCat("width: the pixels have ", pixels.width,
                                                    ", the settings ", record.settings.width));
   }
-  // The record does not contain which samples a half tile took (render/tile_samples.h), so only
-  // upper bounds can be checked.
+  // The record does not contain which samples each half tile (half of the pixels of a tile,
+  // render/tile_samples.h) took, so only upper bounds can be checked.
   const Counters& counters = pixels.counters;
   const RowRange& rows = pixels.band.rows;
   const std::uint64_t most = kMaxSamples * rows.count() * pixels.width;
