@@ -85,7 +85,7 @@ absl::StatusOr<farm::PutBandReply::Outcome> BandPipeline::put(const FinishedBand
   ASSIGN_OR_RETURN(const LeaseName lease, session_.lease_of(band.task.id));
   absl::StatusOr<farm::PutBandReply::Outcome> outcome = calls_.put_band(band, lease);
   if (!outcome.ok()) {
-    spdlog::warn("kept {}: {}", name_of(band.task), text_of(outcome.status()));
+    spdlog::warn("could not send {}: {}", name_of(band.task), text_of(outcome.status()));
   } else if (*outcome == farm::PutBandReply::OUTCOME_UNWANTED) {
     spdlog::info("unwanted {}", name_of(band.task));
   } else {

@@ -100,14 +100,16 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--threads", arguments.threads,
                  "Number of rendering threads; default: one for each hardware thread")
       ->check(CLI::Range(std::size_t{1}, wire::kThreadsPerWorker));
-  app.add_option("--name", arguments.name, "Displayed name; default: the host's");
+  app.add_option("--name", arguments.name,
+                 "Name of this worker for display; default: the name of the host");
   app.add_option("--cache", arguments.cache,
                  "Folder for scenes; workers of one machine may share it");
-  app.add_option("--cache-size", arguments.cache_gb, "Maximum size of that folder, gigabytes")
+  app.add_option("--cache-size", arguments.cache_gb,
+                 "Maximum size of the cache folder, in gigabytes")
       ->check(CLI::Range(0.001, 1e6));
   app.add_option("--kernel", arguments.kernel,
-                 "The renderer's code: avx2, neon or plain, if the program has it and the machine "
-                 "can run it; the image is the same. Default: the fastest");
+                 "Version of the renderer's code: avx2, neon or plain, if the program has it and "
+                 "the machine can run it. All give the same image. Default: the fastest");
   app.add_flag("--quiet", arguments.quiet, "Log warnings and errors only");
 }
 

@@ -75,7 +75,8 @@ class Daemon::Impl {
   Backoff backoff_;
   std::optional<Dismissal> dismissal_;
   std::string last_loss_;
-  std::string epoch_;  ///< id of the epoch of the last coordinator that admitted this worker
+  /// The coordinator's epoch (the id of its run) when it last admitted this worker.
+  std::string epoch_;
   bool joined_ = false;
   BandPipeline pipeline_;  ///< last: its threads use the calls and the session
 };

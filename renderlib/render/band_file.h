@@ -22,6 +22,8 @@
 //   id of the worker process                            u64
 //   sums                                                f64 x rows x width x 3
 //   hash of all bytes before (render/hash64.h)          u64
+//
+// The fields from rays to training_rays are the Counters of the band (band.h).
 
 #include <array>
 #include <cstddef>
@@ -36,8 +38,8 @@
 
 namespace bandsaw {
 
-/// First bytes of a record, the last of them the format; also used to find the next record after a
-/// damaged one.
+/// The first bytes of a record. The last of them is the format version. A reader that meets a
+/// damaged record searches for these bytes to find the next record.
 inline constexpr std::array<char, 8> kBandRecordMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '4'};
 
 /// The content of a record.
@@ -63,13 +65,14 @@ struct DecodedBandRecord {
 
 /// Parses the record at byte `offset` of `bytes` and checks every field. Messages begin with "byte
 /// N: ", where N counts from the start of `bytes`. Returns OUT_OF_RANGE if the bytes end before the
-/// record does (a truncated file), and DATA_LOSS if the bytes are no record of this format or a
-/// damaged one.
+/// record does (a truncated file). Returns DATA_LOSS if the bytes are not a record of this format,
+/// or if the record is damaged.
 absl::StatusOr<DecodedBandRecord> decode_band_record(absl::Span<const std::byte> bytes,
                                                      std::uint64_t offset = 0);
 
 /// Returns a digest for each row, computed from the bits of the row's sums. Rows with equal sums
-/// have equal digests. The coordinator compares the digests of a band and of its audit.
+/// have equal digests. The coordinator compares them when a second machine renders the same rows
+/// (an audit).
 std::vector<std::uint64_t> row_digests(const BandPixels& pixels);
 
 }  // namespace bandsaw

@@ -1,5 +1,9 @@
-// Lists the photon maps that a part of a band needs. halves_of() divides a part at the nodes of its
-// samples or, if no half tile takes more than one block, by the numbers of the photon maps.
+// Lists the photon maps that a part of a band needs, and divides a part in two.
+//
+// A half tile is half of the pixels of a tile. In adaptive sampling, each half tile takes a node of
+// samples: an aligned range of 2^k blocks of 8 samples (band.h). halves_of() divides each node of
+// several blocks into its two halves. If no half tile takes more than one block, halves_of()
+// divides the half tiles by the numbers of their photon maps instead.
 
 #include "renderlib/render/band_parts.h"
 
@@ -17,7 +21,7 @@ SampleRange range_at(const std::vector<std::uint32_t>& numbers, std::size_t i) {
   return {numbers[2 * i], std::uint64_t{numbers[2 * i]} + numbers[2 * i + 1]};
 }
 
-/// Returns the part with other samples of its half tiles: those of `numbers`
+/// Returns a part with the band of `part` in which the half tiles take the samples `numbers`
 /// (TileSamples::numbers).
 BandPart with_numbers(const BandPart& part, const std::vector<std::uint32_t>& numbers,
                       std::uint32_t width) {

@@ -12,8 +12,9 @@
 
 namespace bandsaw {
 
-/// A band and the samples that its half tiles take (tile_samples.h). If `tiles` is whole(), all
-/// pixels take the samples of the band; otherwise the rows of `tiles` are those of the band.
+/// A band and the samples that its half tiles take. A half tile is half of the pixels of a tile,
+/// and the unit of adaptive sampling (tile_samples.h). If `tiles` is whole(), all pixels take the
+/// samples of the band. Otherwise `tiles` has the rows of the band.
 struct BandPart {
   Band band;
   TileSamples tiles;

@@ -268,8 +268,9 @@ void add_render(Hash64& hash, const SceneDescription& description, const RenderS
   hash.add(pixels->counters.rays);
 }
 
-/// Returns settings of path tracing without guiding and photon maps. These need a pilot, which
-/// decides whether they are worthwhile and would take longer than the renders of the canary.
+/// Returns settings of path tracing without guiding and photon maps. Guiding and photon maps need a
+/// pilot, a trial that decides whether they are worthwhile. The pilot would take longer than the
+/// renders of the canary.
 RenderSettings path_settings(std::uint32_t width, std::uint32_t height, std::uint32_t max_depth,
                              std::uint64_t seed) {
   return {.width = width,

@@ -1,5 +1,6 @@
-// ErrorSums adds up variances of pixels and, for the margin, squares of the variances of groups.
-// estimate() divides by the number of pixels and finds quantiles.
+// ErrorSums adds up the variances of pixels. estimate() divides the sum by the number of pixels and
+// finds quantiles. The upper bound of the error is the estimate plus a margin. For the margin,
+// ErrorSums also adds up the squares of the variances of groups of pixels.
 
 #include "renderlib/render/error_estimate.h"
 
@@ -18,16 +19,17 @@ namespace {
 constexpr double kDivisorOffset = 0.01;
 
 // Ratio of the variance of T - V to the sum of the squared contributions of the groups to V. T is
-// the squared error of one image and V its estimate from the nodes. Both are sums over groups of
-// pixels, which are independent (sampling/sampler.h, render/pixel_groups.h). Assume that the errors
-// within a group are normal and, in the worst case, the same for all its pixels, with variance s.
-// Then the group's contributions to T and V are independent, with variances 2 s^2 and r s^2, where
-// r = 2 for two halves and about 1 with further nodes. So the group adds (2 + r) s^2 to the
-// variance of T - V, and on average (1 + r) s^2 to the sum of squares: the ratio is between 4/3 and
-// 3/2. If the pixels of a group are independent, the margin is too wide, by a factor of at most
-// sqrt(10 / 3). That matters little in an image of many pixels; and if one of eight pixels is
-// bright, it dominates its group's square anyway. Rare bright samples occur in both T and V, which
-// makes the difference smaller.
+// the squared error of one image. V is the estimate of T from nodes, which are sums over ranges of
+// samples (NodeSums). Both are sums over groups of pixels, which are independent
+// (sampling/sampler.h, render/pixel_groups.h). Assume that the errors within a group are normal
+// and, in the worst case, the same for all its pixels, with variance s. Then the group's
+// contributions to T and V are independent, with variances 2 s^2 and r s^2, where r = 2 for two
+// halves and about 1 with further nodes. So the group adds (2 + r) s^2 to the variance of T - V,
+// and on average (1 + r) s^2 to the sum of squares: the ratio is between 4/3 and 3/2. If the pixels
+// of a group are independent, the margin is too wide, by a factor of at most sqrt(10 / 3). That
+// matters little in an image of many pixels; and if one of eight pixels is bright, it dominates its
+// group's square anyway. Rare bright samples occur in both T and V, which makes the difference
+// smaller.
 constexpr double kVarianceOverSquares = 1.5;
 // Width of the margin in standard deviations of T - V. If T - V were normal, 1.64 would suffice in
 // 19 of 20 cases. The larger value covers repeated stopping decisions. It also covers images of few

@@ -6,14 +6,14 @@
 //
 // With Owen-scrambled points, an estimate from the variance of single samples would be 3 to 54
 // times too large. So the estimate is made from the difference of the two halves of a power-of-two
-// number of samples, which is at least as large as that of independent halves with the same error.
-// The estimate is right for pure noise, and up to about 2.5 times too large where sampling is well
-// stratified.
+// number of samples. This difference is at least as large as the difference between independent
+// halves with the same error. The estimate is right for pure noise, and up to about 2.5 times too
+// large where sampling is well stratified.
 //
-// An estimate scatters, and so does the error of one image around that of all seeds. A job that
-// stops as soon as the estimate is small enough often stops when the estimate happens to be too
-// small: three in ten images whose noise is in only 70 pixels would end above their target. So the
-// stop rule uses an upper bound: the estimate plus a margin.
+// An estimate scatters. The error of one image scatters too, around the mean over all seeds. A job
+// that stops as soon as the estimate is small enough often stops when the estimate happens to be
+// too small: three in ten images whose noise is in only 70 pixels would end above their target. So
+// the stop rule uses an upper bound: the estimate plus a margin.
 
 #include <cstdint>
 #include <optional>
@@ -59,7 +59,8 @@ inline constexpr std::uint64_t kBlackSamples = 1024;
 /// image is black and has fewer than kBlackSamples.
 double known_error(const std::optional<ErrorEstimate>& estimate, std::uint64_t samples);
 
-/// Sums of a pixel over one node of its samples.
+/// Sums of a pixel over one node of its samples. A node is an aligned range of a power-of-two
+/// number of blocks of 8 samples (render/band.h).
 struct NodeSums {
   std::uint64_t samples = 0;
   absl::Span<const double> sums;  ///< r, g, b

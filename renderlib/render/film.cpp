@@ -24,8 +24,9 @@
 namespace bandsaw {
 namespace {
 
-/// The samples of a row that a film has covered: rendered, or skipped by the plan in all their
-/// tiles. A set of sample ranges; adjacent ranges are merged.
+/// The set of samples of a row that are covered: a band with these samples has been added to the
+/// film. In adaptive sampling, a half tile may have taken other samples, or none, in this band. The
+/// set is a list of ranges, in which adjacent ranges are merged.
 class CoveredSamples {
  public:
   /// Returns the covered range (after merging) that overlaps `samples`, if any.

@@ -28,10 +28,10 @@ class Film {
   /// Units whose pixels always have the same samples: rows, or half tiles (for adaptive sampling).
   enum class Grain { kRows, kHalfTiles };
 
-  /// Creates an empty film. Memory grows as rows arrive: 24 bytes per pixel for each unmerged node;
-  /// in the end two halves remain. `spill_folder` is the folder of the (unlinked) files that back
-  /// the sums; empty: anonymous memory. Returns INVALID_ARGUMENT if the size is out of range
-  /// (validate(RenderSettings)).
+  /// Creates an empty film. Memory grows as rows arrive, by 24 bytes per pixel for each node that
+  /// is not merged. The two halves that the error estimate needs always stay separate.
+  /// `spill_folder` is the folder of the (unlinked) files that back the sums; empty: anonymous
+  /// memory. Returns INVALID_ARGUMENT if the size is out of range (validate(RenderSettings)).
   static absl::StatusOr<Film> create(std::uint32_t width, std::uint32_t height,
                                      std::string spill_folder, Grain grain = Grain::kRows);
   Film(Film&&) noexcept;
@@ -67,8 +67,8 @@ class Film {
   /// halves of equal size.
   std::optional<ErrorEstimate> error() const;
 
-  /// One of two independent parts of the samples that a snapshot shows. It contains each pixel's
-  /// first node of the tree, and about half of its samples.
+  /// One of two independent parts of the samples that a snapshot shows. The part contains about
+  /// half of each pixel's samples, among them the pixel's first node of the summation tree.
   struct FirstPart {
     Image mean;
     std::vector<float> share;  ///< share in each pixel's samples, (0, 1)

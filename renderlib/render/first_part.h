@@ -10,13 +10,13 @@
 
 namespace bandsaw {
 
-/// Returns how many of a pixel's samples are in its first part, about half of them; 0 if there is
-/// only one block (kBlockSamples) or less, which has no parts.
+/// Returns how many of a pixel's `samples` samples are in its first part: about half of them. If
+/// there is no more than one block of 8 samples, there are no parts, and the result is 0.
 std::uint64_t first_part_samples(std::uint64_t samples);
 
-/// Returns the share of the first part in the samples of each of `pixels` pixels, (0, 1), as
-/// Film::first_part() does. `samples` is the number of samples of each pixel; it is more than one
-/// block.
+/// Returns for each of `pixels` pixels the share of its samples that are in the first part, a
+/// number in (0, 1), as Film::first_part() does. `samples` is the number of samples of each pixel;
+/// it is more than one block.
 std::vector<float> first_part_shares(std::uint64_t samples, std::size_t pixels);
 /// Does the same for an image that holds the number of samples of each pixel (Film::counts). Each
 /// number is more than one block.

@@ -16,8 +16,8 @@
 
 namespace bandsaw {
 
-/// The functions of a kernel; Scene::build (scene/scene.h) and render_band (render_band.h), which
-/// call them, describe their parameters.
+/// The functions of a kernel. Scene::build (scene/scene.h) and render_band (render_band.h) call
+/// them and describe their parameters.
 struct Kernel {
   /// "avx2", "neon", "wasm" or "plain".
   const char* name;
@@ -36,7 +36,7 @@ struct Kernel {
   /// machines are compared.
   void (*add_elementary_functions)(Hash64& hash);
 
-  /// Compiled like the rest of the program: runs on every machine that the program runs on.
+  /// Compiled like the rest of the program, for every machine that the program runs on.
   static const Kernel kBase;
   /// Compiled for x86-64-v3. It exists only in programs that must run on every x86-64 processor.
   /// merge_kernel.sh hides all symbols of this kernel except this one.

@@ -6,8 +6,8 @@
 //
 // In a whole tile, the groups are those of the pattern (render/tile_pattern.h). In a tile at the
 // edge of the image, the pixels of each half are divided into groups of at most eight, in the order
-// of the pattern. A group is a function of the size of the image and of the place of its half tile
-// in it, so bands of any rows agree about it.
+// of the pattern. A group depends only on the size of the image and on the place of the half tile
+// in the image. So bands of any rows have the same groups.
 
 #include <array>
 #include <cstdint>

@@ -19,7 +19,7 @@
 
 namespace bandsaw {
 
-/// Immutable; shared by the threads that render the band.
+/// Computes the sums for one band. Immutable; shared by the threads that render the band.
 class PixelSums {
  public:
   /// All references and pointers MUST outlive this object. `settings` and `band` MUST be valid.
@@ -29,7 +29,7 @@ class PixelSums {
 
   bool stopped() const { return stop_.load(std::memory_order_relaxed); }
 
-  /// Returns true if add_groups() computes the sums, otherwise add_run() does.
+  /// Returns true if the sums are to be computed with add_groups(), and false if with add_run().
   bool in_groups() const { return reuses_paths_; }
 
   /// Writes three sums (r, g, b) for each pixel of [first, last) in row y that takes samples.
@@ -38,9 +38,10 @@ class PixelSums {
   void add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last, const TileSamples& tiles,
                absl::Span<double> sums, Counters& counters) const;
 
-  /// Does the same as add_run() for the groups [first, last) of a half tile (tile_samples.h). If
-  /// only some pixels of a group lie in the band, the group is traced as a whole, but the pixels
-  /// outside of the band are neither written nor counted.
+  /// Does the same as add_run() for the groups [first, last) of a half tile, which is half of the
+  /// groups of a tile of 16 x 16 pixels (tile_samples.h). If only some pixels of a group lie in the
+  /// band, the group is traced as a whole, but the pixels outside of the band are neither written
+  /// nor counted.
   void add_groups(const PixelGroups& groups, std::uint32_t first, std::uint32_t last,
                   const TileSamples& tiles, absl::Span<double> sums, Counters& counters) const;
 

@@ -26,8 +26,8 @@ constexpr std::uint64_t kSamplesPerUnit = 1024;
 
 /// Partition of a band's pixels among threads. A strip is a row, and a unit is a run of
 /// neighbouring pixels in it, because their rays use the same cached data. If pixels share paths, a
-/// strip is the part of a row of tiles that lies in the band, and a unit is some groups of a half
-/// tile.
+/// strip is the part of a row of tiles that lies in the band, and a unit is some groups of pixels
+/// from one half tile (half of a tile's pixels).
 class Units {
  public:
   Units(const PixelSums& sums, const Band& band, const TileGrid& grid)

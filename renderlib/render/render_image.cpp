@@ -1,5 +1,6 @@
-// Renders an image band by band. A pass is an aligned range of samples whose length is a power of
-// two (a node of the tree by which samples are added up); small passes come first.
+// Renders an image band by band. A pass renders one range of samples for all rows. The range is a
+// node of the tree by which samples are added up: an aligned range of a power-of-two number of
+// blocks of 8 samples (band.h).
 
 #include "renderlib/render/render_image.h"
 

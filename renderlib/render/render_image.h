@@ -17,14 +17,16 @@
 
 namespace bandsaw {
 
-/// Returns the passes that make up samples [0, samples). A pass is a range of samples that is
-/// rendered of all rows. The first passes have one block, one block, two blocks, four blocks, and
-/// so on. So each further pass doubles the number of samples and leaves two halves for the error
-/// estimate. The last passes are the remaining nodes (band.h), one by one.
+/// Returns the passes that make up samples [0, samples). A pass renders one range of samples for
+/// all rows. The range is a node: an aligned range of a power-of-two number of blocks of 8 samples
+/// (band.h). The first passes have one block, one block, two blocks, four blocks, and so on. So
+/// each pass after the first doubles the number of samples and leaves two halves for the error
+/// estimate. If fewer samples are left than a doubling needs, they are divided into the largest
+/// possible nodes, and each of these nodes is one of the last passes.
 std::vector<SampleRange> passes_of(std::uint64_t samples);
 
 /// Returns the bands of the passes of samples [0, samples) over `rows`, pass by pass, from the top.
-/// Each holds at most kBandPixels pixels, or one row.
+/// A band has at most kBandPixels pixels, or one row if a row has more pixels.
 std::vector<Band> bands_of(std::uint64_t samples, const RowRange& rows, std::uint32_t width);
 inline constexpr std::uint64_t kBandPixels = std::uint64_t{1} << 20;
 

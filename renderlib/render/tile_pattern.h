@@ -1,7 +1,8 @@
 #pragma once
 
-// The pattern by which the pixels of a tile form groups that share their paths
-// (render/pixel_groups.h), and the halves of adaptive sampling (render/tile_samples.h).
+// The pattern by which the pixels of a tile form groups. Pixels of a group may share their paths
+// (render/pixel_groups.h). The groups with even numbers are one half of the tile, and the groups
+// with odd numbers are the other half, for adaptive sampling (render/tile_samples.h).
 
 #include <cstdint>
 

@@ -18,8 +18,9 @@ std::uint32_t tile_rows(const RowRange& rows) {
 /// Returns the samples that a half tile takes in a band. In the whole pass with samples `pass`, the
 /// half tile takes the samples `taken`. The band has the samples `within`, which are one of several
 /// equal parts of the pass; the result is the corresponding part of `taken`. All three arguments
-/// are nodes. If there are more parts than blocks in `taken`, a block belongs to the first of
-/// several parts, and the result is empty for the others.
+/// are nodes (aligned ranges of 2^k blocks of 8 samples, band.h). If `taken` has fewer blocks than
+/// there are parts, each block stands for several parts. The first of these parts takes the block,
+/// and the result for each other part is empty.
 SampleRange part_of(const SampleRange& taken, const SampleRange& pass, const SampleRange& within) {
   const std::uint64_t parts = pass.blocks() / within.blocks();
   const std::uint64_t part = (within.first_block() - pass.first_block()) / within.blocks();
@@ -136,7 +137,7 @@ absl::Status check_left_out(const BandPixels& pixels, const TileSamples& tiles) 
       if (tiles.of_pixel(x, y, pixels.band.samples).samples() == 0 &&
           (sum[0] != 0 || sum[1] != 0 || sum[2] != 0)) {
         return absl::InvalidArgumentError(
-            absl::StrCat("pixel (", x, ", ", y, ") has samples and its tile takes none"));
+            absl::StrCat("pixel (", x, ", ", y, ") has samples, but its half tile takes none"));
       }
     }
   }

@@ -11,8 +11,9 @@
 // tiles of the other half take.
 //
 // Each half tile has its own sequence of samples. In each pass, the half tile takes the next node
-// (render/band.h) of this sequence, or none, as the plan says. So it always has the first samples
-// of its sequence, and the pass determines only when the half tile takes them.
+// of this sequence, or none, as the plan says. A node is an aligned range of 2^k blocks of 8
+// samples (render/band.h). So the half tile always has the first samples of its sequence, and the
+// pass determines only when the half tile takes them.
 
 #include <array>
 #include <cstddef>

@@ -1,7 +1,7 @@
-// Decides in each pass which half tiles (the units of adaptive sampling) take their next node of
-// samples. A half tile takes its next node if it is behind the plan by more samples than a
-// threshold. The threshold differs between half tiles, so that not all of them take a node in the
-// same pass.
+// Decides in each pass which half tiles (the units of adaptive sampling) take their next node. A
+// node is an aligned range of 2^k blocks of 8 samples. A half tile takes its next node if it is
+// behind the plan by more samples than a threshold. The threshold differs between half tiles, so
+// that not all of them take a node in the same pass.
 
 #include "renderlib/render/tile_schedule.h"
 
@@ -22,9 +22,9 @@ double spread(std::size_t i) {
 
 /// Returns the number of samples of the next node of a half tile that has `samples` samples, which
 /// are whole blocks. `owed` is the number of samples by which the half tile is behind the plan. The
-/// node is the longest that may begin after `samples`, with two limits, of which the larger one
-/// counts: a quarter of the largest power of two up to `samples`, and the largest power of two up
-/// to `owed`. The node has at least one block.
+/// node is the longest node that may begin after `samples`, up to a limit. The limit is the largest
+/// of three numbers: one block, a quarter of the largest power of two up to `samples`, and the
+/// largest power of two up to `owed`.
 std::uint64_t next_step(std::uint64_t samples, double owed) {
   const std::uint64_t aligned = longest_at(samples / kBlockSamples) * kBlockSamples;
   const std::uint64_t quarter = std::bit_floor(samples) / 4;

@@ -22,8 +22,9 @@ namespace bandsaw {
 ///
 /// A half tile takes its next node when it is far enough behind the plan. Half tiles of equal share
 /// take their nodes in different passes, spread evenly over the image. So on average the half tiles
-/// have as many samples as the plan gives. If all levels of one half of the image (even or odd) are
-/// 6 (uniform), all half tiles of this half take the samples of each pass.
+/// have as many samples as the plan gives. The plan has a level for each half tile; level 6 stands
+/// for as many samples as uniform sampling takes. If all levels of one half of the image (even or
+/// odd) are 6, all half tiles of this half take the samples of each pass.
 class TileSchedule {
  public:
   /// `plan.levels` MUST have one digit 0 to f for each half tile.

@@ -1,7 +1,7 @@
 #pragma once
 
 // Piecewise-constant 2D distribution, used for environment maps: samples a cell of a grid in
-// proportion to its weight, first the row by its marginal, then the column. Both invert the
+// proportion to its weight, first the row by its marginal, then the column. Both steps invert a
 // cumulative sum, which preserves stratification (Pharr, Jakob and Humphreys, "Physically Based
 // Rendering", A.5.3). Sums are double, so that a tail of small weights keeps its probability.
 

@@ -73,8 +73,9 @@ constexpr std::uint32_t group_bsdf(std::uint32_t bounce) { return 2 + 2 * bounce
 /// Light sampling at scattering `bounce`: light choice, light u, v, low bits of the choice (which
 /// needs more than 32 bits if there are many lights).
 constexpr std::uint32_t group_light(std::uint32_t bounce) { return 3 + 2 * bounce; }
-/// Sampling of the background through portals at scattering `bounce` (below 2^11): choice, u, v,
-/// unused; as a stream, the transmittance of media along its shadow ray.
+/// Sampling of the background through portals at scattering `bounce` (below 2^11). The four numbers
+/// are the choice, u, v and an unused one. The stream of this group is for the transmittance of
+/// media along the shadow ray.
 constexpr std::uint32_t group_portal(std::uint32_t bounce) {
   return 0x10000000u | (bounce & 0x7ffu);
 }
@@ -86,10 +87,10 @@ constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) 
 /// Media segment number `segment` (below 2^17) on the ray towards scattering `bounce` (below 2^11).
 /// `which` selects a group. Group 0 has four numbers: the choice between scattering and passing
 /// together with the colour channel, the free-flight distance, the strategy of light sampling, and
-/// its distance. Group 1: the point on a light around which equiangular sampling is done
-/// (medium/equiangular.h; choice, u, v). Group 2: light sampling
-/// (choice, u, v, low bits of the choice). In media that vary in space, group 0 is the first
-/// collision (choice, distance), and group 3 is the stream of all further numbers.
+/// the distance of light sampling. Group 1 is for the point on a light around which equiangular
+/// sampling is done (choice, u, v; medium/equiangular.h). Group 2 is for light sampling (choice, u,
+/// v, low bits of the choice). In media that vary in space, group 0 is for the first collision
+/// (choice, distance), and group 3 is the stream of all further numbers.
 constexpr std::uint32_t group_medium(std::uint32_t bounce, std::uint32_t segment,
                                      std::uint32_t which) {
   return 0x40000000u | (bounce & 0x7ffu) << 19 | (segment & 0x1ffffu) << 2 | which;

@@ -1,5 +1,6 @@
-// One of the two sides of a tent is chosen, and then a point on this side. In latitude the density
-// has a factor sin(theta), and the distribution is inverted by Newton's method.
+// A tent is the linear interpolation kernel of a texel. It rises on one side of the texel's centre
+// and falls on the other. Sampling chooses one of the two sides, and then a point on this side. In
+// latitude the density has a factor sin(theta), and Newton's method inverts the distribution.
 
 #include "renderlib/sampling/tent.h"
 

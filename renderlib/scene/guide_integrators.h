@@ -1,7 +1,8 @@
 #pragma once
 
-// Integrators for the guides of the denoiser (integrate/guide.h). Users cannot select them, and no
-// scene has them as its default.
+// Integrators for the guides of the denoiser: images of surfaces with hardly any noise, by which
+// the denoiser finds edges (integrate/guide.h). Users cannot select these integrators, and no scene
+// has one of them as its default.
 
 #include "renderlib/scene/integrator.h"
 

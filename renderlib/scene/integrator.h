@@ -13,9 +13,10 @@ namespace bandsaw {
 
 /// The values are used in protocols and files.
 enum class Integrator {
-  /// Path tracing (integrate/path.h). A pilot measures whether path guiding and photon maps are
-  /// worth their cost in the scene (integrate/guiding_gain.h). If they are, this integrator works
-  /// as kPathGuided, otherwise as kPathPlain.
+  /// Path tracing (integrate/path.h). A pilot, a short trial before the first sample, measures
+  /// whether path guiding and photon maps are worth their cost in the scene
+  /// (integrate/guiding_gain.h). If they are, this integrator works as kPathGuided, otherwise as
+  /// kPathPlain.
   kPath = 0,
   kDirect = 1,   ///< direct light and the ambient term; paths continue at mirrors and glass
   kNormals = 2,  ///< (n + 1) / 2 of the shading normal in world space; black for a miss

@@ -11,7 +11,8 @@
 // medium, which moves with the boundary. It is the space of the boundary's frame
 // (geometry/frame.h), or world space if the boundary has no frame. So several boundaries may
 // contain the same medium, each at its own place. Where boundaries of the same medium overlap, the
-// boundary with the highest number counts. Loose spheres come before all instances in this order.
+// boundary with the highest number counts. In this order, spheres outside of groups come before all
+// instances.
 
 #include <optional>
 #include <vector>

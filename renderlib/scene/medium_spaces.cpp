@@ -1,6 +1,7 @@
-// Stores the frame of each boundary before static boundaries lose their frames
-// (static_instances.h). The map of a boundary that has lost its frame is computed once. The map of
-// a boundary that moves is computed anew for each time.
+// A medium varies in the space of the frame of its boundary. This file stores the frame of each
+// boundary before static boundaries lose their frames (static_instances.h), and computes the map
+// from the world to the frame. The map of a static boundary is computed once. The map of a boundary
+// that moves is computed anew for each time.
 
 #include "renderlib/scene/medium_spaces.h"
 

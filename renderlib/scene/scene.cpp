@@ -1,5 +1,5 @@
-// build_with() removes primitives that no ray can hit, removes motion that does not happen, finds
-// the features that the scene uses, and builds BVHs and lights, in this order.
+// build_with() removes primitives that no ray can hit, makes instances static if they do not move
+// while the shutter is open, builds BVHs and lights, and finds the features that the scene uses.
 
 #include "renderlib/scene/scene.h"
 
@@ -99,10 +99,10 @@ std::size_t clean_shapes(Shapes& shapes) {
 using CleanMeshes = std::map<const Mesh*, std::size_t>;
 
 /// Removes quads and triangles whose area is zero or not finite (e.g. because a vertex is not
-/// finite), also from meshes and groups. The others keep their order. Normals, uvs and colours that
-/// are not finite become zero. The meshes in `known` are clean already. Returns the number of
-/// removed primitives; a primitive of a mesh or group counts once per instance. Appends to
-/// `dropped_of_mesh` the number of triangles that each mesh lost.
+/// finite), also from meshes and groups. The other primitives keep their order. Normals, uvs and
+/// colours that are not finite become zero. The meshes in `known` are clean already. Returns the
+/// number of removed primitives; a primitive of a mesh or group counts once per instance. Appends
+/// to `dropped_of_mesh` the number of triangles that each mesh lost.
 std::size_t clean(Geometry& geometry, const CleanMeshes& known,
                   std::vector<std::size_t>& dropped_of_mesh) {
   std::size_t dropped = clean_shapes(geometry);

@@ -7,8 +7,8 @@
 
 namespace bandsaw {
 
-/// Makes instances static whose frames have the same transform throughout Geometry::shutter. Such
-/// an instance gets its placement in the world as `to_world`, and loses its frame. The new
+/// Makes an instance static if its frames have the same transform throughout Geometry::shutter.
+/// Such an instance gets its placement in the world as `to_world`, and loses its frame. The new
 /// `to_world` has the same bits as the placement that is computed from the frames, so no pixel
 /// changes.
 void make_static(Geometry& geometry);

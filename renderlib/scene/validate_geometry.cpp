@@ -148,7 +148,8 @@ absl::Status check_placement(const std::string& field, const Transform& placemen
     }
   }
   if (!inverse(placement)) {
-    return invalid(field, "must have an inverse (it scales by 0, or by too different factors)");
+    return invalid(field,
+                   "must have an inverse (it scales by 0, or by factors that differ too much)");
   }
   return absl::OkStatus();
 }
@@ -187,7 +188,7 @@ absl::Status check_frame(const std::string& field, const Frame& frame, std::size
     RETURN_IF_ERROR(check_placement(name + ".at", key.at));
     if (!decompose(key.at)) {
       return invalid(name + ".at",
-                     "must be a scale, then a rotation, then a translation: it shears");
+                     "must be a scale, then a rotation, then a translation; this one shears");
     }
   }
   return absl::OkStatus();

@@ -34,7 +34,7 @@ absl::Status check_color(absl::string_view field, const Rgb& c) {
 struct CheckParts {
   std::size_t index;                        ///< index of the texture that is checked
   const std::vector<std::uint64_t>& costs;  ///< costs of the textures before it
-  std::uint64_t& cost;                      ///< its own cost; the costs of its parts are added
+  std::uint64_t& cost;                      ///< cost of this texture, to which part() adds
 
   /// Checks a reference to another texture.
   absl::Status part(absl::string_view field, TextureId id) const {

@@ -23,7 +23,8 @@ double repetitions(const RampTexture& ramp, const TextureCoordinates& change);
 /// Returns the coordinate that the ramp maps to a colour. `ramp.over` MUST NOT be kTexture.
 double coordinate(const RampTexture& ramp, const TextureCoordinates& at);
 /// Returns the ramp's colour at `value`; NaN maps to the first stop. If `ramp.over` is kTexture,
-/// `value` is a converted float, and the stops of a stepped ramp are rounded to floats.
+/// `value` is a float that was converted to double, and the stops of a stepped ramp are rounded to
+/// floats.
 Rgb evaluate(const RampTexture& ramp, double value);
 
 }  // namespace bandsaw

@@ -26,6 +26,7 @@ class Answerer {
     answer_ = {data, size, failed};
     return &answer_;
   }
+  /// Answers with the error's message, cleaned and bounded in length, and marks it as failed.
   const BandsawAnswer* error(const absl::Status& status) {
     bytes_ = clean_text(std::string(status.message()), wire::kReasonBytes);
     return refer(bytes_.data(), bytes_.size(), 1);

@@ -1,8 +1,9 @@
 #pragma once
 
 // The renderer of one core of a browser's tab, compiled to WebAssembly. It builds scenes from blobs
-// and renders rows of bands (a band is a range of rows and samples). The page's JavaScript calls
-// the renderer through exports.h, fetches the blobs and checks their digests.
+// (the data of a scene, as arrays that are named by their SHA-256) and renders rows of bands (a
+// band is a range of rows and samples). The page's JavaScript calls the renderer through exports.h,
+// fetches the blobs and checks their digests.
 
 #include <atomic>
 #include <functional>
@@ -42,9 +43,9 @@ class BrowserRenderer {
   absl::Status build_scene();
   /// Frees a scene, if it is loaded.
   void drop_scene(const wire::Digest& manifest) { scenes_.erase(manifest); }
-  /// Returns the number of rows at whose multiples a band should be divided: 16 if pixels share
-  /// paths, because rows of a tile then have to be rendered together; otherwise 1. NOT_FOUND: the
-  /// scene is not loaded.
+  /// Returns the row step of a scene. A band should be divided only at rows that are multiples of
+  /// this step. It is 16 if pixels share paths, because rows of a tile then have to be rendered
+  /// together; otherwise it is 1. NOT_FOUND: the scene is not loaded.
   absl::StatusOr<std::uint32_t> row_step(const wire::Digest& manifest) const;
 
   /// Renders rows of a task's band. The sums have the same values as if the whole band were

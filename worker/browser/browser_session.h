@@ -23,10 +23,10 @@ struct BrowserBand {
 
 /// The actions that the page's JavaScript has to take after a message from the coordinator.
 struct BrowserOrders {
-  std::vector<TaskId> stop;          ///< bands that are no longer wanted
-  std::optional<BrowserBand> start;  ///< a band to render
-  std::vector<std::string> send;     ///< messages for the coordinator
-  std::optional<Dismissal> dismissal;
+  std::vector<TaskId> stop;            ///< bands that are no longer wanted
+  std::optional<BrowserBand> start;    ///< a band to render
+  std::vector<std::string> send;       ///< messages for the coordinator
+  std::optional<Dismissal> dismissal;  ///< set if the coordinator dismissed this worker
 };
 
 class BrowserSession {
@@ -37,7 +37,7 @@ class BrowserSession {
 
   const Session& session() const { return session_; }
 
-  // The stream. Messages to send are returned as bytes.
+  // The stream of messages from and to the coordinator. Each message to send is returned as bytes.
   std::string hello() const;
   /// Changes the number of threads and the memory that the next Hello offers. `memory_bytes`: the
   /// memory that scenes may take; 0: no limit.
@@ -69,7 +69,7 @@ class BrowserSession {
 
   /// Requests no more leases. Returns the message to send, or an empty text.
   std::string drain(const std::string& reason);
-  /// Requests leases again, on the next stream.
+  /// Ends the effect of drain(). On the next stream, the worker requests leases again.
   void resume() { session_.resume(); }
 
  private:

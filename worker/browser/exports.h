@@ -12,9 +12,9 @@
 
 extern "C" {
 
-/// Result of a call: the text of an error if `failed` is 1; otherwise the bytes that the comment of
-/// the function names after "Answers", or none. Belongs to the object that was called, and is valid
-/// until its next call.
+/// Result of a call. If `failed` is 1, the bytes are the text of an error. Otherwise they are the
+/// answer that the comment of the function describes. If it describes no answer, there are no
+/// bytes. The answer belongs to the object that was called, and is valid until the next call.
 struct BandsawAnswer {
   const void* data;
   size_t size;
@@ -39,46 +39,48 @@ BandsawSession* bandsaw_session_new(const char* instance, size_t instance_size, 
 void bandsaw_session_delete(BandsawSession* session);
 /// Returns the answer of the last call.
 const BandsawAnswer* bandsaw_session_answer(BandsawSession* session);
-/// Answers a message for the coordinator, as do heartbeat, failed, drain and log. If the message is
-/// empty, there is nothing to send.
+/// The answer is a message for the coordinator. The functions heartbeat, failed, drain and log have
+/// such an answer, too. If the message is empty, there is nothing to send.
 const BandsawAnswer* bandsaw_session_hello(BandsawSession* session);
 const BandsawAnswer* bandsaw_session_heartbeat(BandsawSession* session);
 const BandsawAnswer* bandsaw_session_offer(BandsawSession* session, uint32_t threads,
                                            double memory_bytes);
-/// Takes a message of the coordinator. Answers JSON: {"stop": [task…], "start": {"task", "job",
-/// "manifest", "width", "height", "first", "last", "samples", "lease"} or null, "send": [message…],
-/// "dismissal": {"reason", "wait_ms", "for_ever"} or null}. The band has the rows [first, last) and
-/// "samples" samples, of all its pixels together; "lease" and messages are base64.
+/// Takes a message of the coordinator. The answer is JSON: {"stop": [task…], "start": {"task",
+/// "job", "manifest", "width", "height", "first", "last", "samples", "lease"} or null, "send":
+/// [message…], "dismissal": {"reason", "wait_ms", "for_ever"} or null}. The band has the rows
+/// [first, last) and "samples" samples, of all its pixels together; "lease" and messages are
+/// base64.
 const BandsawAnswer* bandsaw_session_receive(BandsawSession* session, const void* message,
                                              size_t size);
 const BandsawAnswer* bandsaw_session_disconnected(BandsawSession* session);
-/// Answers JSON: {"connected", "welcomed", "drained": booleans, "name", "heartbeat_ms"}.
+/// The answer is JSON: {"connected", "welcomed", "drained": booleans, "name", "heartbeat_ms"}.
 const BandsawAnswer* bandsaw_session_state(BandsawSession* session);
 const BandsawAnswer* bandsaw_session_preparing(BandsawSession* session, uint32_t task,
                                                double prepared);
-/// `counters`: as bandsaw_renderer_counters answers them.
+/// `counters`: the answer of bandsaw_renderer_counters.
 const BandsawAnswer* bandsaw_session_rendering(BandsawSession* session, uint32_t task,
                                                uint32_t rows_done, const void* counters,
                                                size_t counters_size);
-/// Answers "true", or "false" if the band is not wanted any more.
+/// The answer is "true", or "false" if the band is not wanted any more.
 const BandsawAnswer* bandsaw_session_finished(BandsawSession* session, uint32_t task);
 /// `log`: lines that end with line breaks.
 const BandsawAnswer* bandsaw_session_failed(BandsawSession* session, uint32_t task,
                                             const char* reason, size_t reason_size, const char* log,
                                             size_t log_size);
-/// Answers the bytes that precede the sums in the body of POST /join/band. `digest`: the SHA-256 of
-/// the sums, 32 bytes. `size`: the size of the sums in bytes. Times are in seconds.
+/// The answer is the bytes that precede the sums in the body of POST /join/band. `digest`: the
+/// SHA-256 of the sums, 32 bytes. `size`: the size of the sums in bytes. Times are in seconds.
 const BandsawAnswer* bandsaw_session_band_header(BandsawSession* session, uint32_t task,
                                                  const void* digest, size_t digest_size,
                                                  double size, double render_s, double cpu_s);
-/// Takes the answer of POST /join/band. Answers "stored", "duplicate" or "unwanted".
+/// `reply`: the coordinator's reply to POST /join/band. The answer is "stored", "duplicate" or
+/// "unwanted".
 const BandsawAnswer* bandsaw_session_band_reply(BandsawSession* session, uint32_t task,
                                                 const void* reply, size_t size);
 const BandsawAnswer* bandsaw_session_drain(BandsawSession* session, const char* reason,
                                            size_t size);
 const BandsawAnswer* bandsaw_session_resume(BandsawSession* session);
 const BandsawAnswer* bandsaw_session_log(BandsawSession* session, const char* lines, size_t size);
-/// Answers the SHA-256 of the bytes, 32 bytes. For pages without crypto.subtle.
+/// The answer is the SHA-256 of the bytes, 32 bytes. For pages without crypto.subtle.
 const BandsawAnswer* bandsaw_session_sha256(BandsawSession* session, const void* bytes,
                                             size_t size);
 
@@ -86,8 +88,8 @@ const BandsawAnswer* bandsaw_session_sha256(BandsawSession* session, const void*
 
 BandsawRenderer* bandsaw_renderer_new(void);
 void bandsaw_renderer_delete(BandsawRenderer* renderer);
-/// Begins a scene. `digest` is the digest of `manifest`. Answers JSON: [{"digest", "size"}…], the
-/// blobs to add.
+/// Begins a scene. `digest` is the digest of `manifest`. The answer is JSON, the list of the blobs
+/// to add: [{"digest", "size"}…].
 const BandsawAnswer* bandsaw_renderer_begin_scene(BandsawRenderer* renderer, const char* digest,
                                                   size_t digest_size, const void* manifest,
                                                   size_t size);
@@ -95,19 +97,19 @@ const BandsawAnswer* bandsaw_renderer_begin_scene(BandsawRenderer* renderer, con
 /// fails.
 const BandsawAnswer* bandsaw_renderer_add_blob(BandsawRenderer* renderer, const char* digest,
                                                size_t digest_size, void* memory, size_t size);
-/// Builds the scene that was begun. Answers JSON: {"row_step"}, the number of rows at whose
-/// multiples a band should be divided (BrowserRenderer::row_step).
+/// Builds the scene that was begun. The answer is JSON: {"row_step"}. A band should be divided only
+/// at rows that are multiples of this number (BrowserRenderer::row_step).
 const BandsawAnswer* bandsaw_renderer_build_scene(BandsawRenderer* renderer, const char* digest,
                                                   size_t digest_size);
 const BandsawAnswer* bandsaw_renderer_drop_scene(BandsawRenderer* renderer, const char* digest,
                                                  size_t digest_size);
-/// Renders the rows [first, last) of a lease, which is given as the bytes of a farm.Lease. Answers
-/// the sums of the pixels' samples: rows x width x 3 doubles.
+/// Renders the rows [first, last) of a lease, which is given as the bytes of a farm.Lease. The
+/// answer is the sums of the pixels' samples: rows x width x 3 doubles.
 const BandsawAnswer* bandsaw_renderer_render(BandsawRenderer* renderer, const void* lease,
                                              size_t size, uint32_t first, uint32_t last);
-/// Answers a farm.Counters of the rows that were rendered last.
+/// The answer is a farm.Counters of the rows that were rendered last.
 const BandsawAnswer* bandsaw_renderer_counters(BandsawRenderer* renderer);
-/// Answers the rows that were rendered last as 8-bit RGBA.
+/// The answer is the rows that were rendered last, as 8-bit RGBA.
 const BandsawAnswer* bandsaw_renderer_picture(BandsawRenderer* renderer);
 
 }  // extern "C"

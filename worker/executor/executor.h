@@ -57,8 +57,10 @@ class Executor {
   using RunningList = std::list<Running>;
 
   void run() EXCLUDES(mutex_);
+  /// Renders a task and calls `finished` or `failed`, unless the task was stopped.
   void execute(Running& running) EXCLUDES(mutex_);
   absl::StatusOr<FinishedBand> render(Running& running) EXCLUDES(mutex_);
+  /// Notes that the task has got to `reached`, and wakes the tasks that wait for it.
   void reach(Running& running, Reached reached) EXCLUDES(mutex_);
   /// Waits until every earlier task has reached `reached`. CANCELLED: this task was stopped.
   absl::Status wait_for_earlier(const Running& running, Reached reached) EXCLUDES(mutex_);

@@ -22,8 +22,9 @@ absl::StatusOr<std::shared_ptr<const Scene>> SceneCache::get(const wire::Digest&
       return entries_.front().scene;
     }
   }
+  // The oldest scene is dropped before the next scene is built, so that memory need not hold both.
   while (entries_.size() >= kScenes) {
-    entries_.pop_back();  // before the next scene is built, so that memory never holds one more
+    entries_.pop_back();
   }
   ASSIGN_OR_RETURN(std::shared_ptr<const Scene> scene, load_(manifest, stop, prepared));
   entries_.push_front({.manifest = manifest, .scene = scene});

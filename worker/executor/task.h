@@ -1,7 +1,7 @@
 #pragma once
 
 // A task is a leased band (a range of rows and samples of a job's image) with all that is needed to
-// render it. Its id is the worker's own, because lease ids change when the coordinator is
+// render it. The worker itself numbers its tasks, because lease ids change when the coordinator is
 // restarted.
 
 #include <cstdint>
@@ -21,7 +21,9 @@ struct Task {
   wire::Digest manifest;  ///< of the scene package
   RenderSettings settings;
   Band band;
-  TileSamples tiles = {};  ///< adaptive samples of the band's half tiles; empty: all samples
+  /// In adaptive sampling, the samples that each half tile (half of the pixels of a tile) of the
+  /// band takes. Empty: all pixels take the samples of the band.
+  TileSamples tiles = {};
 };
 
 /// Cost of rendering a band. Time in which two bands are rendered at once is counted only once: for

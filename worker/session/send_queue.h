@@ -17,7 +17,7 @@ class SendQueue {
   void push(farm::FromWorker message) EXCLUDES(mutex_);
   /// Makes a heartbeat due now. To be called when the state of a band has changed.
   void beat_now() EXCLUDES(mutex_);
-  /// Accepts no more messages; those in the queue are still returned.
+  /// Accepts no more messages. next() still returns the messages in the queue.
   void close() EXCLUDES(mutex_);
 
   enum class Next { kMessage, kHeartbeat, kClosed };

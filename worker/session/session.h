@@ -94,7 +94,7 @@ class Session {
   /// Requests no more leases. Returns the message to send, or std::nullopt if not connected. On
   /// later streams the message follows Welcome.
   std::optional<farm::FromWorker> drain(const std::string& reason);
-  /// Requests leases again, on the next stream.
+  /// Ends the effect of drain(). On the next stream, the worker requests leases again.
   void resume() { drain_reason_.reset(); }
   bool drained() const { return drain_reason_.has_value() && held_.empty(); }
 

@@ -49,6 +49,7 @@ class SharedSession {
 
  private:
   bool is_over() const REQUIRES(mutex_) { return left_ || session_.drained(); }
+  /// If the session is over, closes the send queue and wakes the thread that sleeps in pause().
   void notify_when_over() REQUIRES(mutex_);
 
   Mutex mutex_;
