@@ -131,9 +131,9 @@ TEST(Camera, C4_APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
   lens.aperture = 0.3;
   lens.focus_distance = 5;
   for (const double z : {1.0, 2.5, 4.9, 8.0, 100.0}) {
-    // For each of many places on the lens, computes the image position (x, y) whose ray through
-    // this place passes through the point (0, 0, -z). The image lies on the plane of focus, so this
-    // ray meets the plane of focus at that position.
+    // Draws a line from each of many points on the lens through the point (0, 0, -z). The image
+    // lies on the plane of focus, so the line meets it at an image position (x, y). The camera's
+    // ray from the same point on the lens to (x, y) must pass through (0, 0, -z).
     const RayGenerator rays(lens, 1000, 1000);
     const double pixel = 2 * std::tan(20 * 3.14159265358979 / 180) / 1000;
     double largest = 0;

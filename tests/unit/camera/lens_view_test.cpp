@@ -68,6 +68,7 @@ TEST(LensView, TheMeanOfTheInversePdfIsTheSolidAngle) {
   EXPECT_NEAR(sum / kSamples, solid_angle, 1e-5 * solid_angle);
 }
 
+// A lens is too wide if its radius is at least the distance from its middle to the point in focus.
 TEST(LensView, DoesNotExistForPinholesParallelRaysAndVeryWideLenses) {
   PerspectiveCamera camera = lens();
   camera.aperture = 0;

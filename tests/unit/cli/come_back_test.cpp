@@ -49,6 +49,8 @@ TEST(ComeBack, RepeatsTheSettingsAndTheStepsAfterTheImages) {
             "--then 'cp $BANDSAW_FILES /mnt'");
 }
 
+// The option --farm takes a file with a join string, "-" for standard input, or the join string
+// itself, which contains a secret.
 TEST(ComeBack, NamesTheFileOfTheFarmAndShowsNoSecret) {
   WatchOptions options = of_job_7();
   options.farm.farm = "/dev/null";

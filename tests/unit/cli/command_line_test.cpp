@@ -18,6 +18,8 @@ absl::StatusOr<Command> parse(const std::string& line) {
   return parse_command_line(absl::StrSplit(line, ' ', absl::SkipEmpty()));
 }
 
+/// Returns the options that the command line gives. Expects that the line is valid and that its
+/// options have the type T.
 template <class T>
 T parsed(const std::string& line) {
   const auto command = parse(line);
@@ -26,7 +28,8 @@ T parsed(const std::string& line) {
   return command.ok() && std::holds_alternative<T>(*command) ? std::get<T>(*command) : T();
 }
 
-/// Expects that the line is refused by an error of one line that contains `says`.
+/// Expects that the command line is refused. The error must be a single line of text that contains
+/// `says`.
 void expect_wrong(const std::string& line, const std::string& says) {
   const auto command = parse(line);
   ASSERT_FALSE(command.ok()) << line;

@@ -47,7 +47,7 @@ TEST(Comparison, NonFiniteValuesAreReported) {
               testing::HasSubstr("1 values are not finite"));
 }
 
-// SSIM and FLIP count two values as equal if one of them is not finite.
+// SSIM and FLIP count two values as equal if at least one of the two is not finite.
 TEST(Comparison, NonFiniteValuesAreLeftOutOfAllMetrics) {
   const float infinity = std::numeric_limits<float>::infinity();
   const Image good = image(32, 32, 0.5F);

@@ -31,8 +31,8 @@ TEST(ContactSheet, ShowsEachFrameOnceAndCrossesOutMissingOnes) {
   EXPECT_EQ(picture.pixels.size(), std::size_t{picture.width} * picture.height);
   EXPECT_EQ(count(picture, red), 40u * 30);
   EXPECT_EQ(count(picture, green), 40u * 30);
-  // The labels have dots of 2 x 2 pixels: the digit 1 has eight dots, 2 eleven, 0 twelve, and the
-  // minus three.
+  // Labels are drawn with dots of 2 x 2 pixels. The digit 1 has 8 dots, the digit 2 has 11, the
+  // digit 0 has 12, and the minus sign has 3.
   const Rgb ink{0.6f, 0.6f, 0.6f};
   const std::size_t cross = 2 * 30;  // two diagonals, each with a pixel in every row of a cell
   EXPECT_NEAR(static_cast<double>(count(picture, ink)), 4 * (3 + 8 + 11 + 8 + 12) + cross, 4);

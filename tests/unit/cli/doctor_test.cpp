@@ -17,7 +17,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// The arguments are the times from and until which the certificate is valid, and the present.
+// The arguments are the time from which the certificate is valid, the time until which it is valid,
+// and the present time.
 TEST(Doctor, ACertificateIsValidInItsTime) {
   EXPECT_TRUE(certificate_check(100, 200, 150).ok);
   EXPECT_THAT(certificate_check(100, 200, 99).found, HasSubstr("not valid yet"));
@@ -60,7 +61,8 @@ TEST(Doctor, AMissingFolderIsReportedAsNotYetExisting) {
 }
 
 // A program listens on a port of 127.0.0.1. The check of this port passes only if the program is
-// the farm.
+// the farm. The arguments of check_port() are the address to listen on, the address at which the
+// farm answers ("" if it does not answer), and all addresses in the farm's join string.
 TEST(Doctor, ATakenPortIsFineOnlyIfTheFarmListensThere) {
   const int taken = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};

@@ -27,6 +27,7 @@ TEST(ImageSettings, AreThoseOfTheSceneByDefault) {
             (RenderSettings{.width = 600, .height = 400, .max_depth = 9, .seed = 0}));
 }
 
+// The seed of a frame is the given seed plus the number of the frame, modulo 2^64.
 TEST(ImageSettings, EachFrameHasASeedOfItsOwnUnlessItIsFixed) {
   const PackageInfo scene;
   ImageOptions options;

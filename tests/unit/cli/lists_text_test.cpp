@@ -33,6 +33,8 @@ TEST(Lists, JobsAreATableWithEvenColumns) {
   EXPECT_THAT(jobs_table({}), ElementsAre(HasSubstr("no jobs")));
 }
 
+// A guide is an image, such as the albedo, by which the denoiser finds edges. It is rendered as a
+// job.
 TEST(Lists, GuidesThatAreDoneAreCountedAndNotListed) {
   farm::JobStatus guide;
   guide.set_job(8);

@@ -11,6 +11,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
+// A sum over samples is added as a binary tree. Each pass is a node of this tree: an aligned range
+// of 2^n blocks, which have 8 samples each. The last block may be shorter.
 TEST(LocalPlan, CoversTheSamplesOnceInOrder) {
   for (const std::uint64_t samples : {1U, 16U, 17U, 64U, 72U, 1000U}) {
     LocalPlan plan(StopAtSamples{samples});
@@ -24,7 +26,7 @@ TEST(LocalPlan, CoversTheSamplesOnceInOrder) {
   }
 }
 
-// The error is 10 % at 32 samples. It falls as that of random samples, so it is 1 % at 3,200.
+// The error is 10 % at 32 samples. It falls as 1 / sqrt(samples), so it is 1 % at 3,200 samples.
 TEST(LocalPlan, AnErrorRuleEndsWhereTheErrorIsReached) {
   LocalPlan plan(StopAtError{.relative_rmse = 0.01});
   std::uint64_t done = 0;

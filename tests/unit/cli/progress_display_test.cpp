@@ -182,6 +182,8 @@ TEST(Json, HasTheErrorsOfTheRenderedAndOfTheCleanImage) {
   EXPECT_EQ(done.fields().at("clean_error").number_value(), 0.25);
 }
 
+// Bytes that are not valid UTF-8 become U+FFFD. An infinite number and an unknown number, which is
+// given as -1, become null.
 TEST(Json, EscapesAndRepairsInvalidUtf8) {
   JsonObject object;
   object.text("a\"b", "\\ \x01 ü \xff \xc3")

@@ -123,6 +123,7 @@ TEST(ProgressText, TheLastLineNamesTheReports) {
               testing::EndsWith(" · report a.json"));
 }
 
+// doubt_line() is a warning if a large share of the error is in the worst pixels (worst_share).
 TEST(ProgressText, TheCostIsShownWithThePartsOfTheError) {
   Progress progress = some_progress();
   JobView& job = progress.job;

@@ -71,9 +71,10 @@ TEST(Report, IsJsonWithAllFields) {
   EXPECT_EQ(at(json, "error", "relative_rmse_at_most").number_value(), 0.05);
   EXPECT_TRUE(at(json, "error", "doubtful").bool_value());
   EXPECT_EQ(json.fields().at("curve").list_value().values_size(), 2);
-  // At 64 samples the error is at most 5 %: 4 % and a margin of 1 %. It is extrapolated with the
-  // steepest slope that is accepted, 3/4. Three octaves later, at 512 samples, it is 1.05 %. The
-  // first checkpoint with less than 1 % has 640 samples.
+  // At 64 samples the error is at most 5 %, which is 4 % and a margin of 1 %. This bound is
+  // extrapolated as samples^(-3/4), the steepest fall that is accepted. At 512 samples, which is
+  // three doublings later, the bound is 1.05 %. The first checkpoint with less than 1 % has 640
+  // samples.
   EXPECT_NEAR(at(json, "time", "cpu_s_to_1_percent").number_value(), 4.0 * 640 / 64, 1e-9);
   EXPECT_EQ(at(json, "machines", "mrays_per_cpu_s").number_value(), 2);
   const auto& workers = at(json, "machines", "workers").list_value().values();

@@ -29,12 +29,12 @@ double normal(Random& random) {
 }
 
 /// How the errors of pixels are related. kOwn: they are independent. kFew: they are independent,
-/// and some 40 pixels have most of the noise, as with rare bright paths. kShared: they are equal
+/// and about 40 pixels have most of the noise, as with rare bright paths. kShared: they are equal
 /// within each group of pixels that may share their paths.
 enum class Errors { kOwn, kFew, kShared };
 
-/// An image whose true value is 1 everywhere. Its noise is uneven: with kOwn, some 70 pixels have
-/// most of it; with kShared, some 70 groups of pixels have most of it.
+/// An image whose true value is 1 everywhere. Its noise is uneven. With kOwn, about 70 pixels have
+/// most of the noise. With kShared, about 70 groups of pixels have most of it.
 class NoisyImage {
  public:
   NoisyImage(Errors errors, Random& random) : errors_(errors), random_(random) {
@@ -75,7 +75,8 @@ class NoisyImage {
   std::size_t source(std::size_t pixel) const {
     return errors_ != Errors::kShared ? pixel : groups_[pixel];
   }
-  /// Returns the number of each pixel's group, counted over the image.
+  /// Returns the number of each pixel's group, counted over the image. A tile of 16 x 16 pixels is
+  /// divided into two half tiles. The pixels of a half tile form groups that may share their paths.
   static std::vector<std::size_t> groups() {
     std::vector<std::size_t> groups(kPixels);
     for (std::size_t half_tile = 0; half_tile < kGrid.half_tiles(); ++half_tile) {

@@ -1,5 +1,5 @@
-// The coordinator identifies worker programs by their bytes, without running them: an ELF header,
-// and the mark, a record with the version.
+// The coordinator identifies worker programs by their bytes, without running them. It reads the ELF
+// header and the mark, which is a record in the program that states the version.
 
 #include "coordinator/cli/machines/worker_file.h"
 

@@ -1,6 +1,6 @@
-// The shell line that a user pastes on a machine without a worker: it downloads the program for the
-// machine's architecture, checks it and starts it. The test runs it in a real shell; uname and curl
-// are replaced by scripts.
+// The shell line that a user pastes on a machine without a worker. The line downloads the program
+// for the machine's architecture, checks the program and starts it. The tests run the line in a
+// real shell, in which scripts replace uname and curl.
 
 #include "coordinator/cli/machines/worker_line.h"
 
@@ -61,8 +61,8 @@ class WorkerLine : public ::testing::Test {
   WorkerDigests digests_;
 };
 
-// An architecture has two names, for example aarch64 and arm64. The line
-// accepts both as the output of `uname -m`.
+// An architecture has two names, for example aarch64 and arm64. The line accepts both as the output
+// of `uname -m`.
 TEST_F(WorkerLine, EachArchitectureGetsItsProgramByEitherName) {
   for (const Machine machine : kMachines) {
     for (const absl::string_view name : {machine_name(machine), other_machine_name(machine)}) {

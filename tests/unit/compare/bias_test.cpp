@@ -69,7 +69,8 @@ TEST(Bias, FalseAlarmsAreAsRareAsStated) {
   EXPECT_LE(alarms, 12);  // 4 expected; more than 12 has a probability below 1e-3
 }
 
-// The pixels of each group have the same noise, as if they shared paths.
+// A half tile (half of the pixels of a tile) is divided into groups of pixels. The pixels of a
+// group have the same noise, as if they shared paths.
 TEST(Bias, GroupsThatShareTheirNoiseAreNotBias) {
   constexpr TileGrid kGrid{64, 64};
   int alarms = 0;

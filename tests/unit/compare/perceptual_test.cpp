@@ -74,9 +74,10 @@ TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
   }
 }
 
-// The response to a step is its height (equations 11 and 12 of Andersson et al. 2020). At the step,
-// whose height is 0.2, the feature difference is sqrt(0.2 / sqrt(2)). The step raises the error
-// beside it, although the colours differ no more there than elsewhere.
+// FLIP detects edges with a filter that responds to a step with the step's height (equations 11 and
+// 12 of Andersson et al. 2020). The step has the height 0.2, so the feature difference at the step
+// is sqrt(0.2 / sqrt(2)). It raises the error beside the step, although the colours beside the step
+// differ no more than the colours far from it.
 TEST(Flip, AMissingEdgeCountsMoreThanItsColour) {
   Image edge = uniform(60, 60, 0.3F);
   for (std::size_t i = 0; i < edge.pixels.size(); ++i) {

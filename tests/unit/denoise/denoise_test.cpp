@@ -40,8 +40,9 @@ float normal(test::Random& random) {
   return static_cast<float>(sum);
 }
 
-/// A picture with independent noise in two halves; `noise` is the standard deviation of the mean.
-/// The guides are those of a plane that faces the camera.
+/// Returns a noisy picture for the denoiser. The two halves of its samples have independent noise.
+/// `noise` is the standard deviation of the mean of both halves. The guides are those of a plane
+/// that faces the camera.
 DenoiseInput noisy(const Picture& picture, float noise, std::uint64_t seed) {
   test::Random random(seed);
   const Image truth = image_of(picture);

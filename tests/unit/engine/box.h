@@ -29,8 +29,9 @@ class Box {
     wait_until(fits);
     return *value_;
   }
-  /// Waits for a value, removes it and returns it. So the value belongs to the caller alone
-  /// (coordinator/engine/answer.h says why that matters).
+  /// Waits for a value, removes it and returns it, so that the value belongs to the caller alone. A
+  /// status that is shared with another thread would give false reports of races by ThreadSanitizer
+  /// (coordinator/engine/answer.h).
   T take() EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     wait_until([](const T&) { return true; });

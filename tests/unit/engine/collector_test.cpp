@@ -1,6 +1,7 @@
 // Tests the collector. It forgets final jobs by age, bytes and number, and then removes the blobs
-// that no known job needs. By default it keeps jobs for 30 days and unused blobs for one day.
-// A KeptJob here is written {id, is it final?, manifests, frame jobs}.
+// (files of scenes, named by their digests) that no known job needs. By default it keeps jobs for
+// 30 days and unused blobs for one day. A KeptJob has the members id, final (true or false),
+// manifests and frame jobs.
 
 #include "coordinator/engine/collector.h"
 

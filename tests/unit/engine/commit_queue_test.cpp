@@ -12,9 +12,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// An effect is done only after its records are durable. A completion is called whether or not they
-/// are durable, with the status of the journal. In these tests, effects and completions append
-/// their names to `done_`. A completion whose status is an error appends "!" before its name.
+/// An effect is done only after its records are durable. A completion is also called if the records
+/// could not be written. Its argument is the status of the journal. In these tests, effects and
+/// completions append their names to `done_`. A completion whose status is an error appends "!"
+/// before its name.
 class CommitQueueTest : public testing::Test {
  protected:
   void effect(const std::string& name) {

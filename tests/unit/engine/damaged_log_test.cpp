@@ -43,6 +43,7 @@ class DamagedLog : public testing::TestWithParam<Damage> {
  protected:
   DamagedLog() { EXPECT_TRUE(farm_.start().ok()); }
 
+  /// Puts a worker into quarantine, as if it had returned wrong pixels.
   absl::Status quarantine(const std::string& worker) {
     Box<absl::Status> said;
     farm_.engine().quarantine(worker, false, [&](absl::Status status) { said.put(status); });
@@ -81,7 +82,8 @@ class DamagedLog : public testing::TestWithParam<Damage> {
   }
   /// Lets the running coordinator read the damaged log, and waits until it reports the damage.
   void find_damage(JobId job) {
-    ASSERT_TRUE(quarantine("wrong").ok());  // the film is built again from the log
+    // The film is built again from the log, without the bands of this worker.
+    ASSERT_TRUE(quarantine("wrong").ok());
     std::string why;
     while (why.find("damaged on the coordinator's disk") == std::string::npos) {
       why = absl::StrJoin(farm_.why(job), "\n");

@@ -1,5 +1,5 @@
-// A worker in a thread that renders its leases with the real renderer, and may be stopped at any
-// time.
+// A worker on its own thread. It renders its leases (the bands that the engine gives it) with the
+// real renderer. It may be stopped at any time.
 
 #include "tests/unit/engine/fake_worker.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// A worker without a network, for tests of the engine: it takes leases from the engine by function
-// calls, and renders them on a thread of its own with the real renderer.
+// A worker without a network, for tests of the engine. It takes leases (bands to render) from the
+// engine by function calls, and renders them on a thread of its own with the real renderer.
 
 #include <deque>
 #include <functional>
@@ -40,7 +40,10 @@ class FakeWorker {
 
  private:
   class Link;
+  /// Renders leases until the worker is stopped.
   void work();
+  /// Renders the band of a lease and sends it. Sends it again while the engine answers that its
+  /// disk or memory is full.
   void render(const action::Lease& lease);
 
   std::shared_ptr<const Scene> scene_;

@@ -54,7 +54,7 @@ class JournalDisk {
     MutexLock lock(mutex_);
     breaks_after_ = appends;
   }
-  /// Appends fail while `holds` returns true; nullptr: never.
+  /// Appends fail while `holds` returns true. nullptr removes the condition.
   void refuse_while(std::function<bool()> holds) EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     refuse_while_ = std::move(holds);

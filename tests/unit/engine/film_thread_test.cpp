@@ -252,7 +252,8 @@ TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
 
 TEST_F(FilmThreadTest, TheResultOfAnAdaptiveJobHasTheNumberOfSamplesOfEachPixel) {
   thread_.add_job(1, settings_, true);
-  // In the second pass, only the even half of the tile takes samples.
+  // The image is one tile. In the second pass, only the even half of the tile takes samples. These
+  // are the pixels for which half_of() returns 0.
   TileSamples even_half(settings_.width, {0, 8});
   even_half.set(0, {16, 32});
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
@@ -284,7 +285,7 @@ TEST_F(FilmThreadTest, BandsRefusedByAFullDiskAreAddedLater) {
   EXPECT_TRUE(scheduler_.merged.empty());
   thread_.retry();
   EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 16}))
-      << "the pass must be reported, and again with the finished image";
+      << "the pass must be reported twice: when it is complete and with the finished image";
   ASSERT_EQ(store_.images.size(), 1u);
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }

@@ -96,6 +96,7 @@ TEST(EngineFrames, TheErrorOfASceneWithMissingBlobsNamesTheFrame) {
   EXPECT_EQ(missing.status().code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(missing.status().message()),
               HasSubstr("frame 2: the package's manifest"));
+  // A job that is not a sequence has no list of frames.
   const JobId single = farm.begin(StopAtSamples{1});
   using Frames = absl::StatusOr<std::vector<FrameView>>;
   EXPECT_EQ(blocking_call<Frames>([&](auto answer) { farm.engine().frames(single, 0, answer); })

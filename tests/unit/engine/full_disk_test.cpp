@@ -112,8 +112,8 @@ TEST_F(FullDiskTest, ASecondSubmitThatCannotBeJournalledLeavesTheJobUnchanged) {
   wait_for(job, JobState::kDone);
   JobSpec same = farm_.spec(StopAtSamples{.samples = 8});
   disk_->break_it();
-  // A second submit of a job makes no record of its own. So another job is submitted just before:
-  // its record cannot be written, and records are written together.
+  // The second submit of a job makes no record. So another job is submitted just before it. The
+  // record of this other job cannot be written, and records are written together.
   JobSpec other = same;
   other.request_id = "another request id";
   Box<absl::Status> said;

@@ -1,5 +1,6 @@
-// The queue of tasks for one thread, answers that are given exactly once, and the memory budget for
-// images.
+// The queue of tasks for one thread (Mailbox), answers that are given exactly once, and the memory
+// budget for images. A Mailbox takes a function, which it calls after each batch of tasks, and the
+// longest time between two calls of this function.
 
 #include "coordinator/engine/mailbox.h"
 

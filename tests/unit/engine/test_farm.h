@@ -35,8 +35,9 @@ class TestFarm {
   JobView wait_until(JobId job, const std::function<bool(const JobView&)>& fits);
   JobView wait_final(JobId job);
   absl::StatusOr<StoredResult> result(JobId job, FinishedPart part = FinishedPart::kImage);
-  /// Sends a band as a native worker does, or as a browser does if `browser`. `work`: the hash of
-  /// scene and settings (render/work_hash.h) that the worker reports; 0: none.
+  /// Sends a band. If `browser` is true, it is sent as a browser does, otherwise as a native worker
+  /// does. `work`: the hash of scene and settings (render/work_hash.h) that the worker reports; 0:
+  /// none.
   absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels, std::uint64_t work = 0,
                                   bool browser = false);
   std::string bands_file(JobId job) const {

@@ -1,5 +1,5 @@
-// Delivery of a job's states to its watchers: at most ten a second, at least one a second, and
-// always the final one.
+// Delivery of a job's states to its watchers. A watcher gets at least one and at most ten states a
+// second, and it always gets the final state.
 
 #include "coordinator/engine/watchers.h"
 

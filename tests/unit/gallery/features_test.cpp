@@ -94,7 +94,8 @@ TEST_F(GalleryFeatures, AllTogetherGiveTheSameBitsOnEveryScene) {
   }
 }
 
-// Renders scenes with few features, so that most features are forced, with all integrators.
+// Renders scenes that have few features of their own, so most features are forced. Each scene is
+// rendered with all integrators.
 TEST_F(GalleryFeatures, EachAloneGivesTheSameBitsByEveryIntegrator) {
   for (const char* scene : {"cornell.textproto", "spheres.textproto", "textured.textproto",
                             "study/lights_0.textproto"}) {

@@ -21,8 +21,8 @@ namespace {
 
 using test::TempDir;
 
-// Writes the scene of the study and its map, which has `rows` rows, to the folder. Returns the path
-// of the scene.
+// Generates the map with `rows` rows in the folder, and copies the scene of gallery/study that uses
+// this map into the folder. Returns the path of the copied scene.
 std::string scene_in(const TempDir& folder, std::uint32_t rows) {
   Pool pool(2);
   const auto png = encode_png(2 * rows, rows, globe_map(rows, pool));

@@ -123,9 +123,9 @@ TEST(Lathe, TurnsClosedMeshesWithNormalsOutwards) {
   }
 }
 
-// A cone turned in n steps has n faces at its foot and n at its side. The edge of the foot is
-// sharp, so the foot's normals point down, and foot and side have points of their own. Each has two
-// rings of n + 1 points; the points of the side begin at 18.
+// A cone that is turned in n steps has n faces at its foot and n faces at its side. The edge of the
+// foot is sharp, so the foot's normals point down, and foot and side have separate points. Each has
+// two rings of n + 1 points. Here n is 8, so the first point of the side has the index 18.
 TEST(Lathe, KeepsSharpEdges) {
   const Obj cone = parse(lathe_obj(std::array<Vec2, 3>{{{0, 0}, {1, 0}, {0, 1}}}, 8));
   EXPECT_EQ(cone.faces.size(), 16u);

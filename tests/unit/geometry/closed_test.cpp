@@ -1,4 +1,4 @@
-// The check whether a mesh is closed, which boundaries of media need.
+// The check whether a mesh is closed. A mesh that bounds a medium must be closed.
 
 #include "renderlib/geometry/closed.h"
 

@@ -53,8 +53,8 @@ TEST(Disk, IsNotClippedByItsBoxIfTheNormalIsNearlyAlongAnAxis) {
   }
 }
 
-// A hit is within the rim and on the ray. Whether the disk is hit is decided exactly, except close
-// to the rim.
+// A hit is within the rim and on the ray. Except close to the rim, the function reports a hit
+// exactly if the ray hits the disk.
 TEST(Disk, IsHitWithinItsRim) {
   Random random(2);
   int hits = 0;

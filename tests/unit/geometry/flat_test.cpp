@@ -165,8 +165,9 @@ TEST(Quad, Q3_GrazingRaysFromFarAwayHitCorrectly) {
                          "20,000 hits and misses as in 113 bits, except within 1e-9 of the edge");
 }
 
-// A light lies in the plane of the ceiling. Both quads are hit at the same t, so the lower id wins
-// and the shadow ray ends before the ceiling.
+// A light lies in the plane of the ceiling, and rays through the light hit both quads. Both hits
+// must have the same t. Then the quad with the lower id counts as the hit, and a shadow ray to the
+// light ends before the ceiling.
 TEST(Quad, Q4_CoplanarQuadsAreHitAtTheSameDistance) {
   test::Random random(7);
   const Quad light = {{213, 554, 227}, {130, 0, 0}, {0, 0, 105}, {}};

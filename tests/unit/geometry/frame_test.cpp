@@ -1,5 +1,6 @@
-// Moving frames: decomposed keys and interpolation. An id such as X7 in a test's name is that of a
-// case in tests/hard_cases/cases.txt.
+// Moving frames, which are coordinate systems that move between keys. A key is a motion at one
+// time. It is decomposed into scale, rotation and translation, which are interpolated. An id such
+// as X7 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/geometry/frame.h"
 

@@ -1,4 +1,4 @@
-// The list of primitives by material, compared with a search of all primitives.
+// The list of all primitives that have certain materials, compared with a search of all primitives.
 
 #include "renderlib/geometry/primitive_list.h"
 
@@ -13,7 +13,8 @@
 namespace bandsaw {
 namespace {
 
-/// Loose spheres, two groups and their instances, with materials 0 to 3.
+/// Returns loose spheres, two groups and instances of the groups, with materials 0 to 3. The shapes
+/// of an instance with kOwnMaterial keep the materials of the group.
 Geometry geometry() {
   Geometry out;
   for (std::uint32_t material : {0, 2, 1, 2}) {

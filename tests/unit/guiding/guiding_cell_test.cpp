@@ -17,7 +17,7 @@ namespace {
 
 constexpr Vec3 kUp{0, 0, 1};
 
-/// A cell of three balls above a surface, of which two overlap as seen from the origin.
+/// Returns a cell of three balls above a surface. Seen from the origin, two of the balls overlap.
 GuidingCell three_balls() {
   GuidingCell cell;
   cell.count = 3;
@@ -127,6 +127,8 @@ std::vector<GuidingRecord> light_of_disk(GuidingRecord::Kind kind, double radius
   return records;
 }
 
+// `moment` is the expected second moment of a sampled direction's contribution without guiding, in
+// units of the squared mean. `guided_moment` is the second moment with guiding.
 TEST(FitCell, FindsASmallSource) {
   for (const auto kind : {GuidingRecord::Kind::kPath, GuidingRecord::Kind::kPhoton}) {
     const GuidingCell cell = fit_cell(light_of_disk(kind, 0.1, 200));

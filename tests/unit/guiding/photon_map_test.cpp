@@ -16,7 +16,9 @@ namespace {
 
 constexpr Vec3 kAbove{0, 0, 1};
 
-/// The argument `share_on_surface` of PhotonMap: the whole disk of each photon lies on the surface.
+/// The arguments of PhotonMap are the photons, a factor for all radii, a seed, the pool, and
+/// `share_on_surface`. This function is the last argument. It states that the whole disk of each
+/// photon lies on the surface.
 double whole(const StoredPhoton&) { return 1; }
 
 /// Returns photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4. So 10/13 of
@@ -156,8 +158,9 @@ TEST(PhotonMap, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-// Radii jump from one part of the photons to the next. An image would show lines if the jumps were
-// at the same places in all maps. Here, a quarter of the floor has no photons.
+// A map divides space into parts. The photons of a part have disks of one radius, so the radius
+// jumps at the border of two parts. An image would show lines if these borders were at the same
+// places in all maps. Here, a quarter of the floor has no photons.
 TEST(PhotonMap, TheSeedDecidesWhereRadiiJump) {
   Pool pool(1);
   std::vector<StoredPhoton> photons = on_floor(4000);

@@ -43,8 +43,8 @@ TEST(Curve, CubicSplinesReproduceACubic) {
   }
 }
 
-// Between inner keys the tangents of Catmull and Rom are exact for a parabola whose keys are evenly
-// spaced.
+// A smooth curve has the tangents of Catmull and Rom. For a parabola with evenly spaced keys, they
+// are exact at all inner keys.
 TEST(Curve, SmoothReproducesAParabolaBetweenInnerKeys) {
   const Curve curve = numbers({0, 1, 2, 3}, {0, 1, 4, 9}, Interpolation::kSmooth);
   for (const double x : {1.0, 1.3, 1.9, 2.0}) {

@@ -1,6 +1,7 @@
-// Skins and morph targets that move while the shutter is open: vertices at both ends, and the
-// coverage of rendered pixels against closed forms. Each comparison of pixels allows 4 standard
-// errors. With random seeds, fewer than 1 % of all runs would fail by chance; the seeds are fixed.
+// Skins and morph targets that move while the shutter is open: their vertices at both ends of the
+// exposure, and the coverage of rendered pixels against closed forms. Each comparison of pixels
+// allows 4 standard errors. With random seeds, fewer than 1 % of all runs would fail by chance; the
+// seeds are fixed.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,7 +48,7 @@ GltfWriter quad(float x0, float x1, float y0, float y1) {
 }
 
 /// Adds a linear channel to the animation "act", which is made if there is none. `path` is the
-/// property of the node that moves.
+/// property of the node that the channel animates.
 void animate(GltfWriter& file, int node, const char* path, const std::vector<float>& times,
              const std::vector<float>& values, int components) {
   if (!file.root.contains("animations")) {
@@ -124,8 +125,8 @@ TEST_F(DeformingModel, HasItsVerticesAtBothEndsOfTheExposure) {
   file.primitive()["targets"] =
       Json::array({{{"POSITION", file.add<float>({0, 0, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 3)}}});
   animate(file, 0, "weights", {0, 1}, {0, 1}, 1);
-  // The exposure lasts from a quarter to half of a second. The quad is turned by 22.5 degrees at
-  // its begin and by 45 degrees at its end.
+  // The exposure lasts from 0.25 s to 0.5 s. The quad is turned by 22.5 degrees when the exposure
+  // begins and by 45 degrees when it ends.
   const ImportedScene imported = read(file, exposure(1, 4, 1));
   EXPECT_THAT(imported.info.warnings, IsEmpty());
   ASSERT_THAT(imported.scene.geometry.meshes, SizeIs(1));

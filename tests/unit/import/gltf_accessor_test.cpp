@@ -1,5 +1,7 @@
 // Attributes of every type that glTF 2.0 and KHR_mesh_quantization allow are converted to the
-// numbers that they represent, and a damaged file gives one clear error.
+// numbers that they represent, and a damaged file gives one clear error. The arguments of
+// GltfWriter::add() are the values, the numbers of each element, whether integers are normalised,
+// and how many unused numbers follow each element.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,7 +51,7 @@ TEST_F(GltfAccessors, UvsAndColoursMayBeNormalisedBytesAndShorts) {
       {"COLOR_0",
        bytes.add<std::uint8_t>({0, 51, 255, 0, 0, 0, 0, 0, 255, 255, 255, 0}, 3, true, 1)}};
   const Mesh small = mesh(bytes);
-  // v = 0 is the bottom of the image here, and its top in glTF.
+  // In a Mesh, v = 0 is the bottom of the image. In glTF, v = 0 is the top.
   EXPECT_THAT(small.uvs,
               ElementsAre(ElementsAre(0, 0), ElementsAre(0.2f, 1 - 0.4f), ElementsAre(1, 1)));
   EXPECT_THAT(small.colors,

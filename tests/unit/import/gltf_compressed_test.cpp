@@ -141,7 +141,8 @@ TEST(Meshopt, FilteredNormalsAndPositionsAreWithinTheirPrecision) {
     // A change of one step in the octahedral map moves a unit vector by at most 2 steps. One more
     // step is allowed for the rounding of the decoded values.
     const double step = 3.0 / (wide ? 32767 : 127);
-    // Assimp 5.4 has the vertices in the order in which triangles use them.
+    // Assimp 5.4, by which the file is read, renumbers vertices in the order in which triangles use
+    // them. So the vertex of the square is found by its position.
     std::set<std::size_t> found;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
       const std::size_t vertex = vertex_at(square, mesh.positions[i]);

@@ -19,12 +19,13 @@ using test::with_meshopt;
 using test::write_text;
 using ::testing::HasSubstr;
 
-// Files in which random bytes have been replaced are either read, or give one error that names the
-// file.
+// In each file, random bytes of the binary part are replaced. The file is then read, or it gives an
+// error that names the file.
 TEST(CompressedGltf, RandomDamageIsAnErrorOrHarmless) {
   const TempDir folder;
   const WavySquare square(6);
   GltfWriter meshopt = with_meshopt(square, false, 2);
+  // A .glb file has a single buffer, so the views must not refer to a second one.
   meshopt.root.erase("buffers");
   for (Json& view : meshopt.root["bufferViews"]) {
     view["buffer"] = 0;

@@ -19,9 +19,9 @@ inline std::string floats(const std::vector<float>& values) {
   return bytes;
 }
 
-/// One triangle (0,0,0), (1,0,0), (0,1,0) with two sets of uvs and material 0. Its vertex colours
-/// are (0.5,0,0), (0,0.5,0), (0,0,0.5), if `colors` is set. Buffer views 0 to 3: positions, uvs,
-/// second uvs, colours.
+/// One triangle (0,0,0), (1,0,0), (0,1,0) with two sets of uvs and material 0. If `colors` is set,
+/// its vertex colours are (0.5,0,0), (0,0.5,0), (0,0,0.5). The buffer views 0 to 3 have the
+/// positions, the uvs, the second uvs and the colours.
 struct GltfTriangle {
   std::string materials = "{}";  ///< contents of the list
   std::string textures;          ///< contents of the list

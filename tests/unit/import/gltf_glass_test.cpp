@@ -1,5 +1,5 @@
 // KHR_materials_volume: closed meshes that transmit become solid glass with an absorbing medium.
-// The clear coat's normal map uses its own uvs.
+// Also tests that the normal map of a clear coat (KHR_materials_clearcoat) has its own set of uvs.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

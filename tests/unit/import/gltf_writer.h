@@ -69,9 +69,9 @@ class GltfWriter {
     root["accessors"].push_back(members);
     return root["accessors"].size() - 1;
   }
-  /// Adds an accessor over a view of its own; returns its index. `values` are rows of `components`
-  /// numbers and `padding` further ones, which are not read: glTF requires that each row of an
-  /// attribute is a multiple of 4 bytes.
+  /// Adds the values as a new view with an accessor. Returns the index of the accessor. Each row of
+  /// `values` has `components` numbers, and then `padding` numbers that are not read. Padding is
+  /// needed because glTF requires that the size of a row of an attribute is a multiple of 4 bytes.
   template <class T>
   std::size_t add(const std::vector<T>& values, int components, bool normalized = false,
                   int padding = 0) {

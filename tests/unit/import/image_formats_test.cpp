@@ -59,7 +59,7 @@ TEST(ImageFormats, PgmIsGrey) {
   EXPECT_THAT(codes(image), ElementsAre(7, 200));
 }
 
-// Truevision TGA 2.0: type 2, from the bottom row up, blue first.
+// A Truevision TGA 2.0 file of type 2 has its rows from the bottom up. Each pixel begins with blue.
 TEST(ImageFormats, TgaGoesFromTheBottomRowUp) {
   const ImageTexture image =
       decoded(bytes({0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24, 0}) +
@@ -74,8 +74,8 @@ TEST(ImageFormats, ATgaMayBeRunLengthEncodedAndBeginAtTheTop) {
   EXPECT_THAT(codes(image), ElementsAre(3, 2, 1, 3, 2, 1, 6, 5, 4));
 }
 
-// BITMAPINFOHEADER, 24 bits. The rows go from the bottom up, and each is padded to a multiple of
-// four bytes.
+// The BMP file has a BITMAPINFOHEADER and 24 bits per pixel. The rows go from the bottom up, and
+// each row is padded to a multiple of four bytes.
 TEST(ImageFormats, BmpRowsArePaddedToFourBytes) {
   const std::string header = "BM" + bytes({70, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0}) +
                              bytes({40, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 1, 0, 24, 0}) +
@@ -85,7 +85,8 @@ TEST(ImageFormats, BmpRowsArePaddedToFourBytes) {
   EXPECT_THAT(codes(image), ElementsAre(kRed, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255));
 }
 
-// Radiance: mantissas and a common exponent, (m / 256) 2^(e - 128).
+// A pixel of a Radiance file has a mantissa m for each channel and one exponent e for all channels.
+// The value of a channel is (m / 256) 2^(e - 128).
 TEST(ImageFormats, AnHdrNumberIsAMantissaTimesItsExponent) {
   const ImageTexture image = decoded("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" +
                                      bytes({128, 64, 0, 131, 255, 128, 1, 120}));
