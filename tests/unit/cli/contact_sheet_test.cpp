@@ -38,7 +38,7 @@ TEST(ContactSheet, ShowsEachFrameOnceAndCrossesOutMissingOnes) {
   EXPECT_NEAR(static_cast<double>(count(picture, ink)), 4 * (3 + 8 + 11 + 8 + 12) + cross, 4);
 }
 
-TEST(ContactSheet, ShowsBrightnessAsAnEightBitFileDoes) {
+TEST(ContactSheet, AppliesTheExposureOfTheFrame) {
   ContactSheet sheet({1}, 8, 8);
   sheet.add(1, flat(8, 8, {0.125f, 0.125f, 0.125f}), {.exposure = 2});
   EXPECT_EQ(count(sheet.picture(), {0.5f, 0.5f, 0.5f}), 64u);

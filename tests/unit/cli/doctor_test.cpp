@@ -91,7 +91,7 @@ TEST(Doctor, ATakenPortIsFineOnlyIfTheFarmListensThere) {
   close(taken);
 }
 
-TEST(Doctor, AMissingFarmIsNotFoundAndAWrongOneIsInvalid) {
+TEST(Doctor, AMissingJoinStringIsNotFoundAndAMalformedOneIsInvalid) {
   const test::TempDir folder;
   EXPECT_TRUE(absl::IsNotFound(doctor_join({}, folder.path()).status()));
   EXPECT_TRUE(absl::IsInvalidArgument(doctor_join({.farm = "bsw1-x"}, folder.path()).status()));

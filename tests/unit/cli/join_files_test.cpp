@@ -36,7 +36,7 @@ class JoinFilesTest : public testing::TestWithParam<link::Role> {
   link::Identity identity_ = *link::load_or_make_identity(folder_.path());
 };
 
-TEST_P(JoinFilesTest, ARunningCoordinatorWritesAFileThatIsMissingOrDamaged) {
+TEST_P(JoinFilesTest, WithACoordinatorAMissingOrDamagedFileIsWritten) {
   expect_new_string(rotate_secret(folder_.path(), GetParam(), first()));
   std::ofstream(file(), std::ios::trunc) << "damaged";
   expect_new_string(rotate_secret(folder_.path(), GetParam(), first()));

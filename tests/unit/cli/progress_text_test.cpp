@@ -124,7 +124,7 @@ TEST(ProgressText, TheLastLineNamesTheReports) {
 }
 
 // doubt_line() is a warning if a large share of the error is in the worst pixels (worst_share).
-TEST(ProgressText, TheCostIsShownWithThePartsOfTheError) {
+TEST(ProgressText, TheCostLineShowsRaysTimesAndTheErrorsOfMostPixels) {
   Progress progress = some_progress();
   JobView& job = progress.job;
   job.samples_per_pixel = 256;

@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-TEST(QrText, EveryModuleIsHalfABlockInBlackOnWhite) {
+TEST(QrText, EachCharacterShowsTwoModulesInBlackOnWhite) {
   // A square of two modules, dark on its diagonal.
   const std::string text = qr_text({.side = 2, .dark = {true, false, false, true}});
   const std::vector<std::string> lines = absl::StrSplit(text, '\n');

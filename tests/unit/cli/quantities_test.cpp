@@ -19,7 +19,7 @@ TEST(Quantities, TimesHaveUnits) {
   }
 }
 
-TEST(Quantities, PercentagesNeedTheirSign) {
+TEST(Quantities, PercentagesNeedAPercentSign) {
   EXPECT_EQ(parse_percent("--error", "1%").value(), 0.01);
   EXPECT_EQ(parse_percent("--error", "0.5 %").value(), 0.005);
   EXPECT_EQ(parse_percent("--error", "100%").value(), 1);

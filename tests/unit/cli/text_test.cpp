@@ -23,7 +23,7 @@ TEST(Text, NumbersHaveTwoDigitsAndALetter) {
   EXPECT_EQ(si_with(950, "samples"), "950 samples");
 }
 
-TEST(Text, TimesAreReadable) {
+TEST(Text, TimesAreShownAsOnAClockOrWithUnits) {
   EXPECT_EQ(clock_time(0), "0:00");
   EXPECT_EQ(clock_time(8.2), "0:09");
   EXPECT_EQ(clock_time(65), "1:05");

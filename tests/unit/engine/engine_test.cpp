@@ -131,7 +131,7 @@ TEST_F(EngineTest, ANameWithControlCharactersOrBadUtf8IsRefused) {
   EXPECT_TRUE(farm_.submit(spec).ok());
 }
 
-TEST_F(EngineTest, ABrowserMaySendBandsOnlyForABrowserThatHasJoined) {
+TEST_F(EngineTest, BandsOfABrowserThatHasNotJoinedAreRefused) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 8}});
   EXPECT_EQ(farm_.put(job, top, 0, true).status().code(), absl::StatusCode::kFailedPrecondition)
@@ -139,7 +139,7 @@ TEST_F(EngineTest, ABrowserMaySendBandsOnlyForABrowserThatHasJoined) {
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);
 }
 
-TEST_F(EngineTest, ARepeatedBandIsADuplicateOrUnwantedIfTheJobIsOver) {
+TEST_F(EngineTest, ARepeatedBandIsADuplicateAndAfterTheJobItIsUnwanted) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 7}});
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);

@@ -67,7 +67,7 @@ TEST_F(FullDiskTest, ABandThatDoesNotFitIsKeptByItsWorkerAndTheJobWaits) {
   expect_local_image(job);
 }
 
-TEST_F(FullDiskTest, ARetryEndsTheJobWhenThereIsRoom) {
+TEST_F(FullDiskTest, AWaitingJobIsFinishedOnceTheDiskHasSpace) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   auto full = std::make_unique<test::FullDisk>(0);
   FakeWorker worker(farm_.scene(), "one");

@@ -87,7 +87,7 @@ TEST(ImageFormats, BmpRowsArePaddedToFourBytes) {
 
 // A pixel of a Radiance file has a mantissa m for each channel and one exponent e for all channels.
 // The value of a channel is (m / 256) 2^(e - 128).
-TEST(ImageFormats, AnHdrNumberIsAMantissaTimesItsExponent) {
+TEST(ImageFormats, AnHdrValueIsAMantissaTimesAPowerOfTwo) {
   const ImageTexture image = decoded("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" +
                                      bytes({128, 64, 0, 131, 255, 128, 1, 120}));
   EXPECT_EQ(image.format, ImageTexture::Format::kFloat32);
