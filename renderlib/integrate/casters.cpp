@@ -1,5 +1,5 @@
-// The constructor lists the primitives of casters by material. sample() chooses a material, and a
-// point of its primitives.
+// The constructor lists the primitives of casters, which are surfaces that cast caustics, by
+// material. sample() chooses a material, and a point of its primitives.
 
 #include "renderlib/integrate/casters.h"
 
@@ -16,8 +16,8 @@ constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 18;
 
 /// Metals with a roughness above kRoughest are no casters, because they cast no sharp light. A
 /// material that blends several kinds of surface is a caster if its roughness is at most kRoughest
-/// and its factor of metal is above the same number. For a Principled material, its factor of
-/// transmission may be above the number instead.
+/// and its factor of metal is above kRoughest. In a Principled material, the factor of transmission
+/// may be above kRoughest instead of the factor of metal.
 constexpr double kRoughest = 0.5;
 
 /// Returns true if surfaces of the material cast caustics. Alpha of a Conductor is the square of

@@ -36,8 +36,8 @@ bool receives_caustics(const Bsdf& bsdf) {
 }
 
 std::uint32_t PhotonMaps::number_of(std::uint64_t sample) {
-  // Samples with `unit` in [2^octave, 2^(octave + 1)) have maps of `root` units each; `first` is
-  // the number of the first of these maps.
+  // A unit is kMinSamplesOfMap consecutive samples. The units in [2^octave, 2^(octave + 1)) have
+  // maps of `root` units each. `first` is the number of the first of these maps.
   const std::uint64_t unit = sample / kMinSamplesOfMap;
   if (unit == 0) {
     return 0;

@@ -11,9 +11,9 @@
 //
 // A scattering in a medium and a delta direction at a receiver also end the chain. A chain is
 // counted from the receiver towards the light. At the casters of a chain, path tracing samples no
-// emissive surface. If a path hits emission after a caster, and light sampling at this caster could
-// have produced the emission, it is left out, because photons start at casters by light sampling.
-// Delta lights, environments and backgrounds are sampled as without photon maps.
+// emissive surface, because photons start at casters by light sampling. For the same reason, a path
+// that hits emission after a caster leaves out the emission that light sampling at this caster can
+// produce. Delta lights, environments and backgrounds are sampled as without photon maps.
 
 #include <cstdint>
 #include <utility>
@@ -45,9 +45,10 @@ inline CausticRole caustic_role(const Casters& casters, MaterialId material, con
 /// (indirect_photons.h). Consecutive samples share them.
 class PhotonMaps {
  public:
-  /// Number of samples that share one of the first maps: one block (render/band.h). So the two
-  /// halves of an image's samples share no map, and the noise of the maps is part of the difference
-  /// from which the error is estimated (render/error_estimate.h).
+  /// Number of samples that share one of the first maps. It is one block: the samples of a pixel
+  /// are added in blocks of 8 (render/band.h). So the two halves of an image's samples share no
+  /// map, and the noise of the maps is part of the difference between the halves, from which the
+  /// error is estimated (render/error_estimate.h).
   static constexpr std::uint64_t kMinSamplesOfMap = 8;
   /// Returns the number of the map of a sample. The first four maps have 8 samples each. In
   /// general, samples [8 * 4^k, 32 * 4^k) have maps of 8 * 2^k samples each. So the number of maps

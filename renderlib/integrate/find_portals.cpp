@@ -1,5 +1,6 @@
-// Traces paths in a fixed number of chunks, and fits portals to the rays that leave their surfaces.
-// A few chunks tell already if the scene is so open that it needs no portals.
+// Traces paths in a fixed number of chunks, and fits portals (openings through which the background
+// lights a room) to the rays that surfaces scatter. A few chunks already tell whether the scene is
+// so open that it needs no portals.
 
 #include "renderlib/integrate/find_portals.h"
 
@@ -51,7 +52,7 @@ void add_rays(const PathContext& context, PathState path, std::vector<ScatteredR
 /// Returns the rays of a chunk of paths.
 Traced<ScatteredRay> rays_of_chunk(const Scene& scene, const GuidingKey& key,
                                    std::uint32_t number) {
-  // Selects the random numbers. The training of path guiding has the lower rounds.
+  // Selects the random numbers. The training of path guiding uses the rounds 0 to 2.
   constexpr std::uint32_t kRound = 3;
   const RayGenerator camera(scene.camera(), static_cast<int>(key.width),
                             static_cast<int>(key.height), scene.camera_at_close());

@@ -1,7 +1,7 @@
 #pragma once
 
-// Finds the openings through which the background lights a room (guiding/portals.h): the rectangles
-// through which the few rays pass that leave the scene.
+// Finds portals, which are openings through which the background lights a room
+// (guiding/portals.h). A portal is a rectangle. The few rays that leave the scene pass through it.
 
 #include <cstdint>
 #include <optional>
@@ -13,8 +13,8 @@
 
 namespace bandsaw {
 
-/// Traces paths from the camera, and returns the portals of the rays that leave their surfaces. The
-/// result is a pure function of the scene and of the width and height of the image. Returns
+/// Traces paths from the camera, and returns the portals that fit the rays scattered by surfaces.
+/// The result is a pure function of the scene and of the width and height of the image. Returns
 /// std::nullopt if stopped, otherwise adds the number of rays to `traced`.
 std::optional<Portals> find_portals(const Scene& scene, const GuidingKey& key,
                                     const Preparation& preparation, std::uint64_t& traced);

@@ -1,8 +1,9 @@
-// Portals are found one after the other. Candidates are rectangles in planes. These are the planes
-// of the walls and, in each direction, the plane in which the crossings of the escaping rays are
-// closest together, as in an opening without a wall. A plane may have several openings, so its
-// crossings are divided where they have gaps. The best rectangle of all becomes a portal, and the
-// search goes on with the rays that do not pass through it.
+// Portals, which are rectangular openings through which rays escape from the scene, are found one
+// after the other. Candidates are rectangles in planes. These are the planes of the walls and, in
+// each direction, the plane in which the crossings of the escaping rays are closest together, as in
+// an opening without a wall. A plane may have several openings, so its crossings are divided where
+// they have gaps. The best rectangle of all becomes a portal, and the search goes on with the rays
+// that do not pass through it.
 
 #include "renderlib/integrate/fit_portals.h"
 
@@ -18,8 +19,8 @@ namespace {
 
 /// Fewer escaping rays do not tell where an opening is.
 constexpr std::size_t kMinRays = 24;
-/// At least the part kMinPrecision of the rays towards a portal escapes. This part is also at least
-/// kMinLift times the part of all rays that escape.
+/// Of the rays towards a portal, at least the part kMinPrecision escapes. This part is also at
+/// least kMinLift times as large as the part of all rays that escapes.
 constexpr double kMinPrecision = 0.35;
 constexpr double kMinLift = 3;
 /// A portal has at least this part of the escaping rays.
@@ -29,9 +30,10 @@ constexpr double kMinPart = 0.04;
 constexpr std::size_t kMaxNormals = 9;
 /// Normals whose cosine is above this number count as equal or opposite.
 constexpr double kSameDirection = 0.9995;
-/// In each direction, the kMaxWalls largest walls are considered, if more than the part
-/// kMinPartOfWall of the rays start at the wall. Surfaces belong to one wall if their offsets, in
-/// sorted order, differ from one to the next by at most the part kThickness of the scene's size.
+/// For each normal, at most kMaxWalls walls are considered: those at which most rays start. More
+/// than the part kMinPartOfWall of the rays must start at a wall. Surfaces belong to one wall if
+/// their offsets, in sorted order, differ from one to the next by at most the part kThickness of
+/// the scene's size.
 constexpr std::size_t kMaxWalls = 8;
 constexpr double kMinPartOfWall = 0.005;
 constexpr double kThickness = 1e-4;
@@ -126,7 +128,7 @@ Rectangle smallest_rectangle(const Rays& rays, const Planes& planes) {
     starts.push_back(dot(ray->origin, planes.normal));
   }
   const Bounds all = trimmed(starts, 0);
-  // The rays start before the opening, except those that start beyond it, outside the room.
+  // Rays that start in the room start before the opening. Other rays may start beyond it.
   double low = all.low;
   double high = all.high + all.size();
   constexpr int kSteps = 32;
@@ -230,8 +232,8 @@ std::vector<Vec3> candidate_normals(absl::Span<const ScatteredRay> rays) {
   return normals;
 }
 
-/// Returns planes with this normal. Their axis u comes from that one of `normals` which is most
-/// perpendicular to `normal`, made exactly perpendicular to it.
+/// Returns planes with this normal. Of the vectors `normals`, the one that is most perpendicular to
+/// `normal` is made exactly perpendicular to it and becomes the axis u.
 Planes planes_of(const Vec3& normal, const std::vector<Vec3>& normals) {
   Vec3 best = normals[0];
   for (const Vec3& other : normals) {

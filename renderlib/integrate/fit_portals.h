@@ -1,7 +1,7 @@
 #pragma once
 
-// Fits portals (guiding/portals.h) to rays: the rectangles through which the few rays pass that
-// leave the scene.
+// Fits portals (guiding/portals.h) to rays. A portal is a rectangle. The few rays that leave the
+// scene pass through it.
 
 #include "absl/types/span.h"
 #include "renderlib/guiding/portals.h"

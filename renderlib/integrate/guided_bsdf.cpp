@@ -1,5 +1,6 @@
-// A direction is sampled in one of the cones with the probability `share` of the cones, otherwise
-// by the BSDF. In both cases the returned pdf is the pdf of the mixture of the two.
+// The field of path guiding gives cones of directions from which it expects light. A direction is
+// sampled from the cones with the probability GuidingCones::share(), otherwise from the BSDF. In
+// both cases the returned pdf is the pdf of the mixture of the two.
 
 #include "renderlib/integrate/guided_bsdf.h"
 

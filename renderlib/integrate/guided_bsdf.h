@@ -1,10 +1,10 @@
 #pragma once
 
 // A BSDF together with the directions from which the field of path guiding expects light. They are
-// stored as cones (guiding/guiding_cell.h). A direction is sampled either from the BSDF or from the
-// cones, chosen at random with probability share(); the pdf is that of the mixture (Müller,
-// Gross and Novák 2017, "Practical Path Guiding for Efficient Light-Transport Simulation", section
-// 5.2), so that the expected value does not depend on the field.
+// stored as cones (guiding/guiding_cell.h). A direction is sampled from the cones with the
+// probability GuidingCones::share(), otherwise from the BSDF. Its pdf is the pdf of the mixture of
+// the two (Müller, Gross and Novák 2017, "Practical Path Guiding for Efficient Light-Transport
+// Simulation", section 5.2). So the expected value does not depend on the field.
 
 #include <optional>
 

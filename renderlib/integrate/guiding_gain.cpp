@@ -1,6 +1,7 @@
-// A few samples of some pixels are taken. Their variance is measured, and the cells of the field
-// predict how much of it guiding and photon maps would remove. The constants are the limits from
-// which each method pays.
+// A few samples of some pixels are taken. Their variance is measured. The field of path guiding
+// predicts how much of the variance guiding and photon maps would remove. Its cells hold the light
+// that arrives at a place; some are fitted to paths, others to photons. The constants are the
+// limits above which each method pays.
 
 #include "renderlib/integrate/guiding_gain.h"
 

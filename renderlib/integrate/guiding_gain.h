@@ -23,7 +23,8 @@ struct GuidingGain {
   /// Measured without guiding. It is too low where light is so rare that the few samples miss it.
   double variance = 0;
   double rays = 0;  ///< mean number of rays of a sample
-  /// The same of paths that end after their first scattering, so that they find direct light only.
+  /// Variance and rays of paths that end after their first scattering, so that they find direct
+  /// light only.
   double direct_variance = 0;
   double direct_rays = 0;
   /// The next two are predicted by the field, so that rare light counts as well. Each may exceed

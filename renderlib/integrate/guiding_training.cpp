@@ -135,7 +135,8 @@ class Decisions {
     options_.portals = portals.empty() ? nullptr : &portals;
   }
 
-  /// Measures the gain of maps and of a field, if this gain decides what is used (only_if_it_pays).
+  /// If `only_if_it_pays` is set, measures the gain of maps and of a field, because this gain then
+  /// decides what is used. Otherwise does nothing.
   bool measure() {
     if (key_.only_if_it_pays) {
       gain_ = pilot(scene_, key_, casters_, options_, preparation_, rays_);

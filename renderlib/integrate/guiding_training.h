@@ -20,12 +20,13 @@ namespace bandsaw {
 
 /// Trains the field of the scene: with 3/4 n paths and, if there are casters (surfaces that cast
 /// caustics, casters.h), with 2 n photons, where n is the number of pixels of the image, clamped to
-/// [2^15, 2^18]. The first eight vertices of each path and each photon that arrives become records,
-/// which take at most 2 x 93 MB during the training.
+/// [2^15, 2^18]. A record is made of each of the first eight vertices of a path, and of each photon
+/// that arrives at a surface whose directions can be guided. The records take at most 2 x 93 MB
+/// during the training.
 ///
-/// With key.only_if_it_pays, a small training decides first whether a field and photon maps pay; if
-/// not, the field is empty. With `photon_maps` and where they pay, the paths of the training take
-/// caustics (caustics.h) and indirect light (indirect_photons.h) from photon maps. Then
+/// With key.only_if_it_pays, a small training decides first whether a field and photon maps pay. If
+/// a field does not pay, it stays empty. If `photon_maps` is true and photon maps pay, the paths of
+/// the training take caustics (caustics.h) and indirect light (indirect_photons.h) from them. Then
 /// TrainedGuiding::sources is set, and all paths that use the field MUST have photon maps too.
 /// Returns nullptr if it was stopped.
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,

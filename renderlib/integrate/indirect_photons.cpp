@@ -1,6 +1,7 @@
-// find_origins() samples points of receivers and directions from there, and measures with a path
-// how much light leaves each point in its direction. trace_indirect_photons() starts photons there,
-// and stores them at the receivers that they meet.
+// find_origins() samples points of receivers (surfaces that scatter light over wide angles) and a
+// direction for each point. A path measures how much light leaves the point in this direction.
+// trace_indirect_photons() starts photons at these points, and stores them at the receivers that
+// they meet.
 
 #include "renderlib/integrate/indirect_photons.h"
 
@@ -51,6 +52,7 @@ std::optional<Place> place_of(const Scene& scene, const PhotonSources& sources,
   const Sample4 where = sampler.group(number, kGroupCamera);
   const Sample4 more = sampler.group(number, kGroupTime);
   const double time = middle_of(shutter_of(scene.camera()));
+  // The number more[3] refines the selection among many primitives.
   std::optional<SurfaceSample> at =
       sources.surfaces->sample(scene, where[0] + more[3] * 0x1p-32, where[1], where[2], time);
   if (!at) {

@@ -72,8 +72,8 @@ std::optional<SurfacePoint> nested_surface(const Scene& scene, const Ray& ray,
   return after == before ? std::nullopt : entered && entered->material == after ? entered : left;
 }
 
-/// Returns the probability that the ray stops at a surface, in [0, 1]. A hidden lamp is there for
-/// scattered rays (bounce > 0) that meet a side to which it emits.
+/// Returns the probability that the ray stops at a surface, in [0, 1]. A hidden lamp never stops a
+/// camera ray. It stops every scattered ray (bounce > 0) that meets a side to which it emits.
 double presence_for(const Scene& scene, const Ray& ray, const SurfacePoint& point,
                     std::uint32_t bounce) {
   const Material& material = scene.material(point.material);

@@ -1,8 +1,9 @@
 #pragma once
 
-// Samples the distance for light sampling in a segment of a medium: a mixture of equiangular
-// sampling towards up to four pivots on lights and of free-flight sampling. All its strategies are
-// evaluated as one pdf (one-sample model with the balance heuristic: Veach 1997, section 9.2.4).
+// Samples the distance for light sampling in a segment of a medium. The pdf is a mixture of
+// free-flight sampling and of equiangular sampling towards up to four pivots, which are points on
+// lights. All strategies are evaluated as one pdf (one-sample model with the balance heuristic:
+// Veach 1997, section 9.2.4).
 
 #include <algorithm>
 #include <array>

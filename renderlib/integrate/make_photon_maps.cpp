@@ -30,9 +30,9 @@ constexpr double kLargestLamp = 0.5;
 /// Number of points that are tried for one indirect photon.
 constexpr std::uint64_t kOriginsPerPhoton = 4;
 
-/// A path takes indirect light from the map if its length since the last receiver is at least this
-/// many times the mean radius of the disks, weighted by power. So the disks of the map are small as
-/// seen from the surface that gathers the light.
+/// Each photon spreads its power over a disk. A path takes indirect light from the map if its
+/// length since the last receiver is at least this many times the mean radius of the disks,
+/// weighted by power. So the disks are small as seen from the surface that gathers the light.
 constexpr double kGatherRadii = 3;
 
 /// Minimum number of points at which indirect photons may start, so that disks are small even if
@@ -193,8 +193,8 @@ std::shared_ptr<const TracedMaps> make_photon_maps(const Scene& scene, const Pho
 }
 
 bool can_have_caustic_maps(const Scene& scene, const Casters& casters) {
-  // A path that meets the caster of a mixture treats it as a caster, but photons do not start
-  // there.
+  // If a part of a mixture is a caster, paths treat this part as a caster, but photons do not start
+  // at mixtures.
   const auto hinders = [&](const Material& material) {
     const auto* mix = std::get_if<Mix>(&material.kind);
     return misleads_photons(material) ||

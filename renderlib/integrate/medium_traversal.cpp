@@ -102,8 +102,9 @@ std::optional<MediumTraversal::Crossing> MediumTraversal::find_next(Search& sear
     crossing.medium = medium_in(point.material);
     crossing.boundary = varies(crossing.medium) ? hit.id.instance : 0;
     crossing.inwards = slope < 0;
-    // A ray crosses an edge or corner shared by triangles of a mesh only once; further hits there
-    // are skipped. They are at the same distance up to the rounding error, which the offset bounds.
+    // Where triangles of a mesh share an edge or a corner, a ray crosses the boundary only once, so
+    // further hits at the same distance are skipped. Such distances differ by a rounding error,
+    // which the offset bounds.
     crossing.on_rim = is_of_mesh(hit) && std::min({hit.u, hit.v, 1 - hit.u - hit.v}) < kRim;
     const double same = 4 * point.offset / std::max(0.01, std::abs(slope));
     const auto known = static_cast<std::ptrdiff_t>(std::min(search.found, Search::kRecent));

@@ -5,8 +5,8 @@
 //
 // These strategies are weighed against each other:
 //
-// - At a surface: light sampling against BSDF sampling, and for the background against sampling
-//   through portals, by the power heuristic (path.cpp).
+// - At a surface: light sampling against BSDF sampling, by the power heuristic (path.cpp). For the
+//   background, sampling through portals (openings of a room) is weighed against both.
 // - In a medium: light sampling at a sampled distance against free-flight sampling and phase
 //   function sampling, by the power heuristic over the product of distance pdf and direction pdf
 //   (through_media.cpp, through_grid_medium.cpp).

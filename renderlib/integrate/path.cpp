@@ -74,7 +74,7 @@ Rgb weighted_background(const Scene& scene, const Portals* portals, const Previo
 /// weight of light sampling.
 struct CompetingStrategies {
   Technique technique = Technique::kBoth;
-  /// Local shading: sampled directions contribute only the environment.
+  /// True in local shading, where a direction sampled from the BSDF finds only the environment.
   bool reaches_distant_only = false;
   /// True if light is sampled on the far side of the surface. There, directions that pass the
   /// surface have MIS weight 1, so light sampling covers only lights that such directions cannot
@@ -206,8 +206,8 @@ bool has_free_passage(const Material& material) {
 }
 
 /// Counts a sampled scattering. Returns false, and marks the path as truncated, if `max_depth`
-/// forbids it. After kMaxUncounted scatterings that do not count towards `max_depth`, no further
-/// one of them is allowed.
+/// forbids it. After kMaxUncounted scatterings that do not count towards `max_depth`, the next
+/// scattering that does not count is forbidden too.
 bool count(const PathContext& context, const BsdfSample& next, std::uint32_t depth,
            PathState& path) {
   const bool ends = next.counts ? context.is_at_end(path, depth) : path.uncounted == kMaxUncounted;
@@ -353,9 +353,9 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
 
   const Portals* const portals =
       has_pdf(bsdf) && options.technique != Technique::kScatteringOnly ? options.portals : nullptr;
-  // Sample a light on the side from which the path came. If the surface passes light, also sample
-  // one on the far side where both sides are treated alike or only light sampling reaches some
-  // lights.
+  // Sample a light on the side from which the path came. If the surface passes light, a light on
+  // the far side is sampled too, provided that both sides are treated alike or that only light
+  // sampling reaches some lights.
   if (context.samples_lights() && has_pdf(bsdf)) {
     const Sample4 numbers = context.numbers(group_light(depth));
     CompetingStrategies competing = is_last ? CompetingStrategies{Technique::kLightsOnly, true}

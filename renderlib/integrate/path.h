@@ -1,8 +1,8 @@
 #pragma once
 
-// Unidirectional path tracing with next-event estimation and multiple importance sampling: at each
-// surface that has a pdf over directions, one light is sampled and one direction is sampled from
-// the BSDF; both estimates are weighted by the power heuristic (Veach 1997, "Robust Monte Carlo
+// Unidirectional path tracing with next-event estimation and multiple importance sampling. At each
+// surface that has a pdf over directions, one light is sampled, and one direction is sampled from
+// the BSDF. Both estimates are weighted by the power heuristic (Veach 1997, "Robust Monte Carlo
 // Methods for Light Transport Simulation", sections 9.2 and 10.2).
 
 #include <cstdint>

@@ -28,8 +28,9 @@ inline std::optional<SurfacePoint> next_surface(const PathContext& context, std:
 
 /// Adds the emission of the surface at `point`, which the path's ray hits. The emission is
 /// multiplied by its MIS weight and by the transmittance of all media on the ray. It is added
-/// before the media decide at random whether the path passes them, because a light is usually
-/// brighter than the light scattered in front of it, and the transmittance costs no extra path.
+/// before a random number decides whether a medium scatters the path first. The reason is that a
+/// lamp is usually brighter than the medium in front of it, and the transmittance needs no extra
+/// path.
 void add_emission(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                   PathState& path);
 

@@ -11,6 +11,7 @@ std::optional<PhotonStart> start_photon(const Scene& scene, const Casters& caste
   const Sample4 place = sampler.group(sample, kGroupCamera);
   const Sample4 choice = sampler.group(sample, kGroupTime);
   const Sample4 toward = sampler.group(sample, group_light(0));
+  // The numbers choice[3] and toward[3] refine the selection among many primitives or lights.
   const std::optional<SurfaceSample> caster =
       casters.sample(choice[1], place[0] + choice[3] * 0x1p-32, place[1], place[2], time);
   if (!caster) {

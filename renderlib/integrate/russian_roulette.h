@@ -13,7 +13,7 @@ namespace bandsaw {
 /// Russian roulette may end a path from this scattering on, counted from 1.
 inline constexpr std::uint32_t kRouletteDepth = 3;
 
-/// Paths whose throughput, divided by PathState::compression, is at least this always survive.
+/// A path always survives if its throughput, divided by PathState::compression, is at least this.
 inline constexpr double kRouletteThroughput = 0.25;
 
 /// Applies Russian roulette after scattering `depth` (counted from 0), with the random number

@@ -11,8 +11,9 @@
 namespace bandsaw {
 
 /// Returns the sample's value; the arguments are those of `path_radiance()`. Integrators that do
-/// not compute radiance ignore `options`. Except for the guides of the denoiser, they trace only
-/// the camera ray, and for ambient occlusion one more ray.
+/// not compute radiance ignore `options`. Of these integrators, the guides of the denoiser
+/// (guide.h) follow a path through mirrors and glass. The others trace only the camera ray, and
+/// ambient occlusion traces one more ray.
 Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
                  PathCounts& counts);

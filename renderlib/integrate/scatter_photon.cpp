@@ -14,8 +14,8 @@
 namespace bandsaw {
 namespace {
 
-/// Part of the directions that rough surfaces sample about the geometric normal, where it differs
-/// from the shading normal.
+/// Where the geometric normal differs from the shading normal, rough surfaces sample this part of
+/// the directions about the geometric normal.
 constexpr double kGeometricPart = 0.125;
 /// Normals with a smaller squared distance are treated as equal.
 constexpr double kSameNormal = 1e-16;

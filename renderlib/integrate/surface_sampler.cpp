@@ -1,5 +1,5 @@
-// A primitive is found by bisection in the sums of the areas; a place on it is sampled by the kind
-// of its shape.
+// A primitive is found by bisection in the sums of the areas. The kind of its shape determines how
+// a place on the primitive is sampled.
 
 #include "renderlib/integrate/surface_sampler.h"
 

@@ -22,9 +22,9 @@ struct SurfaceSample {
 /// Samples points on a list of primitives.
 class SurfaceSampler {
  public:
-  /// Appends a primitive of the scene. Returns false, and leaves it out, if its area in the middle
-  /// of the shutter, or the sum of the areas, is not finite. A primitive without area is left out
-  /// as well, but then add() returns true.
+  /// Appends a primitive of the scene. Its area is computed for the middle of the shutter interval.
+  /// If this area or the sum of all areas is not finite, leaves the primitive out and returns
+  /// false. A primitive without area is left out as well, but then add() returns true.
   bool add(const Scene& scene, PrimitiveId id);
 
   bool empty() const { return primitives_.empty(); }

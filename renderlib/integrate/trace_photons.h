@@ -27,8 +27,8 @@ struct TracedPhotons {
   std::vector<StoredPhoton> photons;  ///< those that arrived at a receiver, in order
   std::uint64_t rays = 0;             ///< rays that were traced
   double power = 0;  ///< sum over `photons` of the luminance of StoredPhoton::power
-  /// Sum over `photons` of the same luminance times a solid angle. It is the solid angle of the
-  /// lamp, seen from the point of a caster at which the photon started. It is estimated as 1 / pdf,
+  /// Sum over `photons` of the luminance of StoredPhoton::power times the solid angle of the lamp,
+  /// as seen from the point at which the photon started. The solid angle is estimated as 1 / pdf,
   /// where pdf is the pdf of light sampling at that point.
   double power_by_angle = 0;
 };

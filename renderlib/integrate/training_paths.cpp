@@ -16,7 +16,8 @@ namespace bandsaw {
 namespace {
 
 /// The source of background light is placed at this many times the length of the longest ray of the
-/// path. This is so far away that its direction is the same for all points of a cell.
+/// path. This is so far away that its direction is the same for all points of a cell of the field
+/// (guiding/guiding_cell.h).
 constexpr double kFar = 1e6;
 
 /// Maximum number of vertices of a path that are recorded. It bounds the memory of the training.

@@ -1,7 +1,7 @@
 // Photons are paths that begin at a caster, a surface of metal or glass that may cast a caustic. A
-// random point of a caster is chosen, a light is sampled from it, and the direction of the photon
-// is sampled from its BSDF. Where a photon arrives at a surface whose directions can be guided, a
-// record says from where it came and how much power it had.
+// random point of a caster is chosen, a light is sampled from this point, and the direction of the
+// photon is sampled from the BSDF of the caster. Where a photon arrives at a surface whose
+// directions can be guided, a record says from where it came and how much power it had.
 
 #include "renderlib/integrate/training_photons.h"
 

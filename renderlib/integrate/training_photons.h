@@ -1,7 +1,7 @@
 #pragma once
 
-// Training of path guiding by photons. They carry light of lamps that casters (mirrors, glass,
-// metal; casters.h) send to other surfaces. Paths from the camera hardly ever find this light.
+// Training of path guiding by photons. They carry the light of lamps over casters (mirrors, glass,
+// metal; casters.h) to other surfaces. Paths from the camera hardly ever find this light.
 
 #include "renderlib/integrate/casters.h"
 #include "renderlib/integrate/training_paths.h"

@@ -1,5 +1,5 @@
-// Visibility is one any-hit query. Only if the scene has surfaces that are partly transparent, all
-// hits along the ray are found in order, and their transparencies are multiplied.
+// Visibility is one any-hit query. If the scene has partly transparent surfaces, all hits along the
+// ray are found in order instead, and their transparencies are multiplied.
 
 #include "renderlib/integrate/visibility.h"
 

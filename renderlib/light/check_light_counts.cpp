@@ -63,10 +63,10 @@ absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Mater
   if (count <= kMaxLights) {
     return absl::OkStatus();
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("lights: instances that emit light, loose shapes and lights without size are ",
-                   count, " primitives in all, at most ", kMaxLights,
-                   " are possible: place what emits light fewer times, or with fewer primitives"));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "lights: instances that emit light, loose shapes and lights without size are ", count,
+      " primitives in all, at most ", kMaxLights,
+      " are possible: use fewer instances that emit light, or fewer primitives in them"));
 }
 
 }  // namespace bandsaw

@@ -97,9 +97,10 @@ struct Check {
     RETURN_IF_ERROR(check_unit("spot.direction", light.direction));
     RETURN_IF_ERROR(check_color("spot.intensity", light.intensity));
     if (!(light.cos_outer >= 0 && light.cos_outer <= light.cos_inner && light.cos_inner <= 1)) {
-      return invalid("spot.cos_outer",
-                     absl::StrCat("must be in [0, cos_inner], at most 1; is ", light.cos_outer,
-                                  ", cos_inner is ", light.cos_inner));
+      return invalid(
+          "spot.cos_outer",
+          absl::StrCat("must be in [0, cos_inner], and cos_inner at most 1; cos_outer is ",
+                       light.cos_outer, ", cos_inner is ", light.cos_inner));
     }
     return light.image ? image("spot.image", *light.image, light.direction, light.intensity)
                        : absl::OkStatus();
@@ -144,7 +145,7 @@ absl::Status check_environment(const Environment& environment, absl::Span<const 
     // Textures are also used for materials, so they may hold numbers that no light can have.
     const float most = max_value(textures, environment.images[i]);
     if (!std::isfinite(most * environment.strength)) {
-      return invalid(field, absl::StrCat("must be finite, times strength reaches ",
+      return invalid(field, absl::StrCat("its largest value times the strength must be finite, is ",
                                          most * environment.strength));
     }
   }

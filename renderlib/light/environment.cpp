@@ -27,7 +27,7 @@ struct Face {
   Vec3 right;
   Vec3 up;
 };
-/// OpenGL 4.6 specification, table 8.19.
+/// The faces in the order of Environment::images (OpenGL 4.6 specification, table 8.19).
 constexpr std::array<Face, 6> kFaces = {{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
                                          {{-1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
                                          {{0, 1, 0}, {1, 0, 0}, {0, 0, -1}},
@@ -35,6 +35,8 @@ constexpr std::array<Face, 6> kFaces = {{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
                                          {{0, 0, 1}, {1, 0, 0}, {0, 1, 0}},
                                          {{0, 0, -1}, {-1, 0, 0}, {0, 1, 0}}}};
 
+/// Returns the position of the direction `d` in the images of a cube map, whose faces are `side`
+/// texels wide. `d` is given in the axes of the map.
 EnvironmentPlace place_on_cube(const Vec3& d, double side) {
   std::uint32_t image = 0;
   for (std::uint32_t i = 1; i < kFaces.size(); ++i) {
@@ -47,6 +49,7 @@ EnvironmentPlace place_on_cube(const Vec3& d, double side) {
   return {image, 0.5 * (1 + s) * side, 0.5 * (1 - t) * side};
 }
 
+/// Returns the position of the direction `d`, in the axes of the map, in an equirectangular image.
 EnvironmentPlace place_on_sphere(const Vec3& d, const ImageTexture& image) {
   const double around = atan2(d.z, d.x) * (0.5 * kInvPi) + 0.5;
   const double down = atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y) * kInvPi;

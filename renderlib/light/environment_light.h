@@ -2,11 +2,12 @@
 
 // Importance sampling of an environment map, as one of the lights of a scene (light/lights.h).
 //
-// The pdf is proportional to the bilinearly interpolated luminance minus its mean over all
-// directions, clamped at zero. The uniform part is left to BSDF sampling (MIS compensation: Karlik
-// et al. 2019, "MIS Compensation: Optimizing Sampling Techniques in Multiple Importance Sampling").
-// Up to rounding, the pdf is exactly proportional to the interpolation of the texels' excess
-// luminance, also within each texel.
+// The excess of a texel is its luminance minus the mean over all directions, clamped at zero. The
+// pdf is proportional to the bilinear interpolation of the excess, also within each texel and exact
+// up to rounding. On a face of a cube map, this holds for the pdf by area and for the excess times
+// the texel's solid angle. The uniform part of the light is left to BSDF sampling (MIS
+// compensation: Karlik et al. 2019, "MIS Compensation: Optimizing Sampling Techniques in Multiple
+// Importance Sampling").
 
 #include <cstdint>
 

@@ -63,7 +63,8 @@ absl::StatusOr<Material> read_dielectric(const Field& in, const scene::Dielectri
                                              from.index_of_refraction_texture(), draft));
   if (glass.index_map && glass.priority > 0) {
     return in.error("index_of_refraction_texture",
-                    "a glass with a priority has one index of refraction; leave one of them out");
+                    "a glass with a priority has one index of refraction; leave out the texture or "
+                    "the priority");
   }
   return glass;
 }
@@ -121,7 +122,7 @@ absl::StatusOr<Material> read_sheet(const Field& in, const scene::DiffuseTransmi
                                      from.has_transmittance(), from.transmittance(), 0.25f},
                                     draft));
   if (from.has_reflectance_texture() || from.has_transmittance_texture()) {
-    return sheet;  // where the sum is above 1, it is scaled
+    return sheet;  // if the two add up to more than 1, diffuse_transmission() scales both
   }
   const auto color_of = [&](TextureId id) {
     return evaluate(draft.out.scene.textures, id, TextureCoordinates{});
@@ -132,7 +133,8 @@ absl::StatusOr<Material> read_sheet(const Field& in, const scene::DiffuseTransmi
              : in.error("transmittance", "reflectance and transmittance must not exceed 1 in sum");
 }
 
-// Returns the material with this name, which is a part of a mixture.
+// Returns the material that the field `field` of a mixture names as one of its two parts. It must
+// be written before the mixture.
 absl::StatusOr<MaterialId> find_part(const Field& in, const char* field, const std::string& name,
                                      const SceneDraft& draft) {
   if (name.empty()) {

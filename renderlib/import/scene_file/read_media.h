@@ -30,12 +30,11 @@ Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDr
 absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& mesh, MediumId inside,
                                      SceneDraft& draft);
 
-/// Places `boundary` at `placement` in the space of `to`, and gives the medium in it its space: the
-/// space in which the grids of a medium are defined. boundary_of() MUST have returned the boundary,
-/// and the boundary MUST have no frame. If the medium has grids, a frame with this placement is
-/// added to `to`, and the boundary is put into this frame. So the grids are defined in the
-/// boundary's space before the placement (scene/media.h). If the medium has no grids, only the
-/// boundary's transform is changed.
+/// Places `boundary` at `placement` in the space of `to`. boundary_of() MUST have returned the
+/// boundary, and the boundary MUST have no frame (a coordinate system, geometry/frame.h). If the
+/// medium inside has grids, a frame with this placement is added to `to`, and the boundary is put
+/// into this frame. So the grids are defined in the boundary's space before the placement
+/// (scene/media.h). If the medium has no grids, only the boundary's transform is changed.
 void give_space(const Transform& placement, Instance& boundary, const SceneDraft& draft,
                 Placements& to);
 

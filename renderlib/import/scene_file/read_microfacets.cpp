@@ -45,6 +45,8 @@ absl::StatusOr<Microfacets> read_microfacets(const Field& in, const scene::Micro
     ASSIGN_OR_RETURN(to.alpha_v_map,
                      read_map(in, "alpha_v_texture", true, from.alpha_v_texture(), draft));
   }
+  // A texture without a constant is multiplied by 1. Where values for v are absent, those for u are
+  // used.
   const bool only_v = from.has_alpha_v_texture() && !from.has_alpha();
   to.alpha_v = from.has_alpha_v() ? from.alpha_v() : only_v ? 1 : to.alpha_u;
   RETURN_IF_ERROR(check_range(in, "alpha_v", to.alpha_v, 0, 1));

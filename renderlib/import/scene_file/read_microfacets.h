@@ -9,7 +9,8 @@
 
 namespace bandsaw {
 
-/// In each function `in` is the message `from`. They return INVALID_ARGUMENT with the field's name.
+/// In each function, `in` is the field that holds the message `from`. The functions return
+/// INVALID_ARGUMENT, with the name of the field, if a field is invalid.
 absl::StatusOr<Microfacets> read_microfacets(const Field& in, const scene::Microfacets& from,
                                              SceneDraft& draft);
 absl::StatusOr<Material> read_conductor(const Field& in, const scene::Conductor& from,

@@ -114,7 +114,8 @@ absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDr
   }
   if (from.boundary_only()) {
     return from.interior().empty()
-               ? in.error("boundary_only", "needs an interior: nothing would be left of the model")
+               ? in.error("boundary_only",
+                          "needs an interior: without it, nothing would be left of the model")
                : absl::OkStatus();
   }
   if (from.interior().empty() && !model->filled.empty()) {

@@ -95,7 +95,7 @@ absl::StatusOr<Transform> read_matrix(const Field& in, const Message& from) {
   }
   if (!from.translate().empty() || !from.scale().empty() || from.rotate_size() > 0 ||
       from.key_size() > 0) {
-    return in.error("matrix", "stands instead of translate, scale, rotate and key: write one");
+    return in.error("matrix", "cannot be combined with translate, scale, rotate or key");
   }
   Transform placement;
   for (int i = 0; i < kNumbers; ++i) {
@@ -160,7 +160,9 @@ absl::StatusOr<WrittenKey> read_key(const Field& in, const scene::Key& from,
   }
   ASSIGN_OR_RETURN(key.pose, read_written(in, from));
   if (!earlier.empty() && !same_sign(key.pose.scale, earlier.back().pose.scale)) {
-    return in.error("scale", "must keep its signs from key to key: it would be 0 in between");
+    return in.error(
+        "scale",
+        "must keep its signs from key to key: between opposite signs, it would pass through 0");
   }
   if (!decompose(transform_of(key.pose))) {
     return in.error("scale", "flattens the model: its largest and smallest scale differ too much");

@@ -216,7 +216,7 @@ MaybeId read_ramp(const Field& in, const scene::RampTexture& from, float most, S
     ASSIGN_OR_RETURN(const RampTexture::Stop read, read_stop(stop, from.stop(i), most));
     if (i > 0 && !(read.at > to.stops.back().at)) {
       return stop.error("at", absl::StrCat("must be above ", to.stops.back().at,
-                                           ", where the stop before it is"));
+                                           ", the position of the stop before it"));
     }
     to.stops.push_back(read);
   }

@@ -146,7 +146,7 @@ absl::StatusOr<Camera> read_perspective(const Field& in, const scene::Camera& fr
     RETURN_IF_ERROR(check_range(in, "focus_distance", camera.focus_distance, kMinFocus, kMaxLens));
   } else if (camera.aperture > 0) {
     if (from.rotate_size() > 0) {
-      return in.error("focus_distance", "is required where rotate stands instead of look_at");
+      return in.error("focus_distance", "is required if rotate is written instead of look_at");
     }
     camera.focus_distance = length(view.look_at - view.position);
   }

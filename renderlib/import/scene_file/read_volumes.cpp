@@ -39,8 +39,8 @@ absl::StatusOr<Transform> read_matrix(const Field& in, const Numbers& list) {
                          : in.error("matrix", "must not be singular");
 }
 
-/// Reads a grid from its file. `otherwise` names the grid that is read if the scene file names none
-/// and the file has several grids.
+/// Reads a grid from its file. If the scene file names no grid, reads the grid called `otherwise`,
+/// or else the only grid of the file.
 absl::StatusOr<FileGrid> read_file(const Field& in, const scene::VolumeGrid& from,
                                    const std::string& otherwise, SceneDraft& draft) {
   if (from.file().empty()) {

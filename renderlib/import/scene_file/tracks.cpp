@@ -176,8 +176,10 @@ absl::StatusOr<Curve> read_curve(const Field& in, const scene::Track& track) {
                                            ", is ", key.time()));
     }
     if (key.value_size() != width || width == 0) {
-      return at.error("value", absl::StrCat("must be as many numbers as in the first key, ", width,
-                                            ", and at least one; has ", key.value_size()));
+      return at.error(
+          "value",
+          absl::StrCat("must have at least one number, and as many as the first key, which has ",
+                       width, "; has ", key.value_size()));
     }
     for (const double value : key.value()) {
       if (!std::isfinite(value)) {

@@ -68,7 +68,7 @@ absl::Status set_lens(const Field& in, const scene::Camera& from, PerspectiveCam
   camera.aperture = from.aperture();
   RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMaxLens));
   if (camera.aperture > 0 && !from.has_focus_distance()) {
-    return in.error("focus_distance", "is required where a model's camera gets an aperture");
+    return in.error("focus_distance", "is required if a model's camera gets an aperture");
   }
   if (from.has_focus_distance()) {
     camera.focus_distance = from.focus_distance();

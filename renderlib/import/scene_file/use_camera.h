@@ -38,8 +38,8 @@ absl::StatusOr<MovingCamera> use_camera(const Field& root, const scene::Scene& f
 MovingCamera with_shutter(const FoundCamera& camera, const Shutter& shutter);
 
 /// Returns the camera called `name`, which the user chose, with the lens of its model's file and
-/// the shutter of the draft. The errors are those of use_camera() for the name; they begin with the
-/// name of the scene file.
+/// the shutter of the draft. Returns INVALID_ARGUMENT, with the names of all cameras, if no camera
+/// has this name or several cameras have it. The message begins with the name of the scene file.
 absl::StatusOr<MovingCamera> chosen_camera(const std::string& name, const SceneDraft& draft);
 
 }  // namespace bandsaw

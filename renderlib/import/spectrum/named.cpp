@@ -1,6 +1,6 @@
 // Named spectra: indices of refraction of metals and glasses, and illuminants. The tables hold
-// measured values of the cited papers. Wavelengths are left out where linear interpolation between
-// the others is within a hundredth of the paper's curve.
+// measured values of the cited papers. Where linear interpolation between the remaining wavelengths
+// is within a hundredth of the paper's curve, wavelengths are left out.
 
 #include <array>
 #include <cmath>
@@ -111,6 +111,8 @@ constexpr Glass kGlasses[] = {
     {"F10", {1.62153902, 0.256287842, 1.64447552}, {0.0122241457, 0.0595736775, 147.468793}},
     {"F11", {1.73759695, 0.313747346, 1.89878101}, {0.013188707, 0.0623068142, 155.23629}}};
 
+/// Returns the index of refraction of the glass `name` by Sellmeier's formula. Returns std::nullopt
+/// if there is no such glass.
 std::optional<Sampled> glass(absl::string_view name) {
   for (const Glass& glass : kGlasses) {
     if (name != glass.name) {

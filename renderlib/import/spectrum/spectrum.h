@@ -26,9 +26,9 @@ struct Sampled {
   double at(double nm) const;
 };
 
-/// Returns the spectrum of pairs of a wavelength and a value. The error is INVALID_ARGUMENT for an
-/// odd number of numbers, no pairs or more than 100,000, numbers that are not finite, and
-/// wavelengths that do not increase.
+/// Returns the spectrum of pairs of a wavelength and a value. Returns INVALID_ARGUMENT if the last
+/// pair is incomplete, if there are no pairs or more than 100,000 pairs, if a number is not finite,
+/// or if the wavelengths do not increase.
 absl::StatusOr<Sampled> from_pairs(const std::vector<double>& numbers);
 
 /// Parses a file of pairs, with one pair on each line (*.spd); # begins a comment. Errors are those
@@ -66,9 +66,9 @@ struct Metal {
 /// eta and the reflectance.
 Metal metal_rgb(const Sampled& eta, const Sampled& k);
 
-/// Returns a spectrum by the name that it has in pbrt: "metal-Cu-eta", "metal-Cu-k" (Ag, Al, Au,
-/// Cu, CuZn, MgO, TiO2), "glass-BK7" (BAF10, FK51A, LASF9, F5, F10, F11), "stdillum-D65",
-/// "stdillum-A". Returns std::nullopt for other names.
+/// Returns a spectrum by the name that it has in pbrt. The names are "stdillum-D65", "stdillum-A",
+/// "metal-Cu-eta" and "metal-Cu-k" (also with Ag, Al, Au, CuZn, MgO or TiO2), and "glass-BK7" (also
+/// with BAF10, FK51A, LASF9, F5, F10 or F11). Returns std::nullopt for other names.
 std::optional<Sampled> named(absl::string_view name);
 
 /// Wavelength of the d line in nanometres, at which indices of refraction are stated.

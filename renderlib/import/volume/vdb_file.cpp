@@ -41,9 +41,10 @@ struct VoxelBox {
   std::array<std::int64_t, 3> high;
 };
 
-/// Returns the box of whole bricks around all active voxels, including those of tiles. The box has
-/// at least one more voxel on each side, because interpolated values reach that far beyond the
-/// active voxels. Returns std::nullopt if there are no active voxels.
+/// Returns the box of whole bricks around all active voxels, including those of tiles, which are
+/// larger cubes of one value. The box has at least one more voxel on each side, because
+/// interpolated values reach that far beyond the active voxels. Returns std::nullopt if there are
+/// no active voxels.
 template <class Tree>
 std::optional<VoxelBox> box_of(const Tree& tree) {
   openvdb::CoordBBox active;
@@ -93,8 +94,8 @@ class Copy {
     for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
       RETURN_IF_ERROR(add(*leaf));
     }
-    // Tiles are larger cubes of one value. The values of leaves are at depth Tree::DEPTH - 1, so
-    // the iterator stops one level above them.
+    // The values of leaves are at depth Tree::DEPTH - 1, so the iterator stops one level above
+    // them.
     auto tile = tree.cbeginValueOn();
     tile.setMaxDepth(static_cast<openvdb::Index>(Tree::DEPTH) - 2);
     for (; tile; ++tile) {
@@ -292,7 +293,7 @@ absl::StatusOr<FileGrid> read_vdb(const std::string& /*path*/, const std::string
                                   const std::string& /*otherwise*/) {
   return absl::InvalidArgumentError(
       "is an OpenVDB file, which this cross-compiled program does not read: import the scene on a "
-      "machine whose programs were built there");
+      "machine where the programs are not cross-compiled");
 }
 
 }  // namespace bandsaw

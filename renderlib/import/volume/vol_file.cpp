@@ -51,8 +51,9 @@ std::uint64_t number_bytes(std::int32_t encoding) {
 
 absl::Status check_header(const Header& header) {
   if (number_bytes(header.encoding) == 0) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "has encoding ", header.encoding, "; read are 1 (float32), 2 (float16) and 3 (8 bits)"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("has encoding ", header.encoding,
+                     "; only 1 (float32), 2 (float16) and 3 (8 bits) can be read"));
   }
   for (const std::int32_t side : header.cells) {
     if (side < 1 || side > static_cast<std::int32_t>(kMaxGridSide)) {
@@ -62,7 +63,7 @@ absl::Status check_header(const Header& header) {
   }
   if (header.channels != 1 && header.channels != 3) {
     return absl::InvalidArgumentError(
-        absl::StrCat("has ", header.channels, " channels, read are 1 and 3"));
+        absl::StrCat("has ", header.channels, " channels; only 1 or 3 can be read"));
   }
   for (std::size_t k = 0; k < 3; ++k) {
     if (!(std::isfinite(header.box[k]) && std::isfinite(header.box[k + 3]) &&

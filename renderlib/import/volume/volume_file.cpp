@@ -10,7 +10,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns INVALID_ARGUMENT if a name, `grid`, is requested of a *.vol file.
+/// Returns INVALID_ARGUMENT unless the name `grid` is empty, because the grid of a *.vol file has
+/// no name.
 absl::Status check_no_name(const std::string& grid) {
   return grid.empty() ? absl::OkStatus()
                       : absl::InvalidArgumentError(

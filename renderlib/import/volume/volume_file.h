@@ -14,10 +14,10 @@ namespace bandsaw {
 
 /// A grid that was read from a file.
 struct FileGrid {
-  /// Its `to_medium` is the map to the file's space: for *.vdb, the grid's transform; for *.vol,
-  /// the map to the box that the file gives.
+  /// `grid.to_medium` maps the cells to the file's space. In a *.vdb file, the map comes from the
+  /// transform of the grid. In a *.vol file, it comes from the box that the file gives.
   VolumeGrid grid;
-  /// The map from the same cells to the unit cube [0, 1]^3. It is set for *.vol files only.
+  /// The map from the cells of `grid` to the unit cube [0, 1]^3. It is set for *.vol files only.
   Transform to_unit_box;
   std::uint64_t negative = 0;  ///< numbers below 0 that became 0
 };
