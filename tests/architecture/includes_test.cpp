@@ -158,7 +158,7 @@ TEST(Architecture, EveryIncludeFollowsTheAllowedDependencies) {
   EXPECT_GT(checked, 100u);  // fewer: the pattern has missed some
 }
 
-// The test applies the same rule to Assimp.
+// Assimp, too, may be used only in these folders.
 TEST(Architecture, OnlyPackageAndImportUseProtobufInRenderlib) {
   for (const fs::path& source : sources()) {
     const std::string folder = source.parent_path().string();
@@ -195,8 +195,9 @@ TEST(Architecture, Y5_RenderlibCallsNoMachineDependentFunction) {
       "Y5", "no approximate reciprocal, and no function of the machine's library, in any source");
 }
 
-// Every dimension of a sample has a fixed index (sampling/sampler.h), so there is no rejection
-// sampling. The test therefore forbids loops without a count in the folders that map samples.
+// Every dimension of a sample has a fixed index (sampling/sampler.h). Rejection sampling would use
+// an unknown number of dimensions. The test therefore forbids loops without a count in the folders
+// that map samples.
 TEST(Architecture, R7_SamplesAreMappedWithoutRejection) {
   const std::regex loop(R"(\b(while|do)\b\s*[({]|for \(;;\))");
   for (const fs::path& source : sources()) {

@@ -58,9 +58,9 @@ std::vector<Walkthrough> walkthroughs() {
   return found;
 }
 
-/// Returns the file names and paths in a text. A word in backquotes counts if it has a slash, or
-/// one of the suffixes in kSource. Anywhere, as in a diagram, a word with a suffix of kInDiagram
-/// counts.
+/// Returns the file names and paths in a text. A word in backquotes counts if it has a slash or
+/// one of the suffixes in kSource. A word with one of the suffixes in kInDiagram counts everywhere,
+/// because the words of a diagram have no backquotes.
 std::vector<std::string> paths_in(const std::string& text) {
   static const std::regex kQuoted("`([A-Za-z0-9_./-]+)`");
   static const std::regex kSource(R"(.*\.(h|cpp|proto|md|sh|txt))");

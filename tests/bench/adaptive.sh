@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Measures the gain of adaptive sampling at equal CPU time. Renders each gallery scene uniformly to an error, then adaptively to
-# the error that takes the same time, with several seeds in turn. Compares both with a reference of another seed and subtracts
-# the reference's own noise. Gain: error squared x CPU time of the uniform renders over that of the adaptive ones, each a mean over
-# the seeds. Above 1, adaptive sampling is better.
+# Measures the gain of adaptive sampling at equal CPU time. For each of several seeds, renders each gallery scene uniformly with the
+# error limit ERROR, and adaptively with the error limit that takes about the same CPU time. Compares both images with a reference of
+# another seed and subtracts the reference's own noise. The gain is the product of squared error and CPU time of the
+# uniform renders, divided by this product of the adaptive renders. Both factors are means over the seeds. If the gain is above 1,
+# adaptive sampling is better.
 # Usage: tests/bench/adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE[:ERROR]...]]]]
 # ERROR should be so small that it takes some 200 samples a pixel or more: the first samples of an adaptive render, its pilot, decide
 # where more are taken, and from a pilot of fewer than 32 samples nothing is planned.
-# TIMES in the environment: samples of a reference over those of a uniform image, default 8.
+# The environment variable TIMES: a reference has this many times the samples of a uniform image (default 8).
 set -euo pipefail
 bandsaw=${1:?usage: adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE...]]]]}
 width=${2:-128}
@@ -34,7 +35,7 @@ measure() {  # ERROR OPTION...
     "$(number relative_rmse <<<"$compared") $(number error <<<"$done")"
 }
 
-echo "| scene | samples even | adaptive | error even | adaptive | estimated adaptive | CPU time even over adaptive | gain in relMSE | gain in MSE |"
+echo "| scene | samples, uniform | samples, adaptive | error, uniform | error, adaptive | estimated error, adaptive | CPU time, uniform over adaptive | gain in relMSE | gain in MSE |"
 echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
 for wanted in "${scenes[@]}"; do
   IFS=: read -r scene error <<<"$wanted"

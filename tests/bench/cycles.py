@@ -124,7 +124,7 @@ def add_shapes(scene, materials, folder):
             add_object(mesh, material)
             continue
         radius = shape["sphere"][0]["radius"][0]
-        segments = 1024 if radius > 50 else 64  # facets of a large sphere, a ground, would be seen
+        segments = 1024 if radius > 50 else 64  # a large sphere is a ground, whose facets would be seen
         if segments not in spheres:
             spheres[segments] = sphere_mesh(segments)
         thing = add_object(spheres[segments], material)

@@ -1,4 +1,5 @@
-// Measures what a band costs the real coordinator, through gRPC with TLS and to the disk, and how
+// Measures the cost of a band, a range of rows and samples, for the real coordinator. The
+// coordinator receives each band through gRPC with TLS and writes it to the disk. Also measures how
 // much memory a connected worker takes. The workers are null workers: they render nothing and
 // answer each lease at once with black rows.
 //

@@ -1,7 +1,7 @@
 #pragma once
 
-// Wraps Embree in the interface of Accel's two queries, for comparisons of speed. A build without
-// BANDSAW_EMBREE has no Embree.
+// Wraps Embree in the interface of the two queries of Accel, the renderer's own BVHs, for
+// comparisons of speed. A build without BANDSAW_EMBREE has no Embree.
 
 #include <memory>
 

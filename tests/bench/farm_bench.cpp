@@ -1,6 +1,10 @@
 // Measures how well the scheduler uses its workers' time. The workers are simulated in virtual
 // time, and a band takes the time that a cost map gives it. So only the last column of the table,
 // the CPU time of a band, depends on this machine.
+//
+// Efficiency: the work of the job, divided by the work that the workers could do from the first
+// lease to the last result. Tail: the share of this time in which some worker was idle at the end
+// of the job. Audit: the share of bands that a second worker renders too, to compare the pixels.
 
 #include <algorithm>
 #include <cstdio>

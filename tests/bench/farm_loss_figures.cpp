@@ -104,7 +104,7 @@ Figure rendered_again_figure() {
     job.expect_the_same_bytes(client);
     figure.measured.push_back(job.rendered_again());
   }
-  figure.remark = "the same bytes each time";
+  figure.remark = "each image has the bytes of a local render";
   return figure;
 }
 

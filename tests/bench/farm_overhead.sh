@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Measures the overhead of a farm of one local worker over `bandsaw render`, by paired runs of the same job in alternating order.
 # The images must be equal. Prints the median ratios of the wall clock time and of the CPU time of all processes (coordinator,
-# worker and submitter for the farm); other work on the machine changes CPU time less.
+# worker and submitter for the farm). Other work on the machine disturbs the wall clock time more than the CPU time.
 # Usage: tests/bench/farm_overhead.sh FOLDER-OF-PROGRAMS [PAIRS [SCENE [OPTION-OF-RENDER...]]]
-#   60 s and more:            farm_overhead.sh build/release/bin 3 cornell --samples 256
-#   4K, 16 samples a pass:    farm_overhead.sh build/release/bin 1 books/one_weekend --width 3840 --height 2160 --samples 16
+#   a job of 60 s or more:       farm_overhead.sh build/release/bin 3 cornell --samples 256
+#   a 4K image of 16 samples:    farm_overhead.sh build/release/bin 1 books/one_weekend --width 3840 --height 2160 --samples 16
 set -euo pipefail
 bin=$(cd "${1:?usage: farm_overhead.sh FOLDER-OF-PROGRAMS [PAIRS [SCENE [OPTION...]]]}" && pwd)
 pairs=${2:-5}
@@ -46,5 +46,5 @@ for ((i = 1; i <= pairs; ++i)); do
 done
 
 median() { awk "{ print $1 }" "$scratch/pairs" | sort -n | sed -n "$(((pairs + 1) / 2))p"; }
-echo "median wall $(median '$1 / $3'), CPU $(median '$2 / $4')"
+echo "median of farm over local: wall $(median '$1 / $3'), CPU $(median '$2 / $4')"
 awk '{ printf "wall %.4f  farm %.2f s, local %.2f s   CPU %.4f  farm %.2f s, local %.2f s\n", $1 / $3, $1, $3, $2 / $4, $2, $4 }' "$scratch/pairs"

@@ -54,7 +54,7 @@ std::vector<Variant> variants_of(const SceneDescription& description, Pool& pool
   return out;
 }
 
-/// Returns the CPU seconds of a render; 0 if it failed.
+/// Returns the CPU seconds of a render. The program ends if the render fails.
 double seconds_of(const Scene& scene, const RenderSettings& settings, std::uint64_t samples,
                   Pool& pool) {
   const std::atomic<bool> stop = false;
@@ -74,8 +74,8 @@ std::uint64_t samples_for(const Scene& scene, const RenderSettings& settings, Po
   return samples;
 }
 
-/// Prints a row for each variant of a scene file, except for the one that all are compared with:
-/// the median of the ratios and the range of their middle half.
+/// Prints a row for each variant of a scene file, except for the first, with which the others are
+/// compared. A row has the median of the variant's ratios and the range of their middle half.
 void measure(const std::string& path, Pool& pool) {
   const auto imported = import_scene(path);
   if (!imported.ok()) {
@@ -113,7 +113,9 @@ void measure(const std::string& path, Pool& pool) {
 
 int main(int argc, char** argv) {
   bandsaw::Pool pool(1);
-  std::puts("| scene | forced | CPU time x own | middle half |\n| --- | --- | --- | --- |");
+  std::puts(
+      "| scene | forced features | CPU time, over that with own features | middle half of runs |\n"
+      "| --- | --- | --- | --- |");
   for (int i = 1; i < argc; ++i) {
     bandsaw::measure(argv[i], pool);
   }

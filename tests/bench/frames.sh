@@ -4,7 +4,7 @@
 #   takes for the same number of samples in one image, without the reading of the scene;
 # - the time until the first frame is written, the bytes that are sent for a frame, and the CPU time of each process.
 # Usage: tests/bench/frames.sh FOLDER-OF-PROGRAMS [FRAMES [SQUARES...]]
-#   SQUARES: the side of the rippled plane that is the scene (frames_scene.py), 200 and 1000 by default
+#   SQUARES: the scene is a rippled plane of SQUARES x SQUARES squares (frames_scene.py); 200 and 1000 by default
 set -euo pipefail
 bin=$(cd "${1:?usage: frames.sh FOLDER-OF-PROGRAMS [FRAMES [SQUARES...]]}" && pwd)
 frames=${2:-100}
@@ -29,7 +29,7 @@ for side in "${squares[@]}"; do
   /usr/bin/python3 "$top/tests/bench/frames_scene.py" "$scene" "$side"
   bandsaw render "$scene" --frame 50 --threads 1 "${options[@]}" --samples $((samples * frames)) --quiet --report "$scratch/alone.json" -o "$scratch/alone.pfm" >/dev/null 2>&1
   ideal=$(sed -n 's/.*"time":{"elapsed_s":\([0-9.e+-]*\),"cpu_s":\([0-9.e+-]*\).*/\1 \2/p' "$scratch/alone.json")
-  # The farm knows the scene, as it does after a first try of one frame.
+  # Renders one frame first, so that the farm has the data of the scene before the measurement begins.
   bandsaw submit "$scene" --frames 0 "${options[@]}" --samples 1 --quiet --report none -o "$scratch/first.####.pfm" >/dev/null
   before=$(blob_bytes) worker=$(cpu "${pids[1]}") coordinator=$(cpu "${pids[0]}")
   begin=$(now)

@@ -176,6 +176,7 @@ void print_row(const std::string& name, const Figures& figures) {
   std::fflush(stdout);
 }
 
+/// Measures a family at each of its sizes. Prints a row for each size, and a row of exponents.
 Grown measure(const Family& family) {
   Grown out{family.name, {}};
   for (const double size : family.sizes) {
@@ -190,7 +191,7 @@ Grown measure(const Family& family) {
     print_row(name, figures);
     out.by_size.push_back({size, figures});
   }
-  std::printf("| %s grow |", family.name.c_str());
+  std::printf("| exponent of growth: %s |", family.name.c_str());
   for (const Column& column : kColumns) {
     std::printf(" %s |", out.exponent_of(column).c_str());
   }

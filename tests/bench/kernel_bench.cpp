@@ -1,6 +1,6 @@
-// kernel_bench [MESH...] measures the rays per second that Accel traces, and those that Embree
-// traces. Both get the same rays (README.md). A mesh is a name (tests/bench/kernel_meshes.h) or a
-// file.
+// kernel_bench [MESH...] measures how many rays per second are traced by Accel, the renderer's own
+// BVHs, and by Embree in two modes: robust (no gaps between triangles) and fast. All get the same
+// rays (README.md). A mesh is a name (tests/bench/kernel_meshes.h) or a file.
 
 #include <algorithm>
 #include <chrono>

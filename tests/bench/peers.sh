@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Compares the efficiency with that of Cycles in one run: both render the same scenes in turns with two seeds.
+# Compares the efficiency of Bandsaw with that of Cycles in one run. Both render the same scenes in turns with two seeds.
 # relMSE: half of the relative squared difference of the two images of a renderer, so no reference is needed.
 # Efficiency: 1 / (relMSE x CPU seconds / 2). Half of the CPU seconds is the wall clock time of two
 # threads. Without blender on PATH (Debian's package), only Bandsaw is measured.
@@ -30,7 +30,7 @@ by_cycles() {
 
 renderers=(bandsaw)
 if command -v blender >/dev/null; then renderers+=(cycles); fi
-echo "| scene | renderer | M samples a CPU second | relMSE | efficiency | times |"
+echo "| scene | renderer | M samples a CPU second | relMSE | efficiency | efficiency of Bandsaw over this |"
 echo "| --- | --- | --- | --- | --- | --- |"
 for scene in "${scenes[@]}"; do
   width=400

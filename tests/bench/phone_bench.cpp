@@ -35,7 +35,7 @@ struct PhoneStudyOptions {
   std::vector<std::string> outputs = {"phone.csv", "phone.svg"};
   int runs = 10;                       ///< runs of each image on each machine
   std::optional<std::uint32_t> width;  ///< pixels; std::nullopt: as in the study
-  int threads = 0;                     ///< number of "all threads"; 0: one for each CPU
+  int threads = 0;                     ///< of the runs on all threads; 0: one for each CPU
   FarmOption farm;                     ///< empty: the default farm, if there is one
   Verbosity verbosity;
 };
@@ -269,7 +269,7 @@ int phone_bench(int argc, char** argv) {
   app.add_option("-o,--output", options.outputs, "Files for the figures (.csv) or the plot (.svg)");
   app.add_option("--runs", options.runs, "Number of times that each image is timed")
       ->check(CLI::PositiveNumber);
-  app.add_option("--width", options.width, "Pixels; the height keeps the aspect ratio");
+  app.add_option("--width", options.width, "Width in pixels; the height keeps the aspect ratio");
   app.add_option("--threads", options.threads, "Threads [default: one for each CPU]");
   app.add_option("--farm", options.farm.farm, "Join string of the farm, or a file with it");
   app.add_flag("--quiet", options.verbosity.quiet, "Print only the tables and errors");

@@ -68,8 +68,9 @@ std::string machines_text(const PhoneStudy& study) {
   const auto row = [&](const std::string& machine, double all) {
     return absl::StrFormat("| %s | %s | %.2f |\n", machine, ms(all), all / one);
   };
-  std::string out = absl::StrCat("### Machine\n\n| machine | ", study.images.size(),
-                                 " images, ms | of the first |\n| --- | --- | --- |\n");
+  std::string out =
+      absl::StrCat("### Machine\n\n| machine | ", study.images.size(),
+                   " images, ms | time over that of the first row |\n| --- | --- | --- |\n");
   absl::StrAppend(
       &out, row(absl::StrCat(study.machine, ", 1 thread"), one),
       row(absl::StrCat("the same, ", threads_text(study.threads)), sum(study, &PhoneImage::all)));
@@ -113,18 +114,20 @@ std::string answers(const PhoneStudy& study) {
   }
   return absl::StrCat(
       "### The questions of the study\n\n",
-      compared(study, "Many objects: 24 take on one thread", "objects_1", "objects_24",
+      compared(study, "Many objects: compared with one object, 24 take on one thread", "objects_1",
+               "objects_24",
                absl::StrCat(rays_text(study, "objects_1", "objects_24"),
-                            "; in the study 11.34 times, 3,289 ms and 290 ms.")),
-      absl::StrFormat("- Threads: all images take %.2f times as long on one as on %d.\n",
+                            "; the study states 11.34 times (3,289 ms and 290 ms).")),
+      absl::StrFormat("- Threads: all images take %.2f times as long on one thread as on %d.\n",
                       sum(study, &PhoneImage::one) / sum(study, &PhoneImage::all), study.threads),
-      absl::StrFormat("- Memory in C++: %.0f MB at most, with all that was measured.\n",
+      absl::StrFormat("- Memory in C++: the program used at most %.0f MB in all measurements.\n",
                       study.peak_mb),
       compared(study, "Smaller images: 500 x 500 pixels take", "size_125", "size_500",
-               " times as long as 125 x 125, of which there are 16 times fewer."),
-      compared(study, "Fewer shadow rays: with one light an image takes", "lights_0", "lights_1",
-               absl::StrCat(rays_text(study, "lights_0", "lights_1"), ".")),
-      absl::StrFormat("- Precomputation: %s ms at most, once a scene.\n", ms(most_build)));
+               " times as long as 125 x 125, which are a sixteenth of them."),
+      compared(study, "Fewer shadow rays: compared with no light, an image with one light takes",
+               "lights_0", "lights_1", absl::StrCat(rays_text(study, "lights_0", "lights_1"), ".")),
+      absl::StrFormat("- Precomputation: it takes at most %s ms, once for each scene.\n",
+                      ms(most_build)));
 }
 
 /// Appends a line of CSV for each run of an image on `machine`: "1 thread", "farm".

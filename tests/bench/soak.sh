@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sends thousands of small jobs through one coordinator and one worker; measures the memory of both and the jobs per second.
-# Usage: tests/bench/soak.sh BIN-FOLDER [JOBS [KEPT]]   (default 10,000 and 1,000; one job about 0.1 s on two cores)
+# Usage: tests/bench/soak.sh BIN-FOLDER [JOBS [KEPT]]   (default 10,000 and 1,000). A job takes about 0.1 s on two cores.
 # KEPT: the number of finished jobs that the coordinator keeps (--keep-jobs). Until it is reached, its memory grows with each job.
 # Prints a line after each tenth: jobs done, resident MB of coordinator and worker, MB of the coordinator's folder. The last line is
 # the growth of both processes in the second half.

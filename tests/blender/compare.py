@@ -1,9 +1,10 @@
-"""Renders scenes of scenes.py by Cycles or by the add-on; judge.sh compares the images. If no scene
-is named, renders all:
+"""Renders scenes of scenes.py by Cycles or by the add-on, or exports them. judge.sh compares the
+images. If no SCENE is given, all scenes are used.
 
     blender -b --factory-startup --python compare.py -- ADDON.zip FOLDER cycles|bandsaw|export SCENE…
 
-`cycles` and `bandsaw` (on the farm of BANDSAW_FARM) write FOLDER/SCENE.ENGINE.exr and .png; `export` writes the scene's files to FOLDER/SCENE/."""
+`cycles` and `bandsaw` write FOLDER/SCENE.ENGINE.exr and .png. `bandsaw` renders on the farm whose join
+string is in BANDSAW_FARM. `export` writes the scene's files to FOLDER/SCENE/."""
 
 import os
 import sys

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Renders a walk of 48 frames with motion blur (walk.py) on three workers. One worker is killed, and the coordinator is killed once.
 # Checks that each frame has the bytes of `bandsaw render --frame N`, that none is rendered twice, and that the video has 48 frames.
-# run.sh, which calls this, compares the vertices with Blender's afterwards.
+# run.sh calls this script and then compares the positions of the vertices with Blender's.
 # Usage: frames.sh BUILD-FOLDER WORK-FOLDER. Appends the ids of the processes that the caller must end to WORK-FOLDER/pids.
 set -euo pipefail
 build=$1 work=$2
@@ -57,7 +57,7 @@ for number in $(seq -w 1 48); do
   cmp "$work/frames/w.00$number.pfm" "$work/alone.pfm"
 done
 for number in $(seq 1 48); do
-  [ "$(grep -cE "added name=.* frame=$number of=" "$work/serve.log")" = 1 ] || { echo "frame $number was not rendered once"; exit 1; }
+  [ "$(grep -cE "added name=.* frame=$number of=" "$work/serve.log")" = 1 ] || { echo "frame $number was not rendered exactly once"; exit 1; }
 done
 [ "$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 "$work/walk.mp4")" = 48 ]
 echo "48 frames: a worker was killed after 6, the coordinator after $at_kill"

@@ -3,7 +3,7 @@
 # renderers, the means of the images must agree within 2 %. For the other scenes deploy/blender/README.md explains the larger difference.
 set -euo pipefail
 bandsaw=$1 folder=$2 failed=0
-# The largest difference of the means in percent.
+# Prints the largest difference of the means that is allowed for a scene, in percent.
 allowed() {
   case $1 in
     principled) echo 3 ;;  # Principled of Blender 3.4 adds its reflection to the diffuse part

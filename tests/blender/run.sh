@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Tests of the add-on in a real Blender. Usage: run.sh addon|compare|window|command|frames BUILD-FOLDER. Exit 77: Blender or another program is not installed.
-#   addon    the installed add-on at a coordinator that renders nothing: messages, regions, passes, animations
-#   compare  fifteen scenes by Cycles and by the add-on on a farm on loopback; the images stay in BUILD-FOLDER/compare
-#   command  bandsaw render FILE.blend, and its frames on a farm
-#   frames   48 frames of a skinned model on a farm whose processes are killed; Blender tells where the vertices are
-#   window   in a window under Xvfb: F12, the picture growing, Esc; screenshots in BUILD-FOLDER/screenshots
+#   addon    The installed add-on talks to a coordinator that renders nothing. Tests messages, regions, passes and animations.
+#   compare  Cycles, and the add-on on a farm on loopback, render fifteen scenes. The images stay in BUILD-FOLDER/compare.
+#   command  `bandsaw render FILE.blend` renders a scene, and a farm renders frames of a .blend file.
+#   frames   A farm whose processes are killed renders 48 frames of a skinned model. The vertices must be where Blender places them.
+#   window   In a window under Xvfb, F12 starts a render, the picture grows, and Esc cancels it. Screenshots are in BUILD-FOLDER/screenshots.
 set -euo pipefail
 part=$1
 build=$(cd "$2" && pwd)
@@ -100,4 +100,4 @@ END
     "$here/window.sh" "$work" "$build/screenshots" ;;
   *) echo "usage: run.sh addon|compare|command|frames|window BUILD-FOLDER" >&2; exit 2 ;;
 esac
-echo "$part holds"
+echo "run.sh $part: passed"

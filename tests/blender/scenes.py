@@ -9,8 +9,8 @@ from mathutils import Vector
 SCENES = {}
 
 
-# Decorator that registers a function that builds a scene. judge.sh limits how much its images may
-# differ.
+# Decorator that registers a function that builds a scene. judge.sh limits how much the scene's
+# image by the add-on may differ from that by Cycles.
 def scene(function):
     SCENES[function.__name__] = function
     return function

@@ -18,6 +18,7 @@ worst = moved = 0
 for number, positions in enumerate(wanted, int(first)):
     package = os.path.join(folder, str(number))
     os.makedirs(package)
+    # "100" and "8000000000" are limits: CPU seconds and bytes of memory.
     subprocess.run([importer, "scene", path, package, "100", "8000000000", f"frame={number}", "fps=24", "shutter=0"], check=True)
     (blob,) = [name for name in os.listdir(package) if os.path.getsize(os.path.join(package, name)) == positions.nbytes]
     got = np.fromfile(os.path.join(package, blob), "<f4").reshape(positions.shape)

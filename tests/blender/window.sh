@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Blender in a window under Xvfb: F12 begins a render at a coordinator that takes two minutes for it, the picture grows in the window, and
-# Esc cancels the job. Usage: window.sh WORK-FOLDER SCREENSHOTS-FOLDER
+# Tests the add-on in a window of Blender under Xvfb. F12 must start a render at a coordinator that takes two minutes for it, the picture
+# must grow in the window, and Esc must cancel the job. Usage: window.sh WORK-FOLDER SCREENSHOTS-FOLDER
 set -euo pipefail
 work=$1 shots=$2
 here=$(cd "$(dirname "$0")" && pwd)

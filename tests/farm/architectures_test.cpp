@@ -1,5 +1,6 @@
-// Tests that `invite`, and the line that `serve` prints for other machines to paste, install the
-// worker for the architecture of the machine, x86-64 or ARM64. The ARM64 machines are simulated by
+// Tests that a machine gets the worker for its architecture, x86-64 or ARM64. Workers are installed
+// by `bandsaw invite` over ssh, and by the line that `bandsaw serve` prints for a user to paste on
+// another machine. The ARM64 machines are simulated by
 // a uname that prints their architecture, and the program for them is a file with an ARM64 ELF
 // header (tests/support/worker_file.h).
 

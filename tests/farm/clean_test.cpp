@@ -1,6 +1,7 @@
-// Clean images (--denoise) have the same bytes by `render` and by every farm, whatever fails. The
-// denoiser needs two guides, images of the albedo and of the shape of the surfaces; a farm renders
-// each as a job of its own, which the coordinator's log and the list of jobs call "guide: …".
+// Clean images, which --denoise makes, have the same bytes from `render` and from every farm, even
+// if a worker or the coordinator is killed. The denoiser needs two guides, which are images of the
+// albedo and of the shape of the surfaces. A farm renders each guide as a separate job, which the
+// coordinator's log and the list of jobs call "guide: …".
 
 #include <gtest/gtest.h>
 
@@ -79,8 +80,9 @@ TEST_F(CleanImages, AreTheSameAfterTheCoordinatorWasKilled) {
   EXPECT_TRUE(file_bytes(farm_.path("there.raw.png")) == file_bytes(farm_.path("here.raw.png")));
 }
 
-// The denoiser needs an image of the first half of the samples. If all samples are one block, they
-// cannot be separated, and half of them are rendered again.
+// The denoiser needs an image of the first half of the samples. The samples of one block, which are
+// 8 or fewer, cannot be separated after they are summed. So if there is only one block, half of the
+// samples are rendered again.
 TEST_F(CleanImages, AreTheSameWithFewSamples) {
   const std::string expected = here("spheres", "5", "here.pfm");
   farm_.add_worker("one", 2);
@@ -88,8 +90,8 @@ TEST_F(CleanImages, AreTheSameWithFewSamples) {
   EXPECT_TRUE(file_bytes(farm_.path("there.pfm")) == expected);
 }
 
-// The library in this test is a stand-in. The program finds it as it would find an installed
-// library.
+// A stand-in takes the place of the library OpenImageDenoise. The program finds the stand-in as it
+// would find the installed library.
 TEST_F(CleanImages, AreMadeByAnInstalledLibrary) {
   std::vector<std::string> command = image("render", "spheres", "20", farm_.path("oidn.exr"));
   command.insert(command.begin(), BANDSAW_BIN);

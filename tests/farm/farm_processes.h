@@ -23,7 +23,7 @@ inline void expect_success(const Finished& finished) {
   ASSERT_EQ(finished.code, 0) << finished.err;
 }
 
-/// All processes are ended with this object.
+/// The processes of one farm. The destructor ends all of them.
 class FarmProcesses {
  public:
   /// Starts `program`, the command bandsaw, as the coordinator with additional `options` (the

@@ -1,5 +1,5 @@
-// A job of many frames on real farms: each frame has the bytes of `render --frame`, none is
-// rendered twice or lost, whatever is killed.
+// A job of many frames on real farms. Each frame has the bytes of `render --frame`, and no frame is
+// rendered twice or lost, even if a worker, the coordinator or the submitter is killed.
 
 #include <gmock/gmock.h>
 
@@ -87,7 +87,8 @@ class Frames : public testing::Test {
     ASSERT_EQ(finished.code, 0) << finished.err;
   }
 
-  /// Waits until `count` frames are written. Returns false as Process::wait_until() does.
+  /// Waits until `count` frames are written. Returns false if the client ended before that, or the
+  /// time expired.
   static bool wait_for_frames(Process& client, std::size_t count) {
     return client.wait_until([&](const std::string& out, const std::string&) {
       std::size_t found = 0;

@@ -1,5 +1,6 @@
-// The scenes in two folders of the gallery, the study of ray tracing on phones (`study`) and the
-// "weekend" books (`books`): every scene loads, and a farm gives the same bytes as `render`.
+// Tests the scenes in two folders of the gallery. `study` has the images of a study of ray tracing
+// on phones, and `books` has scenes of the "weekend" books on ray tracing. Every scene loads, and a
+// farm gives the same bytes as `render`.
 
 #include <gtest/gtest.h>
 

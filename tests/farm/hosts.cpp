@@ -31,7 +31,7 @@ Hosts::Visit::Visit(const std::string& space)
 }
 
 Hosts::Visit::~Visit() {
-  BANDSAW_CHECK(setns(home_, CLONE_NEWNET) == 0, "its own namespace exists");
+  BANDSAW_CHECK(setns(home_, CLONE_NEWNET) == 0, "the thread's own namespace exists");
   close(home_);
 }
 

@@ -1,5 +1,6 @@
-// bandsaw invite and dismiss through the real ssh and a real sshd that ssh starts itself, without a
-// port or a daemon.
+// Tests `bandsaw invite`, which installs workers on other machines over ssh, and `bandsaw dismiss`,
+// which removes them, with the real ssh. It starts a real sshd itself, so the test needs no port
+// and no daemon.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// bandsaw invite and dismiss, with simulated machines behind an `ssh` that is a script of the test.
+// Tests `bandsaw invite`, which installs workers on other machines over ssh, and `bandsaw dismiss`,
+// which removes them. The machines are simulated, and `ssh` is a script of the test.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -54,7 +54,8 @@ TEST(Paste, TheLineStartsNoWorkerIfTheKeyOrTheProgramDiffers) {
   }
   FarmProcesses farm(hosts->get(), {"--web", (*hosts)->address("coordinator") + ":0"});
   const std::string line = pasted_line(farm.coordinator());
-  const std::string zeros(43, 'A');  // with "=": Base64 of 32 zero bytes; no key has this digest
+  // 43 letters A and one "=" are 32 zero bytes in Base64. No key has this digest.
+  const std::string zeros(43, 'A');
   const std::string other_key =
       std::regex_replace(line, std::regex("sha256//[^ ]*"), "sha256//" + zeros + "=");
   Process impostor = paste(farm, "coordinator", farm.path("one"), other_key);

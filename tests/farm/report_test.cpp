@@ -32,7 +32,8 @@ double number(const Struct& json, const std::string& of, const std::string& fiel
 }
 
 /// Removes the fields that depend on the machines, times and names. Also removes the course of the
-/// error ("curve"), because a farm measures the error while rows of the next pass arrive.
+/// error ("curve"), because a farm measures the error while some rows already have more samples
+/// than others.
 Struct comparable(Struct json) {
   for (const char* field : {"time", "machines", "outputs", "curve"}) {
     EXPECT_EQ(json.mutable_fields()->erase(field), 1u) << field;
@@ -120,7 +121,8 @@ TEST_F(ReportOfAFarm, TheSamplesOfATimeLimitGiveTheSameBytes) {
     ASSERT_GT(samples, 0);
     render({"--width", "64", "--samples", std::to_string(samples)}, "again.pfm");
     EXPECT_TRUE(file_bytes(of + ".pfm") == file_bytes(farm_.path("again.pfm"))) << name;
-    // If the samples are a single block, the error must be unknown in both reports.
+    // If a pixel has only one block, which is 8 samples or fewer, the error must be unknown in both
+    // reports.
     const auto error = [](const std::string& file) { return report(file).fields().at("error"); };
     EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(error(of + ".json"),
                                                                    error(farm_.path("again.json"))))

@@ -28,8 +28,8 @@ std::vector<std::string> scenes() {
   return out;
 }
 
-// 72 samples are 9 blocks. That is no power of two, so a pixel's sum has several nodes (glossary:
-// proto/README.md), which come from different bands.
+// 72 samples are 9 blocks of 8. Because 9 is no power of two, a pixel's sum consists of several
+// nodes of the binary summation tree (glossary: proto/README.md), which come from different bands.
 const std::vector<std::string> kSettings = {"--width", "24", "--samples", "72", "--quiet"};
 
 std::vector<std::string> with_settings(std::vector<std::string> arguments) {

@@ -1,6 +1,6 @@
-// Random schedules of events on a farm of real processes. Workers are killed, frozen, drained and
-// disconnected, other workers join, and the coordinator is killed. The image must have the same
-// bytes each time. The default is 10 schedules. BANDSAW_SCHEDULES=n runs n schedules.
+// Random schedules of events on a farm of real processes. Workers are killed, frozen, disconnected
+// and asked to leave, other workers join, and the coordinator is killed. The image must have the
+// same bytes each time. The default is 10 schedules. BANDSAW_SCHEDULES=n runs n schedules.
 // BANDSAW_SEED=n runs only the schedule of seed n. The events are a function of the seed; their
 // timing relative to bands is not.
 

@@ -33,9 +33,10 @@ TEST_F(StudyCommand, WritesTableFiguresAndPlot) {
   EXPECT_EQ(done.out.rfind("| scene | technique |", 0), 0u) << done.out;
   EXPECT_NE(done.out.find("| spheres | independent numbers | 16 |"), std::string::npos);
   const std::string csv = file_bytes(folder_ / "s.csv");
-  // The header, and for each of the two scenes: rows of 1, 4 and 16 samples for four methods and
-  // for adaptive sampling, and rows of four tolerances. The Cornell box uses photon maps of
-  // indirect light, so it has rows without them as well.
+  // There is one header. Each of the two scenes has three rows (1, 4 and 16 samples) for each of
+  // four methods and for adaptive sampling. It also has four rows of a method that stops each pixel
+  // at a tolerance of its error. The Cornell box uses photon maps of indirect light, so it has
+  // three more rows without photon maps.
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (5 * 3 + 4) + 3);
   EXPECT_EQ(file_bytes(folder_ / "s.svg").rfind("<svg ", 0), 0u);
 }

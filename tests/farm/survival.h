@@ -16,7 +16,8 @@ class Survival {
   /// `farm` MUST outlive this object. `scene`: the file to render; the default is a gallery scene.
   explicit Survival(FarmProcesses& farm, std::string scene = "");
 
-  /// Starts a job that takes several seconds, and the command that watches it on machine `host`.
+  /// Starts `bandsaw submit` on machine `host`. This command submits a job that takes several
+  /// seconds, and writes the image when the job is done.
   Process submit(const std::string& host = "coordinator");
 
   /// Waits until `bands` bands of the worker are on the coordinator's disk.

@@ -1,5 +1,5 @@
-// A worker is killed, frozen or drained, a worker joins late, or the coordinator is killed. The job
-// must end with the same bytes, and no finished band may be rendered again.
+// A worker is killed, frozen or drained (asked to leave), a worker joins late, or the coordinator
+// is killed. The job must end with the same bytes, and no finished band may be rendered again.
 
 #include <gtest/gtest.h>
 
@@ -62,8 +62,8 @@ TEST_F(Survive, AKilledCoordinator) {
   job_.expect_nothing_rendered_again();
 }
 
-// All light has passed glass, so each worker makes photon maps. One worker is killed. The
-// coordinator is killed while the worker that joins in its place makes its own maps.
+// All light passes through glass, so each worker makes photon maps. One worker is killed, and a new
+// worker joins. While the new worker makes photon maps, the coordinator is killed.
 TEST_F(Survive, AKilledWorkerAndCoordinatorWhilePhotonMapsAreMade) {
   Survival job(farm_, BANDSAW_GALLERY "/hard_light/lamp_in_glass.textproto");
   farm_.add_worker("victim", 1);

@@ -1,4 +1,5 @@
-// A submitter that disconnects during an upload, and one that resumes it.
+// A blob is a part of a scene that is known by the digest of its bytes. Tests a submitter that
+// disconnects while it uploads a blob, and a submitter that resumes the upload.
 
 #include <gtest/gtest.h>
 

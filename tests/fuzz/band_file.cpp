@@ -22,9 +22,9 @@ void read_all(absl::Span<const std::byte> bytes) {
       return;
     }
     const auto encoded = bandsaw::encode_band_record(decoded->record);
-    BANDSAW_CHECK(encoded.ok(), "what was read can be written");
+    BANDSAW_CHECK(encoded.ok(), "a record that was read can be written");
     BANDSAW_CHECK(absl::MakeConstSpan(*encoded) == bytes.subspan(offset, decoded->size),
-                  "a band reads back as it is");
+                  "the written record has the bytes that were read");
     offset += decoded->size;
   }
 }

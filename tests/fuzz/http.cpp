@@ -36,6 +36,7 @@ HttpReply answer(Access& access, const HttpRequest& request, const HttpBody& bod
   return done;
 }
 
+/// Sends the input over a connection to the dashboard's code, as its raw bytes.
 void over_a_connection(Access& access, absl::Span<const std::uint8_t> input) {
   std::array<int, 2> sockets{};
   BANDSAW_CHECK(socketpair(AF_UNIX, SOCK_STREAM, 0, sockets.data()) == 0, "socketpair");
@@ -53,6 +54,8 @@ void over_a_connection(Access& access, absl::Span<const std::uint8_t> input) {
   close(sockets[0]);
 }
 
+/// Makes a request of the lines of the input and answers it. Then reduces the answer to the range
+/// of bytes that the request's headers ask for, if they ask for one.
 void as_lines(Access& access, absl::Span<const std::uint8_t> input) {
   std::istringstream lines(bandsaw::fuzz::text(input));
   HttpRequest request;

@@ -12,5 +12,6 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
     return;
   }
   const absl::StatusOr<link::JoinString> again = link::parse_join_string(join->text());
-  BANDSAW_CHECK(again.ok() && again->text() == join->text(), "a join string reads back as it is");
+  BANDSAW_CHECK(again.ok() && again->text() == join->text(),
+                "a join string is written and read unchanged");
 }

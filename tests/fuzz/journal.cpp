@@ -19,5 +19,5 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
   const coordinator::RecordText written = coordinator::to_text(*record);
   const auto again = coordinator::from_text(written);
   BANDSAW_CHECK(again.ok() && coordinator::to_text(*again) == written,
-                "a record reads back as it is");
+                "a record is written and read unchanged");
 }

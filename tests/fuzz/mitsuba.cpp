@@ -1,5 +1,6 @@
-// Fuzz target (fuzz.h): a scene of Mitsuba through the importer, without any other files; or, if
-// the input does not begin with '<', a mesh file of such a scene.
+// Fuzz target (fuzz.h): an input that begins with '<' is a scene of Mitsuba, which the importer
+// reads without any other files. What is imported must be decodable as a scene package. Any other
+// input is a mesh file of a scene of Mitsuba.
 
 #include <fstream>
 

@@ -1,5 +1,5 @@
 // Fuzz target (fuzz.h): a scene of pbrt through the converter and the importer, without any other
-// files.
+// files. What is imported must be decodable as a scene package.
 
 #include <fstream>
 

@@ -1,7 +1,7 @@
 // Fuzz target (fuzz.h): messages that the coordinator checks before it uses them. The first byte of
 // the input selects the kind of message: a submission, a band, a quarantine, or digests. The rest
-// of the input is the message. The samples of a valid band are a node of the summation tree (see
-// the glossary in proto/README.md).
+// of the input is the message. The samples of a valid band are a node of the summation tree: one
+// block of 8 samples, or an aligned power-of-two number of blocks (glossary: proto/README.md).
 
 #include "coordinator/rpc/checked_messages.h"
 #include "renderlib/base/check.h"

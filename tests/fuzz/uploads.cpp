@@ -1,8 +1,8 @@
 // Fuzz target (fuzz.h): the chunks in which a blob, the bytes that belong to a digest, is uploaded
 // to the coordinator. First the whole input is parsed as one chunk. Then each group of three bytes
 // selects what happens next: a sender begins, continues, skips bytes, sends wrong bytes or is
-// interrupted, or the disk is damaged. A blob that is stored must have its digest after every
-// step.
+// interrupted, or the disk is damaged. After every step, a stored blob must have the bytes of
+// its digest.
 
 #include <algorithm>
 #include <cstring>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Compares the hashes of same_bits.txt with builds by clang (preset clang, -O3) and by gcc at -O2 (preset dev), each in its own build
-# folder; the default tests compare gcc at -O3. Builds only the programs that the test needs.
+# Checks that builds by clang (preset clang, -O3) and by gcc at -O2 (preset dev) render pixels with the hashes of same_bits.txt. The
+# default tests check a build by gcc at -O3. Each preset has its own build folder. Builds only the programs that the test needs.
 # Usage: tests/hard_cases/compilers.sh [PRESET…]      (default: clang dev)
 set -euo pipefail
 cd "$(dirname "$0")/../.."

@@ -40,7 +40,7 @@ MetallicRoughness layered(double roughness) {
   return m;
 }
 
-// M2: there is no 0 / 0 if a pdf is nearly zero, also at the limits of the number range.
+// M2: there is no 0 / 0 if a pdf is nearly zero, even if random numbers are at the ends of [0, 1).
 TEST(MaterialHardCases, M2DensitiesNearZeroGiveFiniteNumbers) {
   const Material materials[] = {layered(0.01), layered(1), Dielectric{1.5, 0.02},
                                 Dielectric{1.0000001, 0.5}, Metal{TextureId{0}, 1e-5}};

@@ -143,7 +143,7 @@ TEST(Triangle, T6_AHugeTriangleJustBelowTheCameraIsHit) {
       at_most("T6", "level: relative error of t", error.value() / 1e-3, 1e-9);
     } else {
       at_most("T6", "tilted: error of t in u x edge", error.value() / (0x1p-53 * 1e6), 8);
-      at_most("T6", "tilted: the same over what the last bits of the corners' heights are worth",
+      at_most("T6", "tilted: error of t over its change by the last bits of the corners' heights",
               over_last_bits.value(), 4);
     }
   }

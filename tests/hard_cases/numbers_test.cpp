@@ -105,7 +105,7 @@ TEST(Sampler, C7_PixelsOfTheLargestImageHaveStreamsOfTheirOwn) {
 }
 
 // Expects that the mean over 2 x 2 pixels has a quarter of the variance of one pixel. If
-// neighbouring pixels shared samples, it would have more.
+// neighbouring pixels shared samples, the mean would have more variance.
 TEST(Sampler, R3_NeighboursShareNoSamples) {
   constexpr std::uint32_t kSide = 512;
   test::Moments pixel;
@@ -129,8 +129,8 @@ TEST(Sampler, R3_NeighboursShareNoSamples) {
   test::at_most("R3", "variance of 2 x 2 means over a quarter, off 1", std::abs(ratio - 1), 0.05);
 }
 
-// Samples checkerboards of cells x cells cells within each pixel; `cells` is odd. The RMSE of
-// independent samples is about 0.5 / sqrt(samples).
+// Each pixel shows a checkerboard with an odd number of cells, `cells`, along each side. The RMSE
+// of independent samples is about 0.5 / sqrt(samples).
 TEST(Sampler, R9_DetailFinerThanAPixelIsNoWorseThanWithIndependentSamples) {
   Worst ratio;
   for (const int cells : {3, 7, 13, 29, 101}) {
@@ -154,8 +154,8 @@ TEST(Sampler, R9_DetailFinerThanAPixelIsNoWorseThanWithIndependentSamples) {
   test::at_most("R9", "RMSE over that of independent samples", ratio.value(), 1.1);
 }
 
-// Adds the nodes of a pixel's summation tree up to 2^30 samples. Each node is the sum, in double,
-// of floats from [0, 2).
+// Adds the sums of samples 0 to 16, 16 to 32, 32 to 64 and so on, up to 2^30 samples, to one pixel.
+// Each of these nodes of the summation tree is the sum, in double, of floats from [0, 2).
 TEST(Film, A1_LongSumsKeepTheirDigits) {
   auto film = Film::create(1, 1, "");
   ASSERT_TRUE(film.ok());

@@ -100,9 +100,9 @@ struct Crease {
   bool holds(const Vec3& p) const {
     return p.x > 0 && dot(p, inwards[0]) > 0 && dot(p, inwards[1]) > 0;
   }
-  /// Expects a ray that hits neither plane. Returns true if the ray leaves by the opening: if it
-  /// starts more than 0.9 from the z axis, or if the point of the ray at the distance 0.9 from the
-  /// axis is between the planes or has |z| > 0.9.
+  /// `ray` MUST hit neither quad. Returns true if the ray leaves by the opening. It does if it
+  /// starts more than 0.9 from the z axis. It also does if the point of the ray at the distance 0.9
+  /// from the axis is between the planes or has |z| > 0.9.
   bool leaves_by_opening(const Ray& ray) const {
     const Vec3& o = ray.origin;
     const Vec3& d = ray.direction;

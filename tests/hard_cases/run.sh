@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs every hard case with its full count and writes the figures into README.md's table.
+# Runs every hard case with its full number of tries and writes the figures into README.md's table.
 # Usage: tests/hard_cases/run.sh [BUILD_FOLDER [IDS]]      (default build/release; built with BANDSAW_TESTS=ON)
 # IDS: only these, as in "A4|A5"; the figures of the others are those of the previous run in this build folder.
 set -euo pipefail

@@ -141,8 +141,8 @@ TEST(Sphere, S2_HitPointsLieOnSpheresOfAnySize) {
   test::at_most("S2", "self-hits of " + std::to_string(3 * rays), again, 0);
 }
 
-/// Returns the relative change of the far root if the last bit of a coordinate of the origin
-/// changes.
+/// Returns the largest relative change of the far root if the last bit of one coordinate of the
+/// ray's origin changes.
 double worth_of_last_bits(const Ray& ray, const Sphere& sphere) {
   const Wide far = truth(ray, sphere).far;
   double most = 0;
@@ -180,12 +180,13 @@ TEST(Sphere, S4_TheFarSideIsHitFromWithin) {
     }
   }
   test::at_most("S4", "relative error of the far root", error.value(), 1e-12);
-  // A grazing chord has the discriminant R^2 cos^2. The last bit, u R^2, is the share u / cos^2 of
-  // the discriminant.
-  test::at_most("S4", "times cos^2, for chords flatter than 1.7 degrees", flat_error.value(),
+  // The discriminant of the roots is R^2 cos^2, and it is rounded with an error of about u R^2. The
+  // relative error of the discriminant is therefore about u / cos^2, which is large for flat
+  // chords.
+  test::at_most("S4", "error times cos^2, for chords flatter than 1.7 degrees", flat_error.value(),
                 1e-15);
-  test::at_most("S4", "these over what the last bit of the origin is worth", over_last_bits.value(),
-                8);
+  test::at_most("S4", "error of these chords over the change by the last bit of the origin",
+                over_last_bits.value(), 8);
   EXPECT_EQ(hit({sphere.center, {0, 1, 0}}, sphere), 2);
 }
 
