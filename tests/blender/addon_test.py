@@ -141,8 +141,8 @@ class AddOn(unittest.TestCase):
         self.fake.requests.clear()
         bpy.context.scene.camera.location.x += 1
         self.render()
-        digests = [len(scene["files"]) for scene in self.fake.scenes]
-        self.assertEqual(digests[0], digests[1])
+        file_counts = [len(scene["files"]) for scene in self.fake.scenes]
+        self.assertEqual(file_counts[0], file_counts[1])
         sent_again = len([1 for method, path in self.fake.requests if path == "/api/files"])
         self.assertEqual(sent_again, 1)  # the scene file alone, whose camera has moved
 
@@ -338,7 +338,7 @@ class AddOn(unittest.TestCase):
             self.assertEqual(self.texels(made[field]).max(), 1, field)
         self.assertGreater(self.texels(made["emissive_texture"]).max(), 1.2)
 
-    def test_a_float_image_above_1_reflects_1_and_emits_as_it_is(self):
+    def test_a_float_image_above_1_reflects_1_and_emits_its_values(self):
         image = scenes.picture("hdr", np.full((4, 4, 3), 1.5), is_float=True)
         image = self.saved(image, "hdr.exr", "OPEN_EXR")
 

@@ -261,7 +261,7 @@ TEST_F(Frames, AreFollowedByACommandThatASignalEnds) {
   EXPECT_TRUE(std::filesystem::is_empty(temporary));
 }
 
-TEST_F(Frames, AreCleanedAsRenderDoes) {
+TEST_F(Frames, AreDenoisedAsByRender) {
   farm_.add_worker("one", 1);
   farm_.add_worker("two", 1);
   const Finished done = run(submit("1-4", {"-o", outputs_, "--denoise"}));

@@ -102,7 +102,7 @@ Wide plane_distance(const Ray& ray, const Triangle& t) {
 }
 
 /// Returns how much plane_distance() changes if the last bits of the corners' heights change.
-double worth_of_last_bits(const Ray& ray, Triangle t) {
+double change_by_last_bits(const Ray& ray, Triangle t) {
   const Wide distance = plane_distance(ray, t);
   for (Vec3* corner : {&t.a, &t.b, &t.c}) {
     corner->y = std::nextafter(corner->y, kInfinity);
@@ -134,7 +134,7 @@ TEST(Triangle, T6_AHugeTriangleJustBelowTheCameraIsHit) {
       // because the ray's origin itself is rounded.
       const double off = std::abs(static_cast<double>(crossing.t - plane_distance(ray, t)));
       error.see(off);
-      over_last_bits.see(off / worth_of_last_bits(ray, t));
+      over_last_bits.see(off / change_by_last_bits(ray, t));
     }
     const bool level = turn.direction({0, 1, 0}).y == 1;
     const std::string name = level ? "level" : "tilted";

@@ -143,7 +143,7 @@ TEST(Sphere, S2_HitPointsLieOnSpheresOfAnySize) {
 
 /// Returns the largest relative change of the far root if the last bit of one coordinate of the
 /// ray's origin changes.
-double worth_of_last_bits(const Ray& ray, const Sphere& sphere) {
+double change_by_last_bit(const Ray& ray, const Sphere& sphere) {
   const Wide far = truth(ray, sphere).far;
   double most = 0;
   for (double Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
@@ -159,7 +159,7 @@ TEST(Sphere, S4_TheFarSideIsHitFromWithin) {
   const Sphere sphere = {{1, 2, 3}, 2, {}};
   test::Worst error;
   test::Worst flat_error;
-  test::Worst over_last_bits;
+  test::Worst over_last_bit;
   for (int i = 0; i < 20000; ++i) {
     const Vec3 n = test::random_direction(random);
     const Vec3 d = test::random_direction(random);
@@ -176,7 +176,7 @@ TEST(Sphere, S4_TheFarSideIsHitFromWithin) {
       error.see(relative);
     } else {
       flat_error.see(relative * cosine * cosine);
-      over_last_bits.see(relative / worth_of_last_bits(ray, sphere));
+      over_last_bit.see(relative / change_by_last_bit(ray, sphere));
     }
   }
   test::at_most("S4", "relative error of the far root", error.value(), 1e-12);
@@ -186,7 +186,7 @@ TEST(Sphere, S4_TheFarSideIsHitFromWithin) {
   test::at_most("S4", "error times cos^2, for chords flatter than 1.7 degrees", flat_error.value(),
                 1e-15);
   test::at_most("S4", "error of these chords over the change by the last bit of the origin",
-                over_last_bits.value(), 8);
+                over_last_bit.value(), 8);
   EXPECT_EQ(hit({sphere.center, {0, 1, 0}}, sphere), 2);
 }
 
