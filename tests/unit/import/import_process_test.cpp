@@ -1,5 +1,6 @@
-// The import in a confined process of its own gives the same bytes as the library, and one clear
-// error if anything goes wrong.
+// The import of a scene in a separate, confined process gives the same bytes as the import by the
+// library. If anything goes wrong, it gives one clear error. An ImportSession imports several
+// frames of a scene by one process.
 
 #include "coordinator/cli/scene/import_process.h"
 
@@ -177,9 +178,9 @@ TEST(ImportProcess, ForwardsTheImportersError) {
   EXPECT_FALSE(import_in_process(folder.path(), limits()).ok());
 }
 
-// The list of an archive's files may have lines "made NAME" for files that the importer wrote, and
-// no lines "found NAME" for files that were there before. A hostile archive may have taken control
-// of the importer, so the list is checked.
+// The importer unpacks an archive and writes a list of the files. In such a list, a line may be
+// "made NAME" for a file that the importer wrote, but not "found NAME" for a file that existed
+// before. A hostile archive may have taken control of the importer, so the list is checked.
 TEST(ImportProcess, AnArchivesListWithAFileThatTheImporterDidNotWriteIsRefused) {
   const TempDir folder;
   const std::string program =

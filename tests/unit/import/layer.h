@@ -1,6 +1,7 @@
 #pragma once
 
-// Renders an imported scene with an integrator such as albedo or normals, for tests of the import.
+// Renders a layer of an imported scene, for tests of the import. A layer is the image of one
+// integrator, such as albedo or normals.
 
 #include <atomic>
 
@@ -9,7 +10,8 @@
 
 namespace bandsaw::test {
 
-/// Renders one sample per pixel by the integrator; `imported` MUST have a scene.
+/// Returns the image of the scene by this integrator, with one sample per pixel. The scene MUST be
+/// valid.
 inline Image layer(const ImportedScene& imported, std::uint32_t width, std::uint32_t height,
                    Integrator integrator) {
   Pool pool(1);

@@ -67,7 +67,7 @@ model { file: "closed.obj" interior: "smoke" translate: [9, 0, 0] boundary_only:
   EXPECT_EQ(media.media[1].emission, (Rgb{0, 0, 8}));
   EXPECT_EQ(media.media[1].g, 0.3);
   EXPECT_EQ(media.fog, MediumId{0});
-  // Only the glass ball and the model that is not a boundary are part of the visible geometry.
+  // Only the glass ball and the model without boundary_only are part of the visible geometry.
   EXPECT_EQ(imported->scene.geometry.spheres.size(), 1u);
   EXPECT_EQ(imported->scene.geometry.quads.size(), 0u);
   EXPECT_EQ(imported->scene.geometry.instances.size(), 1u);

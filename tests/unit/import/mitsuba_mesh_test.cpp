@@ -1,4 +1,5 @@
-// Mesh files of Mitsuba scenes: OBJ, PLY and *.serialized.
+// Mesh files of Mitsuba scenes: OBJ, PLY and *.serialized. If the last argument of a function that
+// reads them, `flip_v`, is true, v becomes 1 - v.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -370,8 +370,8 @@ TEST_F(MitsubaScene, ACheckerboardBeginsAtTheTop) {
   const scene::CheckerTexture& flat = from.material(0).diffuse().texture().checker();
   EXPECT_THAT(flat.size(), ElementsAre(0.1, 0.1));
   EXPECT_NEAR(flat.even().color().rgb(0), 0.4, 1e-7);
-  // On the sphere, v counts the ten rows from the other end, where the first cell has the other
-  // colour.
+  // On the sphere, v starts at the opposite end of the ten rows. The first cell at that end has the
+  // second colour.
   EXPECT_NEAR(from.material(1).diffuse().texture().checker().even().color().rgb(0), 0.2, 1e-7);
 }
 
@@ -503,8 +503,8 @@ TEST_F(MitsubaScene, GridsAreClampedAtTheirFaces) {
 }
 
 /// Mitsuba places grids in the world. A sphere that is scaled unequally, or has uvs, is an instance
-/// here, and its medium lies in the space of the instance. So the product of both matrices is the
-/// identity.
+/// here, and its medium lies in the space of the instance. So the product of the instance's matrix
+/// and the grid's matrix, which places the grid in the world, must be the identity.
 TEST_F(MitsubaScene, GridsInSpheresThatAreInstancesStayInTheirPlace) {
   write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
   const auto grid_to_world = [&](const std::string& scale, const std::string& bsdf) {

@@ -20,7 +20,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// Writes a glTF file with a triangle and four nodes with cameras, and returns its path. "left" and
-/// "right" share one camera. Below "tower" there is another camera, which Assimp loads first.
+/// "right" share one camera. The node "top" is a child of "tower". Assimp loads the camera of "top"
+/// first.
 std::string write_cameras(const TempDir& folder, const std::string& name) {
   GltfTriangle file;
   file.more = R"("cameras": [
@@ -63,7 +64,7 @@ class ModelCameraNames : public ::testing::Test {
     EXPECT_TRUE(imported.ok()) << imported.status();
     return imported.ok() ? seen(*imported) : Seen{};
   }
-  /// Returns the message of the error if `name` selects a camera in `file`.
+  /// Imports `file` with the camera `name`, and returns the message of the error.
   std::string error(const std::string& name, const std::string& file = "m.gltf") {
     return std::string(import_scene(folder_ / file, {.camera = name}).status().message());
   }

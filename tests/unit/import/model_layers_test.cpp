@@ -1,5 +1,6 @@
-// A textured model is seen from the front with one pixel per texel. The albedo layer must equal the
-// image to the 8-bit code, and the normal layer must equal the normal map.
+// A textured model is seen from the front with one pixel per texel. A layer is the image of one
+// integrator. The albedo layer must equal the image to the 8-bit code, and the normal layer must
+// equal the normal map.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,7 @@ std::string codes(bool normals) {
   return bytes;
 }
 
-/// Returns the layer of this integrator for the model, one pixel for each texel.
+/// Renders the model by this integrator, with one pixel for each texel.
 Image seen(const TempDir& folder, const std::string& model, Integrator integrator) {
   const auto imported = import_scene(write_text(
       folder, "s.textproto",
@@ -85,7 +86,8 @@ TEST_P(ModelLayers, AreTheImagesOfTheModel) {
     const auto along = [&](std::size_t c) {
       return 2 * static_cast<unsigned char>(bent[3 * i + c]) / 255.0 - 1;
     };
-    // The model is scaled by 1.4 along x, but its uvs are not. The normal is that of the map.
+    // The model is scaled by 1.4 along x. This must not change the normals of the map, because the
+    // uvs are not scaled.
     const Vec3 n = normalize({along(0), along(1), along(2)});
     EXPECT_NEAR(2 * normals.pixels[i].r - 1, n.x, 1e-5);
     EXPECT_NEAR(2 * normals.pixels[i].g - 1, n.y, 1e-5);

@@ -1,6 +1,6 @@
-// Compares layers of a textured model by other authors with values that the test computes from its
-// own reading of the OBJ and MTL files. The albedo layer must be the texel at the uv of the hit
-// times Kd. The normal layer must show the normals of the file.
+// Renders the albedo and the normals of the spider, a textured model of Assimp's test suite.
+// Compares them with values that the test itself computes from the OBJ and MTL files. The albedo
+// must be Kd times the texel at the hit point's uv. The normals must be those of the OBJ file.
 
 #include <gtest/gtest.h>
 

@@ -167,7 +167,7 @@ TEST(Pbrt, ASpectrumIsBlackOutsideOfItsWavelengths) {
     EXPECT_LT(color.rgb(1), 0.2) << spectrum;
     EXPECT_EQ(color.rgb(2), 0) << spectrum;
   }
-  // A file that is missing is white at all wavelengths.
+  // If the file of a spectrum is missing, the spectrum is white at all wavelengths.
   const scene::Color white = intensity("\"no.spd\"");
   ASSERT_EQ(white.rgb_size(), 3);
   EXPECT_NEAR(white.rgb(1), 0.95, 0.05);

@@ -53,7 +53,7 @@ double smoke_along(const Scene& scene, const Vec3& origin, const Vec3& direction
   return -std::log(double{media_transmittance(scene, ray, NumberStream(0), rays).g}) / kDensity;
 }
 
-constexpr double kError = 4e-6;  // tolerance of a length; the transmittance is a float
+constexpr double kError = 4e-6;  // tolerance of a length, because the transmittance is a float
 
 TEST(PlacedMedia, TheDensityDoesNotDependOnThePlacement) {
   const auto scene = scene_of(kOpenFor1 + R"(
@@ -112,7 +112,7 @@ shape { sphere { center: [9, 0, 0] radius: 1 } interior: "smoke" velocity: [0, -
     const double chord = std::abs(aside) < 1 ? 2 * std::sqrt(1 - aside * aside) : 0;
     EXPECT_NEAR(smoke_along(*scene, {9, -0.5, -9}, {0, 0, 1}, time), chord, kError) << time;
   }
-  // With a shutter of zero duration, the scene stands still as it is at that time.
+  // If the shutter has no duration, nothing moves. Each shape is where it is at the time 0.75.
   const auto moment = scene_of(
       "camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 0.75 shutter_close: 0.75 }" +
       shapes);

@@ -1,4 +1,4 @@
-// Scene files as text or JSON: every field is read, and each error names the place, the field and
+// Scene files as text or JSON: their fields are read, and each error names the place, the field and
 // the range.
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// Materials of scene files: fields that are numbers, textures or both, the kinds that other
-// renderers have, and the error for each wrong one.
+// Tests materials of scene files: the fields that are numbers, textures or both, the kinds of
+// materials of other renderers, and the errors for wrong fields.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

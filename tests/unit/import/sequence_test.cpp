@@ -51,7 +51,7 @@ class Sequence : public ::testing::Test {
     return imported.ok() ? *std::move(imported) : ImportedScene();
   }
   /// Expects that the package has the same bytes if other frames were imported before with the same
-  /// ImportMemory.
+  /// ImportMemory, which keeps the results of earlier imports.
   static void expect_the_same_after_other_frames(const std::string& path,
                                                  const ImportChoices& choices,
                                                  const ImportedScene& fresh) {
@@ -144,7 +144,7 @@ TEST_F(Sequence, AWrongTrackIsAnErrorThatNamesItsPlace) {
   EXPECT_THAT(with(key), HasSubstr("field: is required"));
 }
 
-/// A triangle at node 1, below node 0.
+/// A file with two nodes. Node 1 has a triangle and is a child of node 0.
 GltfWriter two_nodes() {
   GltfWriter file;
   file.attributes() = {{"POSITION", file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}};
@@ -198,7 +198,7 @@ TEST_F(Sequence, NodesOfGltfAreWhereTheirAnimationPutsThem) {
   EXPECT_THAT(rest.info.warnings, Contains(HasSubstr("the rest pose is shown")));
 }
 
-// During the exposure a node moves by its own keys, in the frame of its moving parent.
+// During the exposure a node moves by its own keys, in the coordinates of its moving parent.
 TEST_F(Sequence, NodesMoveWithTheirParentsDuringTheExposure) {
   GltfWriter file = two_nodes();
   Json walk = empty_animation("walk");
@@ -324,7 +324,7 @@ TEST_F(Sequence, ACameraOfAModelKeepsItsWindowWhileItMoves) {
   }
 }
 
-// The camera that frames a model does not follow its animation.
+// The default camera shows the whole model in its rest pose.
 TEST_F(Sequence, TheDefaultCameraDoesNotFollowTheAnimation) {
   GltfWriter file = two_nodes();
   Json walk = empty_animation("walk");
@@ -352,7 +352,7 @@ TEST_F(Sequence, AnAnimationMayHideAllMeshes) {
   EXPECT_THAT(hidden.info.warnings, ElementsAre(HasSubstr("1 placements are left out")));
   const ImportedScene shown = read(path, frame(24));
   EXPECT_THAT(shown.scene.geometry.instances, SizeIs(1));
-  // The camera frames the rest pose, at z = 7, in both.
+  // For both frames, the default camera is placed for the rest pose, at z = 7.
   const Vec3 eye = view_of(shown.scene.camera).position;
   expect_near(view_of(hidden.scene.camera).position, eye);
   EXPECT_GT(eye.z, 7);

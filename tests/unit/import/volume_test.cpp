@@ -193,7 +193,8 @@ TEST(VdbFile, IsReadWithTheValuesAndPlacementOfTheLibrary) {
 TEST(VdbFile, TilesVectorsDoublesAndHalvesAreRead) {
   const TempDir folder;
   auto tiles = named<openvdb::FloatGrid>("density");
-  // 128 x 128 x 128 voxels, which the tree stores as tiles or dense leaves, and a part of a leaf.
+  // The grid has a cube of 128 x 128 x 128 voxels, which the tree stores as tiles or dense leaves,
+  // and beside it a part of a leaf.
   tiles->fill(openvdb::CoordBBox({0, 0, 0}, {127, 127, 127}), 0.5f);
   tiles->tree().prune();
   tiles->fill(openvdb::CoordBBox({128, 0, 0}, {130, 7, 7}), 2.0f);
@@ -213,7 +214,8 @@ TEST(VdbFile, TilesVectorsDoublesAndHalvesAreRead) {
   EXPECT_EQ(reader.value(to_cells.point({129, 3, 3})), 2);
   EXPECT_EQ(reader.value(to_cells.point({131, 3, 3})), 0);
   EXPECT_EQ(reader.value(to_cells.point({-1, 3, 3})), 0);
-  // All full bricks are equal and stored as one. The part of a leaf is the other brick.
+  // A brick has 8 x 8 x 8 voxels. The bricks of the cube are equal and stored once. The second
+  // brick that is stored has the part of a leaf.
   EXPECT_EQ(density->grid.values.size(), 2 * 512 * 2u);
   const auto albedo = read_volume(path, "albedo", "");
   ASSERT_TRUE(albedo.ok()) << albedo.status();
@@ -322,8 +324,9 @@ instance { of: "g" scale: [2, 2, 2] }
   EXPECT_EQ(fire.grids.temperature_offset, 300);
   EXPECT_EQ(fire.grids.blackbody, BlackbodyScale::kPeak);
   EXPECT_EQ(media.grids[index_of(fire.grids.albedo->grid)].filter, VolumeGrid::Filter::kNearest);
-  // The boundaries are the sphere and four boxes. Each box has a frame. So the medium of a box is
-  // in the space in which the scene file gives the box, before the box is placed.
+  // The boundaries are the sphere and four boxes. Each box has a frame, a coordinate system that is
+  // placed in the world. The medium of the box is in this frame, in which the scene file gives the
+  // box before its placement.
   const Geometry& boundaries = media.boundaries;
   EXPECT_EQ(boundaries.spheres.size(), 1u);
   ASSERT_EQ(boundaries.instances.size(), 4u);

@@ -130,8 +130,8 @@ TEST(Spectrum, MetalsHaveTheirColours) {
     }
     return out;
   };
-  // Brass at 500 nm in the table of Querry, silver at 551 nm in the table of Palik, and rutile at
-  // 589 nm.
+  // The expected values are those of brass (CuZn) at 500 nm in the table of Querry, of silver (Ag)
+  // at 551 nm in the table of Palik, and of rutile (TiO2) at 589 nm.
   EXPECT_NEAR(spectrum::named("metal-CuZn-eta")->at(500), 0.686, 1e-3);
   EXPECT_NEAR(spectrum::named("metal-CuZn-k")->at(500), 2.250, 1e-3);
   EXPECT_NEAR(spectrum::named("metal-Ag-eta")->at(551), 0.125, 2e-3);

@@ -35,7 +35,7 @@ Rgb sample_of(const Scene& scene, std::uint64_t sample, std::uint32_t branches,
   return path_radiance(scene, kDown, PixelSampler(1, 2, 3), sample, {.branches = branches}, counts);
 }
 
-// Branch i of sample s is the path without branches of sample s * branches + i.
+// Branch i of sample s has the radiance that sample s * branches + i has without path splitting.
 TEST(Branches, EqualPathsWithTheirSampleNumbers) {
   const auto scene = corner(false).build();
   PathCounts whole;

@@ -89,8 +89,8 @@ TEST(Caustics, MeetTheClosedFormOfALampInGlassThatDoesNotRefract) {
   expect_radiance(*scene, {0, 0, 1.9}, expected);
 }
 
-// A mirror on the floor lights a wall as a second lamp below it would, if the wall sees the whole
-// lamp in the mirror.
+// If a wall sees a whole lamp in a mirror on the floor, the mirror lights the wall like a second
+// lamp below the floor.
 TEST(Caustics, MeetTheClosedFormOfALampAboveAMirror) {
   SceneMaker maker;
   const MaterialId wall = maker.diffuse(0.5f);
@@ -130,9 +130,9 @@ TEST(Caustics, TheWallsReceiveThePowerOfTheLampInGlass) {
   EXPECT_LT(power.standard_error(), 0.01 * expected);
 }
 
-// Paths look up the photons of a surface only where the surface is present. So a map holds the
-// light that arrives there, whether the walls are opaque, half transparent, or a mixture with a
-// part that receives no caustics.
+// A surface with alpha is present for a part of the paths only. Only these paths look up its
+// photons. So a map must hold all light that arrives at the walls, whether the walls are opaque,
+// partly transparent, or a mixture with a part that receives no caustics.
 TEST(Caustics, APartlyTransparentWallReceivesThePowerOfAnOpaqueOne) {
   for (const bool mixture : {false, true}) {
     SCOPED_TRACE(mixture);
@@ -225,9 +225,9 @@ TEST(Caustics, TheShareOnTheSurfaceIsOneHalfAtAnEdge) {
   EXPECT_NEAR(share_on_surface(*scene, photon), 0.25, 0.1);
 }
 
-// The photons are at all distances up to the radius from a straight edge. Their mean share is 1
-// minus the integral of x f(x) over [0, 1], where f(x) = 8 / (3 pi) (1 - x^2)^(3/2) is the kernel's
-// density at the distance x of a line from the centre: 1 - 8 / (15 pi).
+// The photons are at all distances up to the radius from a straight edge. Let f(x) be the integral
+// of the kernel along a line at the distance x from the centre, 8 / (3 pi) (1 - x^2)^(3/2). The
+// mean share is 1 minus the integral of x f(x) over [0, 1]. That integral is 8 / (15 pi).
 TEST(Caustics, TheMeanShareOnTheSurfaceMeetsTheClosedFormNearAnEdge) {
   SceneMaker maker;
   maker.quad({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, maker.diffuse(0.5f));
@@ -390,8 +390,8 @@ TEST(Caustics, MapsOfOtherSeedsAndNumbersDiffer) {
   EXPECT_NE(first(1, 0), first(1, 1));
 }
 
-// train_guiding() lets caustics come from photon maps if its pilot, a few paths, shows that this
-// pays.
+// train_guiding() traces a few paths, the pilot. Caustics come from photon maps only if the pilot
+// shows that the maps are worth their cost.
 TEST(Caustics, ComeFromMapsForSmallLampsOnly) {
   Pool pool(1);
   const auto come_from_maps = [&](const Scene& scene) {

@@ -44,8 +44,8 @@ VolumeGrid constant(float density) {
   return grid;
 }
 
-/// Adds the box from -1 to 1, filled with this medium. A frame with this placement and these keys
-/// places the box and its medium.
+/// Adds the box from -1 to 1, filled with this medium. The box and its medium are in a frame, a
+/// coordinate system with this placement and with these keys of its motion.
 void fill_placed(SceneMaker& maker, MediumId inside, const Transform& placement,
                  std::vector<Key> keys = {Key(0, {})}) {
   test::fill_box(maker, {-1, -1, -1}, {1, 1, 1}, inside);
@@ -148,7 +148,7 @@ TEST(GridMedia, EachTechniqueReachesTheSameMean) {
   EXPECT_LT(z(both, moments_of(*scene, kAhead, {.technique = Technique::kScatteringOnly})), 4);
 }
 
-// The medium does not emit, because media do not light each other in `direct`.
+// With the integrator `direct`, media do not light each other. So the medium does not emit.
 TEST(GridMedia, DirectEqualsPathsOfOneScattering) {
   SceneMaker maker;
   maker.sphere({2, 2, 1}, 0.5, maker.lamp(20));
@@ -306,8 +306,8 @@ TEST(GridMedia, ShadowsOfAGridFollowTheClosedForm) {
 }
 
 TEST(GridMedia, FireLightsItsSurroundings) {
-  // The medium has heat alone, and no density. The light that a diffuse floor reflects is that of
-  // the same homogeneous emission.
+  // The medium has a temperature, but it neither absorbs nor scatters. Seen directly and by its
+  // light on the floor, it must equal a homogeneous medium with the same emission.
   SceneMaker fire;
   fire.quad({-4, -2, 4}, {8, 0, 0}, {0, 0, -8}, fire.diffuse(0.6f));
   SceneMaker glow = fire;

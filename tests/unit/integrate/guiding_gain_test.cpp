@@ -46,9 +46,10 @@ std::shared_ptr<const Scene> wall_lit_through_glass(double lamp) {
   return maker.build();
 }
 
-// A direction that is sampled by the cosine reaches a lamp of solid angle w in front of the wall
-// with probability w / pi. All directions that reach it carry the same light. So the second moment
-// is pi / w times the squared mean, and the variance is pi / w - 1 times the squared mean.
+// The lamp is straight in front of the wall, and w is its solid angle. So a cosine-distributed
+// direction reaches the lamp with probability w / pi. All directions that reach it carry the same
+// light. So the second moment is pi / w times the squared mean, and the variance is pi / w - 1
+// times the squared mean.
 TEST(GuidingGain, OfPhotonsMeetsTheClosedForm) {
   for (const double lamp : {0.05, 0.1, 0.2, 0.3, 0.4}) {
     const double solid_angle = kPi * lamp * lamp / 4;
@@ -126,7 +127,8 @@ TEST(GuidingGain, DirectLightHasNoNoiseWhereItDoesNotArrive) {
   EXPECT_TRUE(gain.gathering_may_pay());
 }
 
-// Photons of indirect light start at no fewer than 2^17 points, each of which takes a ray at least.
+// Photons of indirect light start at 2^17 points or more, and each point takes at least one ray. So
+// fewer rays mean that no such photons were traced.
 TEST(GuidingGain, NoIndirectPhotonsAreTracedWhereDirectLightHasTheNoise) {
   Pool pool(2);
   const auto rays_of = [&](const Scene& scene) {

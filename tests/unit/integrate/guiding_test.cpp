@@ -76,7 +76,7 @@ TEST(Guiding, MeetsTheClosedFormOfALampInGlassThatDoesNotRefract) {
 }
 
 // In a closed room of uniform emission and reflectance the radiance is Le / (1 - rho) everywhere,
-// up to what max_depth cuts off.
+// minus the small part that max_depth cuts off.
 TEST(Guiding, KeepsTheRadianceOfAFurnace) {
   SceneMaker maker;
   Material wall{Diffuse{maker.texture(ConstantTexture{{0.5f, 0.5f, 0.5f}})}};
@@ -147,7 +147,8 @@ TEST(Guiding, WithoutCastersThereAreNoPhotons) {
   EXPECT_GT(guiding->field.cells(), 0u);
 }
 
-// A sample's weight is value / pdf, whether the BSDF or a cone sampled it.
+// Guided directions are sampled by the BSDF or in one of several cones. In both cases the weight of
+// a sample is value / pdf.
 TEST(GuidedBsdf, SamplesAgreeWithTheirEvaluation) {
   const auto scene = lamp_in_glass(1.5, 0.2, 0.5f).build();
   const auto guiding = trained(*scene);

@@ -164,8 +164,8 @@ TEST(IndirectPhotons, ChangeNoMean) {
   }
 }
 
-/// Traces 500 photons from 2,000 points. `power`: if it is not null, receives the luminance of all
-/// light that leaves the points.
+/// Traces 500 photons from the lit ones of 2,000 random points. `power`: if it is not null,
+/// receives the luminance of all light that leaves these points.
 TracedPhotons traced_500(const Scene& scene, const PhotonSources& sources,
                          double* power = nullptr) {
   const TracedMaps none;
@@ -264,7 +264,7 @@ TEST(IndirectPhotons, AreUsedWhereABackgroundLightsTheScene) {
 }
 
 // The integrator `path` takes indirect light from maps where the light of a lamp reaches most of
-// the room by way of the ceiling, and not where it is found by light sampling.
+// the room by way of the ceiling. It uses no maps where light sampling finds the light.
 TEST(IndirectPhotons, AreUsedWhereTheyPay) {
   Pool pool(2);
   const auto are_used = [&](const SceneMaker& maker) {

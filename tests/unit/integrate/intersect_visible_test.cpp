@@ -1,5 +1,6 @@
-// Tests alpha, nested glass and glTF's material along whole paths. An id such as M6 in a test's
-// name is that of a case in tests/hard_cases/cases.txt.
+// Tests alpha, nested glass and glTF's material along whole paths. Where nested glasses overlap,
+// only the glass of the highest priority is present. An id such as M6 in a test's name is that of a
+// case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -226,6 +227,9 @@ TEST(NestedGlass, M9_TheHigherPriorityRefractsInOverlaps) {
   test::report_hard_case("M9", "overlap: rays bend at the higher priority alone");
 }
 
+// Interiors is the set of glasses that contain a point of a path. The air has a higher priority
+// than the glass. So the boundary of the bubble refracts from the index 1.5 to 1, and a boundary of
+// the glass inside the bubble is hidden.
 TEST(NestedGlass, M9_AnAirBubbleInGlassRefractsOutwards) {
   Interiors inside;
   const Dielectric glass{1.5, 0, 1};

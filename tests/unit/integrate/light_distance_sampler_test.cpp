@@ -32,7 +32,7 @@ double integral(double aside, const std::function<double(double)>& f) {
   return sum;
 }
 
-/// The variance of one sample over the square of the mean, for each way to sample distances.
+/// The variance of one sample divided by the square of the mean, for each way to sample distances.
 struct Spread {
   double flown;   ///< free flight
   double angles;  ///< equiangular sampling
@@ -75,7 +75,8 @@ TEST(LightDistanceSampler, IsNeverMuchWorseThanItsBetterStrategy) {
   }
 }
 
-/// The gains stated in the NOTES.md of renderlib/integrate.
+/// The gain is the variance of free flight divided by the variance of the mixture. The NOTES.md of
+/// renderlib/integrate states these gains.
 TEST(LightDistanceSampler, ReducesVarianceNearALight) {
   const auto gain = [](float sigma, double aside) {
     const Spread found = spread(sigma, aside);

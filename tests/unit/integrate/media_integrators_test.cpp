@@ -36,7 +36,7 @@ TEST(MediaIntegrators, ABoundaryWithoutASurfaceIsInvisible) {
   }
 }
 
-// The ray passes 2 units of a medium with the extinction 0.8, whose optical depth is 1.6. The
+// The ray passes 2 units of a medium with the extinction 0.8, so the optical depth is 1.6. The
 // medium stops the share 1 - exp(-1.6) of the light. The ambient term is this share times the
 // albedo, 0.75, times the ambient radiance, 0.5.
 TEST(MediaIntegrators, DirectAttenuatesAndAddsTheAmbientTerm) {

@@ -129,7 +129,7 @@ Rgb normal_at(const SceneMaker& maker, const Ray& ray) {
                       counts);
 }
 
-/// Returns a texture whose value is the coordinate, over [0, 8].
+/// Returns a texture whose value is the coordinate `over`, for coordinates from 0 to 8.
 TextureId coordinate(SceneMaker& maker, RampTexture::Over over) {
   RampTexture ramp;
   ramp.over = over;

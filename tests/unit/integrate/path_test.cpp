@@ -1,6 +1,6 @@
-// Path tracing of scenes whose value is known exactly, ray by ray: emitters, mirrors, glass, depth
-// limits, and counters. An id such as L11 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// Path tracing of scenes in which the radiance along a ray is known exactly. Tests emitters,
+// mirrors, glass, depth limits and counters. An id such as L11 in a test's name is that of a case
+// in tests/hard_cases/cases.txt.
 
 #include "renderlib/integrate/path.h"
 
@@ -90,6 +90,8 @@ std::shared_ptr<const Scene> behind_panes(int count, const ThinDielectric& pane)
   return maker.build();
 }
 
+// With free_passage, the last argument of the pane `free`, light that passes the pane does not
+// count as scattered.
 TEST(Path, AFreePassageDoesNotCountTowardsTheDepth) {
   constexpr double kIndex = 1.00001;  // so close to 1 that a pane reflects nothing in float
   const ThinDielectric counted{kIndex, {0, 0, 0}, gray(0.5f)};

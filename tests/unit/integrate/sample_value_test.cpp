@@ -155,10 +155,10 @@ TEST(SampleValue, ABallAboveOccludesItsViewFactor) {
   expect_mean(maker, Integrator::kAmbientOcclusion, below, 0.75);
   maker.scene.local_shading.occlusion_distance = 2.5;
   const double near = expect_mean(maker, Integrator::kAmbientOcclusion, below,
-                                  // Rays that hit the ball before 2.5 are in a cone. Its rim is the
-                                  // circle in which the ball meets a sphere of radius 2.5 about the
-                                  // point. The circle is at z = (2.5^2 + 4^2 - 2^2) / 8, so sin^2
-                                  // of the half-angle is 1 - (z / 2.5)^2.
+                                  // Rays that hit the ball nearer than 2.5 are in a cone. Its rim
+                                  // is the circle in which the ball meets a sphere of radius 2.5
+                                  // about the point. The circle is at z = (2.5^2 + 4^2 - 2^2) / 8,
+                                  // so sin^2 of the half-angle is 1 - (z / 2.5)^2.
                                   std::pow((2.5 * 2.5 + 12) / 8 / 2.5, 2));
   EXPECT_GT(near, 0.75);
   maker.scene.local_shading.occlusion_distance = 1.9;
@@ -183,7 +183,8 @@ TEST(SampleValue, DirectIsIrradianceAndAmbientTerm) {
   maker.sphere({0, 0, 4}, 2, maker.lamp(3));
   maker.scene.local_shading.ambient = gray(0.25f);
   const Ray below{.origin = {0, 0, 1}, .direction = {0, 0, -1}};
-  // The irradiance pi L (r / d)^2 times albedo / pi, plus the albedo times the ambient radiance.
+  // The value is the irradiance pi L (r / d)^2 times albedo / pi, plus the albedo times the ambient
+  // radiance.
   expect_mean(maker, Integrator::kDirect, below, 0.5 * 3 * 0.25 + 0.5 * 0.25);
 }
 

@@ -1,7 +1,7 @@
 // Photons that a caster (a surface that casts caustics) scatters must carry the same light as paths
 // that are scattered there. The tests integrate the scattered light over pairs of directions: one
-// from which light comes, and one to which light goes. The integral must be the same for photons
-// and for paths, also over only a part of the pairs.
+// from which light comes, and one to which light goes. The integral over all pairs must be the same
+// for photons and for paths, and so must the integrals over three parts of the pairs.
 
 #include "renderlib/integrate/scatter_photon.h"
 

@@ -28,7 +28,7 @@ class JoinCannotTest : public JoinTest {
   }
 };
 
-// ---- Other rights ----
+// ---- Rights of users and workers ----
 
 TEST_F(JoinCannotTest, UseTheDashboard) {
   for (const char* path :

@@ -21,7 +21,8 @@ std::string instance_of(const std::string& name) { return wire::sha256(name).hex
 }  // namespace
 
 JoinTest::JoinTest() {
-  hello();  // renders the canary before a session waits for it
+  // The canary, the hash of a small image, is rendered here, so that no session waits for it.
+  hello();
   const auto link = access_->make(60);
   EXPECT_TRUE(link.ok()) << link.status();
   secret_ = link->url.substr(link->url.find('#') + 1);

@@ -20,9 +20,10 @@ class JoinTest : public WebTest {
   test::SocketClient open() const { return {dashboard_->port(), {.secret = secret_}}; }
   /// Returns the Hello of a browser that is admitted. Each name is a tab of its own.
   static farm::FromWorker hello(const std::string& name = "tab");
-  /// Opens a session, says Hello, and reads until the first lease.
+  /// Sends Hello in the open session `socket`, reads until the first lease, and returns the lease.
   farm::Lease lease_to(test::SocketClient& socket, const std::string& name = "tab") const;
-  /// Returns the body of POST /join/band with all samples of the lease; the sum of each pixel is 8.
+  /// Returns the body of POST /join/band with all samples of the lease. The sum of the samples
+  /// is 8 in each channel of each pixel.
   static std::string band(const farm::Lease& lease, const std::string& name = "tab");
 
   /// Sends a request with the link's secret and returns the answer.

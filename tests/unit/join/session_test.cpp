@@ -74,7 +74,7 @@ TEST_F(JoinSessionTest, ATabThatNoLongerAnswersIsLost) {
   start_dashboard();
   test::SocketClient socket = open();
   ASSERT_TRUE(socket.send(hello()));
-  ASSERT_TRUE(socket.read());  // from now on it reads nothing, so it answers no ping
+  ASSERT_TRUE(socket.read());  // the tab reads nothing more, so it answers no ping
   EXPECT_THAT(workers(), Not(IsEmpty()));
   wait_until([&] { return workers().empty(); });
 }

@@ -42,7 +42,7 @@ class SocketClient {
   /// Sends one message of these bytes, as binary or as text. Returns false if the connection has
   /// ended.
   bool send_bytes(const std::string& bytes, bool binary = true);
-  /// Sends these bytes as they are, not in a frame.
+  /// Sends these bytes to the TCP socket, without a WebSocket frame around them.
   void send_raw(const std::string& bytes);
   /// Returns the next message; std::nullopt: the session has ended.
   std::optional<farm::ToWorker> read();

@@ -1,6 +1,6 @@
 // A browser's session over TLS with the farm's certificate. The same rules hold as without TLS
-// (session_test.cpp). The number of sessions is limited. However a connection breaks, its session
-// must end, and the place of the session must become free.
+// (session_test.cpp). The number of sessions is limited, so each session has a place. In whatever
+// way a connection breaks, its session must end and free its place.
 
 #include <gmock/gmock.h>
 
@@ -205,8 +205,8 @@ TEST_F(JoinTlsTest, AStallInTheMiddleOfAFrameEndsTheSession) {
     tab->send_record(frame(half, 2 * half.size()));
     expect_ended();
   }
-  // In the middle of a TLS record: 0x17 is application data, and the length (0x20 and the first x)
-  // is 8,312 bytes.
+  // The second stall is in the middle of a TLS record. 0x17 means application data, and the length
+  // (0x20 and the first x) is 8,312 bytes.
   const auto tab = join();
   tab->send_below("\x17\x03\x03\x20" + half);
   expect_ended();

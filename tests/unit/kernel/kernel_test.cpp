@@ -22,7 +22,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// This file is compiled like the rest of the program, so its Float8 is that of the base kernel.
+// This file is compiled for the same instruction set as the base kernel, and kSimdName is the name
+// of this instruction set.
 TEST(Kernels, EndWithTheBaseKernel) {
   EXPECT_EQ(kernels().back(), &Kernel::kBase);
   EXPECT_STREQ(Kernel::kBase.name, kSimdName);
@@ -37,8 +38,8 @@ TEST(Kernels, BeginWithAvx2IfTheMachineRunsIt) {
   }
 }
 
-// The flags in /proc/cpuinfo are the Linux kernel's own answer: what the processor has, and which
-// registers programs may use.
+// The flags in /proc/cpuinfo are the answer of Linux to two questions: which features the processor
+// has, and which registers programs may use.
 TEST(Kernels, RunsX86_64V3AgreesWithLinux) {
   std::ifstream info("/proc/cpuinfo");
   std::set<std::string> flags;

@@ -64,8 +64,9 @@ std::vector<Sky> skies() {
   all.push_back(equirectangular("noise", 17, 9, [](auto x, auto y) { return noise(x, y, 1); }));
   all.push_back(equirectangular("one row", 6, 1, [](auto x, auto y) { return noise(x, y, 2); }));
   all.push_back(equirectangular("one column", 1, 7, [](auto x, auto y) { return noise(x, y, 3); }));
-  // One bright texel, whose light reaches across the seam. At a pole a whole row is bright: one
-  // texel there would be too narrow for the cells over which the test integrates the pdf.
+  // In the first of these two images, the light of one bright texel reaches across the seam. In the
+  // second image, a whole row at a pole is bright, because one texel at a pole would be too narrow
+  // for the cells over which the test integrates the pdf.
   all.push_back(equirectangular("L8 one texel", 20, 10,
                                 [&](auto x, auto y) { return x == 19 && y == 3 ? 7.0f : 0; }));
   all.push_back(

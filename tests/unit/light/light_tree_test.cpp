@@ -153,10 +153,10 @@ TEST(LightTree, NestedLightsStayWithinTheMaximumDepth) {
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
-/// A light may be selected exactly if its ball overlaps the cone. That is so if the angle between
-/// the axis and the ball's centre (`off`) is below the sum of the cone's angle (`angle`) and the
-/// angle at which the ball's radius is seen (`seen`). Cosines resolve angles of 1.5e-8, so lights
-/// near this limit are left out.
+/// A light may be selected if and only if its ball overlaps the cone. It overlaps the cone if the
+/// angle between the axis and the ball's centre (`off`) is below the sum of the cone's angle
+/// (`angle`) and the angle at which the ball's radius is seen (`seen`). Cosines resolve angles of
+/// 1.5e-8, so the test leaves out lights whose `off` is within 3e-8 of the sum.
 TEST(LightChoice, AConeSelectsTheLightsThatOverlapIt) {
   Random random(4);
   int overlapping = 0;
@@ -196,7 +196,7 @@ TEST(LightChoice, DistantLightsCanBeChosenBesideThoseOfTheTree) {
     EXPECT_NEAR(choice.probability(receiver, count) / choice.probability(receiver, count + 1), 2.5,
                 1e-9);
     EXPECT_EQ(choice.probability({{0, 0, 0}, Vec3{0, -1, 0}}, count), 0)
-        << "it is below the horizon";
+        << "a light below the horizon must not be chosen";
     Random random(3);
     for (int i = 0; i < 2000; ++i) {
       const auto chosen = choice.choose(receiver, random.uniform());

@@ -1,5 +1,5 @@
-// Samples of lights of every kind, with their pdfs, radiances and visibility. An id such as O4 in a
-// test's name is that of a case in tests/hard_cases/cases.txt.
+// Samples of area lights of many shapes, with their pdfs, radiances and visibility. An id such as
+// O4 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/light/lights.h"
 
@@ -37,7 +37,7 @@ Texture stripes() {
   return image;
 }
 
-/// Lights of every kind, seen from points of the plane y = 0 near the origin.
+/// Area lights of many shapes, seen from points of the plane y = 0 near the origin.
 std::vector<Case> cases() {
   std::vector<Case> all;
   const auto add = [&](const std::string& name, auto build) {
@@ -180,7 +180,8 @@ TEST(Lights, DirectionsFollowThePdf) {
     EXPECT_LT(inside, 1.005) << test_case.name;
     expected.back() = kSamples * std::max(0.0, 1 - inside);
     if (expected.back() < kSamples * 0.005) {
-      expected.back() = 0;  // error of the sum over the cells; no sample may fall outside
+      // The rest is only the error of the sum over directions, so every sample must find a light.
+      expected.back() = 0;
       EXPECT_EQ(counts.back(), 0u) << test_case.name;
     }
     EXPECT_GT(test::chi_squared(counts, expected).p_value, test::sidak(0.01, 8)) << test_case.name;
@@ -192,7 +193,7 @@ TEST(Lights, SelectionFrequenciesEqualProbabilities) {
   Random random(8);
   const int count = 200;
   for (int i = 0; i < count; ++i) {
-    // In separate statements: the evaluation order of arguments is unspecified.
+    // The numbers are drawn one by one, because the evaluation order of arguments is unspecified.
     const double x = random.uniform(-9, 9);
     const double z = random.uniform(-9, 9);
     const double power = std::exp2(random.uniform(-6, 2));
