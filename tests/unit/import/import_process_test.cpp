@@ -93,7 +93,7 @@ std::string moving_model(const TempDir& folder) {
   return file.write(folder, "walk.gltf");
 }
 
-TEST(ImportSession, GivesEachFrameTheBytesOfAProcessOfItsOwn) {
+TEST(ImportSession, AFrameHasTheBytesOfAnImportInANewProcess) {
   const TempDir folder;
   const TempDir scratch;
   ImportLimits in = limits();

@@ -113,7 +113,7 @@ model { file: "n.gltf" translate: [100, 0, 0] })");
               HasSubstr("several cameras are called \"left\"; there are \"m.gltf/left\""));
 }
 
-TEST_F(ModelCameraNames, ASceneFileSetsItsWindowAndMirrorsIt) {
+TEST_F(ModelCameraNames, ASceneFileSetsTheWindowOfAModelsCameraAndMirrorsIt) {
   const auto used = [&](const std::string& fields) {
     return import_scene(
         write_text(folder_, "s.textproto",

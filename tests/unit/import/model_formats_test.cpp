@@ -141,7 +141,7 @@ TEST_F(Obj, ABumpMapThatHoldsNormalsIsANormalMap) {
 
 // The heights rise by 51 of 255 codes per texel to the right. So the slope is 0.2. With the option
 // -bm 2 the slope is 0.4.
-TEST_F(Obj, ABumpMapOfHeightsIsTheirSlope) {
+TEST_F(Obj, ABumpMapOfHeightsBecomesANormalMap) {
   write_text(folder_, "h.pgm", std::string("P5 3 1 255\n") + '\x0a' + '\x3d' + '\x70');
   const auto middle = [&](const std::string& bump) {
     const ImportedScene imported = read("Kd 1 1 1\n" + bump);

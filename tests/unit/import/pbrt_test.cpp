@@ -380,7 +380,7 @@ TEST(Pbrt, ATextureThatCannotBeClampedIsScaledWithAWarning) {
   EXPECT_NEAR(scene.texture(1).product().b().color().rgb(0), 0.25, 1e-6);
 }
 
-TEST(Pbrt, AFloatTextureOfAnImageWithAlphaIsItsAlpha) {
+TEST(Pbrt, AFloatTextureReadsTheAlphaOfAnImageThatHasAlpha) {
   const TempDir dir;
   // Returns a TGA file of two white texels with these alphas. The bytes of a texel are blue, green,
   // red and alpha.

@@ -26,7 +26,7 @@ const std::string kHead = R"(camera { position: [0, 1, 5] look_at: [0, 0, 0] }
 material { name: "white" diffuse { color { rgb: [0.7, 0.7, 0.7] } } }
 )";
 
-TEST(SceneFile, ReadsEveryFieldOfSceneProto) {
+TEST(SceneFile, ReadsCameraImageBackgroundMaterialsAndShapes) {
   const auto imported = import_text(R"(
 camera { position: [1, 2, 3] look_at: [4, 5, 6] up: [0, 0, 1] vertical_fov: 30 }
 image { width: 64 height: 32 }

@@ -63,7 +63,7 @@ TEST(Webp, LosslessImagesKeepTheirTexels) {
   EXPECT_THAT(warnings, IsEmpty());
 }
 
-TEST(Webp, AlphaIsLeftOutOfTheColourAndReadByItself) {
+TEST(Webp, AlphaIsLeftOutOfTheColourAndReadSeparately) {
   // By default the encoder does not keep the colour of fully transparent texels. So no texel of
   // this image is fully transparent.
   std::vector<std::uint8_t> rgba = codes(4);

@@ -36,7 +36,7 @@ Rgb sample_of(const Scene& scene, std::uint64_t sample, std::uint32_t branches,
 }
 
 // Branch i of sample s has the radiance that sample s * branches + i has without path splitting.
-TEST(Branches, EqualPathsWithTheirSampleNumbers) {
+TEST(Branches, EachHasTheRadianceOfAnUnsplitPath) {
   const auto scene = corner(false).build();
   PathCounts whole;
   PathCounts parts;

@@ -159,7 +159,7 @@ TEST(HeightMap, TiltsTheNormalByItsSlope) {
 
 // On a ball of radius 2, v rises by 1 along half of a great circle. On a disk of radius 2, u rises
 // by 1 over the diameter. The height is 3 times the coordinate.
-TEST(HeightMap, UsesTheLengthsOfUvsOnBallsAndDisks) {
+TEST(HeightMap, ConvertsUvsToLengthsOnBallsAndDisks) {
   SceneMaker ball = with_sky(1);
   Material bumped = Diffuse{TextureId{0}};
   bumped.relief.height = coordinate(ball, RampTexture::Over::kV);
