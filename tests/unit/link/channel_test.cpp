@@ -1,5 +1,6 @@
-// Connections by a join string: the server's certificate is checked before any secret is sent, and
-// addresses are tried in turn.
+// Connections by a join string, which names addresses of a farm, the digest of its certificate and
+// a secret. The server's certificate is checked before the secret is sent, and the addresses are
+// tried in turn.
 
 #include "proto/link/channel.h"
 
@@ -63,7 +64,8 @@ JoinString join_to(int port, std::optional<wire::Digest> digest) {
   return join;
 }
 
-/// Makes the identity's certificate valid from `seconds` after now on, and signs it again.
+/// Moves the start of the certificate's validity to `seconds` after now. Then signs the certificate
+/// again.
 void make_valid_from(Identity& identity, long seconds) {
   const std::unique_ptr<BIO, decltype(&BIO_free_all)> bio(BIO_new(BIO_s_mem()), &BIO_free_all);
   BIO_puts(bio.get(), (identity.certificate_pem + identity.key_pem).c_str());

@@ -1,5 +1,5 @@
-// Join strings, the lines of text with which machines and users connect to a farm: they are written
-// and read again, and errors do not repeat the secret that they contain.
+// A join string is the line of text with which a machine or a user connects to a farm. Join strings
+// are written and read back, and error messages do not repeat the secret in a join string.
 
 #include "proto/link/join.h"
 
@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string kSecret = "abcdefghijklmnopqrst-_";
-const std::string kDigest43(43, 'A');
+const std::string kDigest43(43, 'A');  ///< a digest of 32 bytes has 43 characters in base64url
 
 JoinString example() {
   JoinString join;

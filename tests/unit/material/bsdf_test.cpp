@@ -35,8 +35,8 @@ Bsdf bsdf(const Material& material, const Vec3& wo, const Vec3& shading = {0, 0,
 
 /// Counts sampled directions in cells of equal solid angle around `axis`, and compares the counts
 /// with the integral of the density over each cell. The cells cover the directions whose 1 - cos of
-/// the angle to the axis is below `reach`. Samples that are absorbed or fall outside are a cell of
-/// their own.
+/// the angle to the axis is below `reach`. All samples that are absorbed, or that fall outside of
+/// these cells, are counted in one further cell.
 void expect_samples_follow_density(const Bsdf& bsdf, const Vec3& axis, double reach,
                                    const std::string& name) {
   constexpr int kCells = 12;
@@ -114,8 +114,8 @@ TEST(Bsdf, M14ValuesAreTheReflectanceTimesTheDensity) {
   }
   test::report_hard_case(
       "M14",
-      "value / density is the reflectance within 1e-6; what would leave below the horizon "
-      "is absorbed, as in the books");
+      "value / density is the reflectance within 1e-6; light that would leave below the horizon "
+      "is absorbed, as by the metal of Ray Tracing in One Weekend");
 }
 
 TEST(Bsdf, M10NoLightPassesOpaqueSurfacesForAnyShadingNormal) {

@@ -39,7 +39,7 @@ SurfacePoint point(double u, const Vec3& normal = {0, 0, 1}) {
   return p;
 }
 
-/// A normal map of one texel that leans along its u.
+/// Returns a normal map of one texel, whose normal leans along the u axis of the map.
 ImageTexture tilted_map(UvSet set) {
   ImageTexture map;
   map.width = 1;
@@ -121,9 +121,9 @@ ImageTexture waves(double scale) {
 }
 
 // A repetition of the map is one unit long on each of the quads, so all quads have the same relief.
-// The slope jumps in the middles of texels, so none of the points lies there. The tolerance allows
-// for the rounding of heights to float (difference_step in shading_normal.cpp). It is ten times
-// 2^-11 of the height of 0.005.
+// The slope jumps in the middles of texels, so none of the points lies there. Heights are rounded
+// to float, which changes the slope by about 2^-11 of the height. The tolerance is ten times this
+// error for the height of 0.005.
 TEST(HeightMap, GivesTheSameReliefHoweverOftenItRepeats) {
   for (const double x : {0.3, 0.54, 0.78}) {
     const std::vector<Texture> once{waves(1)};
@@ -137,9 +137,9 @@ TEST(HeightMap, GivesTheSameReliefHoweverOftenItRepeats) {
   }
 }
 
-// The size of a quad does not change the relief of a noise in space. The tolerance allows for the
-// rounding of heights to float. It is 48 times 2^-11 of the height of 0.02: four times for each of
-// the 12 cells in a unit.
+// The size of a quad does not change the relief of a noise in space. Heights are rounded to float,
+// which changes the slope by about 2^-11 of the height for each of the 12 cells of the noise in a
+// unit. The tolerance is four times this error for the height of 0.02.
 TEST(HeightMap, TheReliefOfANoiseInSpaceDoesNotDependOnTheQuad) {
   const std::vector<Texture> textures{NoiseTexture{.scale = 12}};
   constexpr double kHeight = 0.02;

@@ -116,8 +116,9 @@ TEST(MetallicRoughness, SampleWeightsAreValueOverPdf) {
   }
 }
 
-// Under light of radiance 1 from all directions, a surface may scatter a radiance of at most 1. The
-// compression of radiance in glass is divided out. White plastic scatters nearly all of the light.
+// Under light of radiance 1 from all directions, a surface may scatter a radiance of at most 1.
+// Light that enters or leaves glass changes its radiance by the square of the index. This factor,
+// `compression`, is divided out. White plastic scatters nearly all of the light.
 TEST(MetallicRoughness, ReflectanceIsAtMostOne) {
   constexpr int kSide = 48;
   for (const double roughness : {0.0, 0.1, 0.3, 0.6, 1.0}) {
@@ -243,7 +244,7 @@ TEST(RoughGlass, M6RoughGlassOfIndexOneIsInvisible) {
   const auto through = sample(bsdf(Dielectric{1, 0.5}, wo), 0.3, 0.2, 0.1);
   ASSERT_TRUE(through && through->delta);
   EXPECT_NEAR(length(through->wi + wo), 0, 1e-14);
-  test::report_hard_case("M6", "rough: not there");
+  test::report_hard_case("M6", "rough: invisible");
 }
 
 TEST(ShadingNormal, AFlatTexelChangesNothingAndATiltedOneTiltsAlongTheUvs) {

@@ -312,8 +312,8 @@ TEST(Facets, VisibleFacetsSumToOne) {
 }
 
 /// Returns the transmittance of a rough boundary with the relative index of refraction eta, for
-/// light whose cosine to the normal is mu. Integrates over the facets' normals, with the
-/// distributions as they are defined.
+/// light whose cosine to the normal is mu. The integral over the facets' normals is computed with
+/// the definitions of the distributions.
 double transmittance_of(double mu, double eta, const Facets& f) {
   constexpr int kSteps = 400;
   const Vec3 o = along(mu);
@@ -427,6 +427,8 @@ TEST(ThinDielectric, IncludesReflectionsInsideThePane) {
   EXPECT_TRUE(passed->counts);
 }
 
+// `counts` is true if the scattering counts towards the maximum depth of a path. With the option
+// free_passage, light that passes the pane does not count.
 TEST(ThinDielectric, AReflectionCountsAndAFreePassageDoesNot) {
   const Bsdf b = bsdf(ThinDielectric{.free_passage = true}, {0.3, 0, 1});
   EXPECT_TRUE(sample(b, 0, 0, 0)->counts) << "a reflection must count";

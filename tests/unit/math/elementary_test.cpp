@@ -1,6 +1,7 @@
-// Our own sin, cos, exp, log, pow and so on, whose bits are the same on every machine: their errors
-// in units in the last place (ulp) against 113-bit references. An id such as Y4 in a test's name is
-// that of a case in tests/hard_cases/cases.txt.
+// The elementary functions (sin, cos, exp, log, pow and so on) whose bits are the same on every
+// machine. Their errors are measured in units in the last place (ulp) against references of higher
+// precision (oracle.h). An id such as Y4 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include "renderlib/math/elementary.h"
 
@@ -218,7 +219,7 @@ void hash_in(std::uint64_t& hash, double value) {
 }
 
 /// The hash is the same for every compiler, CPU and C library. It changes only together with the
-/// pixel version.
+/// pixel version, which is raised by every change that alters pixels.
 TEST(ElementaryBits, Y4_HaveTheRecordedHash) {
   test::Random random(19);
   std::uint64_t hash = 0xcbf29ce484222325u;

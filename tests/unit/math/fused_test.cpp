@@ -34,8 +34,9 @@ class Numbers {
  public:
   /// A number with any bits.
   double any() { return std::bit_cast<double>(random_()); }
-  /// A number in [2^-reach, 2^reach] of either sign. Half of them have few bits, so that sums and
-  /// products are exact or lie in the middle between two doubles.
+  /// A number of either sign, whose absolute value is in [2^-reach, 2^(reach + 1)). Half of these
+  /// numbers have few significant bits, so that their sums and products are exact or lie in the
+  /// middle between two doubles.
   double near_one(int reach) {
     Bits fraction = random_() >> 12;
     if (random_() % 2 == 0) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reference values for elementary_test.cpp: elementary functions in more precision than double.
+// Reference values for elementary_test.cpp: elementary functions with more precision than double.
 // With g++ on x86-64 they are the functions of libquadmath. Elsewhere they are the functions of the
 // C library in long double, which has 80 bits with clang on x86-64 and 128 bits on ARM64.
 

@@ -17,8 +17,8 @@ std::array<double, 2> chromaticity(const Rgb& c) {
   return {x / (x + y + z), y / (x + y + z)};
 }
 
-// The Planckian locus: 2856 K is the standard illuminant A (CIE 15:2004, table T.3); the others are
-// from Wyszecki and Stiles 1982, table 1(3.11).
+// Chromaticities of the Planckian locus. 2856 K is the standard illuminant A (CIE 15:2004, table
+// T.3). The other values are from Wyszecki and Stiles 1982, table 1(3.11).
 TEST(Blackbody, HasTheChromaticityOfThePlanckianLocus) {
   struct Known {
     double kelvin;
@@ -36,6 +36,8 @@ TEST(Blackbody, HasTheChromaticityOfThePlanckianLocus) {
   }
 }
 
+// On the scale kPower, the luminance is (T / 1000 K)^4 / 1000. On the scale kPeak, the maximum of
+// the spectrum is 1.
 TEST(Blackbody, LuminanceIsThatOfTheScale) {
   for (const double kelvin : {150.0, 500.0, 1000.0, 1500.0, 3000.0, 20000.0, 2e5}) {
     EXPECT_NEAR(

@@ -1,6 +1,8 @@
 // Tracking (the sampling of collisions along a ray in a medium that varies in space) against closed
-// forms: flights that scatter or pass, points of scattering, transmittance and emission. Seeds are
-// fixed; with unbiased code each z-test has a false-alarm rate of 6e-5.
+// forms: flights that scatter or pass, points of scattering, transmittance and emission. fly()
+// sends light through a segment of a ray, where it is scattered or passes. pass() sends light
+// through the segment without scattering the path, and also draws one point at which the medium
+// scatters light. Seeds are fixed; with unbiased code each z-test has a false-alarm rate of 6e-5.
 
 #include "renderlib/medium/tracking.h"
 
@@ -55,8 +57,8 @@ const Profile kExponential{"exponential", [](double x) { return 0.05 * std::exp(
 const Profile kConstant{"constant", [](double) { return 0.004; },
                         [](double x) { return 0.004 * x; }};
 
-/// Returns the deviation of the mean from `expected` in standard errors, 0 if only rounding
-/// differs.
+/// Returns the deviation of the mean from `expected` in standard errors. Returns 0 if the deviation
+/// is only due to rounding.
 double z_of(const Moments& moments, double expected) {
   // If the variance is 0, the mean of float colours still differs from the double by rounding.
   return std::abs(moments.mean() - expected) < 1e-6 * expected ? 0 : moments.z(expected);

@@ -52,8 +52,8 @@ TEST(Half, NumbersBetweenHalvesAreNotExact) {
   }
 }
 
-/// Returns the number of a cell of sparse(), a grid of 19 x 9 x 23 cells with empty and full
-/// bricks.
+/// Returns the value that is stored in a cell of sparse(), a grid of 19 x 9 x 23 cells with empty
+/// and full bricks.
 float sparse_number(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   return x < 8 && z > 7 ? 0.0f : static_cast<float>((x * 7 + y * 13 + z * 29) % 31) * 0.1f;
 }
@@ -91,8 +91,8 @@ TEST(BrickBuilder, StoresEqualBricksOnceAndHalvesWhereTheyAreExact) {
   EXPECT_EQ(GridReader(layers(0.25f)).cell(63, 63, 63), 1.75f);
 }
 
-/// Returns the number of a cell. For a cell outside of the grid, the border decides: kZero gives 0,
-/// kClamp the number of the nearest cell.
+/// Returns the value that is stored in a cell. For a cell outside of the grid, the border decides:
+/// kZero gives 0, and kClamp gives the value of the nearest cell.
 double number_at(const VolumeGrid& grid, std::int64_t x, std::int64_t y, std::int64_t z) {
   const std::array<std::int64_t, 3> at = {x, y, z};
   std::array<std::uint32_t, 3> in{};

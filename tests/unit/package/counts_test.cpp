@@ -19,7 +19,7 @@ using test::sample_scene;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// A source without blobs that counts requests.
+/// A source that has no blobs and counts the requests for blobs.
 class NoBlobs : public BlobSource {
  public:
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest&) override {

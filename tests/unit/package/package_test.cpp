@@ -31,6 +31,8 @@ class CountingBlobs : public BlobSource {
   int reads = 0;
 };
 
+// DecodedParts remembers the meshes and blobs of decoded packages as long as they are in use. The
+// second package has another camera and another mesh 1, so decoding it reads only its new parts.
 TEST(Package, SharesThePartsThatAreInUse) {
   CountingBlobs source;
   SceneDescription scene = sample_scene();
@@ -369,7 +371,7 @@ const std::vector<Wrong> kWrong = {
     {"grid_index", [](auto& m) { *m.mutable_grid(0)->mutable_index() = m.grid(0).values(); },
      "grids[0].index: must have 8 bytes for 2 bricks"},
     {"grid_places",
-     // The index is the blob with the numbers of the grid.
+     // The blob of the grid's values is used as the index too, so an entry of it is out of range.
      [](auto& m) {
        m.mutable_grid(1)->set_cells(0, 8 * 32);
        m.mutable_grid(1)->set_cells(1, 8 * 4);

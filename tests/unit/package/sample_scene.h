@@ -68,8 +68,8 @@ inline void add_grids(Media& media) {
   media.media.push_back(fire);
 }
 
-/// Adds materials 7 to 15: every kind that is not in sample_scene(), and every property of a
-/// surface.
+/// Adds materials 7 to 15: every kind that is not among the materials 0 to 6, and every property of
+/// a surface.
 inline void add_surfaces(SceneDescription& scene) {
   const Microfacets brushed{Microfacets::Distribution::kBeckmann,
                             Microfacets::Masking::kCorrelated,
@@ -98,8 +98,8 @@ inline void add_surfaces(SceneDescription& scene) {
   scene.materials.push_back(bumped);
 }
 
-/// Returns the scene. Its numbers are arbitrary; many are not representable exactly (1.0 / 3), so
-/// that any rounding is detected.
+/// Returns the scene. Its numbers are arbitrary. Many of them need all bits of a double (1.0 / 3),
+/// so that any rounding is detected.
 inline SceneDescription sample_scene() {
   SceneDescription scene;
   PerspectiveCamera camera;

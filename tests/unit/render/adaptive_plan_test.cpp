@@ -1,10 +1,11 @@
-// The plan of adaptive sampling: how many samples each half tile gets from the measured noise, and
-// that the result is not biased. A tile has two half tiles, each planned by the noise of the other
-// one. TilePlan::levels has a digit l for each half tile, which then gets 2^((6 - l) / 2) times the
-// samples of uniform sampling. TilePlan::even() is true if every half tile gets the samples of
-// uniform sampling. A half tile has two TileErrors: one of its even pixel groups, and one of its
-// odd pixel groups. An id such as A5 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// The plan of adaptive sampling. It says how many samples each half tile gets, by the noise that
+// was measured in the pilot, the first samples of all pixels. The result must not be biased. A tile
+// of 16 x 16 pixels has two half tiles, and each half tile is planned by the noise of the other
+// one. TilePlan::levels has a digit l (0 to f) for each half tile, which then gets 2^((6 - l) / 2)
+// times the samples of uniform sampling. TilePlan::even() is true if every half tile gets the
+// samples of uniform sampling. A half tile consists of groups of pixels that share paths. It has
+// two TileErrors: one of its groups with even numbers, and one of its groups with odd numbers. An
+// id such as A5 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/render/adaptive_plan.h"
 

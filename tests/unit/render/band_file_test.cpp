@@ -102,6 +102,7 @@ TEST(BandFile, TruncationsReportWhereTheRecordBegins) {
   EXPECT_FALSE(decode_band_record(file, file.size() + 5).ok());
 }
 
+// A record begins with magic bytes. The last of them is the digit of the record's format.
 TEST(BandFile, TheErrorNamesTheFormatOfTheMagic) {
   std::vector<std::byte> older = encoded();
   older[kBandRecordMagic.size() - 1] = std::byte{'3'};
@@ -122,8 +123,10 @@ TEST(BandFile, EveryFlippedBitIsDetected) {
   }
 }
 
-// A half tile may take samples that are outside of the band's pass, and more samples than the pass
-// has (render/tile_samples.h).
+// In adaptive sampling, each half tile (half of the pixels of a tile of 16 x 16) takes its own
+// range of samples. This range may lie outside of the band's range of samples, and may be longer
+// than it. So a bad sample may have a number beyond the band's range, and more paths may be
+// truncated than the band's range would allow.
 TEST(BandFile, CountsOfAdaptiveBandsAreKept) {
   BandRecord adaptive = record();
   adaptive.pixels.counters.bad_sample = adaptive.pixels.band.samples.last + 100;

@@ -1,6 +1,6 @@
 // Division of a band (a range of samples by a range of rows) into parts that need one photon map
-// each. A map is made for a range of samples (PhotonMaps::number_of): the first four maps have one
-// block of samples each, later ones more.
+// each. A map is made for a range of samples (PhotonMaps::number_of). Each of the first four maps
+// has one block of 8 samples, and later maps have more blocks.
 
 #include "renderlib/render/band_parts.h"
 
@@ -27,8 +27,9 @@ TEST(BandParts, AWholeBandNeedsTheMapsOfItsNode) {
   EXPECT_EQ(maps_of({{{0, kSamplesOfMap + 1}, {0, 16}}, {}}), (Maps{0, 1}));
 }
 
-// The four half tiles have one, two, no and four blocks. The band is divided until each part needs
-// one map. Each sample of each half tile must be in one part.
+// The image has two tiles of 16 x 16 pixels, and half of the pixels of a tile are a half tile. The
+// four half tiles have one, two, no and four blocks of samples. The band is divided until each part
+// needs one map. Each sample of each half tile must be in one part.
 TEST(BandParts, HalvesDivideTheSamplesOfAllHalfTiles) {
   TileSamples tiles(32, {0, 16});
   tiles.set(0, {kBlockSamples, 2 * kBlockSamples});

@@ -1,5 +1,6 @@
-// Bands (a range of rows by a range of samples): the nodes of the summation tree, validation, and
-// counters.
+// Bands (ranges of rows by ranges of samples): the nodes of the summation tree, validation, and
+// counters. The samples of a pixel are added up in this fixed binary tree, so that the sum has the
+// same bits however the samples are divided into bands.
 
 #include "renderlib/render/band.h"
 

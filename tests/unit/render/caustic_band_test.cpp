@@ -67,7 +67,8 @@ TEST(CausticBand, HasTheSameBitsForAnyThreadsAndRows) {
   }
 }
 
-// A node of 32 blocks needs more maps than are held at once, and is rendered in parts.
+// A node is a range of samples whose sum is the sum of its two halves. The node of 256 samples
+// needs more photon maps than are held at once, so it is rendered in parts.
 TEST(CausticBand, ANodeIsTheSumOfItsHalvesToTheBit) {
   const auto rendered = scene(false);
   const BandPixels whole = render(*scene(false), {{0, 256}, {9, 10}}, 2);
@@ -79,6 +80,8 @@ TEST(CausticBand, ANodeIsTheSumOfItsHalvesToTheBit) {
   EXPECT_EQ(whole.counters.rays, left.counters.rays + right.counters.rays);
 }
 
+// In adaptive sampling, each half tile (half of the pixels of a tile of 16 x 16) takes its own
+// range of samples, whatever the range of samples of the band is.
 TEST(CausticBand, HalfTilesHaveTheSameBitsInAnyPass) {
   const auto rendered = scene(true);
   TileSamples tiles(21, {0, 16});

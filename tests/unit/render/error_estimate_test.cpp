@@ -1,6 +1,7 @@
 // The estimate of an image's error from the difference between two halves of its samples, and the
 // margin by which the error may be larger (ErrorEstimate::at_most). A group is eight pixels that
-// share paths, so their errors are not independent.
+// share paths, so their errors are not independent. A node is a range of samples whose sum is
+// known.
 
 #include "renderlib/render/error_estimate.h"
 
@@ -95,6 +96,8 @@ TEST(ErrorEstimate, PercentilesAreOfThePixelsOwnErrors) {
   EXPECT_NEAR(error.percentile_99, 0.99 / 1.01, 1e-6);
 }
 
+// known_error() returns a negative number if the error is not known. A black image with few samples
+// may only have missed its light.
 TEST(ErrorEstimate, IsKnownForABlackImageOfManySamples) {
   Pixels pixels;
   pixels.add(0, 0);

@@ -1,6 +1,7 @@
 // The film adds the sums of bands (ranges of samples by ranges of rows) to an image: it gives the
-// same bits in any order, and estimates the image's error. An id such as A6 in a test's name is
-// that of a case in tests/hard_cases/cases.txt.
+// same bits in any order, and estimates the image's error. A band has the samples of one node,
+// which is an aligned range of 2^k blocks of 8 samples. An id such as A6 in a test's name is that
+// of a case in tests/hard_cases/cases.txt.
 
 #include "renderlib/render/film.h"
 
@@ -26,7 +27,8 @@ Film make_film(std::uint32_t width, std::uint32_t height, const std::string& fol
   return *std::move(film);
 }
 
-/// Returns the mean of the values of film_values.h, added from the first maximal node to the last.
+/// Returns the mean of the values of film_values.h. The sums of the maximal nodes are added from
+/// the first node to the last.
 float expected(std::uint32_t y, std::size_t k, std::uint64_t samples) {
   double total = 0;
   bool first = true;
@@ -162,8 +164,8 @@ TEST(Film, TheFirstPartIsAboutHalfOfTheSamples) {
   EXPECT_EQ(part->mean.at(1, 0).r, static_cast<float>(sum / 64));
 }
 
-// The numbers of samples are two equal halves (64), have further nodes after these (80, 96, 112),
-// or end with a single block (72).
+// 64 samples form two halves of the same size. 80, 96 and 112 samples have further nodes after
+// these halves. 72 samples end with a single block of 8.
 TEST(Film, TheErrorOfIndependentSamplesIsTheirStandardError) {
   // Samples uniform in [0, 2): mean 1, variance 1/3. The estimate is a root of a mean of 128 x 96 x
   // 3 squares, whose relative error is 1 / sqrt(2 * 36864) = 0.4 %; the tolerance of 2 % is five

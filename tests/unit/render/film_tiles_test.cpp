@@ -1,7 +1,7 @@
 // The film holds the sums of an image, to which bands are added. In these tests, half tiles have
 // their own numbers of samples, as adaptive sampling decides them. A half tile is half of the
-// pixels of a tile of 16 x 16 pixels. In each pass it takes the samples of one node of the
-// summation tree (render/band.h), or no samples.
+// pixels of a tile of 16 x 16 pixels. In each pass it takes the samples of one node, or no samples.
+// A node is an aligned range of 2^k blocks of 8 samples (render/band.h).
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace bandsaw {
 namespace {
 
-/// The samples that each half tile takes, where the uniform image would take `samples`.
+/// A pass: `tiles` says which samples each half tile takes. Uniform sampling would take `samples`.
 struct Pass {
   SampleRange samples;
   TileSamples tiles;
@@ -40,7 +40,8 @@ std::vector<Pass> random_passes(std::uint64_t samples, const TileGrid& grid, Ran
   return passes;
 }
 
-/// Returns the band's sums as film_values.h defines them, 0 where a half tile takes no samples.
+/// Returns the band's sums as film_values.h defines them. They are 0 where a half tile takes no
+/// samples.
 BandPixels pixels_of(const Band& band, const TileGrid& grid, const TileSamples& tiles) {
   BandPixels pixels{.band = band, .width = grid.width, .sums = {}, .counters = {}};
   for (std::uint32_t y = band.rows.first; y < band.rows.last; ++y) {

@@ -1,8 +1,9 @@
 #pragma once
 
 // Values for the tests of Film (which adds the sums of bands to an image). Their sums are computed
-// here by the definition of the summation tree (render/band.h). `y` is a row of the image, and
-// `k` = 3 x + c is channel c of the pixel in column x.
+// here by the definition of the summation tree (render/band.h). A node of this tree is a range of
+// samples. Its sum is the sum of its two halves, or, in a node of one block, of its samples in
+// order. `y` is a row of the image, and `k` = 3 x + c is channel c of the pixel in column x.
 
 #include <cmath>
 #include <vector>
@@ -45,7 +46,8 @@ inline BandPixels band_pixels(const Band& band, std::uint32_t width) {
   return pixels;
 }
 
-/// Returns nodes that tile [0, samples): the maximal ones, some of them split repeatedly.
+/// Returns nodes that tile [0, samples). At random, the maximal nodes are split into halves, and
+/// the halves are split again.
 inline std::vector<SampleRange> random_nodes(std::uint64_t samples, Random& random) {
   std::vector<SampleRange> open = maximal_nodes(samples);
   std::vector<SampleRange> nodes;

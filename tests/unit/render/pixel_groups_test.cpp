@@ -1,5 +1,5 @@
-// Groups of pixels that share paths: they partition every half tile, and neighbours are rarely in
-// one group.
+// Groups of pixels that share paths. They partition every half tile, which is half of the pixels of
+// a tile of 16 x 16. Neighbouring pixels are rarely in one group.
 
 #include "renderlib/render/pixel_groups.h"
 
@@ -12,7 +12,8 @@
 namespace bandsaw::test {
 namespace {
 
-/// Returns the number of each pixel's group, counted over the image; -1 if no group has it.
+/// Returns for each pixel the number of its group, or -1 if the pixel is in no group. The groups
+/// are numbered over the whole image. Checks that no pixel is in two groups.
 std::vector<int> groups_of(const TileGrid& grid) {
   std::vector<int> groups(std::size_t{grid.width} * grid.height, -1);
   int number = 0;

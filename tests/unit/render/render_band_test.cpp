@@ -56,6 +56,8 @@ TEST(RenderBand, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
+// A half tile is half of the pixels of a tile of 16 x 16. Half tile 1 takes the samples [32, 64)
+// although the band has the samples [256, 272). Half tile 0 takes no samples.
 TEST(RenderBand, SkippedHalfTilesAreZeroAndOthersHaveTheSameBits) {
   const auto rendered = scene();
   TileSamples tiles(13, {0, 11});
@@ -95,7 +97,8 @@ TEST(RenderBand, EveryIntegratorGivesTheSameBitsForAnyBandsAndThreads) {
   EXPECT_FALSE(validate(settings).ok());
 }
 
-// The image has parts of two tiles. The half rows of the second tile have two and three pixels.
+// The image has parts of two tiles of 16 x 16 pixels. In each row, the two half tiles of the second
+// tile have two and three pixels.
 TEST(RenderBand, C5_PathReuseGivesTheSameBitsForAnyBandsAndThreads) {
   const auto box = test::cornell_box().build();
   ASSERT_TRUE(box->reuses_paths());

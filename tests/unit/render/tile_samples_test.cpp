@@ -1,6 +1,6 @@
 // The samples that each half tile takes in one pass of an adaptive image. A half tile is half of
-// the pixels of a tile of 16 x 16 pixels; a pass gives it one node, which is an aligned range of
-// 2^k blocks of 8 samples, or none.
+// the pixels of a tile of 16 x 16 pixels. A pass gives it one node or no samples. A node is an
+// aligned range of 2^k blocks of 8 samples.
 
 #include "renderlib/render/tile_samples.h"
 
@@ -23,8 +23,8 @@ SampleRange random_node(test::Random& random) {
   return random.below(3) == 0 ? SampleRange{} : SampleRange{first, first + size};
 }
 
-/// Random samples for each half tile of an image. `of_pixel`: the samples that each pixel takes,
-/// row by row.
+/// A random range of samples for each half tile of an image. `of_pixel`: the samples that each
+/// pixel takes, row by row.
 struct RandomTiles {
   TileSamples tiles;
   std::vector<SampleRange> of_pixel;

@@ -73,6 +73,8 @@ TEST(TileSchedule, AHalfTileBelowItsShareTakesTheLongestNode) {
   EXPECT_EQ(of_half_tile(schedule.next({128, 192}), 0), (SampleRange{128, 256}));
 }
 
+// kEvenLevel is the level of a half tile that gets as many samples as with uniform sampling. Here
+// the second half tile of each tile has this level.
 TEST(TileSchedule, AHalfWithTheEvenLevelTakesUniformPasses) {
   TilePlan plan = half_noisy(32);
   for (std::size_t i = 1; i < plan.levels.size(); i += 2) {

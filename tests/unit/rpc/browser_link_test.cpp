@@ -33,8 +33,9 @@ class BrowserLinkTest : public FarmTest {
   }
   ~BrowserLinkTest() override { server_.reset(); }
 
-  /// Calls BrowserLink and keeps its status. `seconds`: the time until the link is to end. 0: the
-  /// end of the link is not changed, and a new link gets the standard duration.
+  /// Calls BrowserLink and keeps its status. `seconds`: the time until the link is to end. If
+  /// `seconds` is 0, the end of an existing link is not changed, and a new link gets the standard
+  /// duration.
   farm::BrowserLinkReply ask(double seconds = 0, bool revoke = false) {
     farm::BrowserLinkRequest request;
     request.set_seconds(seconds);

@@ -225,7 +225,9 @@ TEST_F(ChunksTest, SizesOverTheirLimitsAreRefused) {
   expect(put_bands({band}).status, StatusCode::INVALID_ARGUMENT, "header.size");
 }
 
-// The band has 144 bytes.
+// engine_->bands() is the budget of the memory for bands that arrive. The band has 144 bytes. Other
+// users of the budget take all but 144 bytes. Then a second band is refused while the first one is
+// arriving, and is accepted when the first one has ended.
 TEST_F(ChunksTest, ABandsMemoryIsReservedWhenItsHeaderArrives) {
   const std::int64_t all = engine_->bands().left();
   const auto wait_until_left = [&](std::int64_t bytes) {

@@ -106,7 +106,8 @@ TEST_F(DownloadsTest, APreviewCountsWithItsActualSize) {
   wait_until_left(all);
 }
 
-// Workers get their scenes however many previews wait for the film.
+// The film holds the image of a running job and has its own thread. Workers get their scenes
+// however many previews wait for this thread.
 TEST_F(DownloadsTest, ScenesAreSentWhilePreviewsWaitForTheFilm) {
   const std::uint64_t job = submit_job(kSide);
   put_rows(job, kSide, 0, kSide / 2);

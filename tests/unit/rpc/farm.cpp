@@ -13,6 +13,8 @@ constexpr std::chrono::milliseconds kLong{60'000};  // a call that takes longer 
 
 }  // namespace
 
+// The engine hardly waits for the workers of an earlier run, and lets no second machine render a
+// band again (no audits).
 FarmTest::FarmTest() : identity_(*link::load_or_make_identity(folder_ / "identity")) {
   auto engine =
       Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1, .audit_share = 0});

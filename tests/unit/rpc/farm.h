@@ -1,8 +1,8 @@
 #pragma once
 
 // The base of tests of the gRPC server. It starts a coordinator for each test: an engine on a
-// temporary folder and a server on a free port of loopback. The client has the role `farm`, that of
-// a user; `worker` is the role of a worker.
+// temporary folder and a server on a free port of loopback. The channel is connected with the role
+// `farm`, which users have. Workers have the role `worker`.
 
 #include <gtest/gtest.h>
 
@@ -35,6 +35,7 @@ class FarmTest : public ::testing::Test {
   std::unique_ptr<farm::Farm::Stub> people() const { return farm::Farm::NewStub(channel_); }
   std::unique_ptr<farm::Work::Stub> work() const { return farm::Work::NewStub(channel_); }
 
+  /// Uploads a blob in these chunks, as a user does.
   grpc::Status put_blob(const std::vector<farm::BlobChunk>& chunks);
   /// The outcome of each uploaded band, and the status of the call.
   struct PutBands {

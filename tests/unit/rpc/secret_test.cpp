@@ -1,5 +1,5 @@
-// Renewal of a role's secret, which ends all calls that were made with the old one, and the limit
-// on wrong secrets.
+// Users and workers have a secret each, the secret of their role. If a secret is renewed, all calls
+// that were made with the old secret end. Also tests the limit on wrong secrets.
 
 #include <gmock/gmock.h>
 

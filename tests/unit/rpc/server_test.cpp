@@ -114,10 +114,12 @@ class Worker {
       thread_.join();
     }
   }
+  /// Lets the worker finish its bands and leave the farm. Returns the worker's status.
   absl::Status drain() {
     daemon_->drain("the test is over");
     return wait();
   }
+  /// Waits until the worker has ended. Returns its status.
   absl::Status wait() {
     thread_.join();
     return status_;

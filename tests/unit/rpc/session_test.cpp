@@ -112,6 +112,8 @@ TEST_F(StreamTest, AdmitsACompatibleWorker) {
   EXPECT_TRUE(stream->Finish().ok());
 }
 
+// The canary is a hash of a small render, which every program computes when it starts. A worker
+// with another canary than the coordinator would render other pixels.
 TEST_F(StreamTest, RefusesAWorkerWithAnotherCanaryAndGivesTheReason) {
   farm::FromWorker other = hello();
   other.mutable_hello()->set_canary(canary() + 1);

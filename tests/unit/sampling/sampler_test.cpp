@@ -1,6 +1,7 @@
 // The sampler, scrambled Sobol' points that are a pure function of seed, pixel, sample and
-// dimension: stratification, independence, and recorded bits. An id such as R1 in a test's name is
-// that of a case in tests/hard_cases/cases.txt.
+// dimension: stratification, independence, and recorded bits. A group is four dimensions, whose
+// numbers are returned by one call. An id such as R1 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include "renderlib/sampling/sampler.h"
 
@@ -40,7 +41,8 @@ TEST(Sampler, ChangesWithEveryArgument) {
   EXPECT_NE(sample4({1, 2, 3, 4}, 5), sample4({1, 3, 2, 4}, 5));
 }
 
-/// If these numbers change, every image changes. The pixel version MUST then be raised.
+/// If these numbers change, every image changes. The pixel version, which a worker and its
+/// coordinator must have in common, MUST then be raised.
 TEST(Sampler, GivesTheRecordedNumbers) {
   const auto in_units = [](const Sample4& s) {
     std::array<std::uint32_t, 4> units{};

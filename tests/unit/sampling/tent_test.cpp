@@ -1,4 +1,6 @@
-// Sampling of linearly interpolated rows of texels, as environment maps need it.
+// Sampling of linearly interpolated rows of texels, as environment maps need it. The tent of a
+// texel is its weight in linear interpolation: it is 1 at the centre of the texel and falls to 0 at
+// the centres of the neighbouring texels.
 
 #include "renderlib/sampling/tent.h"
 

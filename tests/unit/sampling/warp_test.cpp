@@ -72,6 +72,7 @@ TEST(Warp, SphereMatchesItsPdf) {
                                [](const Vec3&) { return kSpherePdf; }, 3);
 }
 
+// The spread of a cone is 1 - cos of the angle between its axis and its rim.
 TEST(Warp, ConeMatchesItsPdf) {
   const double spread = 0.4;
   expect_samples_match_density(

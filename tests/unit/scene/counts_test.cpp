@@ -34,6 +34,7 @@ TEST(Counts, LimitMeshes) {
             "several meshes");
 }
 
+// A quad takes two items of the BVH. Every other shape, and every instance, takes one.
 TEST(Counts, LimitLooseShapes) {
   constexpr std::uint64_t kHalf = kMaxTreeItems / 2;
   EXPECT_TRUE(check_shape_counts("shapes", {.quads = kHalf, .disks = 1}).ok());
@@ -75,6 +76,8 @@ TEST(Counts, DarkInstancesAreNotCountedAsLights) {
   EXPECT_TRUE(check(placed_many_times(dark, maker)).ok());
 }
 
+// If one sphere of a group emits light, all spheres of each instance of the group are counted. The
+// last argument of check_light_counts() is the number of further lights.
 TEST(Counts, LimitLightsInGroups) {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);

@@ -180,6 +180,7 @@ TEST(Scene, T10_PrimitivesWithoutAreaAreDroppedAndCounted) {
   mesh.triangles.insert(mesh.triangles.begin(), {0, 1, 9});
   maker.scene.geometry.instances.push_back(maker.scene.geometry.instances[0]);
   const auto scene = maker.build();
+  // One quad, one triangle, and two triangles of the mesh in each of its two instances.
   EXPECT_EQ(scene->dropped_primitives(), 2u + 2 * 2);
   ASSERT_EQ(scene->geometry().quads.size(), 2u);
   EXPECT_EQ(scene->geometry().quads[1].corner.x, 6);

@@ -1,6 +1,7 @@
-// Adaptive jobs, which give more samples to noisy parts of the image. The pilot has the same number
-// of samples for every pixel; from its errors the samples of each half tile (half of the pixels of
-// a square of 16 x 16) are planned. The plan is journalled, and every later pass follows it.
+// Adaptive jobs give more samples to noisy parts of the image. The first samples of a job are the
+// pilot, which has the same number of samples for every pixel. The errors of the pilot decide how
+// many samples each half tile gets (half of the pixels of a square of 16 x 16). This plan is
+// journalled, and every later pass follows it.
 
 #include <cmath>
 

@@ -1,5 +1,6 @@
 // Audits. A second machine renders some of the bands again, and the scheduler compares the results.
-// These tests cover the selection of bands and machines, and results that differ.
+// These tests cover the selection of bands and machines, and disputes. In a dispute, machines have
+// returned different pixels of a row.
 
 #include "coordinator/scheduler/model/audit.h"
 #include "coordinator/scheduler/api/worker_process.h"
@@ -139,7 +140,7 @@ TEST(Audit, AThirdMachineDecidesAndWrongRowsAreRenderedAgain) {
   EXPECT_EQ(farm.job(1).samples_done, 0u);
   EXPECT_NE(farm.job(1).reason.find("other pixels than two others"), std::string::npos)
       << farm.job(1).reason;
-  // One of b and c, whose sessions are 2 and 3, renders the row; the other audits it.
+  // One of b and c, whose sessions are 2 and 3, renders the row. The other worker audits it.
   const SessionId again = farm.all<action::Lease>().back().session;
   const std::string who[] = {"", "", "b", "c"};
   farm.result(farm.lease(again, false), who[again]);

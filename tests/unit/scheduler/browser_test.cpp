@@ -1,5 +1,6 @@
 // Browsers as workers, which join by a link and may be malicious: how they are shown, which jobs
-// and bands they get, how their bands are audited, and what the holder of a link cannot do.
+// and bands they get, how their bands are audited (rendered again by another worker and compared),
+// and what the holder of a link cannot do. A tab is a browser that has joined as a worker.
 
 #include <cmath>
 #include <map>
@@ -12,7 +13,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Bands of one row. All bands of browsers are audited, none of native workers.
+/// Each band has one row. All bands of browsers are audited, and no bands of native workers.
 SchedulerOptions browsers_audited() {
   SchedulerOptions options = slow();
   options.browser_audit_share = 1;
@@ -256,14 +257,15 @@ TEST(Browser, NativeWorkersAuditItsBandsAtASeparateRate) {
   EXPECT_EQ(farm.job(1).state, JobState::kRunning);
   farm.result(farm.lease(2), "a");
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
-  // A band of a native worker.
+  // A band of a native worker is not audited.
   farm.submit(one_row("r2"));
   const action::Lease native = farm.all<action::Lease>().back();
   farm.result(native, "a");
   EXPECT_EQ(farm.job(2).state, JobState::kFinishing);
 }
 
-/// A job of one row, rendered by tab t with a lie; the native worker a has returned right pixels.
+/// A job of one row. The tab t has returned wrong pixels of it, and the native worker a, as its
+/// audit, has returned right pixels.
 BrowserFarm lie_found() {
   BrowserFarm farm;
   farm.submit(one_row());
