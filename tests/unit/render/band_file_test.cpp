@@ -103,7 +103,7 @@ TEST(BandFile, TruncationsReportWhereTheRecordBegins) {
 }
 
 // A record begins with magic bytes. The last of them is the digit of the record's format.
-TEST(BandFile, TheErrorNamesTheFormatOfTheMagic) {
+TEST(BandFile, ARecordOfAnotherFormatIsRefusedNamingTheReadableFormat) {
   std::vector<std::byte> older = encoded();
   older[kBandRecordMagic.size() - 1] = std::byte{'3'};
   EXPECT_THAT(std::string(decode_band_record(older).status().message()),
@@ -127,7 +127,7 @@ TEST(BandFile, EveryFlippedBitIsDetected) {
 // range of samples. This range may lie outside of the band's range of samples, and may be longer
 // than it. So a bad sample may have a number beyond the band's range, and more paths may be
 // truncated than the band's range would allow.
-TEST(BandFile, CountsOfAdaptiveBandsAreKept) {
+TEST(BandFile, CountersOfAnAdaptiveBandMayExceedTheRangeOfItsSamples) {
   BandRecord adaptive = record();
   adaptive.pixels.counters.bad_sample = adaptive.pixels.band.samples.last + 100;
   adaptive.pixels.counters.truncated_paths = 1000;

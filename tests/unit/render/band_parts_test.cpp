@@ -16,7 +16,7 @@ using Maps = std::vector<std::uint32_t>;
 constexpr std::uint64_t kSamplesOfMap = PhotonMaps::kMinSamplesOfMap;
 static_assert(kSamplesOfMap == kBlockSamples);
 
-TEST(BandParts, AWholeBandNeedsTheMapsOfItsNode) {
+TEST(BandParts, AWholeBandNeedsTheMapsOfItsSamples) {
   const BandPart part{{{16 * kSamplesOfMap, 32 * kSamplesOfMap}, {0, 16}}, {}};
   // Ten maps precede: four of kSamplesOfMap samples and six of twice as many.
   EXPECT_EQ(maps_of(part), (Maps{10, 11, 12, 13}));

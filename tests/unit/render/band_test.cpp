@@ -41,7 +41,7 @@ TEST(Band, HugeRangesAreNotNodes) {
   EXPECT_FALSE(is_node({~std::uint64_t{0} - 7, ~std::uint64_t{0}}));
 }
 
-TEST(Band, MaximalNodesTileTheSamplesWithoutSiblings) {
+TEST(Band, MaximalNodesTileTheSamplesAndNoTwoCanBeMerged) {
   EXPECT_TRUE(maximal_nodes(0).empty());
   for (std::uint64_t samples = 1; samples < 3000; ++samples) {
     const std::vector<SampleRange> nodes = maximal_nodes(samples);

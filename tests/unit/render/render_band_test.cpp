@@ -222,7 +222,7 @@ TEST(RenderBand, R6A7_BandsInAnyOrderEqualOneRender) {
   test::report_hard_case("R6", "bands in any order: same bits");
 }
 
-TEST(RenderBand, SeedsAndPixelsGiveDifferentSamples) {
+TEST(RenderBand, AnotherSeedGivesOtherSamples) {
   const auto rendered = scene();
   Pool pool(1);
   RenderSettings other = kSettings;

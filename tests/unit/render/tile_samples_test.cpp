@@ -157,7 +157,7 @@ TEST(TileSamples, SumsOfPixelsWithoutSamplesMustBeZero) {
               HasSubstr("its tile takes none"));
 }
 
-TEST(TileSamples, CountersCountTheSamplesTaken) {
+TEST(TileSamples, CountersMustFitTheSamplesTaken) {
   TileSamples tiles(16, {0, 4});
   tiles.set(0, {64, 128});
   BandPixels pixels{.band = {{64, 80}, {0, 4}}, .width = 16, .sums = {}, .counters = {}};

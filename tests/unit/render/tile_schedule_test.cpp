@@ -75,7 +75,7 @@ TEST(TileSchedule, AHalfTileBelowItsShareTakesTheLongestNode) {
 
 // kEvenLevel is the level of a half tile that gets as many samples as with uniform sampling. Here
 // the second half tile of each tile has this level.
-TEST(TileSchedule, AHalfWithTheEvenLevelTakesUniformPasses) {
+TEST(TileSchedule, AHalfTileWithTheUniformLevelTakesUniformPasses) {
   TilePlan plan = half_noisy(32);
   for (std::size_t i = 1; i < plan.levels.size(); i += 2) {
     plan.levels[i] = kEvenLevel;

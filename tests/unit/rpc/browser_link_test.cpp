@@ -103,7 +103,7 @@ TEST_F(BrowserLinkTest, IsRevoked) {
   EXPECT_NE(ask().url(), url);
 }
 
-TEST_F(BrowserLinkTest, ChecksTheRequest) {
+TEST_F(BrowserLinkTest, RefusesInvalidAndForbiddenRequests) {
   ask(0.5);
   EXPECT_EQ(status_.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   ask(BrowserAccess::kMaxSeconds + 1);

@@ -254,7 +254,7 @@ TEST(Audit, ADecidedDisputeIsNotOpenedAfterARestart) {
 
 // Worker a is lost, and its band is leased to b. Then a returns with wrong pixels of this band, and
 // c has to decide.
-TEST(Audit, ABackupTaskThatDiffersOpensADispute) {
+TEST(Audit, ALateResultThatDiffersOpensADispute) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
   farm.hello(1, "a", 1);
