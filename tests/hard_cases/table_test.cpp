@@ -94,7 +94,8 @@ TEST(HardCaseTable, NamesTheTestOfEveryCaseOrTheReasonForNone) {
     EXPECT_NE(std::find(ids.begin(), ids.end(), id), ids.end()) << id << " in " << *where.begin();
   }
   for (const std::string& line : lines_of(kTests + "/hard_cases/README.md")) {
-    // A row of the table begins with "| S1 |": the id is between the second character and a space.
+    // A row of the table begins with "| S1 |". The id begins after two characters and ends before
+    // the next space.
     const std::string id =
         line.substr(0, line.find(' ', 2)).substr(std::min<std::size_t>(2, line.size()));
     if (std::find(ids.begin(), ids.end(), id) == ids.end()) {

@@ -132,10 +132,11 @@ std::vector<double> best_weights(const std::vector<Place>& places) {
 }
 
 TEST(Weights, Q5_NoWeightsByThePdfRatioAreCloseToTheBetterTechnique) {
-  // Let r and s be the ratios of variance for the two places. The weights are to make the larger of
-  // r and s small. The larger one is at least any mean, share r + (1 - share) s, so the smallest
-  // possible mean is a lower bound of it. Any shares give a bound; those below were found by a
-  // search.
+  // At each of the two places, divide the variance of the weighted samples by the variance of the
+  // better technique. Let r and s be these two ratios. Weights are good if the larger of r and s is
+  // small. The larger one is at least any mean, share r + (1 - share) s, so the smallest mean that
+  // weights can reach is a lower bound of it. Every share gives such a bound. This share was found
+  // by a search.
   constexpr double kShareNear = 0.96;
   std::vector<Place> places;
   for (const auto& [height, share] :

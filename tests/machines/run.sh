@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Checks that a farm of four different machines gives the same bytes as one machine. The four workers: this build's; one built on Debian 13;
-# this build's on a processor without AVX2 (emulated); one for ARM64 (emulated). Each must render a part of the image.
+# Checks that a farm of four different machines gives the same bytes as one machine. Two workers run directly: this build's worker, and a worker
+# that was built on Debian 13. Two workers are emulated: this build's worker on a processor without AVX2, and a worker for ARM64. Each of the four
+# must render a part of the image.
 # Usage: tests/machines/run.sh BUILD DEBIAN13 ARM64
 #   BUILD     this build's folder
 #   DEBIAN13  the root folder of a Debian 13 in which /root/bandsaw is built (made by deploy/nightly.sh debian13)
 #   ARM64     the folder of the cross build (made by deploy/arm64.sh)
-# Exit status 77: one of them does not exist, or this machine cannot run it (root and qemu-user-static are needed).
+# Exit status 77: DEBIAN13 or ARM64 has no worker, or this machine cannot run the test (root and qemu-user-static are needed).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=$(realpath "$1") debian13=$2 arm64=$3
@@ -27,11 +28,10 @@ trap 'rm -rf "$debian13$scratch"; stop' EXIT
 join_here no-avx2 "$scratch/logs/no-avx2" qemu-x86_64-static -cpu Nehalem "$build/bin/bandsaw-worker" --threads 1
 join_here arm64 "$scratch/logs/arm64" qemu-aarch64-static -L "${BANDSAW_ARM64_ROOT:-/}" "$arm64/bin/bandsaw-worker" --threads 1
 
-# same_bytes SCENE SAMPLES renders a scene on the farm and on this machine, and compares. The emulated workers are 30 to 100 times slower
-# than the two fast ones. These would render all bands first, even those that the slow workers hold
-# (as backup tasks). So the fast workers join only when both emulated workers have bands in the
-# image, and they leave after the job. In the second job the coordinator calls the fast workers
-# NAME-2.
+# same_bytes SCENE SAMPLES renders a scene on the farm and on this machine, and compares the images. The emulated workers are 30 to 100 times
+# slower than the other two. The fast workers would render the whole image alone, because they also render the bands that slow workers hold (as
+# backup tasks). So the fast workers join only when both emulated workers have bands in the image, and they leave after the job. In the second
+# job the coordinator calls the fast workers NAME-2.
 same_bytes() {
   local scene=$1 options=(--width 64 --samples "$2") progress=$scratch/$1.progress emulated=${#pids[@]} name
   : >"$progress"

@@ -1,6 +1,6 @@
-"""A coordinator for tests of clients, the Python module and the add-on for Blender. It answers the HTTP requests of proto/web.proto and renders
-nothing: each request for the state of a job completes some more of its rows, with made-up pixels. `python3 fake_farm.py SECONDS` serves one until
-its standard input ends, and prints the string with which clients connect."""
+"""A coordinator for tests of its clients (the Python module, and the add-on for Blender). It answers the HTTP requests of proto/web.proto, but it
+renders nothing: the pixels of its images are made up. `python3 fake_farm.py SECONDS` prints the string with which clients connect, and serves until
+its standard input ends. SECONDS: the time that a job takes."""
 
 import array
 import hashlib
@@ -17,9 +17,10 @@ SECRET = "abcdefghijklmnopqrst-_"
 
 
 class FakeFarm:
-    """A job takes `seconds`. If `seconds` is 0, each request for the state of a job completes a quarter of the job. Tests may set three variables.
+    """A job takes `seconds`. If `seconds` is 0, each request for the state of a job completes a quarter of the job. Tests may set four variables.
     `refusals`: the HTTP statuses with which the next scenes are refused. `full`: True if the disk of the coordinator is full, so that files are
-    refused. `warnings`: the warnings in the answer to every accepted scene. `scenes`, `jobs` and `requests` hold all that it has received."""
+    refused. `warnings`: the warnings in the answer to every accepted scene. `clean_failure`: the reason why denoising fails, or "" if it
+    does not fail. `scenes`, `jobs` and `requests` hold all that it has received."""
 
     def __init__(self, seconds=0.0):
         self.seconds, self.refusals, self.warnings, self.full, self.clean_failure = seconds, [], [], False, ""
@@ -162,7 +163,8 @@ class FakeFarm:
         return self.problem(404 if what == "preview.pfm" else 409, "it is not there yet")
 
     def clean(self, job, method):
-        """Answers a request about the denoised picture of a job. Each request for its state brings it to the next one."""
+        """Answers a request about the denoised picture of a job. A POST begins the denoising. After that, each request for the state of the denoising
+        advances it to the next state."""
         if job["state"] != "done":
             return self.problem(409, "the job is not done")
         if method == "POST":

@@ -163,7 +163,7 @@ class OnAFarm(unittest.TestCase):
         refuse_early(self, self.farm)
 
     def test_a_loopback_address_may_be_a_tunnel(self):
-        # The changed string has only the dashboard's port, so it does not say that the dashboard has no TLS.
+        # The changed string names only the port of the dashboard, not its address. So the client cannot know that this dashboard has no TLS.
         places, rest = self.loopback.string.split("+", 1)
         web, rest = rest.split("-", 1)
         self.assertRegex(web, r"^127\.0\.0\.1:\d+$")
@@ -190,7 +190,7 @@ class Tunnelled(unittest.TestCase):
 
 
 class Restarted(unittest.TestCase):
-    """The coordinator listens on all addresses, so it has TLS. It is killed while a job runs."""
+    """The coordinator listens on all addresses, so it has TLS. It is killed and restarted while a job runs."""
 
     def test_a_killed_coordinator_costs_no_job(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,5 +1,5 @@
-// Tests deploy/figures.sh, which makes the figures of the gallery's README, and a sheet of any
-// scenes. To be fast, the tests make figures 24 pixels wide.
+// Tests deploy/figures.sh, which makes the figures of the gallery's README, or one picture with
+// thumbnails of given scenes (the sheet). To be fast, the tests make figures 24 pixels wide.
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Runs deploy/tutorial.md, block by block, on three machines made of network namespaces. Exit 77: they cannot be made here (run as root).
-# A block begins with ```sh on=HOST, which names its machine, and perhaps a word. `stays`: the block continues in the background after it has
-# printed "join". `stops`: the block is not run, but the background blocks of that machine are ended. Usage: tutorial.sh BUILD-FOLDER
+# Runs deploy/tutorial.md, block by block, on three machines made of network namespaces. Exit 77: these machines cannot be made here (run as
+# root). A block begins with the line ```sh on=HOST, where HOST is the machine that runs it. A word may follow HOST. `stays`: after the block has
+# printed "join", it continues in the background. `stops`: the block is not run; the background blocks of HOST are ended instead.
+# Usage: tutorial.sh BUILD-FOLDER
 set -euo pipefail
 build=$(cd "$1" && pwd)
 page=$(cd "$(dirname "$0")/../.." && pwd)/deploy/tutorial.md
@@ -74,4 +75,4 @@ while IFS= read -r line; do
     *) [ -n "$host" ] && text+=$line$'\n' ;;
   esac
 done <"$page"
-echo "the tutorial holds"
+echo "all blocks of the tutorial ran"

@@ -4,9 +4,10 @@
 //
 // FOLDER is a copy of Mitsuba's test data: tests/scenes/*/*.xml, and beside them
 // refs/NAME_ref_rgb.exr and refs/NAME_ref_rgb_var.exr, the variance of one sample. Each scene is
-// rendered with --seeds seeds (default 16), which together take --budget samples of all pixels
-// (default 2 million, as Mitsuba's tests) or --samples per pixel. --out gets a PNG for each scene
-// that has a reference of the same size.
+// rendered with --seeds seeds (default 16). With --samples, all seeds together take that many
+// samples of each pixel. Otherwise all seeds together take --budget samples (default 2 million, as
+// in Mitsuba's tests), which are spread over all pixels. --out gets a PNG for each scene that has a
+// reference of the same size.
 //
 // A channel of a pixel fails if the p-value of its difference is below Sidak's level for the image
 // at 0.01. As in Mitsuba's tests, up to 0.25 % of the channels may fail. The variance of the
@@ -59,7 +60,7 @@ struct Rendered {
   std::uint64_t samples = 0;  ///< samples of a pixel, all seeds together
   std::vector<double> mean;
   std::vector<double> variance;  ///< of the mean
-  std::vector<double> whole;     ///< mean of the image, of each seed
+  std::vector<double> whole;     ///< for each seed, the mean of the whole image
   std::vector<std::string> warnings;
 };
 
@@ -128,7 +129,7 @@ struct Comparison {
   /// Share of the channels that fail if the variance of the difference is only the reference's
   /// variance of one sample over the number of samples, as in Mitsuba's tests.
   double strictly = 0;
-  double relative = 0;  ///< difference of the means of both images, over that of the reference
+  double relative = 0;  ///< mean of the rendered image over the mean of the reference, minus 1
   double error = 0;     ///< standard error of `relative`
   std::array<double, 3> channels = {};  ///< `relative` of each channel
   std::vector<double> z;                ///< difference over its standard deviation, of each channel
@@ -276,7 +277,8 @@ int run(const Options& options) {
   std::sort(scenes.begin(), scenes.end());
   std::printf(
       "| scene | samples a pixel | result | difference of the means | of each channel | "
-      "failing channels | with the reference's variance alone |\n|---|---|---|---|---|---|---|\n");
+      "failing channels | failing channels with the reference's variance alone |\n"
+      "|---|---|---|---|---|---|---|\n");
   Pool pool(2);
   int failed = 0;
   for (const fs::path& scene : scenes) {

@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
-# Compares the errors that images report with their true errors. Renders gallery scenes 96 pixels wide until 5 % and 2 %, with 20 seeds
-# each, compares every image with a reference of many times as many samples, and writes the table of tests/statistical/README.md.
-# Finished measurements are kept in FOLDER and not repeated, so an interrupted run continues.
+# Compares the errors that images report with their true errors. Renders each gallery scene 96 pixels wide with 20 seeds, first until the
+# reported error is at most 5 %, then until it is at most 2 % (the two targets). Compares every image with a reference that has many times as
+# many samples, and writes the table of tests/statistical/README.md. Finished measurements are kept in FOLDER and not repeated, so an
+# interrupted run continues.
 # Usage: tests/statistical/calibrate.sh BANDSAW FOLDER [--scenes a,b,…] [--seeds N] [--times N] [--seconds S] [--minutes M]
 #   --scenes   names as in the gallery's folder, "cornell,books/earth"; default: all
 #   --seeds    default 20
-#   --times    samples of a reference over those of an image of 2 %, default 16; its own noise is subtracted
+#   --times    a reference takes N times the samples that the scene is expected to need for its smallest target (default 16); the noise of
+#              the reference is subtracted from the measured errors
 #   --seconds  CPU time that one render may take; renders that would take longer are left out and listed (default 20)
-#   --minutes  begin no render after this time, do not change the README, and print the progress (default: until all is measured)
-# Exit status 1: so few images met their target that chance does not explain it, if 95 % of all
-# images meet it.
+#   --minutes  begin no render after this time; then print the progress and leave the README unchanged (default: measure all)
+# Exit status 1: the share of the images that met their target is significantly below 95 % (its confidence interval lies below 95 %), or
+# nothing was measured.
 set -euo pipefail
 bandsaw=$(realpath "${1:?usage: calibrate.sh BANDSAW FOLDER [options]}")
 folder=${2:?usage: calibrate.sh BANDSAW FOLDER [options]}
@@ -39,7 +41,8 @@ is_late() { [ -n "$minutes" ] && ((SECONDS >= minutes * 60)); }
 number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
 least() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'; }
 
-# One render to a target: prints samples, estimate, CPU seconds. Status 1: it took ten times too long.
+# Renders a scene until its reported error is at most `target` percent. Prints the samples of all pixels, the reported error, the CPU seconds
+# and the samples per pixel. Status 1: the render took more than ten times the CPU time of --seconds.
 render() {  # scene target seed image
   local done status=0
   done=$(ulimit -S -t "$((10 * seconds))" && "$bandsaw" render "$gallery/$1.textproto" --width 96 --error "$2%" --seed "$3" --json -o "$4" |
@@ -49,6 +52,8 @@ render() {  # scene target seed image
   echo "$(number samples_done <<<"$done") $(number error <<<"$done") $(number cpu_s <<<"$done") $(number samples_per_pixel <<<"$done")"
 }
 
+# Renders the scene with all seeds to each target. Appends a line for each render to the file `runs`: scene, target, seed, the output of
+# render(), and the true error.
 measure() {  # scene reference targets...
   local scene=$1 reference=$2 work=$folder/work seed target result true_error
   shift 2
@@ -69,7 +74,7 @@ for scene in $scenes; do
   grep -q "^$scene$" "$folder/done" 2>/dev/null && continue
   echo "$scene" >&2
   reference=$folder/${scene//\//_}.pfm
-  # The time of the other renders is predicted from one: 2 % costs about six times as much as 5 %.
+  # The time of the other renders is predicted from one render: 2 % costs about six times as much as 5 %.
   pilot=$(render "$scene" 5 1001 "$folder/work.pfm") || { echo "$scene 5" >> "$folder/left_out"; echo "$scene" >> "$folder/done"; continue; }
   read -r _ _ cpu samples <<<"$pilot"
   targets=5
@@ -97,12 +102,13 @@ awk -v without="$folder/without" -v references="$folder/references" '
   function root_mean(sum, n) { return sqrt(sum / n) }
   { ++runs; scene[runs] = $1; goal[runs] = $2; guess[runs] = $5; spent[runs] = $6; count[runs] = $7; error[runs] = $8
     if ($7 >= most[$1]) { most[$1] = $7; most_goal[$1] = $2 } }
-  # The reference of m samples has noise of its own: n / m of e^2, if images of n samples have the error e.
+  # Returns the square of the noise of the reference. If images of n samples have the error e, a reference of m samples has e^2 n / m.
   function own_noise(name,   i, sum, n, samples) {
     sum = n = samples = 0
     for (i = 1; i <= runs; ++i) if (scene[i] == name && goal[i] == most_goal[name]) { ++n; sum += error[i] ^ 2; samples += count[i] }
     return sum / n / (1 + reference[name] / (samples / n))
   }
+  # Adds run i to the row of the table for its scene and target.
   function add(i, true_error,   key, ratio) {
     key = scene[i] " " goal[i]; ratio = guess[i] / true_error
     if (!(key in n)) { keys[++keys_count] = key; low[key] = high[key] = ratio }
@@ -126,7 +132,7 @@ awk -v without="$folder/without" -v references="$folder/references" '
     printf "\n%d renders of %d scenes: the true error is at most the target in **%d, %.1f %%** (95 %% interval %.1f to %.1f %%); the estimate is\n",
            all, scenes_of(), all_met, 100 * p, 100 * (middle - half), 100 * (middle + half)
     printf "between 0.9 and 2.5 times the true error in %.1f %%.\n\n", 100 * within / all
-    print "| scene | target | renders | met | true error | estimate / true | samples a pixel | beyond the ideal | CPU s |"
+    print "| scene | target | renders | met | true error | estimate / true | samples a pixel | excess samples | CPU s |"
     print "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
     for (i = 1; i <= keys_count; ++i) {
       key = keys[i]; split(key, name, " "); e = root_mean(squares[key], n[key]); m = samples[key] / n[key]
@@ -150,7 +156,7 @@ awk -v without="$folder/without" -v references="$folder/references" '
   function scenes_of(  k, part, seen, total) { total = 0; for (k in n) { split(k, part, " "); if (!(part[1] in seen)) { seen[part[1]] = 1; ++total } } return total }
 ' "$folder/runs" >> "$folder/readme" && status=0 || status=1
 if is_late; then
-  echo "not complete: $(wc -l <"$folder/done") of $(wc -w <<<"$scenes") scenes; a run with the same folder goes on from here"
+  echo "not complete: $(wc -l <"$folder/done") of $(wc -w <<<"$scenes") scenes are measured; a run with the same FOLDER measures the others"
   sed '1,/<!-- table/d' "$folder/readme"
 else
   cp "$folder/readme" "$readme"

@@ -1,7 +1,7 @@
 // Compares meshes that deform while the shutter is open with closed forms and with rigid motion.
-// Each comparison allows 4 standard errors; with the fixed seeds a correct program always passes
-// (the false-alarm rate over seeds is below 1 % for all of them together). An id such as C9 in a
-// test's name is that of a case in tests/hard_cases/cases.txt.
+// Each comparison allows 4 standard errors. The seeds are fixed, so the result is always the same.
+// With other seeds, the probability that any comparison of a correct program fails is below 1 %. An
+// id such as C9 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -86,7 +86,7 @@ TEST(Deforming, AGrowingSquareCoversEachPixelForItsShareOfTheTime) {
   double sum = 0;
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 8; ++x) {
-      const double a = x < 4 ? 3 - x : x - 4;  // distance of the nearer side from the centre
+      const double a = x < 4 ? 3 - x : x - 4;  // distance of the pixel from the centre along x
       const double b = y < 4 ? 3 - y : y - 4;
       // The mean of max(|x|, |y|) over the pixel.
       const double reach = a == b ? a + 2.0 / 3 : std::max(a, b) + 0.5;

@@ -57,7 +57,8 @@ TEST(EnvironmentLight, AHalfWhiteImageGivesTheClosedFormOnATiltedPlane) {
     set_environment(maker, half_white());
     add_patch(maker, tilt, maker.diffuse(1));
     const double expected = (1 + sincos_degrees(tilt).cos) / 2;
-    for (const bool local : {false, true}) {  // local shading uses the whole environment
+    // Local shading (direct light only) must use the whole environment too.
+    for (const bool local : {false, true}) {
       expect_radiance(maker, onto_patch(tilt), expected, {.max_depth = 1, .local = local}, 4096);
     }
   }
@@ -202,7 +203,7 @@ TEST(DeltaLight, EachKindGivesTheClosedForm) {
                   options, 4);
   SpotLight spot{.position = to_light * 7, .direction = -to_light, .intensity = {50, 50, 50}};
   expect_radiance(lit_by(spot), ray, 50 * cosine / 49 / kPi, options, 4);
-  // The patch is 40 degrees off the axis of a cone of 30 to 50.
+  // The patch is 40 degrees off the spot's axis. The light falls off between 30 and 50 degrees.
   spot.direction = normalize(rotation(cross(to_light, {1, 2, 0.5}), 40).direction(-to_light));
   const double off = dot(-to_light, spot.direction);
   spot.cos_inner = sincos_degrees(30).cos;
@@ -218,7 +219,7 @@ TEST(DeltaLight, EachKindGivesTheClosedForm) {
 TEST(DeltaLight, EachFalloffOfASpotHasItsClosedForm) {
   SceneMaker maker;
   add_patch(maker, 0, maker.diffuse(1));
-  // The patch is 40 degrees off the axis of a cone of 30 to 50.
+  // The patch is 40 degrees off the spot's axis. The light falls off between 30 and 50 degrees.
   SpotLight spot{.position = {0, 7, 0},
                  .direction = rotation({1, 0, 0}, 40).direction({0, -1, 0}),
                  .intensity = gray(50),

@@ -59,6 +59,8 @@ Moments mean_radiance(const Scene& scene, const Wall& wall, const PathOptions& o
   return means;
 }
 
+/// Expects the value within 4 standard errors. `slack`: relative error that is accepted in
+/// addition.
 void expect_mean(const Moments& seen, double expected, double slack = 2e-6) {
   EXPECT_NEAR(seen.mean(), expected, 4 * seen.standard_error() + slack * expected);
   EXPECT_LE(seen.standard_error(), 1e-3 * expected);
@@ -205,8 +207,8 @@ TEST(Enclosure, WallsHaveTheRadiositySolution) {
   }
   const auto scene = maker.build();
   for (const std::size_t i : {0, 2, 3, 4, 5}) {
-    // The error of the solution is proportional to the square of the patches' size, so it is
-    // extrapolated to the limit.
+    // The error of the solution is proportional to the square of the patches' size. So the limit
+    // for infinitely small patches is extrapolated from two solutions.
     const double expected = (4 * fine[i] - coarse[i]) / 3;
     EXPECT_NEAR(expected, fine[i], 1e-3 * expected) << i;
     expect_mean(mean_radiance(*scene, walls[i], {.max_depth = 1000}, 8192), expected, 5e-4);

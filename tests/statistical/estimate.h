@@ -1,16 +1,16 @@
 #pragma once
 
 // Estimates the mean radiance along one ray with its standard error, for the tests of this folder.
-// The Owen-scrambled samples of one seed are correlated, so the mean of each of many seeds counts
-// as one observation.
+// The Owen-scrambled samples of one seed are correlated, so the mean over the samples of one seed
+// is one observation. The standard error is that of many seeds.
 
 #include "renderlib/integrate/path.h"
 #include "tests/support/statistics.h"
 
 namespace bandsaw::test {
 
-/// Returns the moments of the green channel over the seeds [0, seeds), each with the samples [0,
-/// samples). `samples` is a power of two.
+/// Returns the moments of the green channel over the seeds [0, seeds). Each seed adds one number,
+/// the mean over the samples [0, samples). `samples` is a power of two.
 inline Moments radiance_along(const Scene& scene, const Ray& ray, const PathOptions& options,
                               std::uint64_t samples, std::uint64_t seeds = 32) {
   Moments means;

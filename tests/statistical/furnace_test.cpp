@@ -1,6 +1,7 @@
-// Scenes whose light after any number of bounces is known, and estimators that must agree on scenes
-// whose light is not. All means must lie within 4 standard errors. An id such as O6 in a test's
-// name is that of a case in tests/hard_cases/cases.txt.
+// Compares scenes whose light after any number of bounces is known with the closed form. In other
+// scenes, compares light sampling, BSDF sampling and MIS, which must have the same mean. All means
+// must lie within 4 standard errors. An id such as O6 in a test's name is that of a case in
+// tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -73,8 +74,8 @@ TEST(Furnace, ASmallLightGivesOneOverOneMinusRho) {
 }
 
 TEST(Furnace, AWhiteSphereUnderAGradientSkyHasTheClosedForm) {
-  // Under a sky of radiance (1 + cos) / 2 of the angle to +y a patch with normal n has radiosity
-  // 1/2 + n.y / 3.
+  // The sky has the radiance (1 + cos(a)) / 2, where a is the angle to +y. Under it, a white patch
+  // with the normal n has the radiance 1/2 + n.y / 3.
   SceneMaker maker;
   maker.sphere({0, 0, 0}, 1, maker.diffuse(1));
   maker.background(gray(0), gray(1));

@@ -1,7 +1,7 @@
-// Inside a sphere each point of the wall illuminates every other equally: for any albedo texture, a
-// light of flux Phi at the wall gives the irradiance Phi / (4 pi R^2 (1 - mean albedo)) everywhere.
-// This tests texture lookups by the sphere's uvs, light sampling and BSDF sampling. The measured
-// means must lie within 4 standard errors.
+// Inside a sphere each point of the wall illuminates all other points equally. So for any albedo
+// texture, a light of flux Phi at the wall gives the irradiance Phi / (4 pi R^2 (1 - mean albedo))
+// everywhere. This tests texture lookups by the sphere's uvs, light sampling and BSDF sampling. The
+// measured means must lie within 4 standard errors.
 
 #include <gtest/gtest.h>
 
@@ -100,9 +100,9 @@ TEST(IntegratingSphere, OfAnyTextureHasTheIrradianceOfItsMeanAlbedo) {
   }
 }
 
-// With path reuse, pixels share the second vertices of their paths. Most of the pixels see one
-// corner of the texture, and two see the other side, so that the balance-heuristic weights of the
-// shared vertices are unequal.
+// With path reuse, pixels share the second vertices of their paths. Six pixels see neighbouring
+// texels, and two pixels see the opposite side of the sphere. So the balance-heuristic weights of
+// the shared vertices are unequal.
 TEST(IntegratingSphere, HasTheSameIrradianceWithPathReuse) {
   const std::vector<float> values = albedos();
   const LitSphere lit = lit_sphere(values);

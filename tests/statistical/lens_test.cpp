@@ -57,9 +57,9 @@ void expect_value(const Moments& radiance, double expected, double relative_erro
   EXPECT_LE(radiance.standard_error(), relative_error * expected);
 }
 
-/// Returns the share of the lens from which a ball on the axis of the camera is visible through the
-/// point of the axis at the focus distance, 4. The rays through this point that hit the ball are a
-/// cone. The share is that of the cone's intersection with the lens.
+/// The camera rays of the middle of the image pass through the focus, which is the point of the
+/// camera's axis at the distance 4. The rays through the focus that hit a ball on the axis form a
+/// cone. Returns the share of the lens that lies within this cone.
 double share_of_lens(double radius, double distance, double aperture) {
   const double sine = radius / std::abs(distance - 4);
   const double on_lens = 4 * sine / std::sqrt((1 - sine) * (1 + sine));
@@ -103,8 +103,8 @@ void expect_the_same(const SceneMaker& maker, const PerspectiveCamera& camera,
 }
 
 /// Returns a scene with spheres, a quad and a triangle that emit light in front of, in and beyond
-/// the focus. One of them is behind a ball. A point light and a directional light, which the camera
-/// does not see, are in the scene too.
+/// the focus. One of the lamps is behind a ball. A point light and a directional light, which the
+/// camera does not see, are in the scene too.
 SceneMaker lamps() {
   SceneMaker maker;
   maker.quad({-9, -2, -30}, {18, 0, 0}, {0, 0, 40}, maker.diffuse(0.6f));

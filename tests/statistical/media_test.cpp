@@ -231,7 +231,8 @@ TEST(Media, V3V11PathsInAnOpaqueBallEndAtTheMaximumDepth) {
   test::at_least("V11", "radiance of a ball of scattering 1e12 at 512 bounces", last, 0.9);
 }
 
-/// Without absorption a closed shape is invisible under a white sky, without any noise.
+/// A closed shape whose medium does not absorb is invisible under a white sky. Its pixels have no
+/// noise.
 TEST(Media, O8WithoutLossAreInvisibleInAWhiteSky) {
   for (const double g : {0.0, 0.8, -0.5}) {
     SceneMaker ball = white_sky();

@@ -135,7 +135,8 @@ SceneMaker moving_lamp(const Shapes& lamp, const Key& from, const Key& to) {
   return maker;
 }
 
-// The mean of r^2 / (a + (b - a) t)^2 over t in [0, 1] is r^2 / (a b).
+// The irradiance under a ball of radius r at the height h is pi r^2 / h^2. If the height changes
+// from a to b at constant speed, the mean of the irradiance over the time is pi r^2 / (a b).
 TEST(MovingLight, EmitsFromItsPositionAtEachTime) {
   Shapes ball;
   ball.spheres.push_back({{0, 0, 0}, 0.5, MaterialId{0}});
@@ -204,9 +205,9 @@ TEST(MotionBlur, C9_AMovingEdgeIsALinearRamp) {
       pixels[x].add(band->sums[3 * x + 1] / kSamples);
     }
   }
-  // A point of a pixel is bright while the edge, at x = 5 + 10 t, is to the right of it. The
-  // expected value of a pixel is the share of the time in which a point is bright, as a mean over
-  // its points.
+  // A point of a pixel is bright while the edge, at x = 5 + 10 t, is to the right of the point,
+  // that is, for a share of the time. The expected value of the pixel is the mean of this share
+  // over all points of the pixel.
   const auto integral = [](double x) {  // integral of clamp(x, 0, 10) / 10
     return x < 0 ? 0 : x < 10 ? x * x / 20 : x - 5;
   };

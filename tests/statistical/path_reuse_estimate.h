@@ -12,8 +12,8 @@
 
 namespace bandsaw::test {
 
-/// Returns the green channel of each ray: its moments over the seeds [0, seeds), each with the
-/// samples [0, samples). `samples` is a power of two.
+/// Returns, for each ray, the moments of the green channel over the seeds [0, seeds). Each seed
+/// adds one number, the mean over the samples [0, samples). `samples` is a power of two.
 inline std::array<Moments, kMaxReusePixels> radiance_with_reuse_along(
     const Scene& scene, const std::array<Ray, kMaxReusePixels>& camera_rays,
     const PathOptions& options, std::uint64_t samples, std::uint64_t seeds = 32) {

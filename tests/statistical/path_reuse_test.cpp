@@ -28,6 +28,8 @@ std::array<Ray, kMaxReusePixels> rays_across(double from, double to, double heig
   return rays;
 }
 
+/// Expects that the means with and without path reuse differ by at most 4 standard errors.
+/// `precision`: the largest accepted standard error of this difference, relative to the mean.
 void expect_equal_means(const Scene& scene, const std::array<Ray, kMaxReusePixels>& rays,
                         const PathOptions& options, double precision) {
   const auto shared = test::radiance_with_reuse_along(scene, rays, options, kSamples);

@@ -66,7 +66,7 @@ TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
 
 // A ball moves through the ray, and the y of its centre goes from -2 to 2. The ball transmits
 // exp(-2 s sqrt(1 - y^2)) while |y| < 1; otherwise the ray misses it. The expected value is the
-// mean over y. The integral over |y| < 1 is computed by Simpson's rule in the angle.
+// mean over y. The integral over |y| < 1 is computed by Simpson's rule in the angle a, y = cos(a).
 TEST(MovingMedia, V6MovingBallAbsorbsByTheMeanOverTheShutter) {
   const double s = 0.8;
   const auto scene =

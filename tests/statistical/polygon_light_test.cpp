@@ -19,8 +19,8 @@ using test::SceneMaker;
 constexpr Vec3 kUp{0, 1, 0};
 
 /// Returns E / L at the origin with normal `n` for a polygon above the horizon, by Lambert's
-/// formula: half the sum over all edges of the angle that the edge subtends, times the cosine
-/// between `n` and the normal of the plane through the origin and the edge.
+/// formula. Each edge adds the angle that it subtends, times the cosine between `n` and the normal
+/// of the plane through the origin and the edge. E / L is half of this sum.
 double irradiance_of(const std::vector<Vec3>& corners, const Vec3& n) {
   double sum = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {

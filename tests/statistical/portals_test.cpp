@@ -1,5 +1,6 @@
-// Tests that sampling the background through portals changes no expected value. The scene is a
-// floor under a sky. The portals cover a part of the sky, and the radiance of the floor is known.
+// Tests that sampling the background through portals changes no expected value. A portal is a
+// rectangle through which light sampling aims at the background. The scene is a floor under a sky.
+// The portals cover a part of the sky, and the radiance of the floor is known.
 
 #include "renderlib/guiding/portals.h"
 

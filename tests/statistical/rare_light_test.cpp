@@ -1,5 +1,6 @@
-// Tests that adaptive sampling is unbiased in scenes in which few paths find light. There pixels
-// that found light have other noise estimates than pixels that found none. The tests take 64 seeds
+// Tests that adaptive sampling is unbiased in scenes in which few paths find light. In such scenes
+// the estimated noise of a pixel depends on whether the pixel has found light. Adaptive sampling
+// plans the samples of each half tile (half of the pixels of a tile). The tests take 64 seeds
 // and accept a bias of at most 3 standard errors. Hard case A5 tests adaptive sampling of Bernoulli
 // pixels, without a scene.
 
@@ -56,7 +57,8 @@ Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
         render_band(scene, settings, {pass, {0, kGrid.height}}, pool, kGoOn, {}, tiles);
     ASSERT_TRUE(pixels.ok() && film.add(*pixels, tiles).ok());
   };
-  // The pilot: 64 samples of every pixel, from whose noise the other 192 are planned.
+  // The pilot takes 64 samples of every pixel. If `adaptive` is true, the noise of these samples
+  // decides the plan for the passes after the pilot.
   for (const SampleRange& pass : {SampleRange{0, 16}, {16, 32}, {32, 64}}) {
     take(pass, {});
   }

@@ -62,9 +62,9 @@ Ray random_ray(const Transform& to_world, Random& random) {
 }
 
 /// Each path must carry the radiance 1 of the sky. In glass radiance is greater by the squared
-/// index, 2.25. So a path that enters the ball carries 1 / 2.25 = 0.44 if its exit is missed, and a
-/// path that leaves it 2.25 if its entry was missed. A few paths are reflected along the rim inside
-/// the ball thousands of times, and are truncated.
+/// index, 2.25. So a path whose entry is found and whose exit is missed carries 1 / 2.25 = 0.44. A
+/// path whose entry is missed and whose exit is found carries 2.25. A few paths are reflected along
+/// the rim inside the ball thousands of times, and are truncated.
 TEST(Squashed, S12_AGlassBallIsInvisibleInAWhiteSky) {
   int wrong = 0;
   int paths = 0;

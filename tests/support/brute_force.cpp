@@ -16,12 +16,13 @@ namespace {
 
 /// The closest hit so far of one ray. The parameter `instance` has the values of
 /// PrimitiveId::instance: 0 for shapes that are in no instance, otherwise the index of the instance
-/// plus 1. `ray_.from` is the primitive on which the ray begins: a flat one cannot be hit again, a
-/// sphere can.
+/// plus 1. `ray_.from` is the primitive on which the ray begins. If this primitive is flat, it
+/// cannot be hit again; a sphere can.
 class Search {
  public:
   explicit Search(const Ray& ray) : ray_(ray) { best_.t = ray.t_max; }
 
+  /// Keeps the hit if it is closer than the best one, or as close and of a lower id.
   void consider(const PrimitiveId& id, const Crossing& c) {
     if (c.t < best_.t || (c.t == best_.t && id < best_.id)) {
       best_ = {c.t, id, c.u, c.v};

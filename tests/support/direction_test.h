@@ -14,9 +14,9 @@ namespace bandsaw::test {
 /// 20 cells of the sphere. Compares the counts with the integral of `density`, the claimed pdf by
 /// solid angle, over each cell by the chi-squared test. A zero vector is a lost sample. If no
 /// sample is lost, `density` must integrate to 1 within 0.5 %; it may be a step function. If some
-/// are lost, its integral is the probability that a sample is not lost. `tests`: the number of
-/// calls that one test makes. The level is such that all of them together fail by chance with
-/// probability 0.01.
+/// are lost, its integral is the probability that a sample is not lost. `tests`: how often one
+/// test calls this function. The significance level is such that all these calls together fail by
+/// chance with probability 0.01.
 void expect_samples_match_density(absl::FunctionRef<Vec3(double, double)> sample,
                                   absl::FunctionRef<double(const Vec3&)> density,
                                   std::uint64_t seed, std::size_t tests = 1);

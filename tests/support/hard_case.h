@@ -18,8 +18,8 @@ void at_least(std::string_view id, std::string_view what, double figure, double 
 /// 20,000 rays". Not printed if the test has failed.
 void report_hard_case(std::string_view id, std::string_view what);
 
-/// Returns the number of tries: `few` in the default tests, `full` if BANDSAW_FULL_COUNTS is set in
-/// the environment (label hard_cases_full).
+/// Returns the number of tries: `few`, or `full` if the environment variable BANDSAW_FULL_COUNTS is
+/// set, as in the tests with the CTest label hard_cases_full.
 int tries(int few, int full);
 
 /// Maximum of 0 and the numbers seen; NaN once a NaN was seen.

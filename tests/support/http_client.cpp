@@ -21,6 +21,7 @@ using Text = http::string_body;
 
 std::string text_of(beast::string_view text) { return {text.data(), text.size()}; }
 
+/// A TCP connection to a port of 127.0.0.1.
 class Loopback {
  public:
   explicit Loopback(int port) : socket_(context_) {

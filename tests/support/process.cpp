@@ -29,6 +29,7 @@ struct Process::State {
   int code GUARDED_BY(mutex) = -1;
   std::vector<std::thread> threads;
 
+  /// Appends the output of the child to text[stream] until the end of the pipe `fd`.
   void read_stream(int stream, int fd) {
     char buffer[4096];
     ssize_t n = 0;
@@ -43,6 +44,7 @@ struct Process::State {
     changed.notify_all();
   }
 
+  /// Waits for the end of the child and stores its exit code.
   void reap() {
     int status = 0;
     while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {

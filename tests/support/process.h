@@ -43,8 +43,8 @@ class Process {
                   Milliseconds timeout = std::chrono::seconds(60));
 
   /// Waits for the end of the process and of its output. Returns the exit code, or 128 + the number
-  /// of the signal that ended it; std::nullopt if the time expired. The default is shorter than the
-  /// 300 s after which CTest ends a test of a farm.
+  /// of the signal that ended it; std::nullopt if the time expired. The default timeout is shorter
+  /// than the 300 s after which CTest ends a test of a farm.
   std::optional<int> wait(Milliseconds timeout = std::chrono::seconds(250));
 
  private:

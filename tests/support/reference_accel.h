@@ -46,8 +46,9 @@ class ReferenceAccel {
   /// `bound`. A call may reduce `bound`.
   template <class Visit>
   void visit(const Tree& tree, const TracedRay& ray, const double& bound, Visit&& visit) const;
-  /// Intersects the ray with a primitive of loose_, or with all triangles of an instance. Replaces
-  /// `best` by a hit that is closer, or that is at the same distance and has a lower id.
+  /// meet_loose() intersects the ray with primitive `index` of loose_, and meet_instance() with all
+  /// triangles of instance `index`. Both replace `best` by a hit that is closer, or that is at the
+  /// same distance and has a lower id.
   void meet_loose(const Ray& ray, const TracedRay& traced, std::uint32_t index, Hit& best) const;
   void meet_instance(const Ray& ray, std::uint32_t index, Hit& best) const;
 

@@ -9,8 +9,8 @@
 
 namespace bandsaw::test {
 
-/// Collects a scene. The ids it returns are valid in its own scene only. A reflectance or radiance
-/// that is one number is grey. Angles are in degrees.
+/// Collects a scene. The returned ids are valid only in the scene of the object that returned them.
+/// A reflectance or radiance that is one number is grey. Angles are in degrees.
 class SceneMaker {
  public:
   TextureId texture(Texture texture);

@@ -1,14 +1,16 @@
 #pragma once
 
-// Messages of a coordinator to a worker, for tests of the workers' sessions.
+// Messages of a coordinator to a worker, for tests of the workers' sessions. A lease assigns a band
+// (some samples of some rows of a job's image) to a worker. A revocation cancels leases.
 
 #include "proto/farm.pb.h"
 #include "proto/wire/digest.h"
 
 namespace bandsaw::test {
 
-/// Leases samples [0, 16) of the two rows from `first_row` of an image of 8 x 80 pixels. The
-/// manifest's digest is all zeros. `id` is that of the lease. The job 7 is arbitrary.
+/// Returns the message that assigns the lease `id`: samples [0, 16) of the rows `first_row` and
+/// `first_row` + 1 of an image of 8 x 80 pixels. The digest of the scene's manifest is all zeros.
+/// The job 7 is arbitrary.
 inline farm::ToWorker lease(std::uint64_t id, std::uint32_t first_row, std::uint64_t job = 7) {
   farm::ToWorker message;
   farm::Lease* content = message.mutable_lease();
@@ -24,6 +26,7 @@ inline farm::ToWorker lease(std::uint64_t id, std::uint32_t first_row, std::uint
   return message;
 }
 
+/// Returns the message that cancels the lease `id`.
 inline farm::ToWorker revoke(std::uint64_t id) {
   farm::ToWorker message;
   message.mutable_revoke()->add_lease(id);

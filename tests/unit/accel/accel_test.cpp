@@ -1,4 +1,4 @@
-// The smallest use of Accel: the nearest of two shapes is hit.
+// The smallest use of Accel, the renderer's BVH: a ray hits the nearer of two shapes.
 
 #include "renderlib/accel/accel.h"
 

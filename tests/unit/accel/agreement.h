@@ -32,9 +32,9 @@ struct Agreement {
   int different = 0;
 };
 
-/// Traces `count` rays, which next() returns. Each ray that hits something is traced twice more: it
-/// then ends at or near the hit, and then it starts at the hit. The first difference makes the test
-/// fail.
+/// Traces `count` rays, which next() returns. Each ray that hits something is traced twice more:
+/// first with its end at or near the hit, then with its origin at the hit. The first difference
+/// makes the test fail.
 template <class Next>
 Agreement compare(const Accel& accel, const ReferenceAccel& reference, int count, Next&& next) {
   Agreement result;

@@ -40,7 +40,7 @@ Mesh terrain(int side) {
   return mesh;
 }
 
-/// Every triangle several times, in another order.
+/// Returns the mesh with `times` copies of every triangle. The further copies are in reverse order.
 Mesh repeated(Mesh mesh, int times) {
   const auto once = mesh.triangles;
   for (int i = 1; i < times; ++i) {
@@ -86,7 +86,7 @@ Mesh with_bad_input(Mesh mesh) {
   return mesh;
 }
 
-/// Returns all meshes; `level` is the number of subdivisions of those that are icospheres.
+/// Returns all meshes with their names. `level`: number of subdivisions of the icospheres.
 std::vector<Case> cases(int level) {
   const Mesh sphere = icosphere(level);
   return {
@@ -196,9 +196,10 @@ TEST(Agreement, B4_HoldsForRaysAlongAxesAndWithinFaces) {
 /// Returns a random point of the cube [-size, size]^3.
 Vec3 scatter(Random& random, double size) { return size * random_point(random); }
 
-/// Returns loose shapes of three kinds, and instances of a mesh that are rotated, mirrored,
-/// stretched and small. They lie around `at`, within a distance of about `size`. The scene also has
-/// equal shapes, an instance of an empty mesh, and an instance whose placement has no inverse.
+/// Returns a scene of loose shapes (shapes that are in no instance) of three kinds, and of
+/// instances of a mesh that are rotated, mirrored, stretched and small. All of them lie around
+/// `at`, within a distance of about `size`. The scene also has equal shapes, an instance of an
+/// empty mesh, and an instance whose placement has no inverse.
 Geometry mixed_scene(const Vec3& at, double size) {
   Random random(21);
   Geometry g;

@@ -10,7 +10,8 @@
 namespace bandsaw {
 namespace {
 
-/// A mesh with an identity placement, another instance of it, and a loose sphere and quad.
+/// Returns two instances of a mesh, the first with an identity placement, and a sphere and a quad
+/// that are loose (in no instance).
 Geometry mixed() {
   Geometry geometry;
   geometry.meshes = {test::icosphere(3)};

@@ -206,7 +206,7 @@ TEST(Deforming, DoesNotLeakAtAnyTime) {
   EXPECT_EQ(lost(turned, {}, 1, 100'000), 0);
 }
 
-// The triangles of one closed mesh belong to two meshes in turn. The two meshes have the same
+// The triangles of one closed mesh belong alternately to two meshes. The two meshes have the same
 // positions at their common edges, so no ray gets through between them.
 TEST(Deforming, TwoMeshesWithOneBorderDoNotLeak) {
   Pool pool(1);
@@ -231,10 +231,10 @@ TEST(Deforming, TwoMeshesWithOneBorderDoNotLeak) {
   }
 }
 
-/// Checks the boxes of all leaves, and FlatPack::size of their packs of eight triangles, at the
-/// time `now`. A box must contain its triangles, and the size must be at least each coordinate of
-/// an edge from the first corner. Returns the number of coordinates that were checked; 0 after a
-/// failure.
+/// Checks all leaves at the time `now`. A leaf has a box and a pack of up to eight triangles. The
+/// box must contain the triangles. FlatPack::size must be at least the absolute value of each
+/// coordinate of the vectors from the first corner of a triangle to its other corners. Returns the
+/// number of coordinates that were checked; 0 after a failure.
 std::int64_t check_boxes(const MeshTree& tree, const ShutterTime& now) {
   std::int64_t checked = 0;
   for (std::size_t n = 0; n < tree.tree.nodes.size(); ++n) {

@@ -41,7 +41,7 @@ void expect_exact(const Geometry& g, const std::vector<Ray>& rays) {
 }
 
 /// Returns rays that start at random points of the cube [-spread, spread]^3. Most of them aim at a
-/// point of [-1, 1]^3, and a quarter of them have an end.
+/// point of [-1, 1]^3. A quarter of the rays have a finite length.
 std::vector<Ray> random_rays(int count, double spread, std::uint64_t seed) {
   test::Random random(seed);
   std::vector<Ray> rays;
@@ -55,8 +55,8 @@ std::vector<Ray> random_rays(int count, double spread, std::uint64_t seed) {
 }
 
 /// Returns rays that start at points of a grid. Components of their directions are numbers such as
-/// 0, -0, 1 and 1e-12. So many of these rays lie within the planes of lattice(), or meet its edges
-/// and corners.
+/// 0, -0, 1 and 1e-12. For this reason, many of the rays lie within the planes of the squares of
+/// lattice(), or meet the edges and corners of these squares.
 std::vector<Ray> grid_rays(int count, std::uint64_t seed) {
   test::Random random(seed);
   const double parts[] = {0, -0.0, 1, -1, 1e-12, -1e-12, 0.5, 1e-320};

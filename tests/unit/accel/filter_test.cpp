@@ -111,13 +111,13 @@ Pair adversarial_pair(Random& random, bool in_float) {
   return pair;
 }
 
-/// Counts how often the test in double found a hit, how often the filter was sure of one, and how
+/// Counts how often the test in double found a hit, how often the filter was sure of a hit, and how
 /// often the filter was wrong.
 struct Verdicts {
   int hits = 0;
   int sure = 0;
   int false_rejects = 0;  ///< hits that the filter rejected
-  int false_sure = 0;     ///< hits of which the filter was sure, but which are none
+  int false_sure = 0;     ///< the filter was sure of a hit, but the test in double found none
 };
 
 /// Runs the filter and the test in double, and adds their results to `verdicts`. The ray has no

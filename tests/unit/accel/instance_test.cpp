@@ -113,6 +113,9 @@ TEST(Instance, X2_StretchedInstancesHaveTheNormalsOfTheirShape) {
   test::report_hard_case("X2", "more than 1,000 geometric normals within 1e-10 rad");
 }
 
+// A scene has two instances that are equal in world space: a large mesh that is scaled down, and a
+// small mesh that is scaled up. The first of them is hit. In a second scene the first instance is
+// far away, so the second instance is hit, at the same distance.
 TEST(Instance, X5_DistancesAreInWorldSpaceAtEveryScale) {
   Geometry g;
   g.meshes = {test::scaled(test::icosphere(1), 0x1p10), test::scaled(test::icosphere(1), 0x1p-10)};

@@ -20,6 +20,8 @@ using test::Random;
 
 constexpr Interval kInterval = {0.25, 1.5};
 
+/// Adds a frame: a moving space that contains instances and other frames. `keys` are the positions
+/// of the motion. `placement` is applied after the motion, in the frame `parent`.
 FrameId add_frame(Geometry& g, std::vector<Key> keys, FrameId parent = kNoFrame,
                   const Transform& placement = {}) {
   g.frames.push_back({parent, placement, std::move(keys)});

@@ -16,7 +16,7 @@
 namespace bandsaw {
 namespace {
 
-// A ray that leaves a flat mesh hits no other triangle of this mesh, even if the placement
+// A ray that leaves a flat mesh does not hit this mesh again near its origin, even if the placement
 // squashes, mirrors and moves the mesh.
 TEST(Offset, O1_NoRayHitsTheMeshPlaneItLeaves) {
   Mesh mesh;

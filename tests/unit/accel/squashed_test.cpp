@@ -75,8 +75,8 @@ Vec3 direction_from(const SurfacePoint& p, bool inwards, const Transform& to_wor
 
 struct Lost {
   int rays = 0;
-  int inside = 0;   ///< rays that left inwards and hit nothing, or the surface from outside
-  int outside = 0;  ///< rays that left outwards and hit it again
+  int inside = 0;   ///< rays that left inwards and did not hit the surface from inside
+  int outside = 0;  ///< rays that left outwards and hit the surface again
 };
 
 /// Traces `rays` rays from outside. Each of them continues inwards from every surface that it hits,

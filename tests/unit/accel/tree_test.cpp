@@ -123,8 +123,8 @@ TEST(Tree, B7_IsNeverDeeperThanTheTraversalStack) {
   test::report_hard_case("B7", "1,000 nested boxes no deeper than the stack");
 }
 
-/// Returns a mesh with enough triangles for several pieces and tasks of the build. Many of the
-/// triangles are equal, so that no plane separates their boxes.
+/// Returns a mesh with so many triangles that the build cuts them into several pieces and tasks for
+/// the threads. Many of the triangles are equal, so that no plane separates their boxes.
 Mesh mesh_of_pieces() {
   Mesh mesh = test::triangle_soup(60'000, 0.05, 4);
   mesh.triangles.insert(mesh.triangles.end(), 20'000, mesh.triangles.front());

@@ -18,6 +18,7 @@ TEST(KeptValues, ForgetsValuesThatARoundDidNotUse) {
   EXPECT_EQ(*values.find(1), "one");
   values.set(3, "three");
   values.end_round();
+  // A value is used in a round if it is found or set. contains() is no use of it.
   EXPECT_TRUE(values.contains(1));
   EXPECT_FALSE(values.contains(2));
   EXPECT_EQ(values.find(2), nullptr);

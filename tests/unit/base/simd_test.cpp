@@ -18,7 +18,8 @@ namespace {
 
 using Lanes = std::array<float, 8>;
 
-/// Any float: all exponents, zeros, infinities, NaN, and pairs that nearly cancel.
+/// Returns mostly a number in [-2, 2], and sometimes a special value (zero, infinity, NaN, a
+/// denormal, 1) or a float of random bits.
 float any_float(test::Random& random) {
   const float special[] = {0.0f,
                            -0.0f,
@@ -61,6 +62,7 @@ Lanes stored(const Float& x) {
   return lanes;
 }
 
+/// Returns the lanes that to_bytes(), the inverse of from_bytes(), copies.
 template <class Float>
 Lanes in_bytes(const Float& x) {
   Lanes lanes;

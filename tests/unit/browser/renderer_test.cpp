@@ -54,7 +54,8 @@ class BrowserRendererTest : public ::testing::Test {
   BrowserRendererTest() : renderer_(bandsaw_renderer_new()) {}
   ~BrowserRendererTest() override { bandsaw_renderer_delete(renderer_); }
 
-  /// Returns the digest of the scene's package, whose blobs are in `farm_`.
+  /// Adds a scene to `farm_`: its blobs (arrays such as meshes and textures) and its manifest,
+  /// which lists the blobs. Returns the digest of the manifest.
   wire::Digest add(const SceneDescription& scene) {
     const std::string text = encode_package(scene, {}, farm_);
     const auto* data = reinterpret_cast<const std::byte*>(text.data());
@@ -74,7 +75,8 @@ class BrowserRendererTest : public ::testing::Test {
   const BandsawAnswer* build(const wire::Digest& manifest) {
     return bandsaw_renderer_build_scene(renderer_, manifest.hex().c_str(), 64);
   }
-  /// Loads a scene; returns the number of blobs that were added.
+  /// Loads a scene into the renderer: adds the blobs that the renderer does not have yet, and
+  /// builds the scene. Returns the number of blobs that were added.
   std::size_t load(const wire::Digest& manifest) {
     const std::string wanted = good(begin(manifest));
     std::size_t count = 0;
@@ -206,7 +208,7 @@ TEST_F(BrowserRendererTest, HalfTilesWithDifferentSamplesGiveTheBytesOfANativeWo
     Task adaptive = task(manifest, {{64, 128}, {0, 40}});
     adaptive.tiles = TileSamples(40, {0, 40});
     const SampleRange samples[] = {{16, 32}, {0, 0}, {0, 16}, {32, 64}, {64, 128}};
-    for (std::size_t i = 0; i < 18; ++i) {  // 3 x 3 tiles
+    for (std::size_t i = 0; i < 18; ++i) {  // 3 x 3 tiles of two half tiles each
       adaptive.tiles.set(i, samples[i % 5]);
     }
     expect_same(adaptive, scene, 16);

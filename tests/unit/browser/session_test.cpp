@@ -1,5 +1,6 @@
 // The session of a browser's tab with the coordinator, called through the functions that it
-// exports. The messages of the coordinator are made by the test. Answers are JSON or serialised
+// exports. The tests make the messages of the coordinator; a lease is a message that assigns a band
+// (some samples of some rows) to the worker. Answers of the functions are JSON or serialised
 // messages. The helpers good() and error_of() expect that a call succeeds or fails, and return its
 // answer.
 
@@ -36,6 +37,8 @@ using ::testing::IsEmpty;
 
 constexpr double kMemory = 3e9;
 
+/// Returns the message with which the coordinator accepts the worker. `epoch`: id of the
+/// coordinator's process.
 farm::ToWorker welcome(const std::string& epoch) {
   farm::ToWorker message;
   message.mutable_welcome()->set_name("tab-2");
