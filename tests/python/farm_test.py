@@ -192,7 +192,7 @@ class Tunnelled(unittest.TestCase):
 class Restarted(unittest.TestCase):
     """The coordinator listens on all addresses, so it has TLS. It is killed and restarted while a job runs."""
 
-    def test_a_killed_coordinator_costs_no_job(self):
+    def test_a_job_ends_although_its_coordinator_is_killed_and_restarted(self):
         with tempfile.TemporaryDirectory() as folder:
             loopback = LoopbackFarm(folder, web="0.0.0.0:0", listen="0.0.0.0:0")
             try:

@@ -30,7 +30,7 @@ def string(places="10.0.0.1:7878", digest=DIGEST):
 
 
 class JoinStrings(unittest.TestCase):
-    def test_parts(self):
+    def test_a_string_has_addresses_dashboard_certificate_and_secret(self):
         join = bandsaw.JoinString(string("my-host.lan:1,[fe80::1]:65535+8787") + "\n")
         self.assertEqual(join.addresses, [("my-host.lan", 1), ("fe80::1", 65535)])
         self.assertEqual((join.web, join.secret, len(join.certificate)), ((None, 8787), SECRET, 32))
@@ -46,7 +46,7 @@ class JoinStrings(unittest.TestCase):
             self.assertIn(word, str(caught.exception), text)
             self.assertNotIn(SECRET, str(caught.exception))
 
-    def test_a_file_is_read(self):
+    def test_the_string_may_be_in_a_file(self):
         with tempfile.NamedTemporaryFile("w", suffix=".farm") as file:
             file.write(string("127.0.0.1:1+5") + "\n")
             file.flush()
@@ -54,7 +54,7 @@ class JoinStrings(unittest.TestCase):
 
 
 class NoFarms(unittest.TestCase):
-    def test_nothing_listens(self):
+    def test_a_port_at_which_nothing_listens_is_reported(self):
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
@@ -82,13 +82,13 @@ class NoFarms(unittest.TestCase):
         self.addCleanup(thread.join)
         return server.getsockname()[1]
 
-    def test_another_program_listens(self):
+    def test_another_program_at_the_port_is_reported(self):
         port = self.answer_with(b"HTTP/1.1 404 Not Found\r\nContent-Length: 5\r\n\r\nhello")
         with self.assertRaises(bandsaw.NoFarm) as caught:
             bandsaw.Farm(string(f"127.0.0.1:1+127.0.0.1:{port}")).check()
         self.assertIn("not a Bandsaw coordinator", str(caught.exception))
 
-    def test_a_tunnel_to_a_plain_dashboard(self):
+    def test_through_a_tunnel_the_secret_is_sent_only_after_tls_has_failed(self):
         port = self.answer_with(b'HTTP/1.1 400 Bad Request\r\nContent-Length: 15\r\n\r\n{"error": "no"}', connections=2)
         with self.assertRaises(bandsaw.Refused):
             bandsaw.Farm(string(f"127.0.0.1:1+{port}")).check()
@@ -397,7 +397,7 @@ class Images(unittest.TestCase):
         # A byte for the filter, and the codes: 0.5 is 188; 2 and -1 are clamped; 0.0031308 is the end of sRGB's linear part.
         self.assertEqual(list(zlib.decompress(raw)), [0, 0, 188, 255, 255, 0, 10])
 
-    def test_compare(self):
+    def test_compare_returns_the_differences_and_refuses_other_sizes(self):
         a, b = image(1, 1, [1, 2, 3]), image(1, 1, [1, 2, 6])
         found = bandsaw.compare(a, b)
         self.assertAlmostEqual(found["rmse"], 3 ** 0.5)

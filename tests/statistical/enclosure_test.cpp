@@ -129,7 +129,7 @@ void expect_balance(const std::array<float, 7>& albedos, std::uint64_t samples) 
   EXPECT_LE(std::sqrt(variance), 1e-3 * flux);
 }
 
-TEST(Enclosure, OfOneAlbedoHoldsTheFluxOverOneMinusRho) {
+TEST(Enclosure, OfOneAlbedoAbsorbsTheFluxOfTheLight) {
   const float rho = 0.6f;
   expect_balance({rho, rho, rho, rho, rho, rho, rho}, 2048);
 }

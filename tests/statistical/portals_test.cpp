@@ -58,7 +58,7 @@ TEST(PortalsInScenes, AGradientHasItsClosedForm) {
   expect_radiance(*maker.build(), some_portals(), 0.5 * 3 * (1 + 2.0 / 3) / 2);
 }
 
-TEST(PortalsInScenes, AnEnvironmentIsSampledByAllThreeTechniques) {
+TEST(PortalsInScenes, AnEnvironmentHasTheSameMeanWithAndWithoutPortals) {
   // One texel of the upper half is much brighter than the others, and seen through a portal.
   test::SceneMaker maker = floor_under_sky();
   maker.scene.background.environment = Environment{

@@ -262,7 +262,7 @@ TEST(Moving, X8_AMovingInstanceEqualsAStaticOneAtEachKey) {
   test::report_hard_case("X8", "equal to the bit at keys");
 }
 
-TEST(Moving, NothingMovesBeforeTheFirstKeyAndAfterTheLast) {
+TEST(Moving, NothingMovesBeforeTheFirstKeyOrAfterTheLast) {
   Geometry g;
   g.shutter = {0, 1};
   g.meshes.push_back(test::icosphere(1));
