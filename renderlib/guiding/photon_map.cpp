@@ -246,8 +246,10 @@ std::vector<StoredPhoton> with_disks(std::vector<StoredPhoton> photons, double r
 
 }  // namespace
 
-PhotonMap::PhotonMap(std::vector<StoredPhoton> photons, double radius_factor, std::uint64_t seed,
-                     Pool& pool, absl::FunctionRef<double(StoredPhoton&)> share_on_surface) {
+PhotonMap::PhotonMap(std::vector<StoredPhoton> photons, const Vec3& origin, double radius_factor,
+                     std::uint64_t seed, Pool& pool,
+                     absl::FunctionRef<double(StoredPhoton&)> share_on_surface)
+    : origin_(origin) {
   if (photons.empty()) {
     return;
   }

@@ -20,7 +20,7 @@ namespace bandsaw {
 
 /// A photon that arrived at a surface.
 struct StoredPhoton {
-  Float3 position{};
+  Float3 position{};        ///< relative to PhotonMap::origin
   float radius = 0;         ///< of its disk, scene units; set by PhotonMap
   Float3 normal{};          ///< geometric normal of the surface, unit, on the side of arrival
   std::uint32_t chain = 0;  ///< number of scatterings between the light and this surface
@@ -36,13 +36,15 @@ class PhotonMap {
   static constexpr double kPhotonsOfDisk = 20;
 
   PhotonMap() = default;
-  /// Builds the map. `radius_factor` > 0 scales all radii. `seed` decides how space is divided into
+  /// Builds the map. The positions of the photons are relative to `origin`. `radius_factor` > 0
+  /// scales all radii. `seed` decides how space is divided into
   /// parts whose photons have disks of one radius. `share_on_surface` is called for each photon,
   /// when its radius is known, on the threads of the pool. It returns the share of the photon's
   /// power, in (0, 1], that falls on the surface and not beyond an edge. The power is divided by
   /// this share. It may also reduce the radius. The map depends on its arguments and the order of
   /// the photons, not on the threads.
-  PhotonMap(std::vector<StoredPhoton> photons, double radius_factor, std::uint64_t seed, Pool& pool,
+  PhotonMap(std::vector<StoredPhoton> photons, const Vec3& origin, double radius_factor,
+            std::uint64_t seed, Pool& pool,
             absl::FunctionRef<double(StoredPhoton&)> share_on_surface);
 
   /// Calls visit(photon, density) for each photon whose disk contains the point. `normal` is the
@@ -53,6 +55,7 @@ class PhotonMap {
 
   std::size_t size() const { return photons_.size(); }
   absl::Span<const StoredPhoton> photons() const { return photons_; }
+  const Vec3& origin() const { return origin_; }
   /// Returns the memory of the map in bytes.
   std::size_t bytes() const {
     return photons_.size() * sizeof(StoredPhoton) + nodes_.size() * sizeof(Node);
@@ -72,6 +75,7 @@ class PhotonMap {
   /// Computes the boxes of all nodes.
   void set_boxes();
 
+  Vec3 origin_;
   std::vector<StoredPhoton> photons_;
   std::vector<Node> nodes_;
 };
@@ -101,7 +105,7 @@ inline float density_at(const StoredPhoton& photon, const Float3& position, cons
 
 template <class Visit>
 void PhotonMap::visit(const Vec3& position, const Vec3& normal, const Visit& visit) const {
-  const Float3 p = float3(position);
+  const Float3 p = float3(position - origin_);
   const Float3 up = float3(normal);
   const auto count = static_cast<std::uint32_t>(nodes_.size());
   for (std::uint32_t i = 0; i < count;) {

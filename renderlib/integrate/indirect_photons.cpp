@@ -74,7 +74,8 @@ constexpr double kSurvival = 0.75;
 /// Follows a photon that has left an origin, and adds it to `out` at each receiver that it meets.
 /// At the first receiver, it is added with `share` times its power, and not added if `share` is 0.
 void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler& sampler,
-            std::uint64_t number, Ray ray, Rgb power, float share, TracedPhotons& out) {
+            std::uint64_t number, Ray ray, Rgb power, float share, const Vec3& origin,
+            TracedPhotons& out) {
   NestedDielectrics nesting;
   std::uint32_t uncounted = 0;  // scatterings that do not count towards max_depth
   for (std::uint32_t chain = 1; chain - uncounted < sources.max_depth && uncounted < kMaxUncounted;
@@ -88,8 +89,8 @@ void follow(const Scene& scene, const PhotonSources& sources, const PixelSampler
     const Bsdf bsdf = bsdf_at(scene.material(hit->material), scene.textures(), *hit, from);
     if (caustic_role(sources.casters, hit->material, bsdf) == CausticRole::kReceiver) {
       if (share > 0) {
-        out.photons.push_back(
-            stored_photon(scene, sources.casters, *hit, from, chain - uncounted, power * share));
+        out.photons.push_back(stored_photon(scene, sources.casters, *hit, from, chain - uncounted,
+                                            power * share, origin));
       }
       share = 1;
     }
@@ -185,7 +186,7 @@ TracedPhotons trace_indirect_photons(const Scene& scene, const PhotonSources& so
           origin.diffuse ? direction_from(place->normal, toward[0], toward[1]) : place->direction;
       if (direction) {
         follow(scene, sources, sampler, number, spawn_ray(place->point, *direction), power, share,
-               out);
+               chunk.origin, out);
       }
       share = origin.diffuse ? 1 : 0;
     }

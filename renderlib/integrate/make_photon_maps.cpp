@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "renderlib/base/split_mix.h"
+#include "renderlib/camera/camera.h"
 #include "renderlib/geometry/primitive_list.h"
 #include "renderlib/integrate/caustics.h"
 #include "renderlib/integrate/indirect_photons.h"
@@ -50,13 +51,28 @@ constexpr int kMaxHalvings = 3;
 /// Maximum number of primitives at which indirect photons start.
 constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 21;
 
+/// Returns the point to which the positions of photons are relative: the point that the camera
+/// shows in the direction of its view, or else the camera's position. Positions are floats, so they
+/// are precise near this point. Relative to the world's origin they would not be if the scene lies
+/// far from there.
+Vec3 origin_of(const Scene& scene) {
+  const View view = view_of(scene.camera());
+  const Ray ahead{.origin = view.position,
+                  .direction = normalize(view.look_at - view.position),
+                  .time = middle_of(shutter_of(scene.camera()))};
+  const Hit hit = scene.accel().closest(ahead);
+  return hit ? ahead.origin + ahead.direction * hit.t : view.position;
+}
+
 /// Returns chunk `i` of a map.
-PhotonChunk chunk_of(const PhotonMapKey& key, std::uint64_t photons, std::uint64_t i) {
+PhotonChunk chunk_of(const PhotonMapKey& key, const Vec3& origin, std::uint64_t photons,
+                     std::uint64_t i) {
   return {.seed = key.seed,
           .map = key.number,
           .photons = photons,
           .first = photons * i / kChunks,
-          .last = photons * (i + 1) / kChunks};
+          .last = photons * (i + 1) / kChunks,
+          .origin = origin};
 }
 
 /// Builds the map of the photons. Each photon spreads its power over a disk. Knaus and Zwicker
@@ -65,15 +81,20 @@ PhotonChunk chunk_of(const PhotonMapKey& key, std::uint64_t photons, std::uint64
 /// it, (n + 1)^(-1/6). `kind` is 0 for the map of caustics and 1 for the map of indirect light, so
 /// that PhotonMap divides space differently for two maps with one number. `max_halvings`: see
 /// kMaxHalvings.
-PhotonMap map_of(const Scene& scene, std::vector<StoredPhoton> photons, const PhotonMapKey& key,
-                 std::uint64_t kind, int max_halvings, const Preparation& preparation) {
+PhotonMap map_of(const Scene& scene, std::vector<StoredPhoton> photons, const Vec3& origin,
+                 const PhotonMapKey& key, std::uint64_t kind, int max_halvings,
+                 const Preparation& preparation) {
   const double factor = pow(key.number + 1.0, -1.0 / 6);
-  return {std::move(photons), factor, split_mix(key.seed ^ key.number ^ kind << 32),
-          preparation.pool, [&](StoredPhoton& photon) {
-            double share = preparation.stopped() ? 1 : share_on_surface(scene, photon);
+  return {std::move(photons),
+          origin,
+          factor,
+          split_mix(key.seed ^ key.number ^ kind << 32),
+          preparation.pool,
+          [&](StoredPhoton& photon) {
+            double share = preparation.stopped() ? 1 : share_on_surface(scene, photon, origin);
             for (int i = 0; i < max_halvings && share < 1; ++i) {
               photon.radius /= 2;
-              share = share_on_surface(scene, photon);
+              share = share_on_surface(scene, photon, origin);
             }
             return share;
           }};
@@ -92,10 +113,10 @@ std::vector<StoredPhoton> joined(std::vector<TracedPhotons> chunks, TracedMaps& 
 
 /// Adds the map of caustics. Returns false if stopped.
 bool add_caustics(const Scene& scene, const PhotonSources& sources, const PhotonMapKey& key,
-                  const Preparation& preparation, TracedMaps& maps) {
+                  const Vec3& origin, const Preparation& preparation, TracedMaps& maps) {
   std::vector<TracedPhotons> chunks(kChunks);
   if (!preparation.run(kChunks, [&](std::uint64_t i) {
-        chunks[i] = trace_photons(scene, sources.casters, chunk_of(key, key.photons, i));
+        chunks[i] = trace_photons(scene, sources.casters, chunk_of(key, origin, key.photons, i));
       })) {
     return false;
   }
@@ -106,7 +127,7 @@ bool add_caustics(const Scene& scene, const PhotonSources& sources, const Photon
     power_by_angle += chunk.power_by_angle;
   }
   maps.lamp_angle = power > 0 ? power_by_angle / power : 0;
-  maps.caustics = map_of(scene, joined(std::move(chunks), maps), key, 0, 0, preparation);
+  maps.caustics = map_of(scene, joined(std::move(chunks), maps), origin, key, 0, 0, preparation);
   preparation.advance();
   return !preparation.stopped();
 }
@@ -114,13 +135,13 @@ bool add_caustics(const Scene& scene, const PhotonSources& sources, const Photon
 /// Adds the map of indirect light. `maps` MUST already have the map of caustics, if the sources
 /// have casters. Returns false if stopped.
 bool add_indirect(const Scene& scene, const PhotonSources& sources, const PhotonMapKey& key,
-                  const Preparation& preparation, TracedMaps& maps) {
+                  const Vec3& origin, const Preparation& preparation, TracedMaps& maps) {
   PhotonMaps caustics(sources.casters);
   caustics.use_for_all(maps);
   const std::uint64_t points = std::max(key.photons, kMinOrigins);
   std::vector<PhotonOrigins> found(kChunks);
   if (!preparation.run(kChunks, [&](std::uint64_t i) {
-        found[i] = find_origins(scene, sources, caustics, chunk_of(key, points, i));
+        found[i] = find_origins(scene, sources, caustics, chunk_of(key, origin, points, i));
       })) {
     return false;
   }
@@ -142,11 +163,12 @@ bool add_indirect(const Scene& scene, const PhotonSources& sources, const Photon
   std::vector<TracedPhotons> chunks(kChunks);
   if (!origins.empty() && !preparation.run(kChunks, [&](std::uint64_t i) {
         chunks[i] = trace_indirect_photons(scene, sources, origins, luminance_up_to,
-                                           chunk_of(key, points / kOriginsPerPhoton, i));
+                                           chunk_of(key, origin, points / kOriginsPerPhoton, i));
       })) {
     return false;
   }
-  maps.indirect = map_of(scene, joined(std::move(chunks), maps), key, 1, kMaxHalvings, preparation);
+  maps.indirect =
+      map_of(scene, joined(std::move(chunks), maps), origin, key, 1, kMaxHalvings, preparation);
   double power = 0;
   double radii = 0;
   for (const StoredPhoton& photon : maps.indirect.photons()) {
@@ -182,11 +204,12 @@ std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height) {
 std::shared_ptr<const TracedMaps> make_photon_maps(const Scene& scene, const PhotonSources& sources,
                                                    const PhotonMapKey& key,
                                                    const Preparation& preparation) {
+  const Vec3 origin = origin_of(scene);
   TracedMaps maps;
-  if (!sources.casters.empty() && !add_caustics(scene, sources, key, preparation, maps)) {
+  if (!sources.casters.empty() && !add_caustics(scene, sources, key, origin, preparation, maps)) {
     return nullptr;
   }
-  if (sources.surfaces && !add_indirect(scene, sources, key, preparation, maps)) {
+  if (sources.surfaces && !add_indirect(scene, sources, key, origin, preparation, maps)) {
     return nullptr;
   }
   return std::make_shared<const TracedMaps>(std::move(maps));

@@ -105,9 +105,10 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Nu
   return photon;
 }
 
-/// Follows the photon until it arrives at a receiver of caustics, and adds it to `out`.
+/// Follows the photon until it arrives at a receiver of caustics, and adds it to `out` with its
+/// position relative to `origin`.
 void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, Photon photon,
-            TracedPhotons& out) {
+            const Vec3& origin, TracedPhotons& out) {
   NestedDielectrics nesting;
   for (std::uint32_t chain = 1; chain <= kMaxCausticChain; ++chain) {
     const std::optional<SurfacePoint> hit = intersect_visible(
@@ -128,7 +129,7 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
         caustic_role(casters, hit->material,
                      bsdf_at(scene.material(hit->material), scene.textures(), *hit, from));
     if (role == CausticRole::kReceiver) {
-      out.photons.push_back(stored_photon(scene, casters, *hit, from, chain, photon.power));
+      out.photons.push_back(stored_photon(scene, casters, *hit, from, chain, photon.power, origin));
       const double power = luminance(out.photons.back().power);
       out.power += power;
       out.power_by_angle += power * photon.angle;
@@ -145,9 +146,10 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
 /// opaque stands between it and the photon. Close means at most a quarter of the radius below the
 /// disk's plane: lower surfaces do not get the photon's light (density_at() in
 /// guiding/photon_map.h).
-bool is_on_surface(const Scene& scene, const StoredPhoton& photon, const Vec3& to) {
+bool is_on_surface(const Scene& scene, const StoredPhoton& photon, const Vec3& origin,
+                   const Vec3& to) {
   const Vec3 lift = vec3(photon.normal) * (photon.radius / 8.0);
-  const Vec3 start = vec3(photon.position) + lift;
+  const Vec3 start = origin + vec3(photon.position) + lift;
   const double time = middle_of(shutter_of(scene.camera()));
   const Ray along{.origin = start, .direction = to + lift - start, .t_max = 1, .time = time};
   const Ray down{.origin = to + lift, .direction = lift * -3, .t_max = 1, .time = time};
@@ -167,12 +169,12 @@ double random_number_of(const StoredPhoton& photon) {
 }  // namespace
 
 StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const SurfacePoint& hit,
-                           const Vec3& from, std::uint32_t chain, Rgb power) {
+                           const Vec3& from, std::uint32_t chain, Rgb power, const Vec3& origin) {
   if (scene.features().alpha || scene.features().mixtures) {
     const MaterialId whole = material_of(scene.geometry(), hit.id);
     power = power * static_cast<float>(1 / receiving_part(scene, casters, whole, hit, from));
   }
-  return {.position = float3(hit.position),
+  return {.position = float3(hit.position - origin),
           .normal = float3(facing_normal(hit, from)),
           .chain = chain,
           .from = float3(from),
@@ -185,13 +187,13 @@ TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const Ph
   for (std::uint64_t number = chunk.first; number < chunk.last; ++number) {
     const Numbers numbers{sampler, number};
     if (const auto photon = start(scene, casters, numbers, chunk.photons, out.rays)) {
-      follow(scene, casters, numbers, *photon, out);
+      follow(scene, casters, numbers, *photon, chunk.origin, out);
     }
   }
   return out;
 }
 
-double share_on_surface(const Scene& scene, const StoredPhoton& photon) {
+double share_on_surface(const Scene& scene, const StoredPhoton& photon, const Vec3& origin) {
   constexpr int kAtRim = 4;      // points at the rim of the disk
   constexpr double kRim = 0.97;  // their distance, as a part of the radius
   constexpr int kAllOver = 16;   // points all over the disk
@@ -207,8 +209,8 @@ double share_on_surface(const Scene& scene, const StoredPhoton& photon) {
   const double first_turn = random_number_of(photon);
   const auto is_there = [&](double turn, double distance) {
     const SinCos angle = sincos_turns(turn + first_turn);
-    return is_on_surface(scene, photon,
-                         vec3(photon.position) + basis.x * (distance * angle.cos) +
+    return is_on_surface(scene, photon, origin,
+                         origin + vec3(photon.position) + basis.x * (distance * angle.cos) +
                              basis.y * (distance * angle.sin));
   };
   int found = 0;

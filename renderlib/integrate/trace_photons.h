@@ -20,6 +20,7 @@ struct PhotonChunk {
   std::uint64_t photons = 0;  ///< number of photons that are started for the whole map
   std::uint64_t first = 0;
   std::uint64_t last = 0;
+  Vec3 origin = {};  ///< the point to which the positions of stored photons are relative
 };
 
 /// The photons of a chunk.
@@ -42,13 +43,15 @@ TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const Ph
 /// Returns the photon as a map holds it. It arrived with the power `power` at the receiver `hit`,
 /// from direction `from`, after `chain` scatterings. A partly transparent receiver, or one in a
 /// mixture, is present with some probability, and paths look up photons only where it is present.
-/// So the map holds `power` divided by this probability.
+/// So the map holds `power` divided by this probability. The
+/// photon's position is relative to `origin`.
 StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const SurfacePoint& hit,
-                           const Vec3& from, std::uint32_t chain, Rgb power);
+                           const Vec3& from, std::uint32_t chain, Rgb power, const Vec3& origin);
 
 /// Returns the share, in [1/4, 1], of the photon's disk that lies on surfaces. It is estimated by
 /// short rays, first at the rim and, if some miss, all over the disk. PhotonMap divides the power
 /// by this share; otherwise a photon near an edge would lose the power that falls beyond the edge.
-double share_on_surface(const Scene& scene, const StoredPhoton& photon);
+/// The photon's position is relative to `origin`.
+double share_on_surface(const Scene& scene, const StoredPhoton& photon, const Vec3& origin);
 
 }  // namespace bandsaw

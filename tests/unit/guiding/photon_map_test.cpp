@@ -16,9 +16,9 @@ namespace {
 
 constexpr Vec3 kAbove{0, 0, 1};
 
-/// The arguments of PhotonMap are the photons, a factor for all radii, a seed, the pool, and
-/// `share_on_surface`. This function is the last argument. It states that the whole disk of each
-/// photon lies on the surface.
+/// The arguments of PhotonMap are the photons, their origin, a factor for all radii, a seed, the
+/// pool, and `share_on_surface`. This function is the last argument. It states that the whole disk
+/// of each photon lies on the surface.
 double whole(const StoredPhoton&) { return 1; }
 
 /// Returns photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4. So 10/13 of
@@ -45,6 +45,18 @@ double irradiance(const PhotonMap& map, const Vec3& position, const Vec3& normal
   return sum;
 }
 
+// All coordinates of the points are multiples of 2^-10, so moved points are exact.
+TEST(PhotonMap, IsTheSameFarFromTheOriginOfTheWorld) {
+  Pool pool(1);
+  const Vec3 far{0x1p40, -0x1p41, 3 * 0x1p38};
+  const PhotonMap near_map(on_floor(5000), {}, 1, 0, pool, whole);
+  const PhotonMap far_map(on_floor(5000), far, 1, 0, pool, whole);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 at{i * 0x1p-7, (i * 37 % 100) * 0x1p-7, 0};
+    EXPECT_EQ(irradiance(far_map, far + at), irradiance(near_map, at)) << i;
+  }
+}
+
 TEST(PhotonMap, TheDensityOfAPhotonIntegratesToOne) {
   const StoredPhoton photon{.position = {1, 2, 3}, .radius = 0.5f, .normal = float3(kAbove)};
   constexpr int kSteps = 400;
@@ -63,7 +75,7 @@ TEST(PhotonMap, TheDensityOfAPhotonIntegratesToOne) {
 
 TEST(PhotonMap, FindsThePhotonsThatAnExhaustiveSearchFinds) {
   Pool pool(2);
-  const PhotonMap map(on_floor(5000), 1, 0, pool, whole);
+  const PhotonMap map(on_floor(5000), {}, 1, 0, pool, whole);
   ASSERT_GT(map.size(), 500u);
   const PixelSampler sampler(4, 5, 6);
   for (std::uint64_t i = 0; i < 300; ++i) {
@@ -100,7 +112,7 @@ Totals totals_of(const PhotonMap& map, double from = 0, double to = 1) {
 TEST(PhotonMap, EstimatesTheDensityAndAdaptsTheDisks) {
   Pool pool(1);
   constexpr std::uint64_t kPhotons = 100'000;
-  const PhotonMap map(on_floor(kPhotons), 1, 0, pool, whole);
+  const PhotonMap map(on_floor(kPhotons), {}, 1, 0, pool, whole);
   for (const bool dense : {false, true}) {
     test::Moments moments;
     const PixelSampler sampler(7, 8, 9);
@@ -126,7 +138,7 @@ TEST(PhotonMap, KeepsAnEdgeOfLight) {
   std::vector<StoredPhoton> photons = on_floor(100'000);
   std::erase_if(photons, [](const StoredPhoton& photon) { return photon.position[0] > 0.25f; });
   Pool pool(1);
-  const PhotonMap map(photons, 1, 0, pool, whole);
+  const PhotonMap map(photons, {}, 1, 0, pool, whole);
   const double lit = static_cast<double>(photons.size()) * 4;
   EXPECT_NEAR(irradiance(map, {0.2, 0.5, 0}), lit, 0.4 * lit);
   EXPECT_EQ(irradiance(map, {0.3, 0.5, 0}), 0);
@@ -134,14 +146,14 @@ TEST(PhotonMap, KeepsAnEdgeOfLight) {
 
 TEST(PhotonMap, TheRadiusFactorScalesTheDisks) {
   Pool pool(1);
-  const PhotonMap one(on_floor(30'000), 1, 0, pool, whole);
-  const PhotonMap half(on_floor(30'000), 0.5, 0, pool, whole);
+  const PhotonMap one(on_floor(30'000), {}, 1, 0, pool, whole);
+  const PhotonMap half(on_floor(30'000), {}, 0.5, 0, pool, whole);
   EXPECT_NEAR(totals_of(half).radius, 0.5 * totals_of(one).radius, 1e-3 * totals_of(one).radius);
 }
 
 TEST(PhotonMap, DividesByTheShareOnTheSurface) {
   Pool pool(3);
-  const PhotonMap map(on_floor(3000), 1, 0, pool,
+  const PhotonMap map(on_floor(3000), {}, 1, 0, pool,
                       [](const StoredPhoton& photon) { return photon.radius > 0 ? 0.25 : 1; });
   EXPECT_NEAR(totals_of(map).power, 12'000, 1);
 }
@@ -149,8 +161,8 @@ TEST(PhotonMap, DividesByTheShareOnTheSurface) {
 TEST(PhotonMap, IsTheSameForAnyNumberOfThreads) {
   Pool one(1);
   Pool three(3);
-  const PhotonMap a(on_floor(5000), 1, 0, one, whole);
-  const PhotonMap b(on_floor(5000), 1, 0, three, whole);
+  const PhotonMap a(on_floor(5000), {}, 1, 0, one, whole);
+  const PhotonMap b(on_floor(5000), {}, 1, 0, three, whole);
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_TRUE(a.photons()[i].position == b.photons()[i].position &&
@@ -168,7 +180,7 @@ TEST(PhotonMap, TheSeedDecidesWhereRadiiJump) {
     return photon.position[0] < 0.5f && photon.position[1] < 0.5f;
   });
   const auto radius_at = [&](std::uint64_t seed, const Float3& position) {
-    const PhotonMap map(photons, 1, seed, pool, whole);
+    const PhotonMap map(photons, {}, 1, seed, pool, whole);
     const auto near = std::min_element(map.photons().begin(), map.photons().end(),
                                        [&](const auto& a, const auto& b) {
                                          return length_squared(vec3(a.position) - vec3(position)) <
@@ -190,7 +202,7 @@ TEST(PhotonMap, MayBeEmptyOrHaveAllPhotonsAtOnePoint) {
   for (StoredPhoton& photon : photons) {
     photon.position = {1, 1, 0};
   }
-  const PhotonMap map(photons, 1, 0, pool, whole);
+  const PhotonMap map(photons, {}, 1, 0, pool, whole);
   EXPECT_EQ(irradiance(map, {0, 0, 0}), 0);
 }
 
@@ -202,7 +214,7 @@ TEST(PhotonMap, PhotonsAtOnePointHaveTheDisksOfTheirSurroundings) {
   for (std::size_t i = 0; i < 40; ++i) {
     photons[i].position = {0.6f, 0.6f, 0};
   }
-  const PhotonMap map(photons, 1, 0, pool, whole);
+  const PhotonMap map(photons, {}, 1, 0, pool, whole);
   for (const StoredPhoton& photon : map.photons()) {
     EXPECT_GT(photon.radius, 0.005f);
   }
