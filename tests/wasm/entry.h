@@ -21,8 +21,9 @@ void bandsaw_add_blob(const void* bytes, size_t size);
 /// that were added. Then forgets the blobs. Returns 1, or 0 for an error.
 uint32_t bandsaw_build(const void* manifest, size_t size);
 /// Renders the first `samples` samples of all pixels. The scene must have been built. The samples
-/// must be one node of the summation tree: their number is, for example, 8 times a power of two.
-/// Returns width x height x 3 sums, which are valid until the next call; null for an error.
+/// are summed in a binary tree over blocks of 8 samples. They must be one node of this tree, so the
+/// number of blocks must be a power of two. The last block may be shorter. Returns width x height x
+/// 3 sums, which are valid until the next call; null for an error.
 const double* bandsaw_render(uint32_t width, uint32_t height, uint32_t max_depth,
                              uint32_t integrator, uint64_t seed, uint64_t samples);
 /// Returns the hash of the sums that were rendered last.

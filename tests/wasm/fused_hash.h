@@ -13,8 +13,10 @@
 
 namespace bandsaw::test {
 
-/// Returns the hash. The numbers have any bits, or are of similar sizes, some with few bits. Some
-/// sums cancel, and some results are very small. A result that is not a number counts as 1.
+/// Returns the hash. The operands of the first operation have random bits. All other operands are
+/// random numbers of absolute values from 1 to 512 or products of such numbers, some of them scaled
+/// down by a power of two. Many of these numbers have few significant bits. Some sums cancel, and
+/// some results are very small. A result that is not a number counts as 1.
 inline std::uint64_t fused_hash() {
   Hash64 hash;
   std::uint64_t state = 0;

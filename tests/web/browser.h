@@ -44,8 +44,8 @@ class Browser {
   /// Clicks on the first element that matches the CSS selector, or types into it.
   void click(const std::string& selector);
   void type(const std::string& selector, const std::string& keys);
-  /// From now on, requests fail if their address matches the pattern, such as "*.png". The pattern
-  /// "" lets all requests pass.
+  /// Makes later requests fail if their address matches the pattern, such as "*.png". The
+  /// pattern "" lets all requests pass.
   void block(const std::string& pattern);
   /// Writes a PNG of the window's content to the file.
   void screenshot(const std::string& path);

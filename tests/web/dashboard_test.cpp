@@ -108,7 +108,8 @@ TEST_F(DashboardTest, RequiresTheJoinString) {
   EXPECT_THAT(browser.console_errors(), IsEmpty());
 }
 
-// An expression in JavaScript: the card with the link for browsers, if it is shown.
+// An expression in JavaScript: the card with the link for browsers, if it is shown. Whoever opens
+// this link can let a browser render for the farm.
 constexpr char kCard[] = "document.querySelector('.invite:not([hidden])')";
 
 TEST_F(DashboardTest, TheLinkForBrowsersIsShownOpenedAndTakenBack) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Firefox without a window, driven by its own protocol, Marionette (JSON over TCP, each message
-// after its length), because Debian has no geckodriver.
+// Firefox without a window. It is driven by its own protocol, Marionette, because Debian has no
+// geckodriver. A message of Marionette is its length and then JSON, over TCP.
 
 #include <google/protobuf/struct.pb.h>
 

@@ -60,6 +60,8 @@ int free_port() {
   return acceptor.local_endpoint().port();
 }
 
+/// Returns the program that this kind of browser needs; empty: not installed. The argument only
+/// selects the kind.
 std::string program_of(const Browser*) { return chromedriver_program(); }
 std::string program_of(const Firefox*) { return firefox_program(); }
 

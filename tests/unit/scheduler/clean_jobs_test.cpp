@@ -36,6 +36,8 @@ TEST(CleanJobs, AreTheGuidesAndHalfOfASingleBlock) {
   EXPECT_EQ(few.half->settings.integrator, Integrator::kPath);
 }
 
+// The quarter is rounded down to a power of two and limited to 8 to 32 samples. The guides never
+// have more samples than the image.
 TEST(CleanJobs, TheGuidesHaveAQuarterOfTheSamplesWithinBounds) {
   const std::map<std::uint64_t, std::uint64_t> expected = {
       {1, 1}, {7, 7}, {8, 8}, {16, 8}, {63, 8}, {64, 16}, {127, 16}, {128, 32}, {1 << 20, 32}};

@@ -1,5 +1,6 @@
 // Coverage knows the owner of each sample of each row of one pass: the id of a lease (here mostly
-// 7), kStored or kFree. Random operations are compared with plain bookkeeping.
+// 7), kStored or kFree. A row of a band is wanted if none of the band's samples is stored in it.
+// Random operations are compared with plain bookkeeping.
 
 #include "coordinator/scheduler/model/coverage.h"
 
@@ -60,6 +61,8 @@ TEST(Coverage, ALeaseThatLosesAPartOfARowLosesTheRow) {
   EXPECT_EQ(coverage.free_from(0), (Band{{0, 16}, {0, 1}}));
 }
 
+// A band is adoptable if it has a wanted row, and no lease owns samples of the band in a wanted
+// row. Then a new lease of the band can own all wanted rows.
 TEST(Coverage, OnlyRowsWithoutALeaseAreAdoptable) {
   Coverage coverage({0, 16}, 4);
   coverage.assign({{0, 16}, {0, 1}}, kStored);

@@ -1,5 +1,6 @@
-// Stored bands that are found damaged on disk become free again: they are rendered and audited
-// again, and counted once.
+// A stored band that is found damaged on disk becomes free again. It is rendered again, and is
+// counted once. If the band was audited (rendered by a second worker and compared), it is audited
+// again.
 
 #include "coordinator/scheduler/api/worker_process.h"
 #include "farm_driver.h"
@@ -7,7 +8,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// All bands are audited.
+/// Returns options with which all bands are audited.
 SchedulerOptions with_audits() {
   SchedulerOptions options = test_options();
   options.audit_share = 1;

@@ -67,9 +67,9 @@ TEST(ErrorCurve, FindsTheExponentOfTheFall) {
   EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t) { return 1.0; })), 0.5);
 }
 
-/// Returns the error of an imagined renderer with Sobol' sequences. It falls as samples^-0.5 and
-/// also, by a step of 2^-0.2, whenever 2^k samples complete a net. So each doubling of the samples
-/// divides it by 2^0.7.
+/// Returns the error of an imagined renderer with Sobol' sequences, whose first 2^k samples form a
+/// net: they are evenly distributed. The error falls as samples^-0.5. In addition, it falls by the
+/// factor 2^-0.2 whenever a net is complete. So each doubling of the samples divides it by 2^0.7.
 double error_in_steps(double samples) {
   return std::pow(samples, -0.5) * std::exp2(-0.2 * std::floor(std::log2(samples)));
 }
@@ -86,7 +86,7 @@ TEST(ErrorCurve, ExpectsTheStepsOfWholeNetsAgain) {
     EXPECT_NEAR(error_at(curve, samples) / error_in_steps(samples), 1, 1e-9) << samples;
   }
   // The error at 3,584 samples is little above the target. The error of the whole net of 4,096
-  // samples is far below it.
+  // samples is far below the target.
   const double target = 0.99 * error_in_steps(3584);
   EXPECT_GT(*samples_until(curve, target), 3584);
   EXPECT_LT(*samples_until(curve, target), 4096);
@@ -203,7 +203,8 @@ Measured checkpoints_of(const Measured& scene, double target) {
 
 // A job ends at a checkpoint, and checkpoints are an eighth to a quarter apart, so predictions are
 // not exact. Nine tenths of all predictions after a quarter of the work are right within 15 %, and
-// their mean error is 6 %; the bounds are slightly wider. The targets are 2.5 % to 6 %.
+// the mean error of all predictions is 6 %. The bounds are slightly wider. The targets are 2.5 % to
+// 6 %.
 TEST(ErrorCurve, PredictsTheEndOfMeasuredCurvesAfterAQuarter) {
   constexpr int kTargets = 40;
   int all = 0;

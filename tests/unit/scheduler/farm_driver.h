@@ -1,8 +1,9 @@
 #pragma once
 
 // Helpers of the scheduler's tests. FarmDriver drives a Scheduler by hand: it sends inputs, keeps
-// all records and actions, and checks the invariants after each step. The glossary of
-// proto/README.md defines the terms: band, pass, lease, epoch, audit and others.
+// all records and actions, and checks the invariants after each step. A band is a range of rows and
+// a range of samples, and a lease gives a band to a worker. An epoch is one run of the coordinator.
+// The glossary of proto/README.md defines further terms.
 
 #include <algorithm>
 #include <functional>
@@ -107,7 +108,7 @@ class FarmDriver {
     return send(input::Hello{session, test_worker(instance, max_bands, std::move(held))});
   }
 
-  /// A browser joins, with its tab's name "tab" and this much memory for scenes (0: no limit).
+  /// A browser tab of the name "tab" joins. It has this much memory for scenes; 0: no limit.
   Step hello_tab(SessionId session, const std::string& instance, std::uint64_t memory_bytes = 0,
                  std::vector<WorkerHello::Held> held = {}) {
     WorkerHello worker = test_worker(instance, 1, std::move(held));

@@ -55,7 +55,7 @@ TEST(FrameNumbers, WrongNumbersAreNamed) {
 
 TEST(FrameNumbers, RepeatedNumbersAreReadUpToALimit) {
   EXPECT_EQ(parsed("1-30000,1-30000,1-30000,40000").size(), 30'001U);
-  // The list is refused; no number is left out.
+  // A list that is too long is refused as a whole.
   EXPECT_THAT(std::string(parse_frames("1-30000,1-30000,1-30000,1-30000,40000").status().message()),
               HasSubstr("lists more than 100000 frames"));
 }

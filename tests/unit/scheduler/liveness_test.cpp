@@ -224,8 +224,8 @@ void store_one_and_lose(FarmDriver& farm, SessionId session) {
   farm.send(input::SessionEnded{session, "connection reset"});
 }
 
-// The first crash makes the band suspect. A new farm, of which nothing is known, requires five more
-// (CrashRate).
+// The first crash makes the band suspect: the band may have caused the crash. A new farm, of which
+// nothing is known, requires five more crashes before it blames the band (CrashRate).
 TEST(CrashAttribution, SixCrashesOnANewFarmFailTheJobAndNameTheBand) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
@@ -402,6 +402,8 @@ TEST(CrashAttribution, CrashesOfTheOnlyMachineFailTheJob) {
   EXPECT_EQ(farm.job(job).state, JobState::kFailed);
 }
 
+// required(least, own) returns the number of crashes at one band after which the band is blamed. It
+// is at least `least`. `own` crashes were at this band and are left out of the rate.
 TEST(CrashRate, RequiresMoreCrashesIfMoreWorkersAreLost) {
   CrashRate calm;
   EXPECT_EQ(calm.required(3, 0), 5u) << "the prior of a new farm";

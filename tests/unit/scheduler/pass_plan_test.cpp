@@ -1,5 +1,7 @@
 // The scheduler's pure functions: division of a job into passes, error checkpoints (sample numbers
-// at which the error is compared with the target), sizes of bands, rates and the clock.
+// at which the error is compared with the target), sizes of bands, rates and the clock. A pass is a
+// range of samples that is rendered for the whole image. It must be a node: an aligned range of 2^k
+// blocks of 8 samples. Only the job's last block may be shorter.
 
 #include <gtest/gtest.h>
 
@@ -77,9 +79,9 @@ TEST(Checkpoints, ContinueWithoutAnErrorAndStayBelowTheMaximum) {
   EXPECT_EQ(next_checkpoint(0, -1, 0.01, 5), 5u);
 }
 
-/// A worker renders 100 rows of 8 samples a second, which is half of the speed of the farm. It gets
-/// a band of the 1,000 free rows, which are all that are left. The target time of a band is 1 s. A
-/// row of tiles has 16 rows.
+/// Returns the data from which size_band computes a band for a worker. The worker renders 100 rows
+/// of 8 samples a second, which is half of the speed of the farm. 1,000 rows are free, and no other
+/// work is left. The target time of a band is 1 s. A row of tiles has 16 rows.
 Sizing sizing() {
   static const CostMap even(2000);
   Sizing s;

@@ -1,6 +1,7 @@
-// The reconnect barrier: all workers are lost at once, because the coordinator's own network
-// failed, and reconnect one by one. Until all are back, or 6 s (the grace time) have passed since
-// the first came back, none of them gets a lease, because another may have rendered those rows.
+// The reconnect barrier. If the coordinator's own network fails, all workers are lost at once and
+// reconnect one by one. The rows that are free then may have been rendered by a worker that is not
+// back yet. So no worker that was lost gets a new lease until all are back, or until 6 s (the grace
+// time) have passed since the first one came back.
 
 #include "farm_driver.h"
 

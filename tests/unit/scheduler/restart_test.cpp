@@ -1,4 +1,5 @@
-// Restarts of the coordinator from its journal and the bands on disk.
+// Restarts of the coordinator from its journal and the bands on disk. An epoch is one run of the
+// coordinator, from its start to its end.
 
 #include "farm_driver.h"
 #include "renderlib/render/work_hash.h"
@@ -52,8 +53,8 @@ FarmDriver restarted(const FarmDriver& farm, const std::vector<input::BandStored
   return next;
 }
 
-// A job of an earlier pixel version cannot be continued: its old and new bands would be of
-// different versions.
+// The pixel version is raised whenever a change of the program alters pixels. A job of an earlier
+// version cannot be continued, because its old and new bands would be of different versions.
 TEST(Restart, FailsJobsOfAnotherPixelVersionButNotFinalOnes) {
   FarmDriver farm;
   const JobId running = farm.submit(test_job("r1", StopAtSamples{8}));
@@ -139,7 +140,8 @@ TEST(Restart, KeepsTheErrorCurveOfARunningJob) {
   FarmDriver next = restarted(farm, {});
   ASSERT_EQ(next.job(1).curve, farm.job(1).curve);
   next.pass_time(5);
-  EXPECT_TRUE(next.send(merged).records.empty()) << "the rebuilt film reports it again";
+  EXPECT_TRUE(next.send(merged).records.empty())
+      << "an error that the rebuilt film reports again must not be recorded again";
   EXPECT_EQ(next.job(1).curve, farm.job(1).curve);
 }
 
@@ -385,7 +387,7 @@ TEST(Restart, RetractsTheRowsOfAWrongMachineOnceAllBandsAreReplayed) {
   next.scheduler.replay(on_disk({0, 3}, 2));
   next.scheduler.replay(on_disk({0, 4}, 3));
   EXPECT_TRUE(next.scheduler.wanted(1, {{0, 8}, {0, 4}})->empty())
-      << "the film has rows of process 1 and cannot take those of another process yet";
+      << "the film has rows of process 1 and cannot take rows of another process yet";
   next.take(next.scheduler.replayed(next.now));
   const auto retracted = next.all<action::Retract>();
   ASSERT_EQ(retracted.size(), 1u);

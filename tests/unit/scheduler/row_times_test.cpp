@@ -35,7 +35,9 @@ TEST(RowTimes, AverageTwoMeasurements) {
 TEST(RowTimes, ScaleWithTheShareOfSamples) {
   RowTimes times(64);
   times.measure({0, 64}, 64);
-  std::vector<float> shares(64 / 8, 0.5F);  // at least one for each row of tiles (16 rows)
+  // The share of a row of tiles (16 rows) is the number of its samples, divided by the number with
+  // uniform sampling. There is at least one share for each row of tiles.
+  std::vector<float> shares(64 / 8, 0.5F);
   EXPECT_DOUBLE_EQ(times.of_all() / 2, times.of({0, 64}, shares));
 }
 

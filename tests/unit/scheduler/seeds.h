@@ -12,8 +12,8 @@
 namespace bandsaw::coordinator::sim {
 
 /// Calls f(seed) for `seeds` consecutive seeds from `first` on, until a test fails. The environment
-/// variable BANDSAW_SEEDS=n gives another number of seeds, BANDSAW_SEED=n runs seed n alone. Builds
-/// with a sanitizer run fewer seeds.
+/// variable BANDSAW_SEEDS=n gives another number of seeds, and BANDSAW_SEED=n runs seed n alone.
+/// Builds with a sanitizer run fewer seeds.
 template <class F>
 void for_seeds(std::uint64_t first, std::uint64_t seeds, F f) {
   if (std::getenv("BANDSAW_SEED") != nullptr) {

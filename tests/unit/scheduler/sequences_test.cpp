@@ -295,7 +295,7 @@ TEST(Sequences, FewOfManyFramesAreJobsAtATime) {
   for (int i = 0; i < 200 && farm.work(); ++i) {
     most = std::max(most, farm.in_state(id, FrameState::kRendering).size());
   }
-  // Two frames for each worker, here one, and four more are jobs at a time.
+  // With w workers, at most 2 w + 4 frames of a sequence are jobs at a time. Here w is 1.
   EXPECT_GE(most, 3u);
   EXPECT_LE(most, 6u);
   EXPECT_EQ(farm.scheduler.jobs(farm.now).size(), 1u);
@@ -368,7 +368,7 @@ TEST(Sequences, FramesWaitForTheirScenes) {
   farm.work_all();
   EXPECT_THAT(farm.in_state(id, FrameState::kDone), ElementsAre(2, 4));
   EXPECT_EQ(farm.job(id).state, JobState::kRunning);
-  farm.add(id, {1, 2, 3});  // 2 again, as a client does after a lost answer
+  farm.add(id, {1, 2, 3});  // frame 2 again, as after a lost answer
   farm.work_all();
   EXPECT_EQ(farm.job(id).state, JobState::kDone);
   EXPECT_EQ(farm.results.size(), 4u);

@@ -202,7 +202,8 @@ class Bench {
   Scheduler scheduler_;
   std::vector<Busy> workers_;
   BenchResult result_;
-  std::map<double, double> predicted_left_;  ///< by time
+  /// For each time, the remaining seconds that the scheduler predicted then.
+  std::map<double, double> predicted_left_;
   double first_lease_ = -1;
   bool over_ = false;
 };

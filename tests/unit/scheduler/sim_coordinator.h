@@ -92,7 +92,7 @@ class SimCoordinator {
   /// A part of a record of the band log that is in the film.
   struct Added {
     Band record;                ///< the whole band of the record
-    Band band;                  ///< the rows of it that were added together
+    Band band;                  ///< a range of its rows, all of which were added
     std::uint64_t process = 0;  ///< the process that rendered it
   };
   /// The film of a job in memory; a restart builds it again from the band log.
@@ -147,7 +147,7 @@ class SimCoordinator {
   std::set<LeaseId> held_;                 ///< leases that the Hello of the present step names
   std::optional<input::BandStored> band_;  ///< band that the present step stores
 
-  // Survives a crash.
+  // The journal and the disk survive a crash.
   std::vector<Record> journal_;
   std::map<JobId, OnDisk> disk_;
 };

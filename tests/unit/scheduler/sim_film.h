@@ -18,8 +18,9 @@ namespace bandsaw::coordinator::sim {
 
 class SimFilm {
  public:
-  /// Stores these rows of the band. Returns false, and changes nothing, if some of their samples
-  /// are stored already. Rows of a process that was retracted are not stored; this is no error.
+  /// Stores these rows of the band and returns true. If some of their samples are stored already,
+  /// changes nothing and returns false. If the process that rendered the band was retracted, stores
+  /// nothing and returns true.
   bool add(const input::BandStored& band, const RowRange& rows) {
     if (any_of(band.band.samples, rows)) {
       return false;

@@ -250,7 +250,8 @@ void SimWorker::upload(LeaseId id) {
   band.instance = instance();
   band.render_s = held->render_s;
   band.cpu_s = held->render_s * nature_.threads;
-  // The result is sent once. In the share `loses` of all cases it gets lost or arrives twice.
+  // The result arrives once, except in the share `loses` of all cases. Then it is lost or arrives
+  // twice.
   const std::size_t times = chance_.happens(nature_.loses) ? chance_.pick(0, 1) * 2 : 1;
   for (std::size_t i = 0; i < times; ++i) {
     agenda_.in(chance_.happens(0.05) ? chance_.between(0, 8) : chance_.between(0.01, 0.1),

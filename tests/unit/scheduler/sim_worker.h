@@ -17,16 +17,17 @@ namespace bandsaw::coordinator::sim {
 struct Nature {
   double samples_per_s = 10'000;  ///< pixel samples
   std::uint32_t threads = 1;
-  std::uint32_t max_bands = 2;     ///< leases that it holds at once, at most
-  std::uint32_t number = 0;        ///< distinguishes the processes of workers of the same name
-  double fails = 0;                ///< share of its bands that it cannot render
-  double hangs = 0;                ///< share of its bands that it renders until they are revoked
-  double lies = 0;                 ///< share of its rows that have wrong pixels
-  double loses = 0.05;             ///< share of messages about bands that are lost, either way
+  std::uint32_t max_bands = 2;  ///< leases that it holds at once, at most
+  std::uint32_t number = 0;     ///< distinguishes the processes of workers of the same name
+  double fails = 0;             ///< share of its bands that it cannot render
+  double hangs = 0;             ///< share of its bands that it renders until they are revoked
+  double lies = 0;              ///< share of its rows that have wrong pixels
+  /// Share of the results that are lost or arrive twice, and of the acknowledgements that are lost.
+  double loses = 0.05;
   bool browser = false;            ///< it is a tab; each new process is a reload of the page
   std::uint64_t memory_bytes = 0;  ///< for scenes; 0: no limit
   /// The process crashes at the end of each band of the job `dies_of` that has the row
-  /// `dies_at_row`, and is restarted. 0: it never crashes by itself.
+  /// `dies_at_row`, and is restarted. If `dies_of` is 0, the process never crashes by itself.
   JobId dies_of = 0;
   std::uint32_t dies_at_row = 0;
 };
@@ -66,7 +67,7 @@ class SimWorker {
     /// Time at which the last message from the coordinator arrives. No later message arrives before
     /// it.
     double down_at = 0;
-    double up_at = 0;  ///< the same as down_at, for messages to the coordinator
+    double up_at = 0;  ///< time at which the last message to the coordinator arrives
   };
   /// A lease, which the worker holds until the result is acknowledged.
   struct Held {

@@ -5,7 +5,7 @@
 // every job is final, and no row of a finished image is missing.
 //
 // Each test has its own range of seeds. A failure prints its seed; BANDSAW_SEED=n in the
-// environment runs that seed alone, BANDSAW_SEEDS=n runs n seeds of each test.
+// environment runs that seed alone, and BANDSAW_SEEDS=n runs n seeds of each test.
 
 #include <optional>
 
@@ -35,9 +35,10 @@ struct Weather {
   bool chaos = true;    ///< random failures (one_thing_happens), hanging bands, lost messages
   bool crashes = true;  ///< of the coordinator
   bool lies = false;    ///< some workers return wrong results
-  /// This many of seven machines return wrong results for one row of five, all bands are audited,
-  /// and the coordinator crashes now and then. Two machines that are right connect before the first
-  /// job, because a wrong machine that is alone cannot be detected.
+  /// This many of seven machines return wrong results for one row of five. All bands are audited:
+  /// a second machine renders the band again, and the results are compared. The coordinator crashes
+  /// now and then. Two machines that are right connect before the first job, because a wrong
+  /// machine that is alone cannot be detected.
   std::optional<std::size_t> liars = std::nullopt;
   bool damage = false;   ///< of band logs
   bool failures = true;  ///< some workers fail some bands
@@ -333,7 +334,7 @@ std::vector<JobSpec> random_jobs(std::uint64_t seed) {
   std::vector<JobSpec> jobs;
   const std::uint64_t count = chance.pick(1, 3);
   for (std::uint64_t i = 0; i < count; ++i) {
-    // Images of 64 rows or more have probe bands.
+    // Images of 64 rows or more have probe bands: a few rows that are rendered before the others.
     jobs.push_back(test_job(absl::StrCat("request ", i), StopAtSamples{chance.pick(1, 200)},
                             static_cast<std::uint32_t>(chance.pick(1, 48)),
                             static_cast<std::uint32_t>(chance.pick(1, 90))));
@@ -458,7 +459,8 @@ TEST(Simulation, AuditedImagesAreRightWithWrongWorkers) {
     const Outcome one = run_with_liars(seed, liars);
     EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
     for (const std::string& name : one.quarantined) {
-      // The name is empty if a restart finds bands of a machine before the machine connects.
+      // If a restart finds the bands of a wrong machine before the machine connects, the recorded
+      // name of the machine is empty.
       EXPECT_TRUE(name.empty() || name == "w0" || (name == "w1" && liars == 2))
           << name << " was right, again with BANDSAW_SEED=" << seed;
     }

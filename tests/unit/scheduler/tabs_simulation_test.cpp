@@ -2,7 +2,7 @@
 // join, are frozen, closed, loaded again and disconnected; they reconnect with the leases that they
 // hold, fail bands and return wrong pixels ("lie"), while the coordinator crashes. All this happens
 // in the first kStorm seconds; after that every job must be done. A failure prints its seed;
-// BANDSAW_SEED=n in the environment repeats this run, BANDSAW_SEEDS=n runs n seeds.
+// BANDSAW_SEED=n in the environment repeats this run, and BANDSAW_SEEDS=n runs n seeds.
 
 #include <cmath>
 

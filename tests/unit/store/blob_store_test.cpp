@@ -108,6 +108,8 @@ TEST_F(BlobStoreTest, WrongBytesAndWrongSizesAreRefusedAndLeaveNothing) {
   EXPECT_EQ(files(), 0u);
 }
 
+// If an interrupted upload can continue, the name of its file is the digest and ".part". The file
+// "7" is of an upload that cannot continue.
 TEST_F(BlobStoreTest, AnAbandonedUploadIsRemovedAtTheNextStart) {
   open();
   write_all(folder_ / "incoming/7", "half");

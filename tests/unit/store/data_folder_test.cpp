@@ -83,6 +83,7 @@ TEST(Reserve, IsHeldReleasedAndHeldAgain) {
   EXPECT_TRUE(reserve.hold().ok());
 }
 
+// The probe writes a file, to find out if the disk has space, and removes it.
 TEST(DataFolder, TheProbeFailsWhileTheDiskIsFull) {
   const test::TempDir temp;
   EXPECT_TRUE(probe_disk(temp.path()).ok());

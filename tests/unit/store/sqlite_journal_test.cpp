@@ -119,7 +119,7 @@ TEST_F(SqliteJournalTest, AnOldSchemaIsReadAndUpgraded) {
 }
 
 // Journals up to version 8 have no sequences. They can be read, and appending a sequence raises
-// their version.
+// their version. The last three sample records are those of a sequence.
 TEST_F(SqliteJournalTest, ASequenceCanBeAppendedToAJournalOfVersion8) {
   std::vector<Record> records = sample_records();
   std::vector<Record> old(records.begin(), records.end() - 3);

@@ -119,8 +119,8 @@ TEST(Noise, HasMeanZeroAndTheVarianceOfUnitGradients) {
 }
 
 TEST(Noise, IsSmoothAcrossCells) {
-  // Gradients have unit length, and the slope of Hermite weights is at most 3/2, so no slope
-  // exceeds 1 + 3 * 1.5 * 2 * sqrt(3).
+  // Gradients have unit length, and the slope of Hermite weights is at most 3/2. So the slope along
+  // x is at most 1 + 1.5 * 2 * sqrt(3) < 6.2. The two points are two steps apart.
   std::mt19937_64 numbers(3);
   std::uniform_real_distribution<double> where(-10, 10);
   constexpr double kStep = 1e-4;
@@ -293,6 +293,9 @@ TEST(Textures, BoundTheirValuesAndAreNotBlackOnAverage) {
   }
 }
 
+// A repetition is a whole image, a cell of a checker or of noise, a vein of marble, or the length
+// of a ramp over a coordinate. A texture of other textures has the largest number of repetitions
+// among them and itself.
 TEST(Textures, CountTheirRepetitions) {
   RampTexture ramp;
   ramp.over = RampTexture::Over::kV;
@@ -314,6 +317,7 @@ TEST(Textures, CountTheirRepetitions) {
                           MixTexture{id(4), id(0), id(3)},
                           ProductTexture{id(1), id(5)},
                           RampTexture{.texture = id(5), .stops = {{0, {}}}}};
+  // Returns the repetitions of each texture between two points whose coordinates differ by `way`.
   const auto along = [&](const TextureCoordinates& way) {
     std::vector<double> counts;
     for (std::uint32_t i = 0; i < textures.size(); ++i) {

@@ -20,7 +20,8 @@ using Filter = ImageTexture::Filter;
 using Format = ImageTexture::Format;
 using Wrap = ImageTexture::Wrap;
 
-/// Texel (x, y) from the top left has the value 10 y + x in all channels.
+/// Returns an image whose texel (x, y), counted from the top left, has the value 10 y + x in all
+/// channels.
 Texture counted(std::uint32_t width, std::uint32_t height, Wrap wrap, Filter filter) {
   ImageTexture image;
   image.width = width;
@@ -185,10 +186,11 @@ TEST(Texture, MayWrapDifferentlyInUAndV) {
 }
 
 TEST(Texture, TX7HasNoSeamOnASphere) {
-  // The image has 64 x 32 texels. Its first and last columns are equal, and its values grow in v
-  // from pole to pole. Points on either side of the seam that are close together must differ by
-  // less than two texel steps. Close to a pole, the value must be within two texel steps of the
-  // texel in the outermost row that lies in the direction of the point.
+  // The image has 64 x 32 texels. Its first and last columns are equal, and its values grow from
+  // the top row to the bottom row, that is, from pole to pole. Points on either side of the seam
+  // that are close together must differ by less than two texel steps. Close to a pole, the value
+  // must be within two texel steps of the texel in the outermost row that lies in the direction of
+  // the point.
   ImageTexture image;
   image.width = 64;
   image.height = 32;

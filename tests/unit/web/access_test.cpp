@@ -19,6 +19,9 @@ int status_of(const std::optional<test::HttpAnswer>& result) {
   return result ? result->status : -1;
 }
 
+// The header Host of a request must name this dashboard. A foreign page whose name resolves to this
+// machine (DNS rebinding) sends the foreign name. The arguments of is_own_host are the header, the
+// name of this machine, and the name that the user has given to the dashboard.
 TEST(OwnHost, IsAnAddressLocalhostOrTheMachinesName) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:8787", "192.168.1.5:80", "[::1]:8787", "[::1]",
                            "localhost:8787", "LOCALHOST", "desk", "desk.local:8787"}) {

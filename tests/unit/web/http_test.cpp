@@ -91,6 +91,8 @@ TEST(HttpRange, AnUnsupportedRangeReturnsEverything) {
   EXPECT_EQ(with_range(conditional, text_reply("0123456789", "text")).status, 200);
 }
 
+// "*" in a route stands for one or more characters other than "/", which the handler gets as
+// `captured`.
 TEST(HttpRouter, UsesTheFirstMatchingRoute) {
   Router router;
   router.get("/", [](const HttpRequest&) { return text_reply("page", "text"); });

@@ -28,7 +28,7 @@ class SceneFilesTest : public WebTest {
  protected:
   SceneFilesTest() { log_in(); }
   std::string error_of(const Answer& result) { return message<web::Problem>(result).error(); }
-  /// Returns those of the digests whose files the coordinator does not have.
+  /// Asks for files by their digests. Returns the digests of the files that the coordinator lacks.
   std::vector<std::string> missing(const std::vector<std::string>& hex) {
     web::FileDigests asked;
     asked.mutable_sha256()->Assign(hex.begin(), hex.end());

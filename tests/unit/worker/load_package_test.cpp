@@ -149,7 +149,7 @@ TEST_F(LoadPackageTest, ReadsAndBuildsAMeshThatFramesShareOnce) {
   ASSERT_TRUE(next.ok()) << next.status();
   EXPECT_EQ((*next)->geometry().meshes.shared(0), (*scene)->geometry().meshes.shared(0));
   const std::uint64_t of_one_blob = prepared_;  // only the second manifest was fetched
-  // The mesh lives as long as one of its scenes.
+  // The mesh stays in memory because the second scene still uses it.
   scene = absl::CancelledError("dropped");
   prepared_ = 0;
   const auto again = load(*cache, first);

@@ -1,6 +1,8 @@
 // LogQueue: the lines of a worker's log that wait to be sent to the coordinator. At most 500 wait.
-// The last 50 that were taken can be returned again, after a lost connection or for a coordinator
-// that restarted.
+// arrived() says that the coordinator has all lines that were taken. again() puts lines that were
+// taken back into the queue, at most the last 50. After a lost connection (again(false)) these are
+// the lines taken since arrived(). If the coordinator has restarted (again(true)), these are all
+// lines.
 
 #include "worker/log_queue.h"
 

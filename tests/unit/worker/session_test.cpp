@@ -106,6 +106,9 @@ TEST(Session, StepsOfThePreparationBeforeTheFirstRowAreProgress) {
   EXPECT_FALSE(session.rendering(task + 1, 0));  // not held
 }
 
+// In an adaptive job, the samples differ between half tiles. A half tile is half of the pixels of a
+// tile of 16 x 16 pixels. A lease has two numbers for each half tile: the first sample and the
+// number of samples.
 TEST(Session, ATaskHasTheSamplesOfItsHalfTiles) {
   Session session(worker_info());
   session.receive(welcome("e1"));
@@ -128,7 +131,8 @@ TEST(Session, RefusesAnInvalidLease) {
   bad.mutable_lease()->mutable_band()->set_last_row(81);  // the image has 80 rows
   farm::ToWorker worse = lease(11, 0);
   worse.mutable_lease()->set_manifest_sha256("short");
-  // Samples [16, 48) of a half tile are no node of the summation tree.
+  // The second half tile has the samples [16, 48). They are no node of the tree in which samples
+  // are summed, because 32 samples must begin at a multiple of 32.
   farm::ToWorker no_node = lease(12, 0);
   for (const std::uint32_t number : {16u, 16u, 16u, 32u}) {
     no_node.mutable_lease()->add_tile_samples(number);

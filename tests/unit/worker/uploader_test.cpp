@@ -28,6 +28,7 @@ class UploaderTest : public ::testing::Test {
     changed_.notify_all();
     return answer_(band.task.id, attempt);
   }
+  /// The uploader calls this when a band is acknowledged or rejected for good.
   void settled(TaskId task, const Outcome& outcome) {
     MutexLock lock(mutex_);
     settled_.emplace_back(task, outcome.status());
