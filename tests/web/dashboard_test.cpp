@@ -112,7 +112,7 @@ TEST_F(DashboardTest, RequiresTheJoinString) {
 // this link can let a browser render for the farm.
 constexpr char kCard[] = "document.querySelector('.invite:not([hidden])')";
 
-TEST_F(DashboardTest, TheLinkForBrowsersIsShownOpenedAndTakenBack) {
+TEST_F(DashboardTest, TheLinkForBrowsersIsShownOpenedAndRevoked) {
   Browser browser;
   enter(browser);
   browser.run("location.hash = '#/workers'");
@@ -226,7 +226,7 @@ TEST_F(DashboardTest, ABrokenSceneGivesOneErrorSentence) {
   browser.screenshot(shot("notice"));
 }
 
-TEST_F(DashboardTest, AMendedFileMayBeChosenAgain) {
+TEST_F(DashboardTest, ACorrectedFileMayBeChosenAgain) {
   const std::string scene = folder_ / "scene.textproto";
   std::ofstream(scene) << "camera {";
   Browser browser;

@@ -21,7 +21,7 @@ JobSpec job() {
           .stop = StopAtSamples{64}};
 }
 
-TEST(CleanJobs, AreTheGuidesAndHalfOfASingleBlock) {
+TEST(CleanJobs, AreTwoGuidesAndAThirdJobForAnImageOfOneBlock) {
   const CleanJobs many = clean_jobs(job(), 64);
   EXPECT_EQ(many.albedo.settings.integrator, kGuideAlbedo);
   EXPECT_EQ(many.shape.settings.integrator, kGuideShape);

@@ -63,7 +63,7 @@ TEST(Coverage, ALeaseThatLosesAPartOfARowLosesTheRow) {
 
 // A band is adoptable if it has a wanted row, and no lease owns samples of the band in a wanted
 // row. Then a new lease of the band can own all wanted rows.
-TEST(Coverage, OnlyRowsWithoutALeaseAreAdoptable) {
+TEST(Coverage, ABandIsAdoptableIfItHasWantedRowsAndNoneIsLeased) {
   Coverage coverage({0, 16}, 4);
   coverage.assign({{0, 16}, {0, 1}}, kStored);
   EXPECT_TRUE(coverage.adoptable({{0, 16}, {0, 4}}));

@@ -74,7 +74,7 @@ double error_in_steps(double samples) {
   return std::pow(samples, -0.5) * std::exp2(-0.2 * std::floor(std::log2(samples)));
 }
 
-TEST(ErrorCurve, ExpectsTheStepsOfWholeNetsAgain) {
+TEST(ErrorCurve, PredictsTheStepOfTheErrorAtEachCompleteNet) {
   ErrorCurve curve;
   for (std::uint64_t net = 128; net <= 512; net *= 2) {
     for (std::uint64_t n = net; n < 2 * net; n += net / 4) {

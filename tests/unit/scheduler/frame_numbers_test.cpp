@@ -60,7 +60,7 @@ TEST(FrameNumbers, RepeatedNumbersAreReadUpToALimit) {
               HasSubstr("lists more than 100000 frames"));
 }
 
-TEST(FrameNumbers, TextAndNumbersAreInverse) {
+TEST(FrameNumbers, TheTextOfNumbersIsReadAsTheSameNumbers) {
   EXPECT_EQ(frames_text({1, 2, 3, 4, 7, 9, 11, 20}), "1-4,7-11x2,20");
   EXPECT_EQ(frames_text({1, 3, 5, 6, 7}), "1,3,5-7");
   EXPECT_EQ(frames_text({1, 2}), "1-2");

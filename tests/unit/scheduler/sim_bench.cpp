@@ -185,14 +185,14 @@ class Bench {
       work += farm_.cost_of(row);
     }
     work *= static_cast<double>(farm_.samples) * farm_.width;
-    double could = 0;
+    double possible_work = 0;
     double first_idle = agenda_.now();
     for (std::size_t i = 0; i < workers_.size(); ++i) {
-      could += farm_.speeds[i] * result_.seconds;
+      possible_work += farm_.speeds[i] * result_.seconds;
       first_idle =
           workers_[i].queue.empty() ? std::min(first_idle, workers_[i].idle_since) : first_idle;
     }
-    result_.efficiency = work / could;
+    result_.efficiency = work / possible_work;
     result_.tail = (agenda_.now() - first_idle) / result_.seconds;
   }
 

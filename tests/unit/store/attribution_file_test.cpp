@@ -32,7 +32,7 @@ TEST_F(AttributionFileTest, AMissingFileIsNotFound) {
   EXPECT_TRUE(absl::IsNotFound(read_attribution(path_).status()));
 }
 
-TEST_F(AttributionFileTest, DamagedFilesAreNamed) {
+TEST_F(AttributionFileTest, TheErrorNamesADamagedFile) {
   for (const char* text :
        {"", "pieces 2\nfirst 0\nlast 7\nworker a\n", "pieces 1\nfirst 7\nlast 7\nworker a\n",
         "pieces 2\nfirst 5\nlast 7\nworker a\nfirst 6\nlast 8\nworker b\n",

@@ -110,7 +110,7 @@ TEST_F(BlobStoreTest, WrongBytesAndWrongSizesAreRefusedAndLeaveNothing) {
 
 // If an interrupted upload can continue, the name of its file is the digest and ".part". The file
 // "7" is of an upload that cannot continue.
-TEST_F(BlobStoreTest, AnAbandonedUploadIsRemovedAtTheNextStart) {
+TEST_F(BlobStoreTest, AnUploadThatCannotContinueIsRemovedAtTheNextStart) {
   open();
   write_all(folder_ / "incoming/7", "half");
   open();

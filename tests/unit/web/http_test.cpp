@@ -93,7 +93,7 @@ TEST(HttpRange, AnUnsupportedRangeReturnsEverything) {
 
 // "*" in a route stands for one or more characters other than "/", which the handler gets as
 // `captured`.
-TEST(HttpRouter, UsesTheFirstMatchingRoute) {
+TEST(HttpRouter, ARouteMatchesAMethodAndAWholePath) {
   Router router;
   router.get("/", [](const HttpRequest&) { return text_reply("page", "text"); });
   router.get("/jobs/*", [](const HttpRequest& r) { return text_reply(r.captured, "text"); });

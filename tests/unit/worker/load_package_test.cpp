@@ -127,7 +127,7 @@ TEST_F(LoadPackageTest, RefusesAnInvalidManifest) {
   EXPECT_EQ(load(*open(), nonsense).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
-TEST_F(LoadPackageTest, ReadsAndBuildsAMeshThatFramesShareOnce) {
+TEST_F(LoadPackageTest, ReadsAndBuildsOnceTheMeshThatTwoFramesShare) {
   const auto add = [&](const SceneDescription& scene) {
     const std::string text = encode_package(scene, {}, farm_);
     const auto* data = reinterpret_cast<const std::byte*>(text.data());
