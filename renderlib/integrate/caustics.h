@@ -10,10 +10,14 @@
 // - any other surface ends the chain of casters.
 //
 // A scattering in a medium and a delta direction at a receiver also end the chain. A chain is
-// counted from the receiver towards the light. At the casters of a chain, path tracing samples no
-// emissive surface, because photons start at casters by light sampling. For the same reason, a path
-// that hits emission after a caster leaves out the emission that light sampling at this caster can
-// produce. Delta lights, environments and backgrounds are sampled as without photon maps.
+// counted from the receiver towards the light.
+//
+// The photon map already contains the light that emissive surfaces send to the casters of a chain:
+// the photons of a caster get this light by light sampling at the caster. If path tracing added the
+// same light, it would count twice. So path tracing samples no emissive surface at the casters of a
+// chain. If a path hits an emissive surface directly after a caster, and light sampling at this
+// caster can choose this surface, the path ignores the emission. Delta lights, environments and
+// backgrounds are sampled as without photon maps.
 
 #include <cstdint>
 #include <utility>
@@ -45,10 +49,11 @@ inline CausticRole caustic_role(const Casters& casters, MaterialId material, con
 /// (indirect_photons.h). Consecutive samples share them.
 class PhotonMaps {
  public:
-  /// Number of samples that share one of the first maps. It is one block: the samples of a pixel
-  /// are added in blocks of 8 (render/band.h). So the two halves of an image's samples share no
-  /// map, and the noise of the maps is part of the difference between the halves, from which the
-  /// error is estimated (render/error_estimate.h).
+  /// Number of samples that share one of the first maps. The samples of a pixel are added in blocks
+  /// of 8 (render/band.h), and all samples of a block share one map. The error is estimated from
+  /// the difference between the two halves of an image's samples (render/error_estimate.h). The
+  /// halves consist of whole blocks, so they share no map, and their difference includes the noise
+  /// of the maps.
   static constexpr std::uint64_t kMinSamplesOfMap = 8;
   /// Returns the number of the map of a sample. The first four maps have 8 samples each. In
   /// general, samples [8 * 4^k, 32 * 4^k) have maps of 8 * 2^k samples each. So the number of maps

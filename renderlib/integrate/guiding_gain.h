@@ -43,8 +43,9 @@ struct GuidingGain {
   bool gathering_may_pay() const;
 };
 
-/// Returns true if photon maps of indirect light pay, because they make the product of variance and
-/// rays much smaller. `before` was measured without these maps, and `with` was measured with them.
+/// Gathering means that indirect light comes from photon maps. Returns true if gathering pays,
+/// because it makes the product of variance and rays much smaller. `before` was measured without
+/// these maps, and `with` was measured with them.
 bool gathering_pays(const GuidingGain& before, const GuidingGain& with);
 
 /// Measures the variances with 8 samples in each of 512 pixels. Follows each sample to its first

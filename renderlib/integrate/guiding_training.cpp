@@ -1,7 +1,7 @@
 // The training has three rounds: photons, a small round of paths, and a large round of paths. Each
-// is divided among a fixed number of chunks, which the threads trace, and whose records are joined
-// in order. A pilot (the same rounds with fewer photons and paths) decides whether the training
-// pays.
+// is divided among a fixed number of chunks. The threads trace the chunks, and the records of the
+// chunks are joined in order. A pilot (the same rounds with fewer photons and paths) decides
+// whether the training pays. Gathering means that indirect light comes from photon maps.
 
 #include "renderlib/integrate/guiding_training.h"
 
@@ -31,9 +31,9 @@ constexpr std::uint64_t kMaxTrainingPixels = 1 << 18;
 /// The pilot, from which the gain of guiding is estimated, is trained like an image of this many
 /// pixels.
 constexpr std::uint64_t kPilotPixels = 1 << 13;
-/// Number of photons (PhotonMapKey::photons) of the maps with indirect light that the pilot and the
-/// training use.
-constexpr std::uint64_t kPilotPhotons = 1 << 16;
+/// Number of photons (PhotonMapKey::photons) for the photon maps of indirect light. The pilot and
+/// the training both use these maps.
+constexpr std::uint64_t kIndirectPhotons = 1 << 16;
 
 /// Runs the chunks of a round of `count` paths or photons, appends their records in order, and fits
 /// the field to all records. Returns false if stopped.
@@ -50,9 +50,9 @@ bool add_round(std::uint32_t round, std::uint64_t count, const Preparation& prep
   return !preparation.stopped();
 }
 
-/// Trains as for an image of this many pixels: with photons that start at `casters` unless that is
-/// null, and with paths that have these options, guided by the field so far. Returns std::nullopt
-/// if stopped.
+/// Trains a field for an image of `pixels` pixels. If `casters` is not null, the first round traces
+/// photons that start at `casters`. The other two rounds trace paths with `options`; the field of
+/// the previous rounds guides these paths. Returns std::nullopt if stopped.
 std::optional<TrainedGuiding> train(const Scene& scene, const GuidingKey& key, std::uint64_t pixels,
                                     const Casters* casters, const PathOptions& options,
                                     const Preparation& preparation) {
@@ -174,7 +174,7 @@ class Decisions {
     }
     std::optional<Mapping> mapping =
         make_mapping(scene_, {casters, std::move(surfaces), portals_, key_.max_depth},
-                     kPilotPhotons, preparation_, rays_);
+                     kIndirectPhotons, preparation_, rays_);
     if (!mapping) {
       return false;
     }

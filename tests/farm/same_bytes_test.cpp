@@ -132,7 +132,7 @@ TEST_F(SameBytes, P5_WhenPartsAreStitched) {
     expect_success(run(stitch));
     EXPECT_TRUE(file_bytes(farm_.path("stitched.pfm")) == whole) << scene;
   }
-  report_hard_case("P5", "same bytes");
+  report_hard_case("P5", "the joined bands equal the whole image byte by byte");
 }
 
 TEST_F(SameBytes, WithLayers) {

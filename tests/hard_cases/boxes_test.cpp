@@ -1,4 +1,4 @@
-// Cases of cases.txt: B1 to B4 and B6 (boxes and BVHs).
+// Cases B1 to B4 and B6 of cases.txt: boxes and BVHs.
 
 #include <gtest/gtest.h>
 
@@ -37,8 +37,8 @@ bool meets(const FloatBox& box, const Ray& ray) {
   return met != 0;
 }
 
-// The rays lie within faces of the box. There a plain slab test would multiply 0 by infinity, and
-// the product is NaN.
+// The rays lie within faces of the box. For such rays a plain slab test multiplies 0 by infinity,
+// and the product is NaN.
 TEST(Tree, B1B4_RaysWithinAFaceHitTheBox) {
   const FloatBox box = {{0, 0, 0}, {1, 1, 1}};
   for (const double x : {0.0, 1.0}) {
@@ -53,7 +53,8 @@ TEST(Tree, B1B4_RaysWithinAFaceHitTheBox) {
   const FloatBox flat = {{0, 0, 0}, {1, 1, 0}};
   EXPECT_TRUE(meets(flat, {{0.5, 0.5, -1}, {0, 0, 1}}));
   EXPECT_TRUE(meets(flat, {{-1, 0.5, 0}, {1, 0, 0}}));
-  test::report_hard_case("B1", "met in 4 of 4, with 0 and -0, and with denormals");
+  test::report_hard_case(
+      "B1", "rays within a face hit the box, with direction components 0, -0 and denormal");
 }
 
 /// Returns true if a ray intersects a box, computed without rounding.
@@ -77,10 +78,9 @@ bool truly_meets(const FloatBox& box, const Ray& ray) {
   return enter <= leave;
 }
 
-/// Returns a box around `center`, and a ray from anywhere through a point of the box. The point is
-/// random: it lies inside the box or on a face, an edge or a corner. One ray in eight is parallel,
-/// or nearly parallel, to the faces of constant x. The length of the direction is about 2^-40 to
-/// 2^39.
+/// Returns a box around `center` and a ray through a random point of the box. The point lies inside
+/// the box or on a face, an edge or a corner. One ray in eight is parallel, or nearly parallel, to
+/// the faces of constant x. The length of the ray's direction is about 2^-40 to 2^39.
 std::pair<FloatBox, Ray> aimed(const Vec3& center, test::Random& random) {
   const auto extent = [&] { return std::pow(10, random.uniform(-6, 1)); };
   const double x = extent();
@@ -122,7 +122,8 @@ TEST(Tree, B2B3_NeverMissesABoxThatIsHit) {
     }
     EXPECT_GT(met, boxes / 10);
     test::at_most(at_any_distance ? "B2" : "B3",
-                  "missed of " + std::to_string(boxes) + " aimed rays", missed, 0);
+                  "boxes missed, of " + std::to_string(boxes) + " with a ray aimed at each", missed,
+                  0);
   }
 }
 
@@ -150,7 +151,8 @@ double boxes_met(const BinaryTree& tree, const std::vector<Ray>& rays) {
   return met / static_cast<double>(rays.size());
 }
 
-// The ground is two triangles, a million times as wide as the mesh that stands on it.
+// The ground consists of two triangles. The ground is a million times as wide as the mesh that
+// stands on it.
 TEST(Tree, B6_AVastGroundDoesNotSpoilTheTreeOfAFineObject) {
   const Mesh fine = test::icosphere(4);
   Mesh vast = fine;
@@ -168,8 +170,8 @@ TEST(Tree, B6_AVastGroundDoesNotSpoilTheTreeOfAFineObject) {
   }
   const double alone = boxes_met(build_binary_tree(items_of(fine), nullptr), rays);
   const double together = boxes_met(build_binary_tree(items_of(vast), nullptr), rays);
-  test::at_most("B6", "boxes met by a ray, over those of the fine object alone", together / alone,
-                1.2);
+  test::at_most("B6", "boxes that a ray hits, divided by their number without the ground",
+                together / alone, 1.2);
 }
 
 }  // namespace

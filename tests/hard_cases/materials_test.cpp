@@ -1,4 +1,7 @@
-// Cases of cases.txt: M2, M7, M8, M11, M12 (materials); and the masking term of microfacets.
+// Cases M2, M7, M8, M11 and M12 of cases.txt (materials), and a test of the masking term of
+// microfacets.
+//
+// In texts, u is the unit roundoff of double, 2^-53.
 
 #include <gtest/gtest.h>
 
@@ -40,8 +43,9 @@ MetallicRoughness layered(double roughness) {
   return m;
 }
 
-// M2: there is no 0 / 0 if a pdf is nearly zero, even if random numbers are at the ends of [0, 1).
-TEST(MaterialHardCases, M2DensitiesNearZeroGiveFiniteNumbers) {
+// M2: if a pdf is nearly zero, no result is 0 / 0. Some of the random numbers are the smallest and
+// the largest number in [0, 1).
+TEST(MaterialHardCases, M2_PdfsNearZeroGiveFiniteNumbers) {
   const Material materials[] = {layered(0.01), layered(1), Dielectric{1.5, 0.02},
                                 Dielectric{1.0000001, 0.5}, Metal{TextureId{0}, 1e-5}};
   const double edges[] = {0, 0x1p-32, 0.5, 1 - 0x1p-24, 1 - 0x1p-32};
@@ -64,7 +68,7 @@ TEST(MaterialHardCases, M2DensitiesNearZeroGiveFiniteNumbers) {
     }
   }
   test::report_hard_case(
-      "M2", "0 NaN of " + std::to_string(10 * std::int64_t{tries}) + " samples and values");
+      "M2", "none of " + std::to_string(10 * std::int64_t{tries}) + " samples and values is NaN");
 }
 
 // Returns the Fresnel reflectance, computed with 64 bits of mantissa from the same double cosine
@@ -82,7 +86,7 @@ long double exact_fresnel(double cosine, double eta) {
   return (parallel * parallel + perpendicular * perpendicular) / 2;
 }
 
-TEST(MaterialHardCases, M7FresnelIsExactAroundTheCriticalAngle) {
+TEST(MaterialHardCases, M7_FresnelIsAccurateAroundTheCriticalAngle) {
   test::Worst error;
   test::Worst near_error;
   for (const double eta : {1 / 1.33, 1 / 1.5, 1 / 2.4}) {
@@ -91,9 +95,9 @@ TEST(MaterialHardCases, M7FresnelIsExactAroundTheCriticalAngle) {
       for (const double sign : {-1.0, 1.0}) {
         const double cosine = critical + sign * std::pow(10.0, -k);
         const long double exact = exact_fresnel(cosine, eta);
-        // Near the critical angle F depends on the square root of the distance to the critical
-        // cosine. So the last bit of the cosine has a large effect on F, which the tolerance
-        // allows.
+        // Near the critical angle F depends on the square root of the difference between the cosine
+        // and the critical cosine. So the last bit of the cosine has a large effect on F. The
+        // tolerance allows this effect.
         const double bit = 1e-15 * std::pow(10.0, k / 2.0);
         const auto off = static_cast<double>(std::abs(fresnel(cosine, eta) - exact));
         EXPECT_LE(off, 1e-12 + bit);
@@ -106,12 +110,16 @@ TEST(MaterialHardCases, M7FresnelIsExactAroundTheCriticalAngle) {
       }
     }
   }
-  test::at_most("M7", "F off, 1e-5 and more from the critical cosine", error.value(), 1e-12);
-  test::at_most("M7", "nearer, 1e-k: F off times 10^(-k/2)", near_error.value(), 1e-15);
-  test::report_hard_case("M7", "total reflection decided as exactly; |w| within 1e-12");
+  test::at_most("M7", "error of F if the cosine differs by 1e-5 or more from the critical cosine",
+                error.value(), 1e-12);
+  test::at_most("M7", "error of F times 10^(-k/2) if the difference is 10^-k, less than 1e-5",
+                near_error.value(), 1e-15);
+  test::report_hard_case("M7",
+                         "total reflection where the exact formula has it; the refracted direction "
+                         "w has |w| = 1 within 1e-12");
 }
 
-TEST(MaterialHardCases, M8DirectionsStayUnitOverAThousandMirrors) {
+TEST(MaterialHardCases, M8_DirectionsKeepLengthOneAfterAThousandMirrors) {
   Random random(2);
   Vec3 direction = random_direction(random);
   for (int bounce = 0; bounce < 1000; ++bounce) {
@@ -121,15 +129,16 @@ TEST(MaterialHardCases, M8DirectionsStayUnitOverAThousandMirrors) {
     const auto next = sample(bsdf_at(Metal{TextureId{0}}, kTextures, p, -direction), 0.5, 0.5, 0.5);
     ASSERT_TRUE(next);
     direction = next->wi;
-    // The criterion is 4 u for the length, so 8 u for its square.
+    // The criterion is 4 u for the length, so 8 u for the squared length.
     ASSERT_LE(std::abs(length_squared(direction) - 1), 8 * 0x1p-53);
   }
-  test::report_hard_case("M8", "squared length within 8 u over 1,000 mirrors");
+  test::report_hard_case(
+      "M8", "squared length of the direction within 8 u of 1 after each of 1,000 mirrors");
 }
 
-// M11: in a closed white sphere nothing is lost; the path ends at the maximum depth. M12: with a
-// low reflectance Russian roulette ends the path after few surfaces.
-TEST(MaterialHardCases, M11M12PathsEnd) {
+// M11: a closed white sphere absorbs nothing, so a path in the sphere ends at the maximum depth.
+// M12: if the reflectance is low, Russian roulette ends the path after few surfaces.
+TEST(MaterialHardCases, M11M12_PathsEnd) {
   for (const float reflectance : {1.0f, 1e-3f}) {
     test::SceneMaker maker;
     maker.sphere({0, 0, 0}, 1, maker.diffuse(reflectance));
@@ -148,8 +157,9 @@ TEST(MaterialHardCases, M11M12PathsEnd) {
       EXPECT_LE(counts.rays, 64u * 8);
     }
   }
-  test::report_hard_case("M11", "64 paths end at their greatest depth, and are counted as cut off");
-  test::report_hard_case("M12", "64 paths of 200 bounces end within 8 rays");
+  test::report_hard_case("M11",
+                         "64 of 64 paths end at the maximum depth and are counted as cut off");
+  test::report_hard_case("M12", "64 paths of at most 200 bounces trace at most 8 rays on average");
 }
 
 // Weak white furnace (Heitz 2014, section 5.3): the visible facets, each by its projected area, sum

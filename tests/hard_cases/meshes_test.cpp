@@ -1,5 +1,7 @@
-// Cases of cases.txt: T1, T2, T4, T6, T8, T11, T14 (triangles and meshes), B7 (sizes that halve a
-// thousand times).
+// Cases T1, T2, T4, T6, T8, T11, T14 (triangles and meshes) and B7 (sizes that halve a thousand
+// times) of cases.txt.
+//
+// In texts, u is the unit roundoff of double, 2^-53.
 
 #include <cmath>
 #include <string>
@@ -14,8 +16,9 @@
 namespace bandsaw::test {
 namespace {
 
-/// Returns the number of rays that escape from inside a closed mesh at its corners and edges. The
-/// rays start in a cube of half side `origin_size` about `origin_at`.
+/// Aims rays from inside a closed mesh at the corners and edges of the mesh. Returns the number of
+/// rays that escape. The rays start in a cube about `origin_at`; half a side of the cube is
+/// `origin_size`.
 int leaks(const Mesh& mesh, const Vec3& origin_at, double origin_size, int count) {
   Pool pool(2);
   const Geometry geometry = scene_of(mesh);
@@ -38,7 +41,7 @@ int leaks(const Mesh& mesh, const Vec3& origin_at, double origin_size, int count
 }
 
 void expect_no_leaks(const char* id, const std::string& mesh, int leaks, int rays) {
-  at_most(id, mesh + ": leaks of " + std::to_string(rays), leaks, 0);
+  at_most(id, mesh + ": rays that escape, of " + std::to_string(rays), leaks, 0);
 }
 
 TEST(Leaks, T1T2_NoneAtCornersAndEdgesOfClosedMeshes) {
@@ -47,17 +50,17 @@ TEST(Leaks, T1T2_NoneAtCornersAndEdgesOfClosedMeshes) {
   const auto check = [](const char* id, const char* name, const Mesh& mesh, const Vec3& at,
                         double size,
                         int rays) { expect_no_leaks(id, name, leaks(mesh, at, size, rays), rays); };
-  check("T1", "sphere of 82,000", icosphere(6), {}, 0.5, most);
-  check("T1", "1e6 large", scaled(icosphere(5), 1e6), {}, 5e5, some);
-  check("T1", "1e-10 small", scaled(icosphere(5), 1e-10), {}, 5e-11, some);
+  check("T1", "sphere of 82,000 triangles", icosphere(6), {}, 0.5, most);
+  check("T1", "sphere of radius 1e6", scaled(icosphere(5), 1e6), {}, 5e5, some);
+  check("T1", "sphere of radius 1e-10", scaled(icosphere(5), 1e-10), {}, 5e-11, some);
   const Vec3 far = {1e5, -1e5, 1e5};
-  check("T1", "1e5 away", moved(icosphere(4), far), far, 0.5, some);
-  check("T2", "needles", rough_sphere(500, 12, 3, 1), {}, 0.2, most / 2);
-  check("T2", "spikes", rough_sphere(200, 100, 6, 2), {}, 0.2, most / 2);
+  check("T1", "sphere 1e5 away along each axis", moved(icosphere(4), far), far, 0.5, some);
+  check("T2", "sphere of needle triangles", rough_sphere(500, 12, 3, 1), {}, 0.2, most / 2);
+  check("T2", "sphere with spikes", rough_sphere(200, 100, 6, 2), {}, 0.2, most / 2);
 }
 
-// The triangle test may hit a triangle of three collinear points, because rounding makes it a
-// sliver; scenes remove triangles without area.
+// If the corners of a triangle are collinear, rounding can give the triangle a small area, so the
+// triangle test may hit the triangle. Therefore scenes remove triangles without area.
 TEST(Triangle, T4_ATriangleWithoutAreaIsNeverHit) {
   Random random(1);
   const Vec3 bad = {-1113.45459, -79.049614, -56.2431908};
@@ -92,7 +95,7 @@ TEST(Triangle, T4_ATriangleWithoutAreaIsNeverHit) {
       }
     }
   }
-  at_most("T4", "hits of 300,000 rays aimed at what has no area", hits, 0);
+  at_most("T4", "hits of 300,000 rays aimed at triangles without area", hits, 0);
 }
 
 /// Returns the ray's parameter at the triangle's plane, without rounding.
@@ -101,7 +104,7 @@ Wide plane_distance(const Ray& ray, const Triangle& t) {
   return dot(n, WideVec(t.a) - ray.origin) / dot(n, ray.direction);
 }
 
-/// Returns how much plane_distance() changes if the last bits of the corners' heights change.
+/// Returns the change of plane_distance() if the last bit of each corner's height changes.
 double change_by_last_bits(const Ray& ray, Triangle t) {
   const Wide distance = plane_distance(ray, t);
   for (Vec3* corner : {&t.a, &t.b, &t.c}) {
@@ -130,20 +133,24 @@ TEST(Triangle, T6_AHugeTriangleJustBelowTheCameraIsHit) {
         ++missed;
         continue;
       }
-      // The error is measured in scene units and relative to the rounding of the coordinates,
-      // because the ray's origin itself is rounded.
+      // The ray's origin is rounded. Therefore the error is measured in scene units, and also
+      // divided by the change of t that one rounding of the corners causes.
       const double off = std::abs(static_cast<double>(crossing.t - plane_distance(ray, t)));
       error.see(off);
       over_last_bits.see(off / change_by_last_bits(ray, t));
     }
     const bool level = turn.direction({0, 1, 0}).y == 1;
-    const std::string name = level ? "level" : "tilted";
-    at_most("T6", name + ": missed of 20,000", missed, 0);
+    const std::string name = level ? "level triangle" : "tilted triangle";
+    at_most("T6", name + ": rays that miss, of 20,000", missed, 0);
     if (level) {
-      at_most("T6", "level: relative error of t", error.value() / 1e-3, 1e-9);
+      at_most("T6", "level triangle: error of t divided by the camera's height",
+              error.value() / 1e-3, 1e-9);
     } else {
-      at_most("T6", "tilted: error of t in u x edge", error.value() / (0x1p-53 * 1e6), 8);
-      at_most("T6", "tilted: error of t over its change by the last bits of the corners' heights",
+      at_most("T6", "tilted triangle: error of t divided by u x edge length",
+              error.value() / (0x1p-53 * 1e6), 8);
+      at_most("T6",
+              "tilted triangle: error of t divided by the change of t if the last bit of each "
+              "corner's height changes",
               over_last_bits.value(), 4);
     }
   }
@@ -177,8 +184,9 @@ TEST(Triangle, T8_TheNearerOfTwoNearlyCoplanarTrianglesIsHit) {
       }
     }
   }
-  at_least("T8", "pairs more than 64 u t apart", decided, 50'000);
-  at_most("T8", "share that is wrong", static_cast<double>(wrong) / decided, 1e-5);
+  at_least("T8", "rays with more than 64 u t between the two triangles", decided, 50'000);
+  at_most("T8", "share of such rays that hit the farther triangle",
+          static_cast<double>(wrong) / decided, 1e-5);
 }
 
 TEST(Mesh, T11_AMeshOfDenormalSizeIsTracedLikeAnyOther) {
@@ -191,9 +199,10 @@ TEST(Mesh, T11_AMeshOfDenormalSizeIsTracedLikeAnyOther) {
   Random random(5);
   const Agreement agreement =
       compare(accel, brute, 3000, [&] { return aimed_ray(mesh, box, random); });
-  at_most("T11", "answers unlike testing all, of " + std::to_string(agreement.rays),
+  at_most("T11",
+          "results that differ from brute force, of " + std::to_string(agreement.rays) + " rays",
           agreement.different, 0);
-  at_least("T11", "hits among them", agreement.hits, 1000);
+  at_least("T11", "rays that hit a triangle", agreement.hits, 1000);
 }
 
 TEST(Triangle, T14_WeightsStayInRangeAtCornersAndEdges) {
@@ -213,8 +222,9 @@ TEST(Triangle, T14_WeightsStayInRangeAtCornersAndEdges) {
       above.see(crossing.u + crossing.v - 1);
     }
   }
-  at_most("T14", "weights outside [0, 1] of 200,000", outside, 0);
-  at_most("T14", "u + v - 1, in u", above.value() / 0x1p-53, 2);
+  at_most("T14", "rays with a barycentric coordinate outside [0, 1], of 200,000", outside, 0);
+  at_most("T14", "sum of both barycentric coordinates minus 1, in units of 2^-53",
+          above.value() / 0x1p-53, 2);
 }
 
 TEST(Tree, B7_SizesThatHalveAThousandTimesAreTracedCorrectly) {
@@ -232,9 +242,10 @@ TEST(Tree, B7_SizesThatHalveAThousandTimesAreTracedCorrectly) {
     const double y = random.uniform() * size / 2;
     return Ray{{size * random.uniform(1, 3), y, random.uniform() * size / 2}, {-1, 0, 0}};
   });
-  at_most("B7", "answers unlike testing all, of " + std::to_string(agreement.rays),
+  at_most("B7",
+          "results that differ from brute force, of " + std::to_string(agreement.rays) + " rays",
           agreement.different, 0);
-  at_least("B7", "hits among them", agreement.hits, 1000);
+  at_least("B7", "rays that hit a triangle", agreement.hits, 1000);
 }
 
 }  // namespace

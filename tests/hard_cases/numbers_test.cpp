@@ -1,5 +1,7 @@
-// Cases of cases.txt in which numbers lose precision: A1, A2, A8, C7, L2, L5, L10, P2, P3, P4, R3,
-// R9.
+// Cases A1, A2, A8, C7, L2, L5, L10, P2, P3, P4, R3 and R9 of cases.txt, in which numbers lose
+// precision.
+//
+// In texts, u is the unit roundoff of double, 2^-53.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +41,7 @@ TEST(Cone, L2_NarrowConesKeepTheirDigits) {
     const Wide truth = s2 / (1 + wide_sqrt(1 - s2));
     error.see(std::abs(static_cast<double>(one_minus_cos_from_sin2(sine * sine) / truth - 1)));
   }
-  test::at_most("L2", "relative error of 1 - cos", error.value(), 1e-12);
+  test::at_most("L2", "relative error of 1 - cos(half angle)", error.value(), 1e-12);
 }
 
 /// Returns the solid angle of a square as seen from the origin. The square has the side 2 h, and
@@ -69,10 +71,12 @@ TEST(SphericalRectangle, L5_SmallRectanglesKeepTheirSolidAngle) {
       const auto seen = SphericalRectangle::seen_from({0, 0, 0}, {aside - h, -h, 1}, {2 * h, 0, 0},
                                                       {0, 2 * h, 0});
       ASSERT_TRUE(seen);
-      // The corners themselves are rounded: the sum of aside - h and 2 h is not exactly aside + h.
+      // The corners are rounded: the sum of aside - h and 2 h is not exactly aside + h.
       error.see(std::abs(static_cast<double>(seen->solid_angle() / solid_angle(h, aside) - 1)));
     }
-    test::at_most("L5", aside == 0 ? "relative error ahead, 4e-4 to 4e-8" : "3 aside",
+    test::at_most("L5",
+                  aside == 0 ? "relative error of solid angles of 4e-4 to 4e-8 sr straight ahead"
+                             : "relative error of solid angles 3 to the side at height 1",
                   error.value(), 1e-11);
   }
 }
@@ -86,10 +90,11 @@ TEST(PowerHeuristic, L10_NeitherOverflowsNorLosesEnergy) {
       off.see(std::abs(power_heuristic(p, q) + power_heuristic(q, p) - 1));
     }
   }
-  test::at_most("L10", "sum of weights off 1, in u; no NaN", off.value() / kUnit, 2);
+  test::at_most("L10", "difference of the sum of both weights from 1, in units of u, never NaN",
+                off.value() / kUnit, 2);
 }
 
-TEST(Sampler, C7_PixelsOfTheLargestImageHaveStreamsOfTheirOwn) {
+TEST(Sampler, C7_PixelsOfTheLargestImageHaveDifferentRandomNumbers) {
   Random random(1);
   std::set<Sample4> seen;
   std::set<std::pair<std::uint32_t, std::uint32_t>> pixels;
@@ -100,7 +105,9 @@ TEST(Sampler, C7_PixelsOfTheLargestImageHaveStreamsOfTheirOwn) {
   for (const auto& [x, y] : pixels) {
     seen.insert(sample4({0, x, y, 0}, 0));
   }
-  test::at_most("C7", "equal streams of 100,000 pixels of 65,536 x 65,536",
+  test::at_most("C7",
+                "pixels whose random numbers equal those of another pixel, of 100,000 pixels in an "
+                "image of 65,536 x 65,536",
                 static_cast<double>(pixels.size() - seen.size()), 0);
 }
 
@@ -126,11 +133,14 @@ TEST(Sampler, R3_NeighboursShareNoSamples) {
     }
   }
   const double ratio = 4 * block.variance() / pixel.variance();
-  test::at_most("R3", "variance of 2 x 2 means over a quarter, off 1", std::abs(ratio - 1), 0.05);
+  test::at_most("R3",
+                "variance of means of 2 x 2 pixels divided by a quarter of the variance of a "
+                "pixel, difference from 1",
+                std::abs(ratio - 1), 0.05);
 }
 
-// Each pixel shows a checkerboard with an odd number of cells, `cells`, along each side. The RMSE
-// of independent samples is about 0.5 / sqrt(samples).
+// Each pixel shows a checkerboard. Each side of the pixel has `cells` cells, an odd number. The
+// RMSE of independent samples is about 0.5 / sqrt(samples).
 TEST(Sampler, R9_DetailFinerThanAPixelIsNoWorseThanWithIndependentSamples) {
   Worst ratio;
   for (const int cells : {3, 7, 13, 29, 101}) {
@@ -151,11 +161,11 @@ TEST(Sampler, R9_DetailFinerThanAPixelIsNoWorseThanWithIndependentSamples) {
       ratio.see(std::sqrt(squares) / (0.5 / std::sqrt(static_cast<double>(samples))));
     }
   }
-  test::at_most("R9", "RMSE over that of independent samples", ratio.value(), 1.1);
+  test::at_most("R9", "RMSE divided by the RMSE of independent samples", ratio.value(), 1.1);
 }
 
-// Adds the sums of samples 0 to 16, 16 to 32, 32 to 64 and so on, up to 2^30 samples, to one pixel.
-// Each of these nodes of the summation tree is the sum, in double, of floats from [0, 2).
+// One pixel gets the sums of samples 0 to 16, 16 to 32, 32 to 64 and so on, up to 2^30 samples.
+// Each sum is a node of the summation tree. It is the sum, in double, of floats from [0, 2).
 TEST(Film, A1_LongSumsKeepTheirDigits) {
   auto film = Film::create(1, 1, "");
   ASSERT_TRUE(film.ok());
@@ -174,7 +184,7 @@ TEST(Film, A1_LongSumsKeepTheirDigits) {
   const double mean = static_cast<double>(exact) / static_cast<double>(samples) * 0x1p-23;
   const Film::Snapshot snapshot = film->snapshot();
   EXPECT_EQ(snapshot.least_samples, samples);
-  test::at_most("A1", "relative error of the mean of " + std::to_string(samples),
+  test::at_most("A1", "relative error of the mean of " + std::to_string(samples) + " samples",
                 std::abs(snapshot.image.pixels[0].g / mean - 1), 1e-7);
 }
 
@@ -195,7 +205,7 @@ ErrorEstimate estimate_of(const std::vector<double>& a, const std::vector<double
 TEST(ErrorEstimate, A2_ASmallSpreadAboutALargeValueIsAccurate) {
   const std::vector<double> a(30, 4096 * 100.01);
   const std::vector<double> b(30, 4096 * 99.99);
-  test::at_most("A2", "relative error of a spread of 0.01 about 100",
+  test::at_most("A2", "relative error of the estimated RMSE, which is 0.01 at the value 100",
                 std::abs(estimate_of(a, b, 4096).rmse / 0.01 - 1), 1e-6);
 }
 
@@ -207,10 +217,11 @@ TEST(ErrorEstimate, A8_OneHugeSampleIsFiniteAndDoubtful) {
   EXPECT_TRUE(std::isfinite(error.rmse) && std::isfinite(error.relative_mse));
   EXPECT_TRUE(std::isfinite(error.percentile_99) && std::isfinite(error.worst_share));
   EXPECT_TRUE(error.doubtful());
-  test::report_hard_case("A8", "finite; the estimate says that it is doubtful");
+  test::report_hard_case(
+      "A8", "all numbers of the error estimate are finite; the estimate is marked as doubtful");
 }
 
-TEST(Srgb, P2P3_CodesAreRoundedAndTheCurveIsTheStandards) {
+TEST(Srgb, P2P3_CodesAreRoundedAndTheCurveFollowsTheStandard) {
   Worst code_error;
   Worst curve_error;
   for (int i = 0; i <= 1'000'000; ++i) {
@@ -221,8 +232,9 @@ TEST(Srgb, P2P3_CodesAreRoundedAndTheCurveIsTheStandards) {
   }
   EXPECT_EQ(srgb_encode(0), 0);
   EXPECT_EQ(srgb_encode(1), 255);
-  test::at_most("P2", "codes off, of 1,000,001 values", code_error.value(), 0.5 + 1e-6);
-  test::at_most("P3", "curve off, in 16-bit codes", curve_error.value() * 65535, 0.5);
+  test::at_most("P2", "error of the codes of 1,000,001 values, in codes", code_error.value(),
+                0.5 + 1e-6);
+  test::at_most("P3", "error of the sRGB curve, in 16-bit codes", curve_error.value() * 65535, 0.5);
 }
 
 TEST(Exr, P4_HalfFloatsAreClampedAndNeverInfinite) {
@@ -245,7 +257,8 @@ TEST(Exr, P4_HalfFloatsAreClampedAndNeverInfinite) {
   EXPECT_EQ(value(3), 0);
   EXPECT_EQ(value(5), 65504);
   EXPECT_EQ(beyond_half(image), 3u);
-  test::report_hard_case("P4", "65,520 and more: 65,504, and counted; 1e-8: 0");
+  test::report_hard_case("P4",
+                         "values of 65,520 and more become 65,504 and are counted; 1e-8 becomes 0");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Cases of cases.txt: O1, O5, O7 (rays that leave surfaces), Q8 (closed boxes), Q1 (shared edges of
-// quads).
+// Cases O1, O5, O7 (rays that leave surfaces), Q8 (closed boxes) and Q1 (shared edges of quads) of
+// cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -47,7 +47,8 @@ Geometry flat_patch(double size, const Vec3& at, bool triangles) {
   return g;
 }
 
-// The rays that leave a plane hit no neighbour in the plane, whatever the scales.
+// A plane consists of many triangles or quads. At every scale, a ray that leaves the plane hits
+// none of them.
 TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
   // Edge length of the cells, distance of the square from the origin.
   const std::pair<double, double> rows[] = {{1, 0},    {1, 1e3}, {1, 1e5},    {1, 1e6},
@@ -80,7 +81,10 @@ TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
       }
     }
   }
-  test::at_most("O1", "hits in 14 rows of " + std::to_string(rays), hits, 0);
+  test::at_most("O1",
+                "rays that hit the plane that they leave, in 14 settings of " +
+                    std::to_string(rays) + " rays",
+                hits, 0);
 }
 
 /// Two plane quads that meet in the z axis. The first is at the angle 0 from the x axis, the second
@@ -100,9 +104,10 @@ struct Crease {
   bool holds(const Vec3& p) const {
     return p.x > 0 && dot(p, inwards[0]) > 0 && dot(p, inwards[1]) > 0;
   }
-  /// `ray` MUST hit neither quad. Returns true if the ray leaves by the opening. It does if it
-  /// starts more than 0.9 from the z axis. It also does if the point of the ray at the distance 0.9
-  /// from the axis is between the planes or has |z| > 0.9.
+  /// `ray` MUST hit neither quad. Returns true if the ray leaves by the opening. If the ray starts
+  /// more than 0.9 from the z axis, the ray leaves by the opening. Otherwise the point of the ray
+  /// at the distance 0.9 from the z axis decides: the ray leaves by the opening if this point is
+  /// between the planes or has |z| > 0.9.
   bool leaves_by_opening(const Ray& ray) const {
     const Vec3& o = ray.origin;
     const Vec3& d = ray.direction;
@@ -145,10 +150,10 @@ TEST(Offset, O5_NoPathEscapesFromACrease) {
       }
       escapes += hit || crease.leaves_by_opening(ray) ? 0 : 1;
     }
-    test::at_most(
-        "O5",
-        std::to_string(degrees).substr(0, 5) + " degrees: escapes of " + std::to_string(bounces),
-        escapes, 0);
+    test::at_most("O5",
+                  std::to_string(degrees).substr(0, 5) + " degrees: escapes in " +
+                      std::to_string(bounces) + " bounces",
+                  escapes, 0);
   }
 }
 
@@ -172,7 +177,7 @@ TEST(Offset, O7_RefractedRaysStartOnTheFarSide) {
       wrong += dot(moved, p.geometric_normal) * dot(drawn->wi, p.geometric_normal) > 0 ? 0 : 1;
     }
   }
-  test::at_most("O7", "on the wrong side of " + std::to_string(rays), wrong, 0);
+  test::at_most("O7", "rays that start on the wrong side, of " + std::to_string(rays), wrong, 0);
 }
 
 TEST(Quad, Q1_SharedEdgesDoNotLeak) {
@@ -193,10 +198,10 @@ TEST(Quad, Q1_SharedEdgesDoNotLeak) {
       Crossing crossing;
       lost += intersect(ray, left, crossing) || intersect(ray, right, crossing) ? 0 : 1;
     }
-    test::at_most(
-        "Q1",
-        "offset " + std::to_string(static_cast<int>(offset)) + ": lost of " + std::to_string(rays),
-        lost, 0);
+    test::at_most("Q1",
+                  "offset " + std::to_string(static_cast<int>(offset)) +
+                      ": rays that miss both quads, of " + std::to_string(rays),
+                  lost, 0);
   }
 }
 
@@ -230,7 +235,7 @@ TEST(Box, Q8_NothingEscapesFromSixQuads) {
       const double u = random.uniform();
       ray = spawn_ray(p, basis.to_world(sample_cosine_hemisphere(u, random.uniform())));
     }
-    test::at_most("Q8", "escapes of " + std::to_string(bounces), escapes, 0);
+    test::at_most("Q8", "escapes in " + std::to_string(bounces) + " bounces", escapes, 0);
   }
 }
 

@@ -24,8 +24,8 @@ std::shared_ptr<const Scene> white_ball(int slices, int stacks, bool smooth) {
   }
   test::SceneMaker maker;
   maker.instance(std::move(mesh), {}, maker.diffuse(1));
-  // The light comes from the side and a little from behind, so the camera sees the border of light
-  // and shade.
+  // The light comes from the side and a little from behind, so that the camera sees the border
+  // between light and shade.
   maker.scene.lights = {DirectionalLight{normalize(Vec3{-1, -0.2, 0.1}), gray(1)}};
   return maker.build();
 }
@@ -57,14 +57,16 @@ TEST(SmoothNormals, T13_TheErrorOfSmoothNormalsIsAtMostTwiceThatOfFlatNormals) {
     flat_error += std::abs(radiance(*flat, x, y) - truth);
   }
   EXPECT_GT(bright, 5000);
-  test::at_most("T13", "mean error against the fine mesh, over that of flat normals",
+  test::at_most("T13",
+                "mean radiance error with smooth normals divided by the mean radiance error with "
+                "flat normals",
                 smooth_error / flat_error, 2);
 }
 
 // The light lies in the plane of the ceiling. The ceiling must neither hide the light from a ray
 // nor occlude it from the floor. At the middle of the floor, each quarter of the light gives
 // E = a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)), where a is the side of a quarter over its height.
-TEST(Ceiling, Q4_ALightInItsPlaneGivesTheClosedForm) {
+TEST(Ceiling, Q4_ALightInThePlaneOfTheCeilingGivesTheClosedForm) {
   test::SceneMaker maker;
   maker.quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, maker.diffuse(1));
   maker.quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1, true));
@@ -75,13 +77,14 @@ TEST(Ceiling, Q4_ALightInItsPlaneGivesTheClosedForm) {
   const Ray down{.origin = {0, 0.5, 0}, .direction = {0, -1, 0}};
   const test::Moments seen = test::radiance_along(*maker.build(), down, {.max_depth = 1}, 1024);
   EXPECT_LE(seen.standard_error(), 1e-3 * seen.mean());
-  test::at_most("Q4", "z of the floor's radiance", std::abs(seen.z(irradiance / kPi)), 4);
+  test::at_most("Q4", "error of the floor's radiance, in standard errors",
+                std::abs(seen.z(irradiance / kPi)), 4);
   const Ray up{.origin = {0.3, 1, 0.2}, .direction = {0, 1, 0}};
   EXPECT_EQ(test::radiance_along(*maker.build(), up, {}, 16).mean(), 1);
 }
 
-// The pane transmits (1 - R) / (1 + R) with R = 0.04, which is the sum over all reflections within
-// it.
+// A face of the pane has the reflectance R = 0.04. The pane transmits (1 - R) / (1 + R), the sum
+// over all reflections between the faces.
 TEST(Pane, O6_TransmitsTheSameShareAtAnyThickness) {
   for (const double thickness : {1e-3, 1e-6, 1e-9}) {
     test::SceneMaker maker;
@@ -93,14 +96,14 @@ TEST(Pane, O6_TransmitsTheSameShareAtAnyThickness) {
     const test::Moments seen = test::radiance_along(*maker.build(), up, {.max_depth = 1000}, 4096);
     EXPECT_LE(std::abs(seen.z(0.96 / 1.04)), 4);
     std::ostringstream what;
-    what << thickness << " thick: share off";
+    what << "pane of thickness " << thickness << ": error of the transmitted share";
     test::at_most("O6", what.str(), std::abs(seen.mean() - 0.96 / 1.04), 1e-3);
   }
 }
 
 /// Measures the light along a ray that goes down at 45 degrees through two slabs: glass at heights
-/// from 0 to 1, water from 1 - overlap to 2. The only emitter is a narrow strip at the point at
-/// which a correctly refracted ray leaves the glass.
+/// from 0 to 1, water from 1 - overlap to 2. The only emitter is a narrow strip. A correctly
+/// refracted ray hits this strip after it has left the glass.
 test::Moments through_water_and_glass(double overlap) {
   constexpr double kFar = 100;
   test::SceneMaker maker;
@@ -122,10 +125,14 @@ test::Moments through_water_and_glass(double overlap) {
 TEST(NestedGlass, M9_AnySizeOfTheOverlapGivesTheSameLight) {
   const double truth = through_water_and_glass(0.1).mean();
   EXPECT_GT(truth, 0.85);
-  test::at_most("M9", "share that passes, overlap of 1e-6 against 0.1",
-                std::abs(through_water_and_glass(1e-6).mean() - truth), 1e-3);
-  test::at_most("M9", "share that passes, faces in one plane against 0.1",
-                std::abs(through_water_and_glass(0).mean() - truth), 1e-3);
+  test::at_most(
+      "M9",
+      "light that passes with an overlap of 1e-6: difference from the light with an overlap of 0.1",
+      std::abs(through_water_and_glass(1e-6).mean() - truth), 1e-3);
+  test::at_most(
+      "M9",
+      "light that passes with faces in one plane: difference from the light with an overlap of 0.1",
+      std::abs(through_water_and_glass(0).mean() - truth), 1e-3);
 }
 
 test::SceneMaker spheres_and_mesh(const Vec3& at) {
@@ -160,7 +167,8 @@ TEST(Camera, C1_TheSamePrimitivesAreHitAMillionUnitsAway) {
     different += a.id == b.id ? 0 : 1;
   }
   EXPECT_GT(hits, 50'000);
-  test::at_most("C1", "share of other ids of 250,000", different / 250'000.0, 1e-5);
+  test::at_most("C1", "share of 250,000 camera rays that hit another primitive 1e6 away",
+                different / 250'000.0, 1e-5);
 }
 
 }  // namespace

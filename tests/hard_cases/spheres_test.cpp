@@ -1,4 +1,6 @@
-// Cases of cases.txt: S1 to S8 and S10 (spheres), and M9 (a bubble in glass).
+// Cases S1 to S8 and S10 (spheres) and M9 (a bubble in glass) of cases.txt.
+//
+// In texts, u is the unit roundoff of double, 2^-53.
 
 #include <gtest/gtest.h>
 
@@ -25,8 +27,8 @@ using test::WideVec;
 
 constexpr double kUnit = 0x1p-53;
 
-/// Returns the ray's parameter at the hit, if there is one. `starts_on_it`: the ray starts on the
-/// sphere, whose near root is then not a hit.
+/// Returns the ray's parameter t at the hit; std::nullopt if the ray misses. `starts_on_it`: the
+/// ray starts on the sphere, so the near root is not a hit.
 std::optional<double> hit(const Ray& ray, const Sphere& sphere, bool starts_on_it = false) {
   Crossing crossing;
   if (!intersect(trace_setup(ray.origin, ray.direction, ray.t_max), sphere, starts_on_it,
@@ -79,9 +81,9 @@ TEST(Sphere, S1_IsHitCorrectlyFromFarAway) {
       }
     }
     ASSERT_GT(hits, rays / 2);
-    const std::string at = " at " + std::to_string(static_cast<int>(distance)) + " R";
-    test::at_most("S1", "wrong of " + std::to_string(rays) + at, wrong, 0);
-    test::at_most("S1", "rms error of t" + at, std::sqrt(square_error / hits),
+    const std::string at = " at distance " + std::to_string(static_cast<int>(distance)) + " R";
+    test::at_most("S1", "rays with a wrong hit or miss, of " + std::to_string(rays) + at, wrong, 0);
+    test::at_most("S1", "RMS error of t" + at, std::sqrt(square_error / hits),
                   distance <= 1500 ? 1e-10 : 1e-7);
   }
 }
@@ -108,7 +110,9 @@ TEST(Sphere, S3_TangentRaysAreDecidedCorrectlyAndNeverNan) {
       }
     }
   }
-  test::report_hard_case("S3", "26,000 rays right beyond 16 u (1 + L / R), none NaN");
+  test::report_hard_case("S3",
+                         "26,000 rays: hit or miss is correct if the ray passes the rim by more "
+                         "than 16 u (R + distance of the origin); t is never NaN");
 }
 
 TEST(Sphere, S2_HitPointsLieOnSpheresOfAnySize) {
@@ -137,8 +141,10 @@ TEST(Sphere, S2_HitPointsLieOnSpheresOfAnySize) {
       again += hit(away, g.spheres[0], true) || hit(away, g.spheres[0], false) ? 1 : 0;
     }
   }
-  test::at_most("S2", "height in units of u (R + |o|)", height.value() / kUnit, 4);
-  test::at_most("S2", "self-hits of " + std::to_string(3 * rays), again, 0);
+  test::at_most("S2", "distance of hit points from the sphere, in units of u (R + |o|)",
+                height.value() / kUnit, 4);
+  test::at_most("S2", "rays that hit the sphere that they leave, of " + std::to_string(3 * rays),
+                again, 0);
 }
 
 /// Returns the largest relative change of the far root if the last bit of one coordinate of the
@@ -179,13 +185,16 @@ TEST(Sphere, S4_TheFarSideIsHitFromWithin) {
       over_last_bit.see(relative / change_by_last_bit(ray, sphere));
     }
   }
-  test::at_most("S4", "relative error of the far root", error.value(), 1e-12);
+  test::at_most("S4", "relative error of t of the far root, for chords steeper than 1.7 degrees",
+                error.value(), 1e-12);
   // The discriminant of the roots is R^2 cos^2, and it is rounded with an error of about u R^2. The
   // relative error of the discriminant is therefore about u / cos^2, which is large for flat
   // chords.
-  test::at_most("S4", "error times cos^2, for chords flatter than 1.7 degrees", flat_error.value(),
-                1e-15);
-  test::at_most("S4", "error of these chords over the change by the last bit of the origin",
+  test::at_most("S4", "relative error of t times cos^2, for chords flatter than 1.7 degrees",
+                flat_error.value(), 1e-15);
+  test::at_most("S4",
+                "relative error of t for chords flatter than 1.7 degrees, divided by the relative "
+                "change of t if the last bit of the origin changes",
                 over_last_bit.value(), 8);
   EXPECT_EQ(hit({sphere.center, {0, 1, 0}}, sphere), 2);
 }
@@ -197,7 +206,7 @@ TEST(Sphere, S5_TakesTheFirstRootAhead) {
   EXPECT_FALSE(hit({{0, 0, 3}, {0, 0, 1}}, sphere));
   EXPECT_FALSE(hit({{0, 0, -3}, {0, 0, 1}, 2}, sphere));
   EXPECT_EQ(hit({{0, 0, -3}, {0, 0, 1}}, sphere, true), 4);
-  test::report_hard_case("S5", "exact roots before, inside and behind");
+  test::report_hard_case("S5", "t is exact for origins before, inside and behind the sphere");
 }
 
 TEST(Sphere, S6_TheLengthOfTheDirectionDoesNotMatter) {
@@ -216,7 +225,8 @@ TEST(Sphere, S6_TheLengthOfTheDirectionDoesNotMatter) {
       ASSERT_EQ(*large, *t * 0x1p-40);
     }
   }
-  test::report_hard_case("S6", "1,000 distances equal to the bit at 2^-40, 1, 2^40");
+  test::report_hard_case(
+      "S6", "1,000 rays: hits equal to the bit for directions scaled by 2^-40, 1, 2^40");
 }
 
 TEST(Sphere, S7_RaysThatEnterATinySphereAlsoLeaveIt) {
@@ -236,7 +246,7 @@ TEST(Sphere, S7_RaysThatEnterATinySphereAlsoLeaveIt) {
                    ? 0
                    : 1;
     }
-    test::at_most("S7", "exits missed of " + std::to_string(rays), holes, 0);
+    test::at_most("S7", "rays that find no exit, of " + std::to_string(rays), holes, 0);
   }
 }
 
@@ -268,13 +278,14 @@ TEST(SphereUv, S8_StaysInTheUnitSquare) {
     const Vec2 uv = sphere_uv(n);
     outside += uv.x >= 0 && uv.x < 1 && uv.y >= 0 && uv.y <= 1 ? 0 : 1;
   }
-  test::at_most("S8", "NaN or outside of " + std::to_string(points), outside, 0);
+  test::at_most("S8", "points with u or v NaN or outside [0, 1], of " + std::to_string(points),
+                outside, 0);
 }
 
-/// Traces a ray that is refracted at each hit and never reflected, and changes `direction` to that
-/// of the last refraction. Returns a letter for each hit: o for the outer sphere, i for the inner.
-/// Stops after 9 hits. If no direction can be sampled at a hit, stops there with the letter "?" and
-/// leaves `direction` unchanged.
+/// Traces a ray that is refracted at each hit and never reflected. Sets `direction` to the
+/// direction after the last refraction. Returns a letter for each hit: o for the outer sphere, i
+/// for the inner sphere. Stops after 9 hits. If no direction can be sampled at a hit, stops at this
+/// hit, adds the letter "?" and leaves `direction` unchanged.
 std::string pass_through(const Geometry& g, const Accel& accel, Vec3& direction, Vec3 origin) {
   const Material glass = Dielectric{1.5};
   const Material air = Dielectric{1};
@@ -295,9 +306,9 @@ std::string pass_through(const Geometry& g, const Accel& accel, Vec3& direction,
   return order;
 }
 
-// A ray at distance b from the centre meets the outer sphere twice and the inner sphere twice. At a
-// sphere of radius r it turns by asin(b / r) - asin(b / (n r)). At the outer sphere it turns
-// towards the centre, at the inner sphere away from it.
+// A ray at distance b from the centre hits the outer sphere twice and the inner sphere twice. At a
+// sphere of radius r and index n, the ray turns by asin(b / r) - asin(b / (n r)). At the outer
+// sphere the ray turns towards the centre, at the inner sphere away from the centre.
 TEST(Sphere, S10M9_ShellsAndBubblesRefractBySnellsLaw) {
   for (const long double inner : {1 - 1e-9L, 0.5L}) {
     Geometry g;
@@ -316,7 +327,9 @@ TEST(Sphere, S10M9_ShellsAndBubblesRefractBySnellsLaw) {
       error.see(std::abs(std::atan2(-direction.x, direction.z) - static_cast<double>(turn)));
     }
     test::at_most(inner > 0.9L ? "S10" : "M9",
-                  inner > 0.9L ? "angle off, rad" : "bubble of air in glass: angle off, rad",
+                  inner > 0.9L
+                      ? "error of the transmitted direction, in rad"
+                      : "bubble of air in glass: error of the transmitted direction, in rad",
                   error.value(), 1e-9);
   }
 }

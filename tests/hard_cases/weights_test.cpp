@@ -1,9 +1,9 @@
 // Shows why MIS does not meet the criterion of case Q5 in cases.txt: at most 1.2 times the error of
 // the better technique. Two techniques, light sampling by solid angle and cosine-weighted sampling,
 // are weighted by the ratio of their pdfs, which is all that a heuristic can know in any scene.
-// Near the light cosine-weighted sampling is nearly exact, and far from it light sampling is. But
-// the same ratios occur at both places. The optimal weights are computed here, and they do not meet
-// the criterion either.
+// Near the light, cosine-weighted sampling is nearly exact. Far from the light, light sampling is
+// nearly exact. But the same ratios occur at both places. This test computes the optimal weights,
+// and the optimal weights do not meet the criterion either.
 
 #include <gtest/gtest.h>
 
@@ -35,8 +35,8 @@ struct Seen {
   std::vector<double> light_sampling = std::vector<double>(kBins);   ///< integral of f^2 / q
 };
 
-/// Returns the moments for a light of 2 x 2 at `height`. There p = cos / pi, q = 1 / the solid
-/// angle of the light, and f = p.
+/// Returns the moments for a light of 2 x 2 at `height`. For this light p = cos / pi, f = p, and q
+/// is 1 / the solid angle of the light.
 Seen seen_from(double height) {
   constexpr int kSteps = 600;
   const double solid_angle = 4 * std::atan(1 / (height * std::sqrt(2 + height * height)));
@@ -151,8 +151,8 @@ TEST(Weights, Q5_NoWeightsByThePdfRatioAreCloseToTheBetterTechnique) {
   }
   test::at_least(
       "Q5",
-      "of any weights that know the ratio of the densities the standard deviation at h = "
-      "0.02 or at 3, over that of the better technique, is at least",
+      "lower bound for weights that depend only on the ratio of the pdfs: standard deviation at h "
+      "= 0.02 or at h = 3, divided by the standard deviation of the better technique",
       std::sqrt(bound), 1.2);
 }
 

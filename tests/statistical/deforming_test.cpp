@@ -72,7 +72,7 @@ TEST(Deforming, C9_AMovingEdgeIsALinearRamp) {
     const Moments& pixel = found[static_cast<std::size_t>(x)];
     EXPECT_NEAR(pixel.mean(), expected, 4 * pixel.standard_error() + 1e-9) << x;
   }
-  test::report_hard_case("C9", "a mesh whose vertices move is within 4 SE of the ramp too");
+  test::report_hard_case("C9", "mesh with moving vertices: pixels within 4 SE of the linear ramp");
 }
 
 // A square grows from a point to 8 x 8 pixels. Let t, from 0 to 1, be the share of the shutter's

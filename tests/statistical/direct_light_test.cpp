@@ -61,14 +61,14 @@ TEST(DirectLight, L4_OfASphereThatCrossesTheHorizonMeetsTheIntegral) {
     maker.sphere(at(1, row.tilt), std::sin(row.half_angle), maker.lamp(1));
     expect_irradiance(maker, row.irradiance, 4096);
   }
-  test::report_hard_case("L4", "within 4 SE");
+  test::report_hard_case("L4", "irradiance within 4 SE of the integral");
 }
 
 TEST(DirectLight, L3_InsideASphereIsPi) {
   SceneMaker maker;
   maker.sphere({0.2, 0.1, 0}, 1, maker.lamp(1));
   expect_irradiance(maker, kPi);
-  test::report_hard_case("L3", "E = pi L inside, within 4 SE");
+  test::report_hard_case("L3", "receiver inside: E within 4 SE of pi L");
 }
 
 // The values are those of Lambert's formula for polygons (polygon_light_test.cpp).

@@ -89,7 +89,7 @@ TEST(EnvironmentLight, L8OneTexelGivesTheLightOfTheQuadrature) {
     expected *= 1e5 * 2 * kPi / kWidth;
     expect_radiance(maker, onto_patch(0), expected / kPi, {.max_depth = 1});
   }
-  test::report_hard_case("L8", "within 4 SE of L x solid angle");
+  test::report_hard_case("L8", "reflected radiance within 4 SE of the integral over the texel");
 }
 
 /// A sun on a sky with bands, above a dark ground.
@@ -168,7 +168,7 @@ TEST(EnvironmentLight, C10AMirrorShowsTheEnvironmentInItsDirection) {
       radiance(maker.scene.background, maker.scene.textures, {down.x, -down.y, down.z});
   const Ray ray{.origin = {0, 1, 0}, .direction = down};
   expect_radiance(maker, ray, expected.g, {.max_depth = 4}, 16);
-  test::report_hard_case("C10", "mirrors show what lies in their direction");
+  test::report_hard_case("C10", "a mirror shows the environment in the mirrored direction");
 }
 
 TEST(EnvironmentLight, C10LosslessObjectsAreInvisibleInAWhiteEnvironment) {
@@ -183,7 +183,7 @@ TEST(EnvironmentLight, C10LosslessObjectsAreInvisibleInAWhiteEnvironment) {
     const Ray ray{.origin = {x + 0.4, 0.3, 5}, .direction = {0, 0, -1}};
     expect_radiance(maker, ray, 1, {.max_depth = 1000, .russian_roulette = false}, 64);
   }
-  test::report_hard_case("C10", "invisible in a white one");
+  test::report_hard_case("C10", "objects without absorption are invisible in a white environment");
 }
 
 TEST(DeltaLight, EachKindGivesTheClosedForm) {

@@ -97,7 +97,7 @@ TEST(Furnace, O6_APaneOfGlassTransmitsTheSumOverItsReflections) {
   // (1 - R) / (1 + R) with the reflectance R = 0.04 of a face: the sum over all reflections.
   expect_value(test::radiance_along(*maker.build(), up, {.max_depth = 1000}, 4096), 0.9230769231,
                1e-3);
-  test::report_hard_case("O6", "a pane 0.1 thick: within 1e-3");
+  test::report_hard_case("O6", "pane of thickness 0.1: transmitted share within 1e-3");
 }
 
 /// Diffuse, glossy and glass surfaces under a sphere, a rectangle and a mesh that emit light.
@@ -159,8 +159,8 @@ TEST(Techniques, Q5_NearALightMisIsCloseToTheBetterTechnique) {
     EXPECT_LE(both, std::min(lights, scattering) + 0.25) << h;
     EXPECT_LE(both, std::max(lights, scattering)) << h;
     std::ostringstream figure;
-    figure << "h = " << h << ": std / mean " << both << " of MIS, " << lights
-           << " of light sampling, " << scattering << " of BSDF sampling";
+    figure << "h = " << h << ": standard deviation / mean is " << both << " for MIS, " << lights
+           << " for light sampling, " << scattering << " for BSDF sampling";
     test::report_hard_case("Q5", figure.str());
   }
 }

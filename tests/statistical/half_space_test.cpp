@@ -79,7 +79,7 @@ TEST(HalfSpace, V3ReflectanceDoesNotDependOnDensity) {
   for (const float density : {1e6f, 1e10f}) {
     expect_half_space({0.8f, 1, 0.28525450}, density, 4e-3, 1024);
   }
-  test::report_hard_case("V3", "within 4 SE");
+  test::report_hard_case("V3", "reflectance of a half-space within 4 SE");
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST(Media, V6AbsorptionIsExponential) {
   EXPECT_EQ(seen.r, 1);
   EXPECT_NEAR(seen.g, std::exp(-std::sqrt(2.0)), 1e-6);
   EXPECT_NEAR(seen.b, std::exp(-4 * std::sqrt(2.0)), 1e-6);
-  test::report_hard_case("V6", "T within 4 SE");
+  test::report_hard_case("V6", "T within 4 SE of the closed form");
 }
 
 /// First the camera is in the middle of a ball of smoke, and the light is inside of the ball, on
@@ -79,7 +79,7 @@ TEST(Media, V7AroundTheCameraAttenuateALight) {
     test::fog(everywhere, medium(0.5f, 0));
     EXPECT_NEAR(one_sample(*everywhere.build(), ray), 5 * std::exp(-0.5 * distance), 1e-5);
   }
-  test::report_hard_case("V7", "within 4 SE");
+  test::report_hard_case("V7", "radiance of the light within 4 SE of the closed form");
 }
 
 /// The camera ray hits a light behind media. Every path gets the light of this hit, attenuated by
@@ -226,9 +226,11 @@ TEST(Media, V3V11PathsInAnOpaqueBallEndAtTheMaximumDepth) {
   }
   EXPECT_GT(counts.truncated, 0u);
   EXPECT_LE(counts.truncated, 64u);
-  test::report_hard_case("V11", "paths that were cut off are counted");
-  test::report_hard_case("V3", "an opaque ball: the path ends by its depth");
-  test::at_least("V11", "radiance of a ball of scattering 1e12 at 512 bounces", last, 0.9);
+  test::report_hard_case("V11", "paths that end at the maximum depth are counted as cut off");
+  test::report_hard_case("V3", "opaque ball: every path ends by the maximum depth");
+  test::at_least("V11",
+                 "radiance of a ball with scattering coefficient 1e12, with at most 512 bounces",
+                 last, 0.9);
 }
 
 /// A closed shape whose medium does not absorb is invisible under a white sky. Its pixels have no
@@ -247,7 +249,7 @@ TEST(Media, O8WithoutLossAreInvisibleInAWhiteSky) {
   test::fill_box(thin, {-9, 0, -9}, {9, 1e-5, 9}, test::add(thin, medium(0, 1e5f)));
   const Ray down{.origin = {0, 4, 0}, .direction = normalize({0.3, -1, 0.1})};
   expect_value(test::radiance_along(*thin.build(), down, {.max_depth = 1000}, 256, 8), 1, 1e-5);
-  test::report_hard_case("O8", "invisible in a white sky");
+  test::report_hard_case("O8", "a medium without absorption is invisible in a white sky");
 }
 
 /// A slab as thin as that of the previous test absorbs according to its thickness.
@@ -256,7 +258,7 @@ TEST(Media, O8ThinSlabIsNotSteppedOver) {
   test::fill_box(maker, {-9, 0, -9}, {9, 1e-5, 9}, test::add(maker, medium(1e5f, 0)));
   const Ray down{.origin = {0, 4, 0}, .direction = {0, -1, 0}};
   EXPECT_NEAR(one_sample(*maker.build(), down), std::exp(-1.0), 1e-6);
-  test::report_hard_case("O8", "thin slab as the exponential says");
+  test::report_hard_case("O8", "transmittance of a thin slab follows the exponential law");
 }
 
 /// A pane whose two faces lie exactly in the boundary of an absorbing medium. Each face reflects
@@ -275,7 +277,7 @@ TEST(Media, V9InAPaneOfGlassAbsorbBetweenReflections) {
   const Ray up{.origin = {0.2, -3, 0.1}, .direction = {0, 1, 0}};
   expect_value(test::radiance_along(*maker.build(), up, {.max_depth = 1000}, 4096), through + back,
                1e-3);
-  test::report_hard_case("V9", "in a pane, within 4 SE");
+  test::report_hard_case("V9", "medium in a pane: light within 4 SE of the closed form");
 }
 
 /// A filled glass ball, viewed through its middle. The surface reflects the share f = 0.04 at each
@@ -291,7 +293,7 @@ TEST(Media, V9InAGlassBallAbsorbBetweenReflections) {
   const Ray ray{.origin = {-3, 0, 0}, .direction = {1, 0, 0}};
   expect_value(test::radiance_along(*maker.build(), ray, {.max_depth = 1000}, 4096), f + through,
                1e-3);
-  test::report_hard_case("V9", "in a ball, within 4 SE");
+  test::report_hard_case("V9", "medium in a glass ball: light within 4 SE of the closed form");
 }
 
 /// A room with a light, a floor and two nested smokes, coloured and anisotropic, with fog around.
@@ -342,7 +344,7 @@ TEST(MediaTechniques, R8_RouletteKeepsTheMean) {
   const double error = std::hypot(with.standard_error(), without.standard_error());
   EXPECT_LE(std::abs(with.mean() - without.mean()), 4 * error);
   EXPECT_LE(error, 1e-2 * with.mean());
-  test::report_hard_case("R8", "same mean with and without, within 4 SE");
+  test::report_hard_case("R8", "means with and without roulette are equal within 4 SE");
 }
 
 /// A medium without absorption and scattering changes no bit of the radiance.
@@ -399,7 +401,7 @@ TEST(MediaTechniques, V8AgreeOnARayThroughTheMiddleOfALight) {
   EXPECT_LE(both.standard_error(), 1e-3 * both.mean());
   EXPECT_LE(std::abs(both.mean() - lights.mean()),
             4 * std::hypot(both.standard_error(), lights.standard_error()));
-  test::report_hard_case("V8", "techniques agree");
+  test::report_hard_case("V8", "light sampling alone equals both techniques together within 4 SE");
 }
 
 }  // namespace

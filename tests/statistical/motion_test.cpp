@@ -89,7 +89,7 @@ TEST(PlacedLight, X9_EmitsAccordingToItsSizeInTheWorld) {
   quad.scene.geometry.instances.push_back(of_group(0, translation({0, 1, 0}) * scaling({2, 9, 2})));
   // A square of side 2 at distance 1, parallel to the patch: 2 sqrt(2) atan(1 / sqrt(2)).
   expect_irradiance(quad, 1.740839502734);
-  test::report_hard_case("X9", "within 4 SE");
+  test::report_hard_case("X9", "irradiance from scaled lights within 4 SE of the closed form");
 }
 
 // Light sampling and BSDF sampling agree for an ellipsoid over a point. A flat ellipsoid gives
@@ -217,7 +217,7 @@ TEST(MotionBlur, C9_AMovingEdgeIsALinearRamp) {
                 4 * pixels[static_cast<std::size_t>(x)].standard_error() + 1e-9)
         << x;
   }
-  test::report_hard_case("C9", "within 4 SE of the ramp");
+  test::report_hard_case("C9", "moving instance: pixels within 4 SE of the linear ramp");
 }
 
 }  // namespace

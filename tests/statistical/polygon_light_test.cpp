@@ -116,7 +116,7 @@ TEST(PolygonLight, L12LightsCountOnceForEveryTechnique) {
           << static_cast<int>(technique);
     }
   }
-  test::report_hard_case("L12", "within 4 SE by every technique");
+  test::report_hard_case("L12", "each technique alone equals both together within 4 SE");
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST(Squashed, S12_AGlassBallIsInvisibleInAWhiteSky) {
   }
   EXPECT_LE(cut_off, paths / 1'000);
   test::at_most("S12",
-                "paths through glass balls that bring another radiance than the sky's, of " +
+                "paths through glass balls whose radiance differs from the sky's, of " +
                     std::to_string(paths),
                 wrong, 0);
 }
@@ -119,7 +119,7 @@ TEST(Squashed, S12_AnAbsorbingBallTransmitsTheExponentialOfItsChord) {
       error.see(std::abs(seen - std::exp(-double{static_cast<float>(sigma)} * chord)));
     }
   }
-  test::at_most("S12", "error of what absorbing balls let pass", error.value(), 1e-4);
+  test::at_most("S12", "error of the transmittance of absorbing balls", error.value(), 1e-4);
 }
 
 /// A ray through the middle of the ball meets it as a pane with parallel faces, perpendicularly.
@@ -141,7 +141,8 @@ TEST(Squashed, S12_AbsorbingGlassIsAPaneInItsMiddle) {
     EXPECT_LE(std::abs(seen.z(expected)), 4) << by << ": " << seen.mean() << " not " << expected;
     EXPECT_LE(seen.standard_error(), 1e-3 * expected) << by;
   }
-  test::report_hard_case("S12", "absorbing glass within 4 SE of a pane");
+  test::report_hard_case("S12",
+                         "absorbing glass ball: radiance through the middle within 4 SE of a pane");
 }
 
 TEST(Squashed, S12_MediaWithoutLossAreInvisibleInAWhiteSky) {
@@ -166,7 +167,8 @@ TEST(Squashed, S12_MediaWithoutLossAreInvisibleInAWhiteSky) {
       EXPECT_EQ(counts.truncated, 0u);
     }
   }
-  test::report_hard_case("S12", "media without loss, and in glass, within 1e-4 of the sky");
+  test::report_hard_case(
+      "S12", "media without absorption, alone and in glass: radiance within 1e-4 of the sky");
 }
 
 }  // namespace

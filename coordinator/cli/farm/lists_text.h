@@ -1,7 +1,8 @@
 #pragma once
 
-// Formats what commands list (jobs, workers, reasons, logs) as tables for people, and as one JSON
-// object per line for programs. The functions are pure; each string is a line without a line end.
+// Formats the lists that commands print as tables for people, and as one JSON object per line for
+// programs. The lists are jobs, workers, reasons why a job waits, and logs. The functions are pure;
+// each string is a line without a line end.
 
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ namespace bandsaw::coordinator {
 std::vector<std::string> jobs_table(const std::vector<Progress>& jobs);
 /// Lists all jobs.
 std::vector<std::string> jobs_json(const std::vector<Progress>& jobs);
+/// Lists the reasons why the job waits.
 std::vector<std::string> why_json(JobId job, const std::vector<std::string>& reasons);
 std::string log_json(const std::string& worker, const std::vector<std::string>& lines);
 std::vector<std::string> workers_table(const farm::ListWorkersReply& reply);

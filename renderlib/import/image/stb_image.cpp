@@ -5,7 +5,8 @@
 #define STBI_NO_GIF
 #define STBI_NO_PIC
 #define STBI_NO_STDIO
-// New memory is cleared, so that the pixels of a damaged file do not depend on its old contents.
+// calloc() sets new memory to zero. If an image file is damaged, the decoder may leave pixels
+// unwritten. These pixels are then zero, instead of what the memory held before.
 #define STBI_MALLOC(size) std::calloc(1, size)
 #define STBI_REALLOC(pointer, size) std::realloc(pointer, size)
 #define STBI_FREE(pointer) std::free(pointer)

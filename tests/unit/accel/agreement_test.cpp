@@ -190,7 +190,8 @@ TEST(Agreement, B4_HoldsForRaysAlongAxesAndWithinFaces) {
     return ray;
   });
   EXPECT_EQ(agreement.different, 0);
-  report_hard_case("B4", "20,000 rays with 0, -0, 1e-30 answered as by testing all");
+  report_hard_case("B4",
+                   "20,000 rays with direction components 0, -0, 1e-30: hits equal brute force");
 }
 
 /// Returns a random point of the cube [-size, size]^3.

@@ -104,10 +104,9 @@ TEST(AccelExact, HitsOnRandomTrianglesEqualBruteForce) {
 
 TEST(AccelExact, T5_HitsOfRaysAlongPlanesEdgesAndCornersEqualBruteForce) {
   expect_exact(of_mesh(lattice(1)), grid_rays(4000, 2));
-  // "In any place of a pack" means: the triangle that is hit may be in any of the eight lanes of a
-  // leaf.
+  // A leaf of the tree has eight lanes with one triangle each.
   test::report_hard_case(
-      "T5", "4,000 rays within planes answered as by testing all, in any place of a pack");
+      "T5", "4,000 rays within planes: hits equal brute force in every lane of a leaf");
 }
 
 TEST(AccelExact, HitsOnNeedlesAndSpikesFarFromTheOriginEqualBruteForce) {
@@ -191,7 +190,8 @@ TEST(AccelExact, T7_TiesGoToTheLowestIdInAnyOrder) {
   Geometry g = of_mesh(doubled);
   g.instances.push_back(g.instances[0]);
   expect_exact(g, random_rays(1500, 2, 12));
-  test::report_hard_case("T7", "the lowest id of 1,500 rays, to the bit as by testing all");
+  test::report_hard_case("T7",
+                         "1,500 rays: the lowest id is hit, and hits equal brute force to the bit");
 }
 
 TEST(AccelExact, B7_HitsOnTrianglesOfHalvingSizesEqualBruteForce) {

@@ -72,7 +72,8 @@ TEST(Instance, X1_AMirroredInstanceKeepsItsOutside) {
     ASSERT_NEAR(p.uv.x, q.uv.x, 1e-12);
     ASSERT_EQ(p.material, MaterialId{3});
   }
-  test::report_hard_case("X1", "5,000 normals within 1e-12 of those mirrored by hand");
+  test::report_hard_case("X1",
+                         "5,000 rays: normals within 1e-12 of the normals of a mirrored mesh");
 }
 
 // The instance is an ellipsoid. Its shading normals point along the gradient of the ellipsoid's
@@ -110,7 +111,8 @@ TEST(Instance, X2_StretchedInstancesHaveTheNormalsOfTheirShape) {
     ASSERT_LE(length(p.position - n), 1e-14);
   }
   EXPECT_GT(hits, 1000);
-  test::report_hard_case("X2", "more than 1,000 geometric normals within 1e-10 rad");
+  test::report_hard_case("X2",
+                         "more than 1,000 geometric normals within 1e-10 rad of the exact normals");
 }
 
 // A scene has two instances that are equal in world space: a large mesh that is scaled down, and a
@@ -139,7 +141,7 @@ TEST(Instance, X5_DistancesAreInWorldSpaceAtEveryScale) {
       ASSERT_EQ(hit.id.primitive, other.id.primitive);
     }
   }
-  test::report_hard_case("X5", "5,000 distances equal to the bit");
+  test::report_hard_case("X5", "5,000 rays: t equal to the bit for both instances");
 }
 
 TEST(Instance, X6_TheFirstOfCoincidentInstancesIsHit) {
@@ -154,7 +156,7 @@ TEST(Instance, X6_TheFirstOfCoincidentInstancesIsHit) {
     const Hit hit = accel.closest(aimed(random, {}, 0.5));
     ASSERT_TRUE(!hit || hit.id.instance == 1);
   }
-  test::report_hard_case("X6", "the first of 21 in one place in 3,000 rays");
+  test::report_hard_case("X6", "3,000 rays: the first of 21 coincident instances is hit");
 }
 
 // Rays from the middle of a rotated instance through each corner of its mesh hit the mesh. They
@@ -179,7 +181,7 @@ TEST(Instance, B11_BoxesContainTheirInstances) {
       ASSERT_TRUE(accel.occluded({middle, corner - middle}));
     }
   }
-  test::report_hard_case("B11", "300 placements hold their 42 corners");
+  test::report_hard_case("B11", "300 instances: the boxes contain all 42 vertices");
 }
 
 TEST(Instance, X3_SingularInstancesAreNeverHit) {
@@ -188,7 +190,7 @@ TEST(Instance, X3_SingularInstancesAreNeverHit) {
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);
   EXPECT_FALSE(accel.closest({{0, -3, 0}, {0, 1, 0}}));
-  test::report_hard_case("X3", "scale 0 is never hit");
+  test::report_hard_case("X3", "an instance of scale 0 is never hit");
 }
 
 }  // namespace

@@ -60,7 +60,9 @@ TEST(Offset, O1_NoRayHitsTheMeshPlaneItLeaves) {
       ASSERT_TRUE(!again || again.t > 1e3 * p.offset) << again.t << " " << p.offset;
     }
   }
-  test::report_hard_case("O1", "80,000 bounces off squashed, mirrored and moved meshes: none");
+  test::report_hard_case("O1",
+                         "80,000 bounces off squashed, mirrored and moved meshes: no ray hits the "
+                         "mesh near its origin");
 }
 
 // A sphere nearly touches a plane. Rays that leave the plane below the sphere hit the sphere.
@@ -88,7 +90,8 @@ TEST(Offset, O2_NarrowGapsAreNotSkipped) {
       }
     }
   }
-  test::report_hard_case("O2", "0 skipped of 30,000, gaps 1e-4, 1e-6, 1e-9");
+  test::report_hard_case("O2",
+                         "30,000 rays across gaps of 1e-4, 1e-6, 1e-9: every ray hits the sphere");
 }
 
 /// Returns a point on a light that belongs to no instance. `size`: the largest number from which
@@ -130,7 +133,7 @@ TEST(Offset, O4_VisibleLightsAreNotSelfShadowed) {
       ASSERT_NE(accel.closest(to_sphere).id, (PrimitiveId{0, 0}));
     }
   }
-  test::report_hard_case("O4", "200,000 shadow rays never end at their own light");
+  test::report_hard_case("O4", "200,000 shadow rays: none is occluded by its own light");
 }
 
 TEST(Offset, O3_ANearOccluderBlocksALightAtAnyDistance) {

@@ -36,7 +36,7 @@ TEST(AccelRobust, Q7B8_EmptyScenesAreMissedAndASingleQuadIsHit) {
   const Accel accel = Accel::build(one, pool);
   EXPECT_EQ(accel.closest({{0.3, 0, -1}, {0, 0, 1}}).t, 1);
   EXPECT_FALSE(accel.closest({{0.3, 2, -1}, {0, 0, 1}}));
-  test::report_hard_case("Q7", "a quad of no thickness is hit, without padding");
+  test::report_hard_case("Q7", "a quad whose box has no thickness is hit, without padding");
 }
 
 TEST(AccelRobust, B5_InvalidRaysHitNothing) {
@@ -57,7 +57,7 @@ TEST(AccelRobust, B5_InvalidRaysHitNothing) {
   EXPECT_FALSE(accel.closest({{0, 0, 0}, {0, 0, 1}, -1}));
   EXPECT_TRUE(accel.closest({{0, 0, 0}, {0, 0, 1e-150}}));
   EXPECT_TRUE(accel.closest({{0, 0, 0}, {0, 0, 1e150}}));
-  test::report_hard_case("B5", "30 rays that are no rays miss");
+  test::report_hard_case("B5", "30 invalid rays hit nothing");
 }
 
 TEST(AccelRobust, T10_BadTrianglesDoNotChangeTheOthers) {
@@ -84,7 +84,7 @@ TEST(AccelRobust, T10_BadTrianglesDoNotChangeTheOthers) {
     const Ray ray = {2 * test::random_point(random), test::random_direction(random)};
     ASSERT_TRUE(test::same_hit(accel.closest(ray), accel_bad.closest(ray)));
   }
-  test::report_hard_case("T10", "7 bad primitives change no bit of the hits of 5,000 rays");
+  test::report_hard_case("T10", "7 invalid primitives change no bit of the hits of 5,000 rays");
 }
 
 TEST(AccelRobust, TheFirstOfManyEqualTrianglesIsHit) {
@@ -114,7 +114,7 @@ TEST(AccelRobust, B12_IsTheSameForAnyNumberOfBuildThreads) {
     const Ray ray = {2 * test::random_point(random), test::random_direction(random)};
     ASSERT_TRUE(test::same_hit(a.closest(ray), b.closest(ray)));
   }
-  test::report_hard_case("B12", "2,000 hits equal for 1 and 3 building threads");
+  test::report_hard_case("B12", "2,000 hits equal for trees built by 1 and by 3 threads");
 }
 
 TEST(Surface, T12_BadNormalsFallBackToTheGeometricOne) {
@@ -135,7 +135,7 @@ TEST(Surface, T12_BadNormalsFallBackToTheGeometricOne) {
   }
   mesh.normals = {{0, 0, -1}, {0, 0, -1}, {0, 0, -1}};
   EXPECT_EQ(surface_at(of_mesh(mesh), ray, hit).shading_normal, (Vec3{0, 0, 1}));
-  test::report_hard_case("T12", "zero, NaN and opposite normals give the geometric one");
+  test::report_hard_case("T12", "zero, NaN and opposite vertex normals give the geometric normal");
 }
 
 }  // namespace

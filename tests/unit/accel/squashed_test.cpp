@@ -118,8 +118,8 @@ TEST(Squashed, S12_CrossingsOfASphereAlternate) {
     all.outside += lost.outside;
   }
   const std::string count = std::to_string(all.rays);
-  test::at_most("S12", "rays lost inside, of " + count, all.inside, 0);
-  test::at_most("S12", "rays that meet what they leave, of " + count, all.outside, 0);
+  test::at_most("S12", "rays that start inside and find no exit, of " + count, all.inside, 0);
+  test::at_most("S12", "rays that leave the ball and hit it again, of " + count, all.outside, 0);
 }
 
 /// Checks the length of the chord that a ray has in a sphere. In the sphere's own space, the ray
@@ -145,7 +145,8 @@ TEST(Squashed, S12_ChordsAreCloseToTheirExactLength) {
       }
     }
   }
-  test::at_most("S12", "chords off, in radii, steeper than 6 degrees", error.value(), 0.05);
+  test::at_most("S12", "error of the chord length in radii, for chords steeper than 6 degrees",
+                error.value(), 0.05);
 }
 
 TEST(Squashed, CrossingsOfACubeAlternate) {
@@ -182,7 +183,8 @@ TEST(Squashed, S12_ALightAroundTheReceiverDoesNotShadowItself) {
     shadows += occluded;
   }
   EXPECT_GT(rays, 10'000);
-  test::at_most("S12", "shadow rays within a lamp that end at it, of " + std::to_string(rays),
+  test::at_most("S12",
+                "shadow rays from inside a lamp that the lamp occludes, of " + std::to_string(rays),
                 shadows, 0);
 }
 

@@ -120,7 +120,8 @@ TEST(Tree, B7_IsNeverDeeperThanTheTraversalStack) {
   EXPECT_EQ(visited(tree, {{0.5, 0.5, -1}, {0, 0, 1}}).size(), same.size());
   const std::vector<FloatBox> huge(100, FloatBox{{-3e38f, 0, 0}, {3e38f, 3e38f, 1}});
   EXPECT_LE(build_tree(huge).depth, 8u);
-  test::report_hard_case("B7", "1,000 nested boxes no deeper than the stack");
+  test::report_hard_case("B7",
+                         "the tree of 1,000 nested boxes is no deeper than the traversal stack");
 }
 
 /// Returns a mesh with so many triangles that the build cuts them into several pieces and tasks for

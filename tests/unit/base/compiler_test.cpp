@@ -38,7 +38,7 @@ TEST(Compiler, Y1_KeepsTheRoundingOfNeighbouringFloats) {
   round_to_float(unknown, &out);
   EXPECT_EQ(out.x, 15.123456954956055);
   EXPECT_EQ(out.y, -3.0);
-  test::report_hard_case("Y1", "rounding kept");
+  test::report_hard_case("Y1", "doubles are rounded when they become floats");
 }
 
 [[gnu::noinline]] double multiply_add(double a, double b, double c) { return a * b + c; }
@@ -48,7 +48,7 @@ TEST(Compiler, Y3_RoundsProductsBeforeItAdds) {
   const double a = unknown;
   EXPECT_EQ(multiply_add(a, a, -(1 + 0x1p-29)), 0);
   EXPECT_EQ(std::fma(a, a, -(1 + 0x1p-29)), 0x1p-60);
-  test::report_hard_case("Y3", "no contraction");
+  test::report_hard_case("Y3", "a product is rounded before a sum (no fused multiply-add)");
 }
 
 [[gnu::noinline]] double sum_of_three(double a, double b, double c) { return (a + b) + c; }
@@ -64,7 +64,7 @@ TEST(FloatingPointState, Y2_IsTheDefaultInEveryThread) {
   EXPECT_TRUE(float_mode_is_default());
   Pool pool(3);
   pool.parallel_for(30, [](std::int64_t) { EXPECT_TRUE(float_mode_is_default()); });
-  test::report_hard_case("Y2", "the default mode in every thread of a pool");
+  test::report_hard_case("Y2", "default floating-point mode in every thread of a pool");
 }
 
 TEST(FloatingPointState, AnotherModeIsDetected) {

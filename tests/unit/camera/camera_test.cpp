@@ -52,7 +52,7 @@ TEST(Camera, C1_DirectionsAreTheSameFarFromTheOrigin) {
   for (const double x : {0.5, 300.25, 1919.5}) {
     expect_near(a.ray(x, 777, 0, 0).direction, b.ray(x, 777, 0, 0).direction, 1e-6 * pixel);
   }
-  test::report_hard_case("C1", "directions within 1e-6 of a pixel at 1e6");
+  test::report_hard_case("C1", "camera 1e6 away: directions of rays within 1e-6 pixel");
 }
 
 TEST(Camera, C3_ExtremeAnglesGiveFiniteUnitDirections) {
@@ -61,7 +61,8 @@ TEST(Camera, C3_ExtremeAnglesGiveFiniteUnitDirections) {
     const Vec3 d = rays.ray(0, 0, 0, 0).direction;
     EXPECT_NEAR(length(d), 1, 1e-15);
   }
-  test::report_hard_case("C3", "unit directions at 1e-6 and 179.9 degrees");
+  test::report_hard_case("C3",
+                         "directions have length 1 for fields of view of 1e-6 and 179.9 degrees");
 }
 
 TEST(Camera, C2C3_CamerasThatCannotMakeRaysAreRefusedWithTheNameOfTheField) {
@@ -80,8 +81,8 @@ TEST(Camera, C2C3_CamerasThatCannotMakeRaysAreRefusedWithTheNameOfTheField) {
             "camera.vertical_fov: must be in (0, 180) degrees, is 180");
   EXPECT_EQ(message([](auto& c) { c.vertical_fov = 0; }),
             "camera.vertical_fov: must be in (0, 180) degrees, is 0");
-  test::report_hard_case("C2", "refused with the field");
-  test::report_hard_case("C3", "0 and 180 degrees refused");
+  test::report_hard_case("C2", "refused with an error that names the field");
+  test::report_hard_case("C3", "fields of view of 0 and 180 degrees are refused");
 }
 
 TEST(Camera, OrthographicRaysStartAtExactPixelPositions) {
@@ -160,7 +161,7 @@ TEST(Camera, C4_APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
     // squared radius.
     EXPECT_NEAR(std::sqrt(2 * squares), expected, 0.01 * expected) << z;
   }
-  test::report_hard_case("C4", "radius within 1 % at five distances");
+  test::report_hard_case("C4", "blur radius within 1 % for points at five distances");
 }
 
 TEST(Camera, C4_FocusAtAnyDistanceGivesFiniteUnitDirections) {
@@ -177,7 +178,7 @@ TEST(Camera, C4_FocusAtAnyDistanceGivesFiniteUnitDirections) {
   lens.aperture = 0;
   const Ray sharp = RayGenerator(lens, 8, 8).ray(1, 2, 0.9, 0.1);
   EXPECT_EQ(sharp.origin, (Vec3{0, 0, 0}));
-  test::report_hard_case("C4", "finite at focus 1e-6 and 1e30");
+  test::report_hard_case("C4", "rays are finite for focus distances 1e-6 and 1e30");
 }
 
 TEST(Camera, LensAndHeightOutOfRangeAreRefused) {
@@ -210,7 +211,8 @@ TEST(Camera, C8_RaysHaveTimesFromOpeningToClosing) {
             "camera.shutter_close: must not be before shutter_open, 3, is 2");
   c.shutter = {std::nan(""), 2};
   EXPECT_THAT(std::string(validate(Camera(c)).message()), StartsWith("camera.shutter_open"));
-  test::report_hard_case("C8", "times within the shutter; reversed refused");
+  test::report_hard_case(
+      "C8", "ray times are within the shutter interval; a reversed interval is refused");
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ TEST(PixelFilter, C6_TheLastRandomNumberBelowOneStaysInThePixel) {
   for (const double x : {0.0, 65535.0, 1048575.0}) {
     EXPECT_EQ(std::floor(x + 0.5 + sample(PixelFilter{}, last, 0).x), x);
   }
-  test::report_hard_case("C6", "in its pixel at 0, 65535 and 2^20 - 1");
+  test::report_hard_case("C6", "the sample stays in its pixel for x = 0, 65535 and 2^20 - 1");
 }
 
 /// The density of a filter of radius 1, not normalised.

@@ -56,7 +56,8 @@ TEST(Triangle, T5_EdgeOnHitsAreFiniteAndInsideTheBox) {
       }
     }
   }
-  test::report_hard_case("T5", "20,000 rays within the plane: hits finite and inside the box");
+  test::report_hard_case(
+      "T5", "20,000 rays within the plane: hits are finite and inside the triangle's box");
 }
 
 // A ray from anywhere through an edge hits at least one of the two triangles that share the edge.
@@ -137,7 +138,8 @@ TEST(Quad, Q2_SliversHaveAccurateCoordinates) {
       ASSERT_NEAR(found->v, static_cast<double>(t.v), 1e-9);
     }
   }
-  test::report_hard_case("Q2", "15,000 coordinates within 1e-9");
+  test::report_hard_case(
+      "Q2", "coordinates of 15,000 hits within 1e-9 of coordinates computed with 113-bit numbers");
 }
 
 TEST(Quad, Q3_GrazingRaysFromFarAwayHitCorrectly) {
@@ -161,8 +163,9 @@ TEST(Quad, Q3_GrazingRaysFromFarAwayHitCorrectly) {
     }
   }
   EXPECT_GT(hits, 10000);
-  test::report_hard_case("Q3",
-                         "20,000 hits and misses as in 113 bits, except within 1e-9 of the edge");
+  test::report_hard_case(
+      "Q3",
+      "20,000 rays: hit or miss as computed with 113-bit numbers, except within 1e-9 of an edge");
 }
 
 // A light lies in the plane of the ceiling, and rays through the light hit both quads. Both hits
@@ -181,7 +184,7 @@ TEST(Quad, Q4_CoplanarQuadsAreHitAtTheSameDistance) {
     ASSERT_TRUE(a && b);
     ASSERT_EQ(a->t, b->t);
   }
-  test::report_hard_case("Q4", "10,000 distances equal to the bit");
+  test::report_hard_case("Q4", "10,000 rays: t of light and ceiling equal to the bit");
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(Transforms, X7_ManySmallRotationsDoNotDrift) {
   for (int i = 0; i < 360; ++i) {
     sum = rotation({1, 2, -0.5}, 1) * sum;
   }
-  test::at_most("X7", "entries off", difference(sum, {}), 1e-13);
+  test::at_most("X7", "largest error of a matrix entry", difference(sum, {}), 1e-13);
 }
 
 // Eight nested placements lead far away and back.
@@ -73,7 +73,8 @@ TEST(Transforms, X4_ChainsOfPlacementsKeepTheirPrecision) {
     chain = translation(-away) * translation(away) * chain;
   }
   const Vec3 p = {0.3, 0.7, -0.2};
-  test::at_most("X4", "off, by the largest coordinate", length(chain.point(p) - p) / 1e6, 1e-9);
+  test::at_most("X4", "error of the point divided by the largest coordinate",
+                length(chain.point(p) - p) / 1e6, 1e-9);
 }
 
 TEST(Frames, DecomposeIntoScaleRotationAndTranslation) {

@@ -48,7 +48,7 @@ TEST(Srgb, TX5EveryCodeSurvivesDecodingAndEncoding) {
   for (int code = 0; code < 256; ++code) {
     EXPECT_EQ(srgb_encode(srgb_table()[static_cast<std::size_t>(code)]), code);
   }
-  test::report_hard_case("TX5", "256 of 256");
+  test::report_hard_case("TX5", "256 of 256 codes unchanged by decoding and encoding");
 }
 
 TEST(Srgb, TheTableIsTheStandardsCurve) {
@@ -64,7 +64,7 @@ TEST(Srgb, P1_ValuesOutOfRangeAreClamped) {
   EXPECT_EQ(srgb_encode(std::nanf("")), 0);
   EXPECT_EQ(srgb_encode(1.0001f), 255);
   EXPECT_EQ(srgb_encode(std::numeric_limits<float>::infinity()), 255);
-  test::report_hard_case("P1", "NaN and below 0: 0; infinite: 255");
+  test::report_hard_case("P1", "NaN and negative values become code 0, infinity becomes 255");
 }
 
 TEST(WriteImage, PfmHoldsTheExactFloatsFromTheBottomRowUp) {
@@ -83,7 +83,7 @@ TEST(WriteImage, P2_PpmHoldsRoundedSrgbCodesFromTheTopRowDown) {
   ASSERT_EQ(bytes.size(), header.size() + 12);
   const unsigned char expected[] = {0, 188, 255, 255, 0, 89, 0, 255, 0, 124, 149, 170};
   EXPECT_EQ(std::memcmp(bytes.data() + header.size(), expected, 12), 0);
-  test::report_hard_case("P2", "rounded codes");
+  test::report_hard_case("P2", "PPM codes are rounded to the nearest");
 }
 
 TEST(WriteImage, PngHasItsSignatureAndSize) {

@@ -225,7 +225,7 @@ TEST(RepairLight, L9InvalidTexelsAreRepairedAndCounted) {
   EXPECT_EQ(repair_light(image), 0u);
   ImageTexture bad = test::float_image(2, 2, [&](auto, auto) { return kInf; });
   EXPECT_EQ(repair_light(bad), 4u) << "all texels must be repaired, even if none is valid";
-  test::report_hard_case("L9", "repaired and counted");
+  test::report_hard_case("L9", "invalid texels are repaired and counted");
 }
 
 /// Returns a glTF file with one triangle and lights at three nodes, which are moved, rotated or

@@ -135,7 +135,8 @@ TEST(SeeThrough, M6_GlassOfIndexOneCastsNoShadow) {
   EXPECT_GT(alone, 0);
   EXPECT_EQ(light(0), alone);
   EXPECT_EQ(light(0.5), alone);
-  test::report_hard_case("M6", "a ball of it before lamps: the same bits as without");
+  test::report_hard_case(
+      "M6", "a glass ball of index 1 + 1e-7 in front of lamps changes no bit of the radiance");
 }
 
 TEST(Emission, OfAScatteringSurfaceIsAddedToItsReflection) {
@@ -224,7 +225,8 @@ TEST(NestedGlass, M9_TheHigherPriorityRefractsInOverlaps) {
   EXPECT_GT(overlapping, 0.85);
   EXPECT_LE(overlapping, at_most);
   EXPECT_NEAR(stack(0.5), overlapping, 0.02);
-  test::report_hard_case("M9", "overlap: rays bend at the higher priority alone");
+  test::report_hard_case(
+      "M9", "overlapping glass: rays are refracted only by the glass of the higher priority");
 }
 
 // Interiors is the set of glasses that contain a point of a path. The air has a higher priority
@@ -243,7 +245,7 @@ TEST(NestedGlass, M9_AnAirBubbleInGlassRefractsOutwards) {
   inside.pass(MaterialId{1}, air, false);
   inside.pass(MaterialId{0}, glass, false);
   EXPECT_EQ(inside.index_without(MaterialId{1}), 1);
-  test::report_hard_case("M9", "bubble of air");
+  test::report_hard_case("M9", "bubble of air in glass: the correct index on both sides");
 }
 
 // Walls inside three overlapping bodies of one glass are not present. A ray along the axis passes

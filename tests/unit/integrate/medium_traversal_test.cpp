@@ -143,7 +143,7 @@ TEST(MediumTraversal, V6_SegmentsAreInsideMeshes) {
   for (int i = 0; i < 3000; ++i) {
     expect_walk(*scene, random_ray(random, 3), kInfinity, inside);
   }
-  test::report_hard_case("V6", "segments of meshes follow their inside");
+  test::report_hard_case("V6", "the medium segments of a ray are the parts inside the mesh");
 }
 
 TEST(MediumTraversal, AClearMediumDisplacesOthers) {

@@ -50,7 +50,7 @@ TEST(Path, L11_AOneSidedEmitterIsBlackFromBehind) {
   SceneMaker back;
   back.quad({-1, -1, 0}, {0, 2, 0}, {2, 0, 0}, back.lamp(7, true));
   expect_always(*back.build(), kAhead, 0, 0);
-  test::report_hard_case("L11", "600 samples exactly 0");
+  test::report_hard_case("L11", "600 samples of the back are exactly 0");
 }
 
 TEST(Path, AMirroredEmitterIsScaledByTheReflectance) {
@@ -162,7 +162,7 @@ TEST(Path, O3_AnOccluderCastsAnExactShadowAtAnyDistance) {
   maker.sphere({0, 1000, 0}, 10, maker.lamp(1e6f));
   const Ray ray{.origin = {0, 0.1, 0}, .direction = {0, -1, 0}};
   expect_always(*maker.build(), ray, 0, 0);
-  test::report_hard_case("O3", "600 samples exactly 0");
+  test::report_hard_case("O3", "600 samples in the shadow are exactly 0");
 }
 
 TEST(Path, TX8_ConstantColorAndConstantTextureGiveTheSameBits) {
@@ -186,7 +186,7 @@ TEST(Path, TX8_ConstantColorAndConstantTextureGiveTheSameBits) {
   for (std::uint64_t sample = 0; sample < 300; ++sample) {
     ASSERT_EQ(trace(*a, kAhead, sample, {}), trace(*b, kAhead, sample, {}));
   }
-  test::report_hard_case("TX8", "same bits");
+  test::report_hard_case("TX8", "radiance equal to the bit");
 }
 
 TEST(Path, CountsItsRays) {

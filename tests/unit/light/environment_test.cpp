@@ -219,7 +219,7 @@ TEST(EnvironmentLight, L8_OneTexelIsSampledWithEqualWeights) {
       ASSERT_NEAR(seen.g / sample.pdf, flux, 1e-4 * flux) << "row " << row;
     }
   }
-  test::report_hard_case("L8", "weights without spread, at the pole too");
+  test::report_hard_case("L8", "all sample weights are equal, also at the pole");
 }
 
 TEST(EnvironmentLight, TheUniformPartIsNotSampled) {

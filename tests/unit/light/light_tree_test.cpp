@@ -110,7 +110,7 @@ TEST(LightTree, L7_SelectionFrequenciesEqualProbabilities) {
     }
     EXPECT_GT(test::chi_squared(counts, expected).p_value, test::sidak(0.01, 3));
   }
-  test::report_hard_case("L7", "chi-squared passes");
+  test::report_hard_case("L7", "chi-squared test passes");
 }
 
 TEST(LightTree, PrefersANearLightToEquallyBrightDistantOnes) {

@@ -126,7 +126,7 @@ TEST(Lights, O4_VisibleSamplesAreNotSelfShadowed) {
     }
     EXPECT_EQ(occluded, 0) << test_case.name;
   }
-  test::report_hard_case("O4", "0 of 100,000 occluded, for each of ten kinds of light");
+  test::report_hard_case("O4", "0 of 100,000 shadow rays occluded, for each of ten kinds of light");
 }
 
 // Counts samples in cells of equal solid angle above the plane y = 0. Each count must agree with
@@ -238,7 +238,7 @@ TEST(Lights, L1T4_SurfacesWithoutAreaOrPowerAreNoLights) {
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {0, 0}), 0);
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {0, 1}), 1);
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {7, 1}), 0);
-  test::report_hard_case("L1", "neither area nor power: not in the list");
+  test::report_hard_case("L1", "surfaces without area or power are not in the list of lights");
   test::report_hard_case("T4", "a quad without area is no light");
 }
 
@@ -254,7 +254,7 @@ TEST(Lights, L11_OneSidedLightsEmitOnlyToTheirFront) {
     const auto from_above = scene->lights().sample({{0, 2, 0}, -kUp}, 0.5, 0.5, 0.5);
     EXPECT_EQ(from_above.has_value(), !facing);
   }
-  test::report_hard_case("L11", "no sample from behind");
+  test::report_hard_case("L11", "a receiver behind the light gets no light sample");
 }
 
 TEST(Lights, LightsBelowTheHorizonAreNotSampled) {
@@ -276,7 +276,8 @@ TEST(Lights, Q6_AReceiverInThePlaneOfALightGetsNoSample) {
     EXPECT_FALSE(scene->lights().sample({{0, 0, 0}, kUp}, 0.5, u, random.uniform()));
     EXPECT_FALSE(scene->lights().sample({{1, 0, 0}, kUp}, 0.5, u, random.uniform()));
   }
-  test::report_hard_case("Q6", "2,000 samples edge-on: none");
+  test::report_hard_case("Q6",
+                         "receivers in the plane of the light get none of 2,000 light samples");
 }
 
 }  // namespace

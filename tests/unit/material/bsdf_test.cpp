@@ -112,10 +112,9 @@ TEST(Bsdf, M14ValuesAreTheReflectanceTimesTheDensity) {
     EXPECT_NEAR(value.value.g / value.pdf, 0.25, 1e-6);
     EXPECT_NEAR(value.value.b / value.pdf, 1, 1e-6);
   }
-  test::report_hard_case(
-      "M14",
-      "value / density is the reflectance within 1e-6; light that would leave below the horizon "
-      "is absorbed, as by the metal of Ray Tracing in One Weekend");
+  test::report_hard_case("M14",
+                         "value / pdf equals the reflectance within 1e-6; light reflected below "
+                         "the horizon is absorbed, as by the metal of Ray Tracing in One Weekend");
 }
 
 TEST(Bsdf, M10NoLightPassesOpaqueSurfacesForAnyShadingNormal) {
@@ -139,7 +138,8 @@ TEST(Bsdf, M10NoLightPassesOpaqueSurfacesForAnyShadingNormal) {
       ASSERT_TRUE(!drawn || wo.z * drawn->wi.z > 0);
     }
   }
-  test::report_hard_case("M10", "nothing passes in 60,000 pairs of directions");
+  test::report_hard_case("M10",
+                         "no light passes an opaque surface, for 60,000 pairs of directions");
 }
 
 TEST(Bsdf, MirrorsAndGlassLoseNothingUnderAnyShadingNormal) {
@@ -178,7 +178,7 @@ TEST(Bsdf, M6GlassOfIndexOneIsInvisible) {
   ASSERT_TRUE(through);
   EXPECT_NEAR(length(through->wi + wo), 0, 1e-14);
   EXPECT_EQ(through->weight, gray(1));
-  test::report_hard_case("M6", "smooth: direction within 1e-14, weight 1");
+  test::report_hard_case("M6", "smooth glass: transmitted direction within 1e-14, weight 1");
 }
 
 TEST(Bsdf, M1CornersOfTheUnitSquareGiveFiniteSamples) {
@@ -197,7 +197,7 @@ TEST(Bsdf, M1CornersOfTheUnitSquareGiveFiniteSamples) {
       }
     }
   }
-  test::report_hard_case("M1", "0 NaN at the corners");
+  test::report_hard_case("M1", "no NaN at the corners of the unit square");
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ TEST(Ggx, M3TheDistributionIsExactHoweverSmoothTheSurface) {
       ASSERT_NEAR(ggx_distribution(h, alpha) / truth, 1, 1e-13);
     }
   }
-  test::report_hard_case("M3", "5,000 values within 1e-13");
+  test::report_hard_case(
+      "M3", "5,000 values of D within 1e-13 (relative) of values computed with 113-bit numbers");
 }
 
 // The density integrates to 1 over all facets, because the visible facets cover the whole surface

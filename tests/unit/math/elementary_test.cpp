@@ -236,7 +236,7 @@ TEST(ElementaryBits, Y4_HaveTheRecordedHash) {
     hash_in(hash, pow(x, random.uniform(-3, 3)));
   }
   EXPECT_EQ(hash, 11035229411989415933u);
-  test::report_hard_case("Y4", "one hash, recorded");
+  test::report_hard_case("Y4", "the hash of all results equals the recorded hash");
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ TEST(Attenuation, V1_IsExactForLittleExtinctionAndOneForNone) {
       EXPECT_NEAR(reach(sigma, length), expected, 1e-12 * expected);
     }
   }
-  test::report_hard_case("V1", "T = 1 at 0; within 1e-12");
+  test::report_hard_case("V1", "T = 1 for extinction 0; relative error of T within 1e-12");
 }
 
 /// Very dense media are opaque, and no number overflows in the computation.

@@ -153,7 +153,8 @@ TEST(FreeFlight, V2_ExtremeNumbersGiveFiniteDistances) {
       EXPECT_GT(flight.pdf(far), 0);
     }
   }
-  test::report_hard_case("V2", "finite at u = 0 and the largest");
+  test::report_hard_case("V2",
+                         "distances are finite for the smallest and the largest random number");
 }
 
 TEST(Equiangular, DistancesFollowThePdf) {
@@ -186,7 +187,8 @@ TEST(Equiangular, V8_IsFiniteForALightOnTheRay) {
       }
     }
   }
-  test::report_hard_case("V8", "finite on the ray, at its start, far away");
+  test::report_hard_case(
+      "V8", "distances and pdfs are finite for lights on the ray, at its origin and far away");
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ TEST(Phase, V5_MeanCosineIsG) {
     }
     EXPECT_NEAR(sum / kParts, g, 1e-3) << g;
   }
-  test::report_hard_case("V5", "mean cosine within 1e-3 up to the largest g");
+  test::report_hard_case("V5", "mean cosine within 1e-3 of g, up to the largest g");
 }
 
 /// Near g = 0 the cosine is accurate to rounding. u = 0 gives the cosine -1, and the largest u
@@ -63,7 +63,7 @@ TEST(Phase, V4_IsAccurateNearIsotropic) {
     EXPECT_NEAR(sample_phase(g, up, 0, 0.1).z, -1, 1e-15);
     EXPECT_NEAR(sample_phase(g, up, 1 - 0x1p-32, 0.1).z, 1, 1e-8);
   }
-  test::report_hard_case("V4", "cosine within 1e-14 and the cube of g");
+  test::report_hard_case("V4", "distribution of the cosine within 1e-14 + 2 g^3");
 }
 
 }  // namespace

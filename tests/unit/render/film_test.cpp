@@ -77,7 +77,7 @@ TEST(Film, A6_AnyPartitionInAnyOrderGivesTheSameBits) {
     }
     expect_image(film, samples);
   }
-  test::report_hard_case("A6", "any partition in any order: same bits");
+  test::report_hard_case("A6", "same bits for any division into bands, added in any order");
 }
 
 TEST(Film, GivesTheSameImageOnDisk) {

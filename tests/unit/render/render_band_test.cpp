@@ -190,7 +190,7 @@ TEST(RenderBand, A7_ANodeIsTheSumOfItsHalvesToTheBit) {
     }
     EXPECT_EQ(whole.counters.rays, left.counters.rays + right.counters.rays);
   }
-  test::report_hard_case("A7", "sums of halves equal to the bit");
+  test::report_hard_case("A7", "the sum of both halves equals the whole to the bit");
 }
 
 TEST(RenderBand, R6A7_BandsInAnyOrderEqualOneRender) {
@@ -219,7 +219,7 @@ TEST(RenderBand, R6A7_BandsInAnyOrderEqualOneRender) {
   }
   EXPECT_EQ(film->snapshot().image.pixels, straight->film.snapshot().image.pixels);
   EXPECT_EQ(film->snapshot().least_samples, samples);
-  test::report_hard_case("R6", "bands in any order: same bits");
+  test::report_hard_case("R6", "same bits for bands in any order");
 }
 
 TEST(RenderBand, AnotherSeedGivesOtherSamples) {
@@ -288,7 +288,8 @@ TEST(RenderBand, A3_OverflowingSamplesAreCountedAndDiscarded) {
   for (const double sum : pixels->sums) {
     EXPECT_TRUE(std::isfinite(sum));
   }
-  test::report_hard_case("A3", "left out of the sums, counted, the first one named");
+  test::report_hard_case(
+      "A3", "bad samples are left out of the sums and counted, and the first is named");
 }
 
 TEST(RenderBand, A3_APixelIsTheMeanOfItsFiniteSamples) {
@@ -308,7 +309,7 @@ TEST(RenderBand, A3_APixelIsTheMeanOfItsFiniteSamples) {
   for (const double sum : pixels->sums) {
     EXPECT_NEAR(sum / 64, 1, 1e-12);
   }
-  test::report_hard_case("A3", "the pixel is the mean of the others of each block");
+  test::report_hard_case("A3", "a pixel is the mean of the good samples of each block of 8");
 }
 
 TEST(RenderBand, CountsTruncatedPathsAndDroppedPrimitives) {

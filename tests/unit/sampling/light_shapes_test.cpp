@@ -94,7 +94,8 @@ TEST(SphericalRectangle, L6_CornersOfTheUnitSquareStayInside) {
       }
     }
   }
-  test::report_hard_case("L6", "80 corners inside the rectangle");
+  test::report_hard_case("L6",
+                         "80 samples at corners, edges and the middle lie inside the rectangle");
 }
 
 TEST(SphericalRectangle, IsAbsentForEdgeOnOrTinyRectangles) {
@@ -146,7 +147,7 @@ TEST(SphereLight, L3_CoversAllDirectionsFromInside) {
     EXPECT_LT(std::abs(directions.mean() / (4 * kPi) - 1),
               4 * directions.standard_error() / (4 * kPi) + 1e-12);
   }
-  test::report_hard_case("L3", "densities from inside integrate to 4 pi");
+  test::report_hard_case("L3", "receiver inside: the mean of 1 / pdf is 4 pi");
 }
 
 TEST(SphereLight, L3_HasNoNanOnItsSurface) {
@@ -160,7 +161,7 @@ TEST(SphereLight, L3_HasNoNanOnItsSurface) {
       EXPECT_TRUE(is_finite(s->position));
     }
   }
-  test::report_hard_case("L3", "0 NaN of 10,000 on the surface");
+  test::report_hard_case("L3", "receiver on the surface: no NaN in 10,000 samples");
 }
 
 }  // namespace

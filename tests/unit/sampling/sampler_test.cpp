@@ -164,7 +164,8 @@ TEST(Sampler, R4_IsUniformOverPairsOfDimensionsOfAnyGroups) {
     EXPECT_GT(test::chi_squared(counts, expected).p_value, level)
         << group_a << "." << a << " with " << group_b << "." << b;
   }
-  test::report_hard_case("R4", "chi-squared passes for 200 pairs, 32 x 32");
+  test::report_hard_case("R4",
+                         "chi-squared test passes for 200 pairs of dimensions, with 32 x 32 cells");
 }
 
 /// Samples of one pixel fill pairs of dimensions of different groups no worse than independent
@@ -228,7 +229,7 @@ TEST(Sampler, R2_DoesNotCorrelateNeighbouringPixels) {
       EXPECT_LT(std::abs(correlation(dimension, kSide, 1, 1)), 4.0 / kSide);
     }
   }
-  test::report_hard_case("R2", "24 correlations below 4 / 256");
+  test::report_hard_case("R2", "24 correlations of neighbouring pixels below 4 / 256");
 }
 
 TEST(Sampler, R5_SupportsMoreThanTwoToThe32Samples) {
@@ -240,7 +241,7 @@ TEST(Sampler, R5_SupportsMoreThanTwoToThe32Samples) {
     }
   }
   EXPECT_EQ(seen.size(), 4u * 64);
-  test::report_hard_case("R5", "no repeat at four times 2^32");
+  test::report_hard_case("R5", "no sample is repeated up to index 4 x 2^32");
 }
 
 /// For a smooth integrand, the error of scrambled nets is far below that of independent samples,

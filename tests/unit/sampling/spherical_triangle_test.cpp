@@ -111,7 +111,7 @@ TEST(SphericalTriangle, L6_CornersOfTheUnitSquareStayInside) {
       }
     }
   }
-  test::report_hard_case("L6", "corners inside the triangle");
+  test::report_hard_case("L6", "samples at corners, edges and the middle lie inside the triangle");
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ TEST(Warp, M15_BasisIsOrthonormalInEveryDirection) {
     EXPECT_NEAR(dot(cross(b.x, b.y), n), 1, 1e-14);
     EXPECT_LE(length(b.to_local(b.to_world({0.1, 0.2, 0.3})) - Vec3{0.1, 0.2, 0.3}), 1e-15);
   }
-  test::report_hard_case("M15", "10,007 bases within 1e-15");
+  test::report_hard_case("M15", "10,007 bases are orthonormal within 1e-15");
 }
 
 }  // namespace

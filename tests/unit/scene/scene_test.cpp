@@ -77,8 +77,9 @@ TEST(Scene, S9_ErrorsNameFieldRangeAndValue) {
             "background.top: must be finite and not negative, is -1");
   EXPECT_THAT(message_after([](auto& s) { std::get<0>(s.camera).vertical_fov = 200; }),
               StartsWith("camera.vertical_fov: "));
-  test::report_hard_case("S9", "a negative radius and NaN are refused with the field");
-  test::report_hard_case("X3", "a scale of 0 is refused with the field");
+  test::report_hard_case(
+      "S9", "a negative radius and NaN are refused with an error that names the field");
+  test::report_hard_case("X3", "a scale of 0 is refused with an error that names the field");
 }
 
 TEST(Scene, M13_MaterialsAndTexturesAreValidated) {
@@ -163,8 +164,8 @@ TEST(Scene, M13_MaterialsAndTexturesAreValidated) {
   image.texels = std::vector<std::byte>(bytes, bytes + sizeof texels);
   EXPECT_EQ(message_after([&](auto& s) { s.textures[0] = image; }),
             "textures[0].texels: texel (0, 1) must be finite and not negative, is nan");
-  test::report_hard_case("M13", "refused with the field, texel by texel");
-  test::report_hard_case("TX6", "no texel, or a NaN one: refused");
+  test::report_hard_case("M13", "refused with an error that names the field and the texel");
+  test::report_hard_case("TX6", "textures without texels or with a NaN texel are refused");
 }
 
 TEST(Scene, T10_PrimitivesWithoutAreaAreDroppedAndCounted) {
@@ -189,7 +190,7 @@ TEST(Scene, T10_PrimitivesWithoutAreaAreDroppedAndCounted) {
   const Hit hit = scene->accel().closest({.origin = {0.4, 0.3, 9}, .direction = {0, 0, -1}});
   EXPECT_TRUE(hit);
   EXPECT_EQ(hit.id.instance, 1u);
-  test::report_hard_case("T10", "dropped and counted");
+  test::report_hard_case("T10", "invalid primitives are dropped and counted");
 }
 
 TEST(Scene, SharesMeshesWithEarlierScenes) {

@@ -71,7 +71,7 @@ TEST(Checker, TX4APlaneBetweenTwoLayersHasTheColorOfOneLayer) {
       }
     }
   }
-  test::report_hard_case("TX4", "one side");
+  test::report_hard_case("TX4", "all points of the plane have the colour of one side");
 }
 
 TEST(Checker, AcceptsAnyCoordinate) {

@@ -97,8 +97,8 @@ TEST(Texture, TX2TX3LookupsNeverReadOutsideTheImage) {
       }
     }
   }
-  test::report_hard_case("TX2", "inside for -1e-20");
-  test::report_hard_case("TX3", "inside up to 1e308");
+  test::report_hard_case("TX2", "the texel index is inside the image for -1e-20");
+  test::report_hard_case("TX3", "the texel index is inside the image up to 1e308");
 }
 
 TEST(Texture, TX1TheCornersShowTheCornerTexels) {
@@ -107,7 +107,7 @@ TEST(Texture, TX1TheCornersShowTheCornerTexels) {
   EXPECT_EQ(at(texture, 1, 0), 23);
   EXPECT_EQ(at(texture, 0, 1), 0);
   EXPECT_EQ(at(texture, 1, 1), 3);
-  test::report_hard_case("TX1", "the corner texels");
+  test::report_hard_case("TX1", "coordinates 0 and 1 give the corner texels");
 }
 
 TEST(Texture, WrapModesRepeatClampAndMirror) {
@@ -215,7 +215,7 @@ TEST(Texture, TX7HasNoSeamOnASphere) {
     EXPECT_NEAR(on_sphere({1e-12, pole, 0}), row + 3 * 31.5f / 255, kTwoSteps);
     EXPECT_NEAR(on_sphere({-1e-12, pole, 1e-13}), row, kTwoSteps);
   }
-  test::report_hard_case("TX7", "no seam");
+  test::report_hard_case("TX7", "step at the seam and the poles at most 2 texel steps");
 }
 
 TEST(Texture, TX3FarRepetitionsAreWithinAHundredthOfATexel) {
@@ -225,7 +225,7 @@ TEST(Texture, TX3FarRepetitionsAreWithinAHundredthOfATexel) {
       EXPECT_NEAR(at(texture, u + turns, 0.5), at(texture, u, 0.5), 0.01) << turns << " " << u;
     }
   }
-  test::report_hard_case("TX3", "within 0.01 texel");
+  test::report_hard_case("TX3", "position within 0.01 texel");
 }
 
 TEST(Texture, TX6MayBeASinglePixelOrALine) {
@@ -234,7 +234,7 @@ TEST(Texture, TX6MayBeASinglePixelOrALine) {
   for (const double u : {0.0, 1.0, 0.99999, -1e-20}) {
     EXPECT_EQ(at(line, u, u), 1);
   }
-  test::report_hard_case("TX6", "one pixel, a line");
+  test::report_hard_case("TX6", "textures of one texel and of one row are correct");
 }
 
 }  // namespace
