@@ -24,7 +24,7 @@ namespace {
 
 void add_list(CLI::App& app, RawOptions& raw) {
   add_farm(app, raw);
-  add_verbosity(app, raw, false);
+  add_verbosity(app, raw, /*can_be_quiet=*/false);
 }
 
 void add_job(CLI::App& app, RawOptions& raw) {
@@ -74,7 +74,8 @@ constexpr Entry kCommands[] = {
     {"jobs", "List the farm's jobs", add_list, checked_jobs, "bandsaw jobs --json"},
     {"workers", "List the farm's workers", add_list, checked_workers,
      "bandsaw workers --farm farm.txt"},
-    {"cancel", "End a job without an image", add_job, checked_cancel, "bandsaw cancel 7"},
+    {"cancel", "End a job before its image is finished", add_job, checked_cancel,
+     "bandsaw cancel 7"},
     {"pause", "Render nothing more of a job until it is resumed", add_job, checked_pause,
      "bandsaw pause 7"},
     {"resume", "Resume a paused job", add_job, checked_resume, "bandsaw resume 7"},
@@ -135,7 +136,7 @@ absl::Status check_no_extras(const CLI::App& app, const std::string& command) {
   // The parser of the program gets what follows a "--" after the command's last argument.
   const std::vector<std::string> later = app.get_parent()->remaining();
   extras.insert(extras.end(), later.begin(), later.end());
-  std::erase(extras, "--");  // the parser keeps it, although it only separates
+  std::erase(extras, "--");  // the parser keeps "--", which is no argument
   if (extras.empty()) {
     return absl::OkStatus();
   }

@@ -51,8 +51,8 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-/// Returns true if file names are offered for the value of the option. Its type is then text, file
-/// or folder.
+/// Returns true if bash offers file names for the value of the option: the type of the value is
+/// text, file or folder.
 bool takes_file(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   return type == "TEXT" || type == "FILE" || type == "DIR";

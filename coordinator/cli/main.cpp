@@ -37,6 +37,8 @@ int main(int argc, char** argv) {
     return static_cast<int>(
         console.fail(ExitCode::kWrong, std::string(command.status().message())));
   }
+  // Lets gRPC look up host names by the system's resolver, which knows more names than gRPC's own
+  // resolver.
   bandsaw::link::use_system_resolver();
   Interrupts interrupts;
   Process process{console, interrupts};

@@ -1,7 +1,7 @@
 #pragma once
 
 // Runs one child process to its end, with a time limit. The importer, Blender, ssh and the command
-// of --then are run this way.
+// that the user gives with --then are run this way.
 
 #include <atomic>
 #include <string>

@@ -37,6 +37,8 @@ bool environment_has(const char* name) {
 
 }  // namespace
 
+// If SIGPIPE is ignored, writing to a pipe whose reader has ended fails with EPIPE and does not end
+// the process.
 void outlive_reader() { std::signal(SIGPIPE, SIG_IGN); }
 
 Console::Console(Write out, Write err, bool is_terminal, bool colour)
@@ -50,8 +52,8 @@ Console Console::standard() {
   const auto error = std::make_shared<std::atomic<int>>(0);
   const auto out = [error, tty](absl::string_view text) {
     const int failed = write_all(STDOUT_FILENO, text);
-    // Two failures are not recorded: the reader of a pipe has ended (EPIPE), and a terminal was
-    // closed (writing to it fails with EIO).
+    // Not recorded are EPIPE (the reader of a pipe has ended) and every error of a terminal (EIO:
+    // the terminal was closed).
     int none = 0;
     if (failed != 0 && failed != EPIPE && !tty) {
       error->compare_exchange_strong(none, failed);

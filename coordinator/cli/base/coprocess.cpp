@@ -1,6 +1,6 @@
 // One end of a socket pair is both the child's standard input and its standard output. exchange()
-// writes a line to the other end. Then it reads until a line with the prefix has come, the child
-// has exited, the time is over or the caller has set `stop`.
+// writes a line to the other end. Then it reads until an answer (a line that begins with `prefix_`)
+// has come, the child has exited, the time is over or the caller has set `stop`.
 
 #include "coordinator/cli/base/coprocess.h"
 

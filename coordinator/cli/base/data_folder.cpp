@@ -18,6 +18,7 @@ absl::StatusOr<std::string> default_data_folder() {
       "neither XDG_DATA_HOME nor HOME is set; name the folder with --data DIR");
 }
 
+// The files with the join strings (addresses of the farm and a secret) of workers and of users.
 std::string worker_join_file(const std::string& data_folder) { return data_folder + "/join"; }
 
 std::string farm_join_file(const std::string& data_folder) { return data_folder + "/farm"; }

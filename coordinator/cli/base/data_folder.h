@@ -1,7 +1,7 @@
 #pragma once
 
-// States where the coordinator's data folder is, and the files in it that other commands read. A
-// join string is a line with the addresses of a farm, the digest of its certificate and a secret.
+// Finds the coordinator's data folder and names the files in it that other commands read. A join
+// string is a line with the addresses of a farm, the digest of its certificate and a secret.
 
 #include <string>
 

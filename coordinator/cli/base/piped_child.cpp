@@ -80,7 +80,7 @@ absl::Status PipedChild::finish() {
 }
 
 std::string PipedChild::last_error_line() const {
-  // Only this many bytes at the end are read. The last line is expected to be shorter.
+  // Only the end of the file is read. The last line is expected to be shorter than kMaxBytes.
   constexpr std::size_t kMaxBytes = 4096;
   const off_t size = lseek(errors_, 0, SEEK_END);
   std::string text(kMaxBytes, '\0');

@@ -12,7 +12,7 @@ namespace bandsaw::coordinator {
 std::string program_folder();
 
 /// Returns the folder of the scenes that come with the program: share/bandsaw/gallery beside the
-/// program's bin folder, both installed and in a build folder.
+/// program's bin folder. A build folder has the same layout as an installation.
 std::string gallery_folder();
 
 /// Returns the folder of the WebAssembly renderer that `serve` hands out to browsers:

@@ -46,7 +46,7 @@ std::string si_with(double value, absl::string_view unit) {
   return absl::StrCat(text, text.find(' ') == std::string::npos ? " " : "", unit);
 }
 
-// Here and in duration(), 1e9 s (32 years) only bounds the conversion to an integer.
+// clock_time() and duration() limit the time to 1e9 s (32 years), so that it fits into an integer.
 std::string clock_time(double seconds) {
   const auto whole = static_cast<std::uint64_t>(std::ceil(std::clamp(seconds, 0.0, 1e9)));
   const std::uint64_t hours = whole / 3600;

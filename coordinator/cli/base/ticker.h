@@ -13,7 +13,7 @@ namespace bandsaw::coordinator {
 
 class Ticker {
  public:
-  /// The first call is made at once, each further call `interval` after the previous one has
+  /// Calls `tick` at once, and then again each time `interval` has passed since the last call
   /// returned.
   Ticker(std::chrono::milliseconds interval, std::function<void()> tick);
   /// Waits for a call in progress.

@@ -26,7 +26,8 @@ inline constexpr std::chrono::milliseconds kUnreachablePause{200};
 
 /// Repeats `call`, which returns a Status or a StatusOr, while its result is UNAVAILABLE: the farm
 /// cannot be reached. Gives up after kMaxRetry_s, or when client.stop() is called. Returns the last
-/// result. wait_for_farm() is needed because gRPC reconnects only while a client waits for it.
+/// result. Calls wait_for_farm(), because gRPC reconnects only while a client waits for the
+/// connection.
 template <class Call>
 auto call_with_retries(FarmClient& client, Call call) {
   const double until = steady_seconds() + kMaxRetry_s;

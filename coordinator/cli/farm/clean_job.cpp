@@ -121,6 +121,8 @@ absl::Status start_guides(FarmClient& client, const Progress& last) {
   const std::int32_t priority = std::min(job.priority + 1, kMaxPriority);
   RETURN_IF_ERROR(submit(client, jobs.albedo, priority).status());
   RETURN_IF_ERROR(submit(client, jobs.shape, priority).status());
+  // An image of at most one block of samples has no first part. The job `half` renders half of its
+  // samples again instead.
   return jobs.half ? submit(client, *jobs.half, priority).status() : absl::OkStatus();
 }
 

@@ -137,7 +137,7 @@ absl::StatusOr<JobId> FarmClient::submit(const farm::SubmitRequest& request) {
   const auto body = [&](grpc::ClientContext& context) {
     return control_->Submit(&context, request, &reply);
   };
-  RETURN_IF_ERROR(call(kCallTimeout, body, true));
+  RETURN_IF_ERROR(call(kCallTimeout, body, /*starts_job=*/true));
   return reply.job();
 }
 

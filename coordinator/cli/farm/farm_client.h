@@ -48,7 +48,7 @@ class FarmClient {
     /// Number of leading bytes that the farm has from an interrupted upload.
     std::uint64_t there = 0;
   };
-  /// Returns those of the digests whose blobs the farm lacks.
+  /// Returns the blobs that the farm lacks, among the blobs with these digests.
   absl::StatusOr<std::vector<MissingBlob>> missing_blobs(const std::vector<wire::Digest>& digests);
 
   /// Uploads one blob from the byte at `there` on. After an interruption, resumes at the byte that
@@ -58,8 +58,8 @@ class FarmClient {
                         std::uint64_t there, const std::function<void(std::uint64_t)>& sent);
 
   /// Starts a job. FAILED_PRECONDITION: the farm lacks a blob of the scene. stop() does not end an
-  /// attempt, here and in submit_sequence(): otherwise the user would not learn the number of a job
-  /// that the farm has accepted.
+  /// attempt of submit() or of submit_sequence(). Otherwise the user would not learn the number of
+  /// a job that the farm has accepted.
   absl::StatusOr<JobId> submit(const farm::SubmitRequest& request);
 
   /// Starts a sequence (a job of many frames), whose scenes add_frame() names one by one.
@@ -92,15 +92,16 @@ class FarmClient {
   /// Sleeps for `time`, or until stop() is called.
   void pause(std::chrono::milliseconds time) EXCLUDES(mutex_);
 
-  /// Fetches the finished image and checks its digest. DATA_LOSS: it does not match.
+  /// Fetches the finished image and checks its digest. DATA_LOSS: the digest does not match.
   absl::StatusOr<FarmImage> result(JobId job);
-  /// Fetches the number of samples of each pixel of an adaptive job. DATA_LOSS as above.
+  /// Fetches the number of samples of each pixel of an adaptive job. DATA_LOSS as in result().
   absl::StatusOr<Image> samples(JobId job);
   /// Fetches the mean of the first part of each pixel's samples (renderlib/render/first_part.h),
-  /// which the denoiser needs. NOT_FOUND: there is none. DATA_LOSS as above.
+  /// which the denoiser needs. NOT_FOUND: there is none. DATA_LOSS as in result().
   absl::StatusOr<Image> first_part(JobId job);
-  /// Fetches the image as it is now, reduced to about `most_side` pixels a side or less; 0: in full
-  /// resolution. NOT_FOUND: no pixel is stored yet. DATA_LOSS as above.
+  /// Fetches the unfinished image, reduced so that its longer side has at most about `most_side`
+  /// pixels; 0: full resolution. Fetches the finished image if the job is done. NOT_FOUND: no pixel
+  /// is stored yet. DATA_LOSS: the digest does not match.
   absl::StatusOr<FarmImage> preview(JobId job, std::uint32_t most_side);
 
   /// Returns the state of a job, with its error curve and the share of each worker.
@@ -109,7 +110,7 @@ class FarmClient {
   /// of the workers. Reasons are cut to 300 bytes.
   absl::StatusOr<std::vector<Progress>> jobs();
   absl::StatusOr<farm::ListWorkersReply> workers();
-  // The following four change a job and return its state after that.
+  // cancel(), pause_job(), resume_job() and set_priority() return the job's state after the change.
   absl::StatusOr<Progress> cancel(JobId job);
   absl::StatusOr<Progress> pause_job(JobId job);
   absl::StatusOr<Progress> resume_job(JobId job);
@@ -164,7 +165,8 @@ class FarmClient {
   static constexpr std::chrono::milliseconds kNoDeadline{0};
   static constexpr std::chrono::milliseconds kRetryPause{500};
   static constexpr int kTries = 4;
-  /// Returns true if the farm may or may not have executed the call.
+  /// Returns true if the status does not tell whether the farm has executed the call (UNAVAILABLE
+  /// and DEADLINE_EXCEEDED).
   static bool outcome_unknown(const absl::Status& status);
   /// Converts the status of the last attempt to the error shown to the user.
   absl::Status given_up(const absl::Status& status) const;

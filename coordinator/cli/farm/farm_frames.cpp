@@ -19,7 +19,7 @@ absl::StatusOr<JobId> FarmClient::submit_sequence(const farm::SubmitSequenceRequ
   const auto body = [&](grpc::ClientContext& context) {
     return control_->SubmitSequence(&context, request, &reply);
   };
-  RETURN_IF_ERROR(call(kTimeout, body, true));
+  RETURN_IF_ERROR(call(kTimeout, body, /*starts_job=*/true));
   return reply.job();
 }
 

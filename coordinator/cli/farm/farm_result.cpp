@@ -32,7 +32,8 @@ struct Received {
 Display display_of(const Received& received) {
   const bool known = std::abs(received.exposure) <= kMaxExposure &&
                      received.tone <= static_cast<std::uint32_t>(kLastTone);
-  return known ? Display{received.exposure, static_cast<Tone>(received.tone), false} : Display();
+  return known ? Display{received.exposure, static_cast<Tone>(received.tone), /*half=*/false}
+               : Display();
 }
 
 // Converts the bytes to an image. DATA_LOSS: their number or their digest is wrong.

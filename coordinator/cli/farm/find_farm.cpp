@@ -1,5 +1,5 @@
-// find_farm() takes the join string from --farm, from BANDSAW_FARM, or from the file of a farm on
-// this machine, in this order.
+// find_farm() takes the join string (a line with the addresses of a farm and a secret) from --farm,
+// from BANDSAW_FARM, or from the file of a farm on this machine, in this order.
 
 #include "coordinator/cli/farm/find_farm.h"
 

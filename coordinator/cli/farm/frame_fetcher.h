@@ -51,10 +51,10 @@ class FrameFetcher {
   void report_failure(const FrameView& frame);
   /// Submits the jobs of the guides (images that the denoiser needs) of frames that are done.
   absl::Status start_guides_of_new_frames();
-  /// Fetches the image of a frame, writes its files and calls add_to_collections(). `job`: here and
-  /// below, the job that rendered the frame.
+  /// Fetches the image of a frame, writes its files and calls add_to_collections(). `job`: the job
+  /// that rendered the frame.
   absl::Status fetch(FrameNumber number, JobId job);
-  /// Fetches the image of a frame and, if wanted, removes its noise.
+  /// Fetches the image of a frame, which `job` has rendered, and removes its noise if wanted.
   absl::StatusOr<JobPictures> pictures_of(FrameNumber number, JobId job);
   /// Writes the image files and the reports of a frame.
   absl::Status write(FrameNumber number, const JobPictures& pictures);

@@ -1,4 +1,6 @@
-// Formats each list as a table for people, or as one JSON object per line for programs.
+// Formats what `bandsaw jobs`, `workers`, `why` and `logs` list: as tables for people, or as one
+// JSON object per line for programs. In the tables, a row may go on after the last heading with
+// the number of frames that are done (for a job of many frames) and with a reason.
 
 #include "coordinator/cli/farm/lists_text.h"
 

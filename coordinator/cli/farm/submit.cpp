@@ -73,6 +73,7 @@ void say_detached(JobId job, Verbosity verbosity, const Console& console) {
 }  // namespace
 
 ExitCode run(const SubmitOptions& options, Process& process) {
+  // Ignores SIGPIPE, so that the image is written even if the reader of standard output has ended.
   outlive_reader();
   const Console& console = process.console;
   std::vector<std::string> outputs = options.outputs;

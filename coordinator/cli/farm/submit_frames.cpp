@@ -39,8 +39,8 @@ absl::StatusOr<JobId> start_sequence(FarmClient& client, const SubmitOptions& op
   return client.submit_sequence(request);
 }
 
-/// Returns the frames of the job `options.continued` whose scenes the farm lacks. INVALID_ARGUMENT:
-/// the job has other frames than --frames names.
+/// Returns those frames of the job `options.continued` that have no scene on the farm yet.
+/// INVALID_ARGUMENT: the job has other frames than --frames names.
 absl::StatusOr<std::vector<FrameNumber>> lacking(FarmClient& client, const SubmitOptions& options) {
   ASSIGN_OR_RETURN(const FarmClient::Frames known, client.frames(options.continued));
   std::vector<FrameNumber> all;
@@ -60,7 +60,8 @@ absl::StatusOr<std::vector<FrameNumber>> lacking(FarmClient& client, const Submi
 }
 
 /// Checks the files of all frames before the job is started. Errors: those of check_frame_files()
-/// and, if the user named no outputs, of check_default_output().
+/// (FAILED_PRECONDITION: ffmpeg, which makes the video, is missing) and, if the user named no
+/// outputs, of check_default_output().
 absl::Status check_files(const SubmitOptions& options, const WatchOptions& watch) {
   RETURN_IF_ERROR(check_frame_files(watch));
   if (!options.outputs.empty()) {
@@ -126,9 +127,9 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
 
 /// Prints why the scenes of `frames` were not sent; returns the exit code. Also names the frames
 /// and the command that sends them, unless the job is over (ABORTED). `status` is an error of the
-/// import or of the farm. If import_exit_code(status) is kWrong, `status` may be an error of the
-/// farm, and the exit code is exit_code_of(status). Otherwise the exit code is
-/// import_exit_code(status).
+/// import or of the farm. The exit code is import_exit_code(status), unless that is kWrong.
+/// import_exit_code() returns kWrong for all codes that it does not know, also for those of the
+/// farm. Then the exit code is exit_code_of(status).
 ExitCode not_sent(const absl::Status& status, JobId job, const std::vector<FrameNumber>& frames,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)

@@ -1,5 +1,5 @@
-// upload() asks the farm which blobs it lacks and sends these. If an earlier upload of a blob was
-// interrupted, only the rest of the blob is sent. The manifest is sent last.
+// upload() asks the farm which blobs (parts of the scene) it lacks, and sends them. If an earlier
+// upload of a blob was interrupted, only the rest of the blob is sent. The manifest is sent last.
 
 #include "coordinator/cli/farm/upload.h"
 

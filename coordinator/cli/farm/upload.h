@@ -18,7 +18,7 @@ absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDispla
 farm::SubmitRequest request_for(const ImportedPackage& package, const RenderSettings& settings,
                                 const StopRule& stop);
 
-/// Uploads the package and submits the job. Returns errors of both.
+/// Uploads the package and submits the job. Errors: those of upload() and FarmClient::submit().
 absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
                            const farm::SubmitRequest& request, ProgressDisplay& display);
 

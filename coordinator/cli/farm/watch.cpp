@@ -22,6 +22,7 @@ ExitCode watch_sequence(const WatchOptions& options, const JobSpec& spec, FarmCl
                                        " has frames; watch the job of one frame"));
   }
   absl::Status status = check_frame_files(options);
+  // check_frame_files() returns FAILED_PRECONDITION if ffmpeg, which makes the video, is missing.
   const bool lacks_program = absl::IsFailedPrecondition(status);
   status.Update(check_denoise(options.denoise, spec.settings, spec.stop));
   if (!status.ok()) {
@@ -55,6 +56,7 @@ ExitCode watch_image(const WatchOptions& options, FarmClient& client, Process& p
 }  // namespace
 
 ExitCode run(const WatchOptions& options, Process& process) {
+  // Ignores SIGPIPE, so that files are written even if the reader of standard output has ended.
   outlive_reader();
   const Console& console = process.console;
   if (const auto status = check_outputs_writable(options.outputs); !status.ok()) {

@@ -78,13 +78,14 @@ WatchedFrames watch_frames(FarmClient& client, const WatchOptions& options, Proc
     client.stop();
     fetcher.stop();
   });
+  // The sentence with the command by which the user follows the job again.
   const std::string how = come_back(options, "NAME.####.png");
   const auto last = follow(client, job, fetcher, display);
   if (!last.ok()) {
     display.clear();
     const std::string otherwise =
         absl::StrCat(last.status().message(), "; the farm keeps the images. ", how);
-    return {left_early(last.status(), job, how, otherwise, console), false};
+    return {left_early(last.status(), job, how, otherwise, console), /*is_over=*/false};
   }
   const absl::Status made = fetcher.make_collections();
   if (absl::IsCancelled(made) || absl::IsUnavailable(made)) {
@@ -93,7 +94,7 @@ WatchedFrames watch_frames(FarmClient& client, const WatchOptions& options, Proc
                 exit_code_of(made),
                 absl::StrCat(made.message(), "; job ", job,
                              " is over, but its video or contact sheet is not complete. ", how)),
-            true};
+            /*is_over=*/true};
   }
   std::vector<std::string> outputs = options.outputs;
   for (const std::string& file : {options.after.contact_sheet, options.after.video}) {
@@ -115,7 +116,7 @@ WatchedFrames watch_frames(FarmClient& client, const WatchOptions& options, Proc
     display.done(*last, outputs, {});
   }
   code = run_after(options, client, outputs, fetcher.files(), code, process);
-  return {code, true};
+  return {code, /*is_over=*/true};
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,5 +1,5 @@
-// The class Watch follows the job and displays its progress. Meanwhile the class FollowedImage
-// shows its image, from a thread of its own. When the job is done, watch_job() fetches the image,
+// The class Watch follows the job and displays its progress. Meanwhile a thread of the class
+// FollowedImage shows the unfinished image. When the job is done, watch_job() fetches the image,
 // removes its noise if requested, and writes it with its layers and reports.
 
 #include "coordinator/cli/farm/watch_job.h"
@@ -164,8 +164,8 @@ bool is_file_name(const std::string& farm) {
 
 /// Returns the images that are written for the job: `result`, the additional layers that `beside`
 /// makes and, with --denoise, the clean image. `beside` may be empty. The farm renders the layers
-/// and the images that the denoiser needs. Shows the image as rendered in the views, and then the
-/// clean image.
+/// and the images that the denoiser needs. `views` (the terminal or a viewer) show the image as
+/// rendered first, and the clean image after it.
 absl::StatusOr<JobPictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
                                         const Wanted& wanted, ImageViews& views,
                                         ProgressDisplay& display, const BesideImage& beside) {

@@ -88,6 +88,7 @@ absl::StatusOr<Denoised> make_clean(ToClean input, const JobRenderer& render, De
   RETURN_IF_ERROR(check_cleanable(input.spec.settings, input.samples));
   CleanJobs jobs = clean_jobs(input.spec, input.samples);
   std::vector<JobSpec> wanted = {std::move(jobs.albedo), std::move(jobs.shape)};
+  // If the image has no first part, half of its samples are rendered again.
   if (!input.first) {
     wanted.push_back(*std::move(jobs.half));
   }
@@ -119,7 +120,8 @@ Report::Clean clean_report(const Denoised& clean, Denoiser denoiser,
 
 absl::Status check_denoise(Denoiser denoiser, const RenderSettings& settings,
                            const StopRule& stop) {
-  // A job that stops at an error or a time has at least one block of samples.
+  // The number of samples of a job that stops at an error or a time is not known yet. The job has
+  // at least kBlockSamples, which are enough.
   const auto* until = std::get_if<StopAtSamples>(&stop);
   absl::Status status;
   if (denoiser != Denoiser::kNone) {

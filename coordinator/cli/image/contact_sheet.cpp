@@ -105,7 +105,7 @@ void ContactSheet::draw_frame(Image& sheet, std::size_t cell, const Image& frame
   const std::uint32_t top = kGap + row * (cell_height_ + kTextHeight + 2 * kGap);
   for (std::uint32_t y = 0; y < cell_height_; ++y) {
     for (std::uint32_t x = 0; x < cell_width_; ++x) {
-      // The column in which the falling diagonal of the cross is in row y.
+      // The x at which the diagonal from the upper left corner to the lower right one passes row y.
       const std::uint32_t across = y * cell_width_ / cell_height_;
       const bool on_cross = x == across || x + across + 1 == cell_width_;
       sheet.pixels[std::size_t{top + y} * sheet.width + left + x] = !frame.pixels.empty()

@@ -13,8 +13,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Maximum number of frames on a contact sheet. If a sequence has more frames, this many of them
-/// are shown, evenly spaced.
+/// Maximum number of frames on a contact sheet. Of a longer sequence, the sheet shows
+/// kMaxSheetFrames evenly spaced frames.
 inline constexpr std::size_t kMaxSheetFrames = 400;
 
 class ContactSheet {

@@ -1,5 +1,6 @@
-// make_layers() renders each layer by the integrator that shows it. The layer of sample counts is
-// not rendered: it has the counts of an adaptive job, or one number for all pixels.
+// make_layers() renders each layer by an integrator of its own, such as Integrator::kAlbedo. The
+// layer of sample counts is not rendered: it has the counts of an adaptive job, or one number for
+// all pixels.
 
 #include "coordinator/cli/image/layers.h"
 

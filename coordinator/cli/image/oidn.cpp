@@ -1,5 +1,5 @@
-// Loads the library OpenImageDenoise with dlopen and finds its functions by name. Versions 1 and 2
-// have different names for one of them.
+// Loads the library OpenImageDenoise with dlopen and finds its functions by name. One function has
+// different names in versions 1 and 2.
 
 #include "coordinator/cli/image/oidn.h"
 

@@ -49,7 +49,7 @@ absl::StatusOr<Display> display_of(absl::Span<const std::byte> bytes, std::uint6
     return absl::DataLossError("its first bytes are damaged");
   }
   offset = sizeof from;
-  return Display{from.exposure, static_cast<Tone>(from.tone), false};
+  return Display{from.exposure, static_cast<Tone>(from.tone), /*half=*/false};
 }
 
 }  // namespace

@@ -95,6 +95,7 @@ JsonObject machines_json(const Progress& progress) {
   const JobView& job = progress.job;
   out.known_number("mrays_per_cpu_s",
                    job.cpu_s > 0 ? static_cast<double>(job.counters.rays) / job.cpu_s / 1e6 : -1);
+  // Only a render on this machine has a number of threads. Other reports list the workers.
   if (progress.threads > 0) {
     return out.whole("threads", static_cast<std::uint64_t>(progress.threads));
   }

@@ -23,8 +23,9 @@ namespace {
 /// pixel.
 class Stitcher {
  public:
-  /// Adds a record. `part`: its file, for errors. INVALID_ARGUMENT: the record is of another scene
-  /// or of other settings than the first one, or its samples were added before.
+  /// Adds a record (some rows with the sums of their samples). `part`: its file, for errors.
+  /// INVALID_ARGUMENT: the scene or the settings differ from those of the first record, or the
+  /// samples were added before.
   absl::Status add(const std::string& part, const BandRecord& record) {
     if (!film_) {
       ASSIGN_OR_RETURN(film_, Film::create(record.settings.width, record.settings.height, ""));

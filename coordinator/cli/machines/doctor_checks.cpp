@@ -127,6 +127,8 @@ Check check_port(const std::string& listen, const std::string& answered,
   }
   const std::size_t colon = listen.rfind(':');
   const std::string host = listen.substr(0, colon);
+  // The farm has the port if it answers on this machine at this port, and if `listen` is one of its
+  // addresses or stands for all addresses of the machine.
   const bool everywhere = host == "0.0.0.0" || host == "[::]";
   const bool ours = is_here(answered) &&
                     answered.substr(answered.rfind(':')) == listen.substr(colon) &&

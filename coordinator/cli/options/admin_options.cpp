@@ -64,8 +64,9 @@ void add_serve(CLI::App& app, RawOptions& raw) {
          "Whether browsers render: none (browsers are refused), also (browsers and native workers "
          "render) or only (native workers only compare what browsers rendered) [default: also]")
       ->type_name("WHICH");
-  app.add_flag("--reflection", raw.reflection,
-               "List the gRPC calls to any client, such as grpcurl; the calls still need a secret");
+  app.add_flag(
+      "--reflection", raw.reflection,
+      "Let any client, such as grpcurl, list the gRPC calls; making a call still needs a secret");
   app.add_flag("--insecure", raw.insecure,
                "No encryption: anybody on the network can read and change the data");
 }
@@ -73,7 +74,7 @@ void add_serve(CLI::App& app, RawOptions& raw) {
 void add_logs(CLI::App& app, RawOptions& raw) {
   app.add_option("worker", raw.worker, "The worker's name, as in: bandsaw workers");
   add_farm(app, raw);
-  add_verbosity(app, raw, false);
+  add_verbosity(app, raw, /*can_be_quiet=*/false);
 }
 
 void add_quarantine(CLI::App& app, RawOptions& raw) {
@@ -105,7 +106,7 @@ void add_link(CLI::App& app, RawOptions& raw) {
   app.add_flag("--revoke", raw.revoke,
                "End the link now, and disconnect the browsers that joined by it");
   add_farm(app, raw);
-  add_verbosity(app, raw, false);
+  add_verbosity(app, raw, /*can_be_quiet=*/false);
 }
 
 void add_secret(CLI::App& app, RawOptions& raw) {

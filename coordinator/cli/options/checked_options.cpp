@@ -67,8 +67,9 @@ absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
   return ImageOptions().stop;
 }
 
-/// Reads a number above 0 into `value`, which is unchanged without `text`. The value must be below
-/// 1e9, so that a size in GB fits into 64 bits when it is converted to bytes.
+/// Reads the number in `text`, which must be above 0, into `value`. If `text` has no value,
+/// `value` is unchanged. The number must be below 1e9, so that a size in GB fits into 64 bits when
+/// it is converted to bytes.
 absl::Status read_positive(const char* name, const std::optional<std::string>& text,
                            double& value) {
   if (text && (!absl::SimpleAtod(*text, &value) || !(value > 0 && value < 1e9))) {
@@ -252,7 +253,7 @@ absl::StatusOr<AfterOptions> checked_after(const RawOptions& raw) {
         absl::StrCat("--video: must end in .mp4, .mov, .mkv or .webm, is '", after.video, "'"));
   }
   if (raw.contact_sheet) {
-    RETURN_IF_ERROR(check_outputs({after.contact_sheet}, false));
+    RETURN_IF_ERROR(check_outputs({after.contact_sheet}, /*parts_allowed=*/false));
   }
   if (raw.then && after.command.empty()) {
     return wrong("--then: the command is missing, as in: --then './send.sh'");
@@ -364,11 +365,11 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   RETURN_IF_ERROR(check_scene(raw, "submit"));
   ASSIGN_OR_RETURN(options.image, checked_image(raw));
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
-  ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.detach));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw, /*has_images=*/!raw.detach));
   number_files(options.image.choices, options.outputs, options.report);
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
-  RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  RETURN_IF_ERROR(check_outputs(options.outputs, /*parts_allowed=*/false));
   if (raw.priority) {
     ASSIGN_OR_RETURN(options.priority, checked_priority_value("--priority", *raw.priority));
   }
@@ -400,11 +401,11 @@ absl::StatusOr<Command> checked_watch(const RawOptions& raw) {
   options.farm.farm = raw.farm;
   ASSIGN_OR_RETURN(options.job, checked_job(raw, "watch"));
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
-  ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.outputs.empty()));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw, /*has_images=*/!raw.outputs.empty()));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
   ASSIGN_OR_RETURN(options.after, checked_after(raw));
-  RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  RETURN_IF_ERROR(check_outputs(options.outputs, /*parts_allowed=*/false));
   ASSIGN_OR_RETURN(options.denoise, checked_denoise(raw));
   if (options.denoise != Denoiser::kNone && options.outputs.empty()) {
     return wrong("--denoise: there is no file for the clean image; add -o FILE");
@@ -440,7 +441,7 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
   RETURN_IF_ERROR(
       read_whole("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
   ASSIGN_OR_RETURN(options.kernel, chosen_kernel(raw.kernel));
-  RETURN_IF_ERROR(check_outputs(options.outputs, raw.rows.has_value()));
+  RETURN_IF_ERROR(check_outputs(options.outputs, /*parts_allowed=*/raw.rows.has_value()));
   if (raw.rows) {
     ASSIGN_OR_RETURN(options.rows, parse_rows("--rows", *raw.rows));
     if (!std::holds_alternative<StopAtSamples>(options.image.stop)) {
@@ -496,7 +497,7 @@ absl::StatusOr<Command> checked_stitch(const RawOptions& raw) {
     return wrong(
         "stitch: the output is missing, as in: bandsaw stitch top.band bottom.band -o image.png");
   }
-  RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  RETURN_IF_ERROR(check_outputs(options.outputs, /*parts_allowed=*/false));
   return options;
 }
 
@@ -508,7 +509,7 @@ absl::StatusOr<Command> checked_compare(const RawOptions& raw) {
   options.image = raw.image;
   options.reference = raw.reference;
   options.outputs = raw.outputs;
-  RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  RETURN_IF_ERROR(check_outputs(options.outputs, /*parts_allowed=*/false));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   return options;
 }

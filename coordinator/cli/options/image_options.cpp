@@ -46,8 +46,8 @@ void add_scene(CLI::App& app, RawOptions& raw) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--folder", raw.folder,
-                 "Folder that contains the folder of a Mitsuba scene: the scene may use all files "
-                 "in it [default: the scene's folder]")
+                 "Folder whose files a Mitsuba scene may use; it contains the scene's folder "
+                 "[default: the scene's folder]")
       ->type_name("FOLDER");
   app.add_option("--inside", raw.inside, "Name of the scene in a .zip [default: the only scene]")
       ->type_name("NAME");
@@ -86,7 +86,7 @@ void add_image(CLI::App& app, RawOptions& raw) {
          "Stop at this relative RMSE, as in 1%; in 19 of 20 renders the true error is at most this")
       ->type_name("E%");
   app.add_flag("--adaptive", raw.adaptive, "With --error: more samples where there is more noise");
-  app.add_option("--time", raw.time, "Stop before this much time, as in 5s, 2m, 1h")
+  app.add_option("--time", raw.time, "Stop before this time has passed, as in 5s, 2m, 1h")
       ->type_name("T");
   app.add_option("--seed", raw.seed, "Seed of the noise [default: 0]")->type_name("N");
   app.add_option(
@@ -236,7 +236,7 @@ void add_render(CLI::App& app, RawOptions& raw) {
 
 void add_info(CLI::App& app, RawOptions& raw) {
   add_scene(app, raw);
-  add_verbosity(app, raw, false);
+  add_verbosity(app, raw, /*can_be_quiet=*/false);
 }
 
 void add_import(CLI::App& app, RawOptions& raw) {
@@ -265,7 +265,7 @@ void add_compare(CLI::App& app, RawOptions& raw) {
       ->allow_extra_args(false)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  add_verbosity(app, raw, false);
+  add_verbosity(app, raw, /*can_be_quiet=*/false);
 }
 
 }  // namespace bandsaw::coordinator

@@ -85,7 +85,7 @@ struct ServeOptions {
   std::string web;
   bool insecure = false;             ///< connections are not encrypted
   bool reflection = false;           ///< any client may list the calls (gRPC server reflection)
-  double keep_days = 30;             ///< maximum age of jobs that are over
+  double keep_days = 30;             ///< a job is removed this many days after it is over
   double keep_gb = 100;              ///< maximum size of results and scenes
   std::uint64_t keep_jobs = 10'000;  ///< maximum number of jobs that are over
   /// Share of the bands of native workers that a second machine renders for comparison, [0, 1]. A
@@ -306,7 +306,7 @@ struct StudyOptions {
   std::uint64_t seed = 0;          ///< first seed
   std::uint32_t width = 96;        ///< pixels; the height keeps the scene's aspect ratio
   int threads = 0;                 ///< 0: one for each CPU
-  bool every_object = false;       ///< also measure without a BVH, which tests every object
+  bool every_object = false;       ///< also measure without a BVH: rays test every object
   bool denoise = false;            ///< measure clean images instead of the techniques
   Verbosity verbosity;
 };
