@@ -23,10 +23,10 @@ ExitCode watch_sequence(const WatchOptions& options, const JobSpec& spec, FarmCl
   }
   absl::Status status = check_frame_files(options);
   // check_frame_files() returns FAILED_PRECONDITION if ffmpeg, which makes the video, is missing.
-  const bool lacks_program = absl::IsFailedPrecondition(status);
+  const bool lacks_ffmpeg = absl::IsFailedPrecondition(status);
   status.Update(check_denoise(options.denoise, spec.settings, spec.stop));
   if (!status.ok()) {
-    return process.console.fail(lacks_program ? ExitCode::kFailed : ExitCode::kWrong,
+    return process.console.fail(lacks_ffmpeg ? ExitCode::kFailed : ExitCode::kWrong,
                                 std::string(status.message()));
   }
   return watch_frames(client, options, process).code;
