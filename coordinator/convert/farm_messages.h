@@ -13,8 +13,8 @@ namespace bandsaw::coordinator {
 
 farm::StopRule to_message(const StopRule& stop);
 /// Returns the stop rule of a message. INVALID_ARGUMENT: the message does not have exactly one
-/// rule, has `adaptive` without `error`, or has a value out of range. The error names the field,
-/// and for a value also its range and the value.
+/// rule, has `adaptive` without `error`, or has a value out of range. The error names the field.
+/// If a value is out of range, the error also states the value and its range.
 absl::StatusOr<StopRule> stop_rule_of(const farm::StopRule& message);
 
 farm::ErrorPoint to_message(const ErrorPoint& point);
@@ -23,8 +23,9 @@ ErrorPoint error_point_of(const farm::ErrorPoint& message);
 farm::JobStatus to_message(const JobView& job);
 /// Returns the job's entry in a list of jobs: to_message(), with the reason cut to 300 bytes.
 farm::JobStatus to_list_entry(const JobView& job);
-/// Fields of JobView that JobStatus does not have keep their default values. The place of the first
-/// bad sample is a text in the message (bad_sample_at), so the view's counters do not have it.
+/// Fields of JobView that JobStatus does not have keep their default values. The message has the
+/// place of the first bad sample only as a text (bad_sample_at), so this place is missing in the
+/// counters of the view.
 JobView job_view_of(const farm::JobStatus& message);
 
 farm::WorkerStatus to_message(const WorkerView& worker);

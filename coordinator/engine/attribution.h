@@ -17,8 +17,9 @@ namespace bandsaw::coordinator {
 class Attribution {
  public:
   /// Adds rows of a job. `process` identifies the worker process in all epochs (runs of the
-  /// coordinator). `name` is the name of the worker. It may be empty, because a band on disk does
-  /// not contain it. The name becomes known when the worker sends another band.
+  /// coordinator). `name` is the name of the worker. It is empty for a band that was read from
+  /// disk, because the record on disk has no name. The name becomes known when the worker sends
+  /// another band.
   void add(JobId job, const RowRange& rows, std::uint64_t process, const std::string& name);
   /// Returns the rendered rows with the names of their workers, from top to bottom. Adjacent rows
   /// of one worker are one entry.

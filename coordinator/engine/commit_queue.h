@@ -19,7 +19,8 @@ class CommitQueue {
   /// An effect is run once all records that were added before it are on disk.
   using Effect = absl::AnyInvocable<void()>;
   /// A completion is called with OK once all records that were added before it are on disk, or with
-  /// the journal's error. After an error nothing may be acknowledged.
+  /// the journal's error. A completion that gets an error MUST NOT acknowledge the decision to the
+  /// user or the worker.
   using Completion = absl::AnyInvocable<void(const absl::Status&)>;
 
   explicit CommitQueue(Journal& journal) : journal_(journal) {}

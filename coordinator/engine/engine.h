@@ -119,7 +119,7 @@ class Engine {
   void workers(std::function<void(std::vector<WorkerView>)> done);
   /// Returns the last lines of a worker's log. NOT_FOUND: no lines of such a worker.
   void logs(std::string worker, std::function<void(absl::StatusOr<std::vector<std::string>>)> done);
-  /// Returns the present image of a job that is not over, every row_step-th row, `row_step` >= 1.
+  /// Returns every row_step-th row of the present image of a job that is not over; `row_step` >= 1.
   /// NOT_FOUND: no such job, or none of its bands is stored.
   void preview(JobId job, std::uint32_t row_step, std::function<void(absl::StatusOr<Image>)> done);
   /// Returns the workers of the rows that are rendered, in the order of rows. After a restart, the
@@ -215,7 +215,8 @@ class Engine {
   std::atomic<SessionId> last_session_{0};
   MemoryBudget bands_;   ///< bytes of the bands in memory
   MemoryBudget images_;  ///< bytes of the images that are made or downloaded
-  // The inboxes are the only way to the objects below them, each of which belongs to one thread.
+  // scheduler_, store_ and film_ each belong to one thread. Other threads send them messages by
+  // these inboxes.
   PostedSchedulerInbox to_scheduler_;
   PostedStoreInbox to_store_;
   PostedFilmInbox to_film_;

@@ -135,7 +135,8 @@ absl::Status FilmThread::work(JobId id, OneJob& job) {
     status = send_image(id, job);
   }
   if (!status.ok()) {
-    // The scheduler pauses the job before the store can report that the disk is back.
+    // The scheduler is informed first, so that it pauses the job before the store can report that
+    // the disk is back.
     scheduler_.storage_failed(id, status);
     store_.test_disk_until_writable();
   }
@@ -193,9 +194,11 @@ absl::Status FilmThread::send_image(JobId id, OneJob& job) {
     }
   }
   job.image_of.reset();
-  // Earlier reports may have included more samples than the image has.
+  // Earlier reports may be about more samples than the image has. So the error of the image itself
+  // is reported.
   scheduler_.pass_merged({.job = id, .samples = samples, .error = job.film->error()});
-  Finished finished{job.film->snapshot().image, std::nullopt, std::nullopt, attribution_.of(id)};
+  Finished finished{job.film->snapshot().image, /*first=*/std::nullopt, /*samples=*/std::nullopt,
+                    attribution_.of(id)};
   if (computes_radiance(job.settings.integrator)) {
     if (std::optional<Film::FirstPart> first = job.film->first_part()) {
       finished.first = std::move(first->mean);

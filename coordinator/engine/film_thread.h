@@ -86,9 +86,11 @@ class FilmThread {
   };
   /// Returns the entry of OneJob::added for these rows of a band.
   static Added added(const IncomingBand& incoming, const RowRange& rows);
-  /// Does all that the job's film waits for (see film_thread.cpp). If a step fails, informs the
+  /// Brings the job's film up to date: builds it again if that is needed, adds the bands that wait,
+  /// reports complete passes, and sends the image if it was requested. If a step fails, informs the
   /// scheduler and returns the error.
   absl::Status work(JobId id, OneJob& job);
+  /// Builds the film from all rows in OneJob::added, and reports the complete passes.
   absl::Status rebuild_film(JobId id, OneJob& job);
   /// Adds the rows of `waiting` to the film, and removes them from `waiting`.
   absl::Status merge(JobId id, OneJob& job, Waiting& waiting);

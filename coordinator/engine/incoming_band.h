@@ -34,9 +34,9 @@ struct IncomingBand {
   /// Hash of the scene and settings for which the band was rendered, as the worker reports it
   /// (renderlib/render/work_hash.h); 0: unknown.
   std::uint64_t work = 0;
-  std::string instance;       ///< instance of the worker
+  std::string instance;       ///< name that the worker process chose for itself at its start
   bool browser = false;       ///< a browser sent it
-  std::uint64_t process = 0;  ///< id of the worker process (scheduler/api/worker_process.h)
+  std::uint64_t process = 0;  ///< id of the worker process, a hash of its instance name
   BandPixels pixels;
   std::string worker;  ///< name of the worker, from action::AddToFilm
   /// How many samples each half tile of the band takes (half of the pixels of a square of 16 x 16),

@@ -68,14 +68,15 @@ struct Line {
                   r.band.rows.last, r.band.samples.first, r.band.samples.last);
   }
   void operator()(const record::RowDisputed& r) const {
-    spdlog::warn("disputed job={} row={} samples={}:{} stored by worker='{}', not by worker='{}'",
-                 r.job, r.band.rows.first, r.band.samples.first, r.band.samples.last,
-                 r.stored.machine, r.other.machine);
+    spdlog::warn(
+        "disputed job={} row={} samples={}:{} stored by worker='{}', contradicted by worker='{}'",
+        r.job, r.band.rows.first, r.band.samples.first, r.band.samples.last, r.stored.machine,
+        r.other.machine);
   }
   void operator()(const record::BandLost& r) const {
     spdlog::error(
-        "lost job={} rows={}:{} samples={}:{} its record in the band log is damaged; it is "
-        "rendered again",
+        "lost job={} rows={}:{} samples={}:{} the record of this band in the band log is "
+        "damaged; the band is rendered again",
         r.job, r.band.rows.first, r.band.rows.last, r.band.samples.first, r.band.samples.last);
   }
   void operator()(const record::ErrorForgotten& r) const {

@@ -40,7 +40,7 @@ class Links {
   };
   One* find(SessionId session);
 
-  std::string epoch_;
+  std::string epoch_;  ///< name of this run of the coordinator, which each worker is told
   std::map<SessionId, One> sessions_;
 };
 

@@ -91,6 +91,7 @@ void SchedulerThread::perform(const Action& action) {
   } else if (const auto* fault = std::get_if<action::LogFailure>(&action)) {
     log_failure(*fault);
   } else {
+    // Actions that are messages to a worker go to its connection. All others are ignored here.
     std::visit(
         [this](const auto& one) {
           if constexpr (requires { links_.perform(one); }) {

@@ -72,13 +72,21 @@ class SchedulerThread {
     return logs_.of(worker);
   }
 
-  // Messages of the other threads; see SchedulerInbox.
+  // Messages of the store and the film (SchedulerInbox).
+  /// The band is on disk, or all of its rows were stored before (IncomingBand::written).
+  /// `row_digests`: digests of the rows of `incoming`.
   void band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests);
+  /// The band could not be written to disk.
   void band_failed(IncomingBand incoming, const absl::Status& status);
+  /// The job's log no longer holds these bands, and the film has left them out.
   void bands_damaged(input::BandsDamaged damaged);
+  /// The files of the finished job are written; otherwise `status` is the error.
   void result_written(JobId job, const absl::Status& status);
+  /// Pauses a job whose data cannot be written or read now, until the disk takes data again.
   void storage_failed(JobId job, const absl::Status& status);
+  /// The disk takes data again after a failed write.
   void disk_is_back();
+  /// Forgets these final jobs.
   void forget(std::vector<JobId> jobs) { run(input::Forget{std::move(jobs)}); }
 
   /// Call after each batch: runs the clock's tick, writes the journal, runs the effects that waited

@@ -1,5 +1,5 @@
-// Commands of users. Each is given to the scheduler at once; the user is answered when the records
-// of its step are in the journal.
+// Commands of users. Each command makes one step of the scheduler at once. The user is answered
+// when the records of this step are in the journal.
 
 #include <algorithm>
 #include <utility>

@@ -32,7 +32,7 @@ absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
       RETURN_IF_ERROR(restored);
     }
   }
-  absorb(scheduler_.replayed(clock_.now()), nullptr);
+  absorb(scheduler_.replayed(clock_.now()), /*incoming=*/nullptr);
   if (!disk.ok()) {
     disk_is_full(disk);
   }
@@ -70,7 +70,7 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
       return;  // a duplicate: the scheduler compares it, and the film has its rows already
     }
     // If the rows are still wanted after the replay, the scheduler did not count the band, because
-    // its machine is quarantined. Then the film does not get the band either.
+    // the machine that rendered it is in quarantine. Then the film does not get the band either.
     if (const auto left = scheduler_.wanted(id, band); left && left->empty()) {
       IncomingBand incoming;
       incoming.process = record.process;

@@ -73,6 +73,8 @@ void SchedulerThread::put_band(IncomingBand incoming) {
     return;
   }
   incoming.process = worker_process_id(incoming.instance);
+  // The rows that the job still wants. Empty: all rows of the band are stored already.
+  // std::nullopt: the job is over, or does not need such a band.
   const std::optional<std::vector<RowRange>> wanted =
       scheduler_.wanted(incoming.job, incoming.pixels.band);
   if (!wanted) {

@@ -19,6 +19,7 @@ class Watchers {
  public:
   /// Takes the new state of the job. Returns false if it wants no further calls.
   using Changed = std::function<bool(absl::StatusOr<JobView>)>;
+  /// Returns the state of a job; std::nullopt: there is no such job.
   using ViewOf = absl::FunctionRef<std::optional<JobView>(JobId)>;
 
   /// Adds a watcher and calls it with the present state; with NOT_FOUND if `view` is std::nullopt.
@@ -26,9 +27,9 @@ class Watchers {
   void add(JobId job, const std::optional<JobView>& view, Changed changed, Time now);
 
   /// Calls the watchers of changed jobs, at most ten times per second and job, and all watchers at
-  /// least once a second. A final state is always delivered, and is the last. Delivers NOT_FOUND if
-  /// the job was forgotten. `hold_final`: if true, final states wait for a later call, because they
-  /// are not on disk yet.
+  /// least once a second. A final state is always delivered, and ends the watch. Delivers NOT_FOUND
+  /// if the job was forgotten. `hold_final`: if true, final states wait for a later call, because
+  /// they are not on disk yet.
   void update(ViewOf view_of, bool hold_final, Time now);
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
-// The last lines of each worker's log, as the worker has sent them. Their number is limited per
-// worker, and their bytes in total.
+// The last lines of each worker's log, as the worker has sent them. The number of lines of each
+// worker is limited, and so is the number of bytes of all lines together.
 
 #include <cstddef>
 #include <deque>

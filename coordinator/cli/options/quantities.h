@@ -31,6 +31,7 @@ absl::Status read_whole(const std::string& name, const std::optional<std::string
   }
   return absl::OkStatus();
 }
+/// The overload for a `value` that may be unset. It stays unset if `text` is std::nullopt.
 template <class T>
 absl::Status read_whole(const std::string& name, const std::optional<std::string>& text,
                         std::uint64_t least, std::uint64_t most, std::optional<T>& value) {

@@ -20,8 +20,8 @@ struct SceneChoices {
   /// For a Mitsuba scene: a folder that contains the scene's folder and all files of the scene.
   /// Empty: the scene's folder.
   std::string folder = {};
-  /// Name of the scene in a zip file. Empty: the only scene in the zip file, which
-  /// import_in_process() searches for.
+  /// Name of the scene in a zip file. Empty: import_in_process() searches the zip file for its only
+  /// scene.
   std::string inside = {};
   std::optional<std::int64_t> frame = {};  ///< number of a frame; its time is frame / fps
   std::optional<double> fps = {};          ///< frames per second, [0.01, 10000]

@@ -25,8 +25,8 @@ std::string Painter::frame(const std::vector<std::string>& lines, TerminalSize s
   return out + "\x1b[J";
 }
 
-// The carriage return is needed because a terminal shows ^C at the cursor when Ctrl-C is pressed,
-// which moves the cursor to the right.
+// When Ctrl-C is pressed, a terminal shows ^C at the cursor and so moves the cursor to the right.
+// The carriage return moves the cursor back to the first column.
 std::string Painter::back_to_first() const {
   return drawn_ > 0 ? absl::StrCat("\r\x1b[", drawn_, "A") : "";
 }

@@ -23,8 +23,8 @@ struct Progress {
   double clean_error = -1;
 };
 
-/// Converts the status of a job that the coordinator has sent. Values that the message lacks become
-/// unknown, as JobView defines.
+/// Converts the status of a job that the coordinator has sent. Values for which the message has no
+/// field, such as `clean_error`, keep their default.
 inline Progress progress_of(const farm::JobStatus& status) {
   return {.job = job_view_of(status), .bad_sample_at = status.bad_sample_at()};
 }

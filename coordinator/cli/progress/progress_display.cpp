@@ -14,8 +14,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Least time between two outputs in seconds. In a pipe it is just below one second. If update() is
-// called about once a second, a call that comes a little early must not be skipped.
+// Least time between two outputs in seconds. In a pipe it is just below one second, because
+// update() may be called about once a second, and a call that comes a little early must not be
+// skipped.
 constexpr double kPipeInterval = 0.95;
 constexpr double kTerminalInterval = 0.1;
 

@@ -63,7 +63,7 @@ JsonObject progress_json(const Progress& progress, const std::string& event) {
   if (!job.log.empty()) {
     out.text("log_of", job.log_of).texts("log", job.log);
   }
-  if (progress.threads > 0) {
+  if (progress.threads > 0) {  // a render on this machine, which has no workers
     return out.whole("threads", static_cast<std::uint64_t>(progress.threads));
   }
   if (job.has_frames()) {

@@ -47,7 +47,7 @@ std::string cost_line(const Progress& progress);
 /// then be too low. Returns an empty text if the estimate can be trusted.
 std::string doubt_line(const Progress& progress);
 
-/// Returns a warning about samples that were not finite or negative; empty if there are none.
+/// Returns a warning about samples that were negative, infinite or NaN; empty if there are none.
 std::string bad_samples_line(const Progress& progress);
 
 /// Returns doubt_line() and bad_samples_line(), without those that are empty.

@@ -88,10 +88,10 @@ std::string update_rows(const std::string& name, const Image& image, std::uint32
     packet.number(static_cast<std::int32_t>(place));
   }
   for (std::int64_t channel = 0; channel < 3; ++channel) {
-    packet.number(channel);  // index of its first value, in floats
+    packet.number(channel);  // index of the channel's first value, counted in floats
   }
   for (int channel = 0; channel < 3; ++channel) {
-    packet.number(std::int64_t{3});  // stride between values
+    packet.number(std::int64_t{3});  // floats from one value of the channel to the next
   }
   const std::size_t pixels = std::size_t{last - first} * image.width;
   packet.bytes(&image.pixels[std::size_t{first} * image.width], pixels * sizeof(Rgb));

@@ -21,8 +21,8 @@ namespace tev {
 /// Returns the packet that creates a black image of this size with the channels R, G and B, and
 /// selects it in the viewer.
 std::string create_image(const std::string& name, std::uint32_t width, std::uint32_t height);
-/// Returns the packet that replaces rows [first, last) by those of `image`, as linear values. The
-/// rows MUST be few enough for a packet of less than 4 GiB.
+/// Returns the packet that replaces rows [first, last) of the viewer's image by the same rows of
+/// `image`, as linear values. The rows MUST be few enough for a packet of less than 4 GiB.
 std::string update_rows(const std::string& name, const Image& image, std::uint32_t first,
                         std::uint32_t last);
 
@@ -33,7 +33,7 @@ std::string update_rows(const std::string& name, const Image& image, std::uint32
 class TevViewer {
  public:
   /// `address` is HOST:PORT; `name` is the image's name in the viewer. UNAVAILABLE: no viewer can
-  /// be reached there.
+  /// be reached at this address.
   static absl::StatusOr<TevViewer> connect(const std::string& address, const std::string& name);
 
   /// Shows an image. It replaces the image that was shown before. All images MUST have the same

@@ -21,7 +21,8 @@ absl::StatusOr<Image> CleanPreview::guide(Integrator integrator, std::uint32_t s
   RenderSettings settings = settings_;
   settings.integrator = integrator;
   ASSIGN_OR_RETURN(const RenderedImage rendered,
-                   render_image(scene_, settings, kGuideSamples, pool_, stop_, {}, ""));
+                   render_image(scene_, settings, kGuideSamples, pool_, stop_, /*progress=*/{},
+                                /*spill_folder=*/""));
   return shrunk(rendered.film.snapshot().image, step, step);
 }
 
@@ -41,9 +42,9 @@ absl::StatusOr<std::optional<Image>> CleanPreview::of(const Film& film, std::uin
                      .first_share = {},
                      .albedo = guides_->albedo,
                      .shape = guides_->shape};
-  // `first` is the mean of about half of each pixel's samples, and the share is the exact part. The
-  // share differs little among the pixels that are reduced to one pixel, so the share of the top
-  // left one is used.
+  // `first->mean` is the mean of about half of each pixel's samples. `first->share` is the exact
+  // fraction of the pixel's samples in this mean. The fraction differs little among the pixels that
+  // are reduced to one pixel, so the fraction of the top left pixel is used.
   for (std::uint32_t y = 0; y < input.mean.height; ++y) {
     for (std::uint32_t x = 0; x < input.mean.width; ++x) {
       input.first_share.push_back(first->share[std::size_t{y} * step * film.width() + x * step]);

@@ -17,7 +17,8 @@
 
 namespace bandsaw::coordinator {
 
-/// An object may be used by one thread at a time. The arguments of the constructor MUST outlive it.
+/// Makes the previews of one image. Used by one thread at a time. The arguments of the constructor
+/// MUST outlive the object.
 class CleanPreview {
  public:
   /// Samples per pixel of the guides. With many more, the preview would cost as much as the image.
@@ -30,7 +31,7 @@ class CleanPreview {
   /// Returns the image of the samples in `film`, without noise and reduced to at most `most_side`
   /// pixels a side. Returns std::nullopt until every pixel has more than one block of 8 samples.
   /// The first call renders the guides. `most_side` MUST be above 0 and the same in all calls.
-  /// Errors as render_image.
+  /// Errors: those of render_image().
   absl::StatusOr<std::optional<Image>> of(const Film& film, std::uint32_t most_side);
 
  private:

@@ -50,6 +50,7 @@ double LocalMeter::fraction_of(const JobView& job, const ErrorCurve& curve) cons
     return job.elapsed_s / rule->seconds;
   }
   const auto& rule = std::get<StopAtError>(spec_.stop);
+  // The number of samples per pixel at which the render is expected to end.
   const auto end = expected_end(curve, rule.relative_rmse, planned_, rule.max_samples);
   // In an adaptive render, a pass (a range of samples) omits the pixels that need no more samples.
   // So `done`, the mean over all pixels, is too small. The number of samples at the last point of

@@ -30,9 +30,9 @@ class LocalMeter {
   /// Reports that samples [0, samples) of each pixel are done. `error`: std::nullopt if unknown.
   void passed(std::uint64_t samples, const std::optional<ErrorEstimate>& error, Clocks now)
       EXCLUDES(mutex_);
-  /// Reports the relative RMSE of the clean image. This is called only with --denoise, because the
-  /// stop rule then compares the error of the clean image with its target. Without --denoise, the
-  /// stop rule compares the error given to passed().
+  /// Reports the relative RMSE of the clean image, which only --denoise makes by removing the
+  /// noise. With --denoise, the stop rule compares this error with the target. Without --denoise,
+  /// the stop rule compares the error that passed() was given.
   void measured(std::uint64_t samples, double error) EXCLUDES(mutex_);
   /// Adds the counters (rays, bad samples, …) of rows that are done.
   void add(const Counters& counters) EXCLUDES(mutex_);

@@ -23,7 +23,7 @@ std::optional<SampleRange> LocalPlan::take_pass(std::uint64_t from, std::uint64_
 
 std::optional<SampleRange> LocalPlan::next(std::uint64_t samples, double error, double seconds) {
   if (!passes_.empty()) {
-    return take_pass(samples, samples);
+    return take_pass(samples, samples);  // plans nothing, so the range is not used
   }
   if (const auto* rule = std::get_if<StopAtSamples>(&stop_)) {
     return samples < rule->samples ? take_pass(samples, rule->samples) : std::nullopt;
@@ -33,12 +33,13 @@ std::optional<SampleRange> LocalPlan::next(std::uint64_t samples, double error, 
     if (samples > 0 && (reached || samples >= rule->max_samples)) {
       return std::nullopt;
     }
-    const double target = next_target(rule->relative_rmse, rule->adaptive && !schedule_);
+    const double target =
+        next_target(rule->relative_rmse, /*tiles_to_plan=*/rule->adaptive && !schedule_);
     return take_pass(samples, next_checkpoint(samples, error, target, rule->max_samples));
   }
   const auto& rule = std::get<StopAtTime>(stop_);
   if (samples == 0) {
-    return next_timed_pass(0, 0, rule.max_samples);
+    return next_timed_pass(/*from=*/0, /*fits=*/0, rule.max_samples);
   }
   // The number of samples per pixel that can be rendered in the rest of the time.
   const double fits = (rule.seconds - seconds) * static_cast<double>(samples) / seconds;

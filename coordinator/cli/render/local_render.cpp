@@ -46,7 +46,7 @@ LocalMeter::Clocks clocks() { return {steady_seconds(), process_cpu_seconds()}; 
 
 absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop) {
   ASSIGN_OR_RETURN(Film film,
-                   Film::create(job.settings.width, job.settings.height, "",
+                   Film::create(job.settings.width, job.settings.height, /*spill_folder=*/"",
                                 is_adaptive(stop) ? Film::Grain::kHalfTiles : Film::Grain::kRows));
   LocalPlan plan(stop, {job.settings.width, job.settings.height});
   std::uint64_t done = 0;
@@ -83,15 +83,16 @@ absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const R
   std::vector<BandPixels> bands;
   std::vector<SampleRange> nodes = maximal_nodes(samples);
   if (nodes.front().blocks() > 1) {
-    // A node is a range of samples that are summed as one. `stitch` estimates the error of the
-    // whole image from the two halves of the first node, as `render` does without --rows.
+    // The samples of a pixel are added in a binary tree, whose nodes are ranges of samples.
+    // `bandsaw stitch` estimates the error of the whole image from the two halves of the first
+    // node, as `render` does without --rows. So the halves are kept apart.
     const Halves halves = split(nodes.front());
     nodes.front() = halves.right;
     nodes.insert(nodes.begin(), halves.left);
   }
   std::uint64_t done = 0;
   for (const SampleRange& node : nodes) {
-    RETURN_IF_ERROR(render_pass(job, node, rows, {}, done, [&](BandPixels pixels) {
+    RETURN_IF_ERROR(render_pass(job, node, rows, /*tiles=*/{}, done, [&](BandPixels pixels) {
       bands.push_back(std::move(pixels));
       return absl::OkStatus();
     }));
@@ -102,7 +103,7 @@ absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const R
 
 absl::StatusOr<Image> image_of_part(const std::vector<BandPixels>& bands,
                                     const RenderSettings& settings, const RowRange& rows) {
-  ASSIGN_OR_RETURN(Film film, Film::create(settings.width, settings.height, ""));
+  ASSIGN_OR_RETURN(Film film, Film::create(settings.width, settings.height, /*spill_folder=*/""));
   for (const BandPixels& band : bands) {
     RETURN_IF_ERROR(film.add(band));
   }

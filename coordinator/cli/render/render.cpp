@@ -115,9 +115,9 @@ class LocalRun {
       const LocalMeter::Clocks now = clocks();
       display_.update(meter_.progress(now), now.steady_s);
     });
-    ASSIGN_OR_RETURN(
-        const std::shared_ptr<const Scene> scene,
-        Scene::build(std::move(description), pool_, {}, Traversal::kBvh, options_.kernel));
+    ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
+                     Scene::build(std::move(description), pool_, /*forced=*/{}, Traversal::kBvh,
+                                  options_.kernel));
     LocalJob job{*scene, spec_.settings, pool_, stop_, meter_};
     if (options_.rows) {
       ASSIGN_OR_RETURN(bands_,
@@ -162,7 +162,8 @@ class LocalRun {
     return [this, &scene](const RenderSettings& settings,
                           std::uint64_t count) -> absl::StatusOr<Image> {
       ASSIGN_OR_RETURN(const RenderedImage layer,
-                       render_image(scene, settings, count, pool_, stop_, {}, ""));
+                       render_image(scene, settings, count, pool_, stop_, /*progress=*/{},
+                                    /*spill_folder=*/""));
       return layer.film.snapshot().image;
     };
   }

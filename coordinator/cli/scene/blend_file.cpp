@@ -163,7 +163,7 @@ absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(const std::strin
 
 absl::StatusOr<std::unique_ptr<BlendSession>> BlendSession::start(const std::string& path) {
   ASSIGN_OR_RETURN(std::unique_ptr<BlendScene> scene, empty_scene(path));
-  auto blender = Coprocess::start(blender_command(path, *scene, "-"), kAnswer, true);
+  auto blender = Coprocess::start(blender_command(path, *scene, "-"), kAnswer, /*errors_too=*/true);
   if (!blender.ok()) {
     return not_started(path, blender.status());
   }

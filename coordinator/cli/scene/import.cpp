@@ -37,9 +37,9 @@ fs::path output_of(const ImportOptions& options) {
 }
 
 /// Returns the files to write beside the scene file: those that the importer has written, and those
-/// that are in the folder of the converted scene. The latter stay where they are if the scene file
-/// is written to the same folder. PERMISSION_DENIED: a file that should be in the folder of the
-/// converted scene is not there, for example because a symbolic link leads out of this folder.
+/// that are in the folder of the converted scene. The files of this folder are omitted if the scene
+/// file is written to the same folder. PERMISSION_DENIED: a file that should be in the folder of
+/// the converted scene is not there, for example because a symbolic link leads out of this folder.
 absl::StatusOr<std::vector<Output>> outputs_of(const SceneFiles& files, const std::string& scene,
                                                const fs::path& target_folder) {
   std::error_code error;

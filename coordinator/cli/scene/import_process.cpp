@@ -316,6 +316,8 @@ absl::StatusOr<std::unique_ptr<ImportSession>> ImportSession::start(const std::s
   ASSIGN_OR_RETURN(const std::string program, import_program(limits));
   ASSIGN_OR_RETURN(std::shared_ptr<const ScratchFolder> folder,
                    ScratchFolder::make("import", limits.scratch));
+  // import() sends the number of each frame. The number 0 is only needed because arguments_of()
+  // omits `fps` and `shutter` if no frame is set.
   choices.frame = 0;
   // This process limits the time of each frame. The importer limits its total CPU time, but does
   // not know how many frames will come. So its limit is larger than any sequence can need.

@@ -64,9 +64,9 @@ absl::StatusOr<std::string> import_program(const ImportLimits& limits = {});
 struct ListedFile {
   /// Path relative to the folder of the scene file or of the zip file's contents; has no "..".
   std::string name;
-  /// The importer has written the file to its output folder, with this number as its name. For a
-  /// converted scene, that folder is SceneFiles::folder_path. kOld: the importer has not written
-  /// the file, because it is in the folder of the scene that was converted.
+  /// The number is the name of the file in the folder to which the importer has written it. For a
+  /// converted scene, this folder is SceneFiles::folder_path. kOld: the importer has not written
+  /// the file, because the file is in the folder of the scene that was converted.
   int number = kOld;
   static constexpr int kOld = -1;
 };
@@ -96,7 +96,8 @@ absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});
 
-/// Imports a scene at many frames of its animation, by one process that reads its files once.
+/// Imports a scene at many frames of its animation. One process imports all of them and reads the
+/// files of the scene only once.
 class ImportSession {
  public:
   /// Starts the process. `choices.frame` and limits.stop are ignored, except that limits.stop ends

@@ -38,7 +38,7 @@ Box box_of(const Shapes& shapes) {
   }
   const auto add_all = [&box](const auto& list) {
     for (const auto& shape : list) {
-      add_box(box, bounds(shape), {});
+      add_box(box, bounds(shape), /*to_world=*/{});
     }
   };
   add_all(shapes.quads);
@@ -114,8 +114,8 @@ std::string camera_text(const Camera& camera) {
   }
   const auto& perspective = std::get<PerspectiveCamera>(camera);
   const std::string lens = perspective.aperture > 0
-                               ? absl::StrCat(", lens of ", perspective.aperture, " sharp at ",
-                                              perspective.focus_distance)
+                               ? absl::StrCat(", lens of diameter ", perspective.aperture,
+                                              ", sharp at distance ", perspective.focus_distance)
                                : "";
   return absl::StrCat("perspective, ", perspective.vertical_fov, "° high", lens, ",", place);
 }

@@ -37,9 +37,9 @@ std::vector<std::string> summary_text(const SceneSummary& summary) {
   };
   std::vector<std::string> lines = {
       printable(info.name),
-      line("image", absl::StrCat(info.width, "×", info.height, ", ", summary.filter, ", by ",
-                                 integrator_name(info.integrator), " of at most ", info.max_depth,
-                                 " surfaces")),
+      line("image", absl::StrCat(info.width, "×", info.height, ", ", summary.filter,
+                                 ", integrator ", integrator_name(info.integrator),
+                                 ", paths of at most ", info.max_depth, " surfaces")),
       line("camera", summary.camera),
       line("cameras", info.model_cameras.empty()
                           ? "none in a model file"

@@ -27,13 +27,14 @@ link::JoinString join_string(link::Role role, const link::Identity& identity,
 /// the disk is full; the file is unchanged.
 absl::Status write_join_file(const std::string& data_folder, const link::JoinString& join);
 
-/// Renews the secret of a role in the farm's identity (its file with certificate and secrets), then
-/// writes the role's join string with the new secret to its file. `present`: the join string of the
-/// running coordinator, whose secret may be an old one; std::nullopt: no coordinator runs, and the
-/// string in the file is used. If this file is missing or damaged, the addresses are unknown. Then
-/// no string is written, RenewedSecret::join_file is empty, and the next `serve` writes the file.
-/// Errors: those of link::renew_secret. If only the join string could not be written,
-/// RenewedSecret::written has the error.
+/// Renews the secret of a role in the identity (the file with the farm's certificate and secrets).
+/// Then writes the role's join string with the new secret to the file of this role. `present`: the
+/// join string of the running coordinator. The secret in `present` may be an old one, and is not
+/// used. std::nullopt: no coordinator runs, and the string in the file is used. If this file is
+/// missing or damaged, the addresses are unknown. Then no string is written,
+/// RenewedSecret::join_file is empty, and the next `serve` writes the file. Errors: those of
+/// link::renew_secret. If only the join string could not be written, RenewedSecret::written has the
+/// error.
 absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role,
                                             std::optional<link::JoinString> present);
 

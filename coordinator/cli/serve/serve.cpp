@@ -32,7 +32,8 @@ namespace {
 /// start() has failed.
 struct JoinStrings {
   Mutex mutex;
-  /// The secrets in them are those of the start; a renewal replaces the secret only in the file.
+  /// These strings keep the secrets that were valid at the start. When a secret is renewed, it is
+  /// replaced only in the file of the join string.
   std::map<link::Role, link::JoinString> by_role GUARDED_BY(mutex);
 };
 

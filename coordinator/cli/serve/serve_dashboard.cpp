@@ -114,7 +114,7 @@ absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, En
   wanted.import_scene = import_and_store(engine);
   wanted.report = [](const JobView& job, const Image& image) {
     const Progress progress{job, bad_sample_text(job.counters)};
-    return report_text({progress, pixels_sha256(image), {}});
+    return report_text({progress, pixels_sha256(image), /*outputs=*/{}});
   };
   if (options.web.empty()) {
     auto dashboard = Dashboard::start(engine, identity, wanted);

@@ -149,6 +149,7 @@ class Panel {
     return below > 0;
   }
 
+  /// Returns the lines with a dot at each point, and the legend.
   std::string lines() const {
     std::string out;
     const double names_top =

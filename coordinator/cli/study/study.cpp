@@ -60,7 +60,7 @@ absl::StatusOr<std::vector<StudyOfScene>> studied(const StudyOptions& options,
     std::shared_ptr<const Scene> every_object;
     if (options.every_object) {
       ASSIGN_OR_RETURN(every_object,
-                       Scene::build(prepared.scene, pool, {}, Traversal::kBruteForce));
+                       Scene::build(prepared.scene, pool, /*forced=*/{}, Traversal::kBruteForce));
     }
     ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
                      Scene::build(std::move(prepared.scene), pool));

@@ -31,8 +31,8 @@ class AdaptiveRender {
         static_cast<std::uint32_t>(std::max<std::uint64_t>(1, kBandPixels / settings_.width));
     for (RowRange rows{0, 0}; rows.last < settings_.height; rows.first = rows.last) {
       rows.last = rows.first + std::min(most, settings_.height - rows.first);
-      ASSIGN_OR_RETURN(const BandPixels pixels,
-                       render_band(scene_, settings_, {pass, rows}, pool_, stop_, {}, tiles));
+      ASSIGN_OR_RETURN(const BandPixels pixels, render_band(scene_, settings_, {pass, rows}, pool_,
+                                                            stop_, /*progress=*/{}, tiles));
       out_.rays += static_cast<double>(pixels.counters.rays);
       RETURN_IF_ERROR(film_.add(pixels, tiles));
     }
@@ -64,12 +64,13 @@ absl::StatusOr<AdaptiveImage> render_adaptively(const Scene& scene, const Render
                                                 std::uint64_t samples, Pool& pool,
                                                 const std::atomic<bool>& stop) {
   const TileGrid grid{settings.width, settings.height};
-  ASSIGN_OR_RETURN(Film film, Film::create(grid.width, grid.height, "", Film::Grain::kHalfTiles));
+  ASSIGN_OR_RETURN(Film film, Film::create(grid.width, grid.height, /*spill_folder=*/"",
+                                           Film::Grain::kHalfTiles));
   AdaptiveRender render(scene, settings, pool, stop, std::move(film));
   const std::uint64_t sixteenth = samples / 16 / kBlockSamples * kBlockSamples;
   const std::uint64_t pilot = std::min(samples, std::max(kMinCheckpoint, sixteenth));
   for (const SampleRange& pass : passes_between(0, pilot)) {
-    RETURN_IF_ERROR(render.take(pass, {}));
+    RETURN_IF_ERROR(render.take(pass, /*tiles=*/{}));
   }
   if (pilot == samples) {
     return render.result();

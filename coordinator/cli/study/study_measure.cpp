@@ -125,7 +125,8 @@ class Study {
     RenderSettings settings = settings_;
     settings.seed = settings_.seed ^ kReferenceSeed;
     ASSIGN_OR_RETURN(const RenderedImage rendered,
-                     render_image(scene_, settings, plan_.reference, pool_, stop_, {}, ""));
+                     render_image(scene_, settings, plan_.reference, pool_, stop_, /*progress=*/{},
+                                  /*spill_folder=*/""));
     reference_ = rendered.film.snapshot().image;
     mean_ = mean_of(reference_);
     reference_error_ = rendered.film.error().value_or(ErrorEstimate());
@@ -196,7 +197,8 @@ class Study {
     scene_.guiding().clear();  // the CPU time of each image includes its own training
     const double start = process_cpu_seconds();
     ASSIGN_OR_RETURN(const RenderedImage rendered,
-                     render_image(scene_, spec.settings, samples, pool_, stop_, {}, ""));
+                     render_image(scene_, spec.settings, samples, pool_, stop_, /*progress=*/{},
+                                  /*spill_folder=*/""));
     const Image image = rendered.film.snapshot().image;
     const double raw_s = process_cpu_seconds() - start;
     auto rays = static_cast<double>(rendered.counters.rays);
@@ -205,7 +207,8 @@ class Study {
     const auto render = [&](const RenderSettings& settings,
                             std::uint64_t count) -> absl::StatusOr<Image> {
       ASSIGN_OR_RETURN(const RenderedImage layer,
-                       render_image(scene_, settings, count, pool_, stop_, {}, ""));
+                       render_image(scene_, settings, count, pool_, stop_, /*progress=*/{},
+                                    /*spill_folder=*/""));
       rays += static_cast<double>(layer.counters.rays);
       return layer.film.snapshot().image;
     };
@@ -251,7 +254,8 @@ class Study {
       return absl::OkStatus();
     }
     ASSIGN_OR_RETURN(const RenderedImage rendered,
-                     render_image(scene, settings, samples, pool_, stop_, {}, ""));
+                     render_image(scene, settings, samples, pool_, stop_, /*progress=*/{},
+                                  /*spill_folder=*/""));
     seeds.add(rendered.film.snapshot().image, n, process_cpu_seconds() - start,
               static_cast<double>(rendered.counters.rays));
     guides_ = guides_ || rendered.counters.techniques != 0;

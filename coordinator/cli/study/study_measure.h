@@ -53,7 +53,7 @@ const char* method_name(Method method);
 /// Results for one number of samples, as means over the seeds.
 struct StudyPoint {
   double samples = 0;        ///< per pixel
-  double relative_rmse = 0;  ///< root of the mean square over the seeds
+  double relative_rmse = 0;  ///< root mean square of the relative RMSE over the seeds
   double relative_mse = 0;   ///< relMSE (renderlib/compare/error_metrics.h)
   /// Relative bias: (mean of the image - mean of the reference) / mean of the reference.
   double bias = 0;

@@ -28,7 +28,8 @@ void add_study(CLI::App& app, RawOptions& raw) {
   app.add_option("--samples", raw.samples,
                  "Maximum samples per pixel; 1, 4, 16, … are measured first [default: 64]")
       ->type_name("N");
-  app.add_option("--seeds", raw.seeds, "Images of each kind, to average over [default: 4]")
+  app.add_option("--seeds", raw.seeds,
+                 "Number of seeds; each result is a mean over the images of all seeds [default: 4]")
       ->type_name("K");
   app.add_option("--reference", raw.reference_samples,
                  "Samples per pixel of the reference image, with which all others are compared "

@@ -1,5 +1,5 @@
-// stop_by_pixels() renders one sample of every pixel at a time. For each pixel and tolerance it
-// keeps whether the pixel has stopped, and with which value.
+// stop_by_pixels() renders one sample of every pixel at a time. For each pixel and tolerance, the
+// function records whether the pixel has stopped, and with which value.
 
 #include "coordinator/cli/study/study_pixel_stops.h"
 
@@ -51,8 +51,10 @@ absl::StatusOr<std::vector<double>> IndependentSamples::next() {
   hash.add(count_);
   RenderSettings settings = settings_;
   settings.seed = hash.value();
-  ASSIGN_OR_RETURN(BandPixels pixels,
-                   render_band(scene_, settings, {{0, 1}, {0, settings.height}}, pool_, stop_, {}));
+  ASSIGN_OR_RETURN(
+      BandPixels pixels,
+      render_band(scene_, settings, {/*samples=*/{0, 1}, /*rows=*/{0, settings.height}}, pool_,
+                  stop_, /*progress=*/{}));
   sums_.resize(pixels.sums.size());
   for (std::size_t k = 0; k < sums_.size(); ++k) {
     sums_[k] += pixels.sums[k];
