@@ -40,9 +40,9 @@ class BandIntake {
   /// Returns the pixels of a complete band; callable once. INVALID_ARGUMENT: the bytes do not match
   /// the announced digest, or a sum is not finite and >= 0.
   absl::StatusOr<BandPixels> take();
-  /// Calls take() and gives the band with its share of the budget to Engine::put_band(), which
-  /// calls `done` with its answer; callable once. `done` also gets the errors of take(). `browser`:
-  /// true if a browser sent the band.
+  /// Calls take(), then gives the band and the share of the memory budget to Engine::put_band().
+  /// The engine calls `done` with the outcome. If take() fails, `done` gets the error of take().
+  /// Callable once. `browser`: true if a browser sent the band.
   void put(Engine& engine, std::function<void(absl::StatusOr<BandOutcome>)> done, bool browser);
 
  private:

@@ -18,8 +18,8 @@ namespace bandsaw::coordinator {
 /// Thread-safe. A change of the link is on disk before it has an effect.
 class BrowserAccess {
  public:
-  /// Returns seconds since 1970, UTC. The end of a link is a time of this clock, because a link
-  /// stays valid when the coordinator restarts.
+  /// Returns seconds since 1970, UTC. A link stays valid when the coordinator restarts. So the end
+  /// of a link is a time of this clock, which goes on while no coordinator runs.
   using UnixSeconds = std::function<double()>;
 
   /// The duration of a link for which the user gives none, and the longest duration of a link. Both
@@ -37,7 +37,7 @@ class BrowserAccess {
                                                              UnixSeconds now = nullptr);
 
   /// Sets the dashboard's address, for example "https://192.168.1.5:8787". MUST be called before
-  /// other threads use the object. Without it, no link is shown or made.
+  /// other threads use the object. Without an address, no link is shown or made.
   void set_address(std::string address) { address_ = std::move(address); }
 
   /// Returns the present link; std::nullopt: there is none, or it has ended.

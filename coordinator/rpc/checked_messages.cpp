@@ -92,7 +92,8 @@ absl::StatusOr<SequenceSpec> sequence_spec(const farm::SubmitSequenceRequest& re
   ASSIGN_OR_RETURN(spec.settings, image_settings(request.settings()));
   if (is_guide(spec.settings.integrator)) {
     return absl::InvalidArgumentError(
-        "integrator: a sequence cannot render the guides of the denoiser, which are no images");
+        "integrator: a sequence cannot render the guides of the denoiser, which are no images of "
+        "light");
   }
   ASSIGN_OR_RETURN(spec.stop, stop_rule_of(request.stop()));
   spec.fixed_seed = request.fixed_seed();
@@ -145,6 +146,7 @@ absl::StatusOr<Band> band(const char* field, const farm::Band& message) {
     return invalid(field, "samples must be a range within [0, ", kMaxSamples, "], are [",
                    band.samples.first, ", ", band.samples.last, ")");
   }
+  // A node is an aligned range of a power-of-two number of blocks of 8 samples.
   if (!is_node(band.samples)) {
     return invalid(field, "samples must be a node of the tree in which samples are summed, are [",
                    band.samples.first, ", ", band.samples.last, ")");

@@ -26,7 +26,7 @@ absl::StatusOr<Band> band(const char* field, const farm::Band& message);
 absl::StatusOr<WorkerHello> worker_hello(const farm::Hello& message, std::string address);
 /// In the results of heartbeat() and band_failed(), `session` is not set.
 absl::StatusOr<input::Heartbeat> heartbeat(const farm::Heartbeat& message);
-/// Checks the number of lines, and each line as reason_field does.
+/// Checks the number of lines, the length of each line, and that no line has control characters.
 absl::StatusOr<std::vector<std::string>> log_lines(
     const char* field, const google::protobuf::RepeatedPtrField<std::string>& lines);
 absl::StatusOr<input::BandFailed> band_failed(const farm::BandFailed& message);

@@ -37,7 +37,7 @@ void GetBlobCall::begin() {
     if (!status.ok()) {
       self->Finish(link::to_grpc(status));
     } else {
-      self->write_next(true);
+      self->write_next(/*first=*/true);
     }
   });
 }
@@ -60,7 +60,7 @@ void GetBlobCall::OnWriteDone(bool ok) {
   deps_.files.post([self = shared_from_this()] {
     self->chunk_.clear_sha256();
     self->chunk_.clear_size();
-    self->write_next(false);
+    self->write_next(/*first=*/false);
   });
 }
 

@@ -44,7 +44,7 @@ class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobCh
 };
 
 /// Serves Farm.GetResult and Farm.Preview: sends an image that is made on the executor for images.
-/// As with GetBlobCall, a task or a write is always in progress.
+/// From begin() to Finish, either a task or a write is always in progress.
 class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultChunk>, ImageCall>,
                         public LongStream {
  public:

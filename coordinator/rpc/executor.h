@@ -1,7 +1,7 @@
 #pragma once
 
-// A few threads for work that waits for the disk or for the film, because gRPC's callbacks must not
-// block.
+// A few threads for work that waits for the disk or for the film (the sums of all pixels of a job),
+// because gRPC's callbacks must not block.
 
 #include <deque>
 #include <functional>
@@ -16,7 +16,8 @@ class FileExecutor {
  public:
   /// Starts this number of threads.
   explicit FileExecutor(int threads);
-  /// Runs the tasks that are still queued, then ends. No task may be posted any more.
+  /// Runs the tasks that are still queued, then ends the threads. MUST NOT be called while other
+  /// threads may still call post().
   ~FileExecutor();
   FileExecutor(const FileExecutor&) = delete;
   FileExecutor& operator=(const FileExecutor&) = delete;

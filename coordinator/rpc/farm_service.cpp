@@ -35,8 +35,8 @@ absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsReques
 }
 
 /// Adds the jobs that the request selects (`jobs`) to the reply. If the request limits the number
-/// of jobs, no further job is added once half of the maximum size of a message is full. The other
-/// half is for the last job of the reply, which may have thousands of workers. RESOURCE_EXHAUSTED:
+/// of jobs, no further job is added once half of the maximum size of a message is full. So half of
+/// the message remains for the last job, which may have thousands of workers. RESOURCE_EXHAUSTED:
 /// the request is for all jobs, and they do not fit into a message.
 absl::Status fill(const std::vector<JobView>& jobs, const farm::ListJobsRequest& request,
                   farm::ListJobsReply& reply) {
@@ -56,6 +56,7 @@ absl::Status fill(const std::vector<JobView>& jobs, const farm::ListJobsRequest&
     }
     *reply.add_job() = std::move(entry);
   }
+  // The engine returned at most `most` jobs. If it returned exactly `most`, more jobs may follow.
   reply.set_more(paged && (static_cast<std::size_t>(reply.job_size()) < jobs.size() ||
                            jobs.size() == request.most()));
   return absl::OkStatus();
@@ -72,7 +73,7 @@ Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
       for (const wire::Digest& digest : requested) {
         if (!deps_.engine.has_blob(digest)) {
           reply->add_sha256(digest.raw());
-          reply->add_there(deps_.engine.partial_blob(digest));
+          reply->add_there(deps_.engine.partial_blob(digest));  // bytes of an interrupted upload
         }
       }
       reactor->Finish(grpc::Status::OK);

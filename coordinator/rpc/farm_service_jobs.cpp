@@ -11,8 +11,8 @@ namespace {
 
 using Unary = grpc::ServerUnaryReactor;
 
-/// Runs a command on the engine and replies with the job's status after it. `start` is called with
-/// the callback that receives the job.
+/// Runs a command on the engine, then replies with the job's status. `start` gives the command to
+/// the engine; its parameter is the callback that receives the job after the command.
 template <class Start>
 Unary* job_command(const ServiceDependencies& deps, grpc::CallbackServerContext* context,
                    farm::JobStatus* reply, Start start) {

@@ -20,7 +20,8 @@ namespace bandsaw::coordinator {
 struct RenewedSecret {
   link::Identity identity;
   std::string join_file;  ///< path of the file with the new join string; empty: none was written
-  /// Status of writing the files beside the identity; the secret is renewed even if this failed.
+  /// Status of writing the files that depend on the secret, such as the one with the join string.
+  /// The secret is renewed even if this is an error.
   absl::Status written = {};
 };
 /// Renews the secret of a role. nullptr: secrets cannot be renewed. May block on the disk.
@@ -42,10 +43,10 @@ class Gate {
   /// Like check(), for calls that both roles may make.
   absl::Status check_any(const grpc::CallbackServerContext& context) EXCLUDES(mutex_);
 
-  /// Renews a role's secret. If this returns a RenewedSecret, the old secret is refused from then
-  /// on, also if RenewedSecret::written is an error. The caller MUST then end the streams that the
-  /// old secret opened. FAILED_PRECONDITION: this server cannot renew secrets. MUST NOT be called
-  /// on gRPC's threads, because it waits for the disk.
+  /// Renews a role's secret. If rotate() returns a RenewedSecret, the old secret is refused, even
+  /// if RenewedSecret::written is an error. The caller MUST then end the streams that the old
+  /// secret opened. FAILED_PRECONDITION: this server cannot renew secrets. MUST NOT be called on
+  /// gRPC's threads, because it waits for the disk.
   absl::StatusOr<RenewedSecret> rotate(link::Role role) EXCLUDES(rotating_);
 
  private:

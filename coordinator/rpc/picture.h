@@ -1,7 +1,7 @@
 #pragma once
 
-// Returns the image of a job as it is now, for the calls Farm.Preview and Farm.GetResult and for
-// the dashboard.
+// Returns the present image of a job, finished or not, for the calls Farm.Preview and
+// Farm.GetResult and for the dashboard.
 
 #include <cstdint>
 

@@ -41,9 +41,9 @@ class ReflectionOption final : public grpc::ServerBuilderOption {
   const bool wanted_;
 };
 
-/// Enables or disables gRPC server reflection, which lists services, calls and messages to any
-/// client. A program that is linked with libgrpc++_reflection has reflection enabled. So the plugin
-/// of this library is removed unless reflection is wanted.
+/// Enables or disables gRPC server reflection. If it is enabled, any client may list the services,
+/// calls and messages. A program that is linked with libgrpc++_reflection has reflection enabled.
+/// So the plugin of this library is removed unless reflection is wanted.
 void set_reflection(grpc::ServerBuilder& builder, bool wanted) {
   builder.SetOption(std::make_unique<ReflectionOption>(wanted));
 }
@@ -52,9 +52,9 @@ void set_reflection(grpc::ServerBuilder& builder, bool wanted) {
 
 // Health check for probes: proto/health.proto.
 
-/// Answers without a secret, because the reply reveals no more than the open port does: that the
-/// port is served. The service is registered after the engine has replayed its journal, so an
-/// answer implies that the replay is complete.
+/// Answers callers without a secret, because the reply reveals only that the port is served, which
+/// everybody can see from the open port. The service is registered after the engine has replayed
+/// its journal, so an answer implies that the replay is complete.
 class HealthService final : public grpc::health::v1::Health::CallbackService {
  public:
   grpc::ServerUnaryReactor* Check(grpc::CallbackServerContext* context,
@@ -79,8 +79,9 @@ grpc::ServerUnaryReactor* HealthService::Check(grpc::CallbackServerContext* cont
 
 namespace {
 
-constexpr int kFileThreads = 4;   // these threads mostly wait for the disk
-constexpr int kImageThreads = 2;  // each waits for the film, or holds an image of up to 768 MB
+constexpr int kFileThreads = 4;  // these threads mostly wait for the disk
+// Each waits for the film (the sums of all pixels), or holds an image of up to 768 MB.
+constexpr int kImageThreads = 2;
 constexpr auto kShutdownTime = std::chrono::seconds(4);
 
 std::shared_ptr<grpc::ServerCredentials> credentials(const link::Identity& identity,

@@ -16,7 +16,7 @@ namespace bandsaw::coordinator {
 struct ServerOptions {
   std::string listen = "0.0.0.0:7878";  ///< port 0: any free port
   bool insecure = false;                ///< plaintext instead of TLS
-  bool reflection = false;              ///< lists the services and calls to any client
+  bool reflection = false;              ///< any client may list the services and calls
   RenewSecret renew = nullptr;          ///< implements RotateSecret; nullptr: the call is refused
   BrowserAccess* browsers = nullptr;    ///< implements BrowserLink; outlives the server
 };

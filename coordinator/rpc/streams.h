@@ -53,8 +53,9 @@ class LongStreams {
 struct ServiceDependencies {
   Engine& engine;
   Gate& gate;
-  FileExecutor& files;   ///< threads for work that waits for the disk
-  FileExecutor& images;  ///< threads that make images, which wait for the film
+  FileExecutor& files;  ///< threads for work that waits for the disk
+  /// Threads that make images. They wait for the film (the sums of all pixels of a job).
+  FileExecutor& images;
   LongStreams& streams;
   BrowserAccess* browsers = nullptr;  ///< nullptr: no browser can join
 };

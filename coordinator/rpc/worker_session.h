@@ -52,14 +52,15 @@ class WorkerSession : public WorkerLink {
   void over() EXCLUDES(mutex_);
 
  private:
-  // Implemented by the transport. These functions may be called while `mutex_` is locked. So they
-  // MUST NOT call a function above, because that function would lock the mutex again: a deadlock.
+  // The transport implements the following three functions. They may be called while `mutex_` is
+  // locked. So they MUST NOT call a public or protected function of this class, because that
+  // function would lock the mutex again: a deadlock.
   /// Waits for the next message.
   virtual void read_next() = 0;
   /// Sends a message, which exists until sent() is called.
   virtual void write(const farm::ToWorker& message) = 0;
-  /// Ends the connection. Called once; no write() follows. OK: the worker or the engine wanted the
-  /// end.
+  /// Ends the connection. Called once; no write() follows. `status` is OK if the worker or the
+  /// engine wanted the end.
   virtual void finish(const absl::Status& status) = 0;
 
   absl::Status forward(const farm::FromWorker& message, const std::shared_ptr<WorkerLink>& self);
@@ -73,7 +74,7 @@ class WorkerSession : public WorkerLink {
   const bool browser_;
   std::optional<SessionId> session_;  ///< accessed by received(), then by over()
   Mutex mutex_;
-  /// The front message is being written while writing_.
+  /// While writing_ is true, the first message is being written.
   std::deque<farm::ToWorker> outgoing_ GUARDED_BY(mutex_);
   bool writing_ GUARDED_BY(mutex_) = false;
   bool finished_ GUARDED_BY(mutex_) = false;

@@ -40,8 +40,8 @@ struct CleanJobs {
   JobSpec albedo;
   JobSpec shape;  ///< normals and distances
   /// Renders the first half of the image's samples again, because the denoiser estimates the noise
-  /// from a part of the samples. std::nullopt: not needed, because an image of more than one block
-  /// of samples (8) has kept the sum of its first part.
+  /// from a part of the samples. std::nullopt: not needed, because a job with more samples than
+  /// one block (8) has kept the sum of the first part of its samples.
   std::optional<JobSpec> half;
 };
 

@@ -34,8 +34,8 @@ double between(const ErrorPoint& a, const ErrorPoint& b, double samples) {
          std::pow(b.estimate.at_most() / a.estimate.at_most(), std::log(samples / from) / all);
 }
 
-/// Returns the error at this number of samples, interpolated between the points around it. REQUIRES
-/// samples between those of begin_of(curve) and of the last point.
+/// Returns the error at this number of samples, interpolated between the points around it.
+/// `samples` MUST lie between the samples of begin_of(curve) and the samples of the last point.
 double measured_at(const ErrorCurve& curve, double samples) {
   const auto next = std::find_if(begin_of(curve), curve.end(), [&](const ErrorPoint& point) {
     return static_cast<double>(point.samples) >= samples;

@@ -116,6 +116,7 @@ std::string frames_text(const std::vector<FrameNumber>& numbers) {
     if (step > 1 && end < numbers.size() && numbers[end] - numbers[end - 1] == 1) {
       --end;
     }
+    // A range has at least three numbers, or two that follow each other directly.
     if (end - i < 3 && !(step == 1 && end - i == 2)) {
       items.push_back(absl::StrCat(numbers[i++]));
       continue;

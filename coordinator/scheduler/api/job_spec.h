@@ -53,7 +53,8 @@ struct JobSpec {
   JobId sequence = 0;     ///< the sequence of a frame job (sequence_spec.h); 0: none
   FrameNumber frame = 0;  ///< its number in the sequence
   /// Bytes of the package, the manifest included. This number follows from the manifest, so
-  /// operator== does not compare it. 0: unknown, because an earlier version journalled the job.
+  /// operator== does not compare it. 0: unknown, because an earlier version of the coordinator
+  /// journalled the job without it.
   std::uint64_t package_bytes = 0;
   /// Returns true if a band (rows and samples that a worker rendered) which is labelled with the
   /// hash `work` can belong to this job (renderlib/render/work_hash.h). The job id alone is not

@@ -48,8 +48,8 @@ struct JobView {
   std::string reason;
   double fraction = 0;  ///< part of the work that is done, [0, 1]
   /// Seconds since its first lease. The times between runs of the coordinator do not count. The
-  /// times in which the job was paused do not count either. Of the pauses of a sequence, only those
-  /// by a user are left out.
+  /// times in which the job was paused do not count either. For a sequence, a pause counts unless a
+  /// user requested it.
   double elapsed_s = 0;
   double remaining_s = -1;              ///< negative: unknown
   double samples_per_s = 0;             ///< pixel samples, recently; 0 for a final job

@@ -87,8 +87,8 @@ struct RetryFrames {
   JobId job = 0;
   std::vector<FrameNumber> frames;  ///< empty: all that failed
 };
-/// Stops leasing the job. Leases that are not begun are revoked at once; the others are revoked one
-/// second later, unless they are rendered by then.
+/// Stops leasing the job. Leases that are not begun are revoked at once. A lease that is begun is
+/// revoked one second later, unless its band is rendered by then.
 struct Pause {
   JobId job = 0;
 };
@@ -157,7 +157,7 @@ struct PassMerged {
 struct ResultWritten {
   JobId job = 0;
 };
-/// Records of these bands on disk are damaged, and their pixels are no longer in the film.
+/// The data of these bands on disk is damaged, and their pixels are no longer in the film.
 struct BandsDamaged {
   struct DamagedBand {
     Band band;  ///< consecutive rows that one AddToFilm named

@@ -12,8 +12,8 @@ namespace bandsaw::coordinator {
 /// The versions that a worker and the coordinator must have in common.
 struct Compatibility {
   std::uint32_t protocol = 0;
-  std::uint32_t pixel_version = 0;
-  std::uint64_t canary = 0;  ///< hash of a small render (renderlib/render/canary.h)
+  std::uint32_t pixel_version = 0;  ///< changes whenever rendered pixels change
+  std::uint64_t canary = 0;         ///< hash of a small render (renderlib/render/canary.h)
 };
 
 /// Which workers may be browsers.

@@ -132,7 +132,7 @@ struct RowDisputed {
   /// The result of one machine for the row.
   struct Claim {
     WorkerProcessId process = 0;
-    std::string machine;  ///< as in Reporter (model/audit.h)
+    std::string machine;  ///< name that its worker reports; for a browser, its instance
     std::uint64_t digest = 0;
     friend bool operator==(const Claim&, const Claim&) = default;
   };
@@ -171,7 +171,7 @@ struct FrameWaits {
   JobId job = 0;
   FrameNumber frame = 0;
   DigestHex manifest;
-  std::uint64_t package_bytes = 0;  ///< as in JobSpec
+  std::uint64_t package_bytes = 0;  ///< size of its scene package; 0: unknown
   std::uint32_t failures = 0;       ///< number of its jobs that have failed
   std::string reason;               ///< reason of the last failure
 };

@@ -13,8 +13,8 @@
 
 namespace bandsaw::coordinator {
 
-/// The specification of a sequence by its submitter. No sequence has the JobId of a job. The scenes
-/// of the frames are sent one by one afterwards (input::AddFrames).
+/// The specification of a sequence by its submitter. A sequence has a JobId that no job has. The
+/// scenes of the frames are sent later, some at a time (input::AddFrames).
 struct SequenceSpec {
   std::string request_id;  ///< chosen by the submitter: the same id means the same sequence
   std::string name;
@@ -26,8 +26,8 @@ struct SequenceSpec {
 };
 
 enum class FrameState {
-  kExpected,   ///< its scene was not sent yet
-  kWaiting,    ///< its scene is there; it has no job yet
+  kExpected,   ///< its scene has not arrived yet
+  kWaiting,    ///< its scene has arrived; it has no job yet
   kRendering,  ///< its job is not final
   kDone,       ///< its image can be fetched
   kFailed,     ///< it was tried as often as is allowed, and failed each time
@@ -55,7 +55,7 @@ constexpr const char* frame_state_name(FrameState state) {
 struct FrameScene {
   FrameNumber number = 0;
   DigestHex manifest;
-  std::uint64_t package_bytes = 0;  ///< as in JobSpec
+  std::uint64_t package_bytes = 0;  ///< size of its scene package; 0: unknown
 };
 
 /// A frame as it is displayed.

@@ -7,8 +7,8 @@
 
 namespace bandsaw::coordinator {
 
-// One input advances the timeout clock by at most a third of the heartbeat timeout: see
-// SchedulerClock.
+// One input advances the timeout clock by at most a third of the heartbeat timeout. So if hours lie
+// between two inputs, workers whose messages are still unread do not time out at once.
 Context::Context(SchedulerOptions scheduler_options)
     : options(std::move(scheduler_options)),
       clock(options.heartbeat_timeout_s / 3),
@@ -241,8 +241,8 @@ void Context::apply(const record::RowDisputed& r) {
   }
 }
 
-// A job with an error target decides its number of samples again, because that number was decided
-// by the wrong error.
+// A job with an error target decides its number of samples again, because that number followed from
+// the error that is void now.
 void Context::apply(const record::ErrorForgotten& r) {
   if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
     job->curve.clear();

@@ -17,8 +17,8 @@ namespace bandsaw::coordinator {
 class JobTable {
  public:
   /// Order in which jobs are leased: the highest priority first, and at equal priority the lowest
-  /// id first. All frame jobs of a sequence stand where the id of the sequence puts them. Among
-  /// themselves they are in the order of their own ids.
+  /// id first. For a frame job, the id of its sequence counts. The frame jobs of one sequence are
+  /// in the order of their own ids.
   struct Rank {
     std::int32_t descending_priority = 0;
     JobId place = 0;  ///< id of the job, or of its sequence

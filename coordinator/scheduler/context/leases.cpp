@@ -7,8 +7,8 @@
 
 namespace bandsaw::coordinator {
 
-// The first id has 24 bits that depend on the epoch, above 39 bits that count the leases; the sign
-// bit is never used.
+// The first id has 24 bits that depend on the epoch, above 39 bits that count the leases. The
+// highest of the 64 bits is 0.
 Leases::Leases(const std::string& epoch)
     : next_(epoch.empty() ? 1 : ((text_hash(epoch) >> 40) << 39) + 1) {}
 

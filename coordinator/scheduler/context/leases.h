@@ -30,7 +30,7 @@ struct Lease {
   /// it has read the reply (LeaseLedger::end_rendered).
   bool in_hello = false;
   std::uint32_t rows_done = 0;  ///< rows that the worker reported as rendered
-  std::uint64_t prepared = 0;   ///< as in LeaseProgress
+  std::uint64_t prepared = 0;   ///< grows while the worker fetches or builds the scene
   Time progress_at = 0;         ///< wall clock: when rows_done last grew
   Time begun_at = 0;            ///< wall clock: when it became the first lease of its worker
   /// Timeout clock (scheduler_clock.h): when this lease, or a lease that its worker renders before

@@ -56,14 +56,14 @@ class QuarantineList {
   /// Returns true if kMaxBrowsers browsers are under quarantine.
   bool too_many_browsers() const;
   /// A process that has not connected since the coordinator started can be quarantined. Then its
-  /// entry has no name. Returns the record that adds the name which `worker` reports to the entry
-  /// of its process. Returns std::nullopt if the process has no entry or the entry has a name.
+  /// entry has no name. If this is the case for the process of `worker`, returns the record that
+  /// sets the name of the entry to the name that `worker` reports. Otherwise returns std::nullopt.
   std::optional<record::WorkerQuarantined> missing_name(const WorkerHello& worker) const;
   /// Returns the sentence that is shown for an entry.
   static std::string describe(const Entry& entry);
 
   const std::map<WorkerProcessId, Entry>& entries() const { return entries_; }
-  /// Appends the records that replay to this list.
+  /// Appends the records from which a replay of the journal makes this list again.
   void add_records(std::vector<Record>& out) const;
 
  private:

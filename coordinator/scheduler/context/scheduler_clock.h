@@ -11,8 +11,8 @@ class SchedulerClock {
   /// `max_timeout_step`: maximum advance of the timeout clock by one input, in seconds.
   explicit SchedulerClock(double max_timeout_step) : max_timeout_step_(max_timeout_step) {}
 
-  /// Sets both clocks to the time of an input. A time before that of the last input counts as no
-  /// time passed.
+  /// `now`: the time of an input. The first input sets wall() to `now`. Each later input advances
+  /// both clocks by the time since the previous input, or by 0 if `now` is before that time.
   void advance(Time now) {
     const double passed = started_ && now > wall_ ? now - wall_ : 0;
     wall_ = started_ ? wall_ + passed : now;

@@ -1,5 +1,6 @@
-// Workers by id, session, instance and name. A name that is taken gets a number. Workers that have
-// left are kept up to a limit, the latest ones.
+// Finds workers by id, session, instance and name. The instance is the id that a worker process
+// chooses for itself; Worker::process is a hash of the instance. A name that is taken gets a
+// number. Of the workers that have left, only the kMaxGone that left last are kept.
 
 #include "coordinator/scheduler/context/workers.h"
 
@@ -65,7 +66,7 @@ Worker& Workers::add(const std::string& instance, const std::string& name, bool 
   worker.browser = browser;
   by_instance_[instance] = worker.id;
   by_name_[unique] = worker.id;
-  gone_.push_back(worker.id);  // until connect()
+  gone_.push_back(worker.id);  // connect() removes it again
   return worker;
 }
 

@@ -108,8 +108,9 @@ class Workers {
   WorkerId next_ = 1;
 };
 
-/// Index of the workers that can take a lease: those with spare credits, the ones with the fewest
-/// leases first, so that little work is spread over many workers. Also counts the farm's threads.
+/// Index of the workers that can take a lease, that is, of the workers with spare credits. Workers
+/// with the fewest leases come first, so that the leases are spread over as many workers as
+/// possible. Also counts the farm's threads.
 class AvailableWorkers {
  public:
   /// Sort key: the number of leases that the worker holds, then its id.

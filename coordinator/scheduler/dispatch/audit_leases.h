@@ -27,16 +27,16 @@ class AuditLeases {
   bool may_render(const Worker& worker, const Job& job, const Audit& audit) const;
   /// Returns the first waiting audit that the worker may render; nullptr: none.
   Audit* next_for(const Worker& worker, Job& job) const;
-  /// Leases the rows of the audit before `end_row` to the worker; the other rows become an audit of
-  /// their own. An audit that is disputed is leased as a whole, and so is any audit if the job has
-  /// Job::kMaxAudits of them. Invalidates `audit`.
+  /// Leases the rows of the audit before `end_row` to the worker, and makes a new audit of the
+  /// remaining rows. If the audit is disputed, or if the job has Job::kMaxAudits audits already,
+  /// the audit is not divided but leased as a whole. Invalidates `audit`.
   void grant(Worker& worker, Job& job, Audit& audit, std::uint32_t end_row);
   /// Ends an audit lease that the worker could not render. This does not count as a failure of the
   /// band: another machine is chosen for the audit, if there is one.
   void give_up(const Lease& lease, const Worker& worker, const std::string& reason);
   /// Returns true if an audit may still find that stored rows are wrong. Then the job must not end,
-  /// and its error must not be compared with its target. An audit that no machine can render does
-  /// not block, unless it is doubtful (Audit::doubtful).
+  /// and its error must not be compared with its target. If no machine can render an audit, the
+  /// audit blocks only if it is doubtful: it is disputed, and the stored rows may be wrong.
   bool block(const Job& job) const;
 
  private:

@@ -161,7 +161,7 @@ bool BackupTasks::steal(const Straggler& late, std::vector<Worker*>& idle) {
   Worker& from = *context_.workers.by_id(lease.worker);
   context_.act(action::Revoke{*from.session, {lease.id}});
   from.revoked.insert(lease.id);
-  context_.act(action::LogReassignment{job.id, lease.band, from.name, thief.name, false});
+  context_.act(action::LogReassignment{job.id, lease.band, from.name, thief.name, /*begun=*/false});
   ledger_.end(lease.id, LeaseLedger::Revoke::kNo);
   std::erase(idle, &thief);
   const auto band = chooser_.choose_free(job, thief);
@@ -192,16 +192,17 @@ bool BackupTasks::move_audit(const Straggler& late, std::vector<Worker*>& idle) 
   }
   Worker& first = *able.front();
   const std::string& from = context_.workers.by_id(lease.worker)->name;
-  context_.act(action::LogReassignment{job.id, lease.band, from, first.name, false});
+  context_.act(action::LogReassignment{job.id, lease.band, from, first.name, /*begun=*/false});
   ledger_.end(lease.id, LeaseLedger::Revoke::kYes);
   audits_.grant(first, job, audit, chooser_.sized(job, first, audit.band()).rows.last);
   std::erase(idle, &first);
   return true;
 }
 
-/// Gives rows that are being rendered to the fastest helpers as well, in proportion to their work
-/// rates. Returns false if no rows or no helpers are left, if the backup tasks would take too long
-/// (kMaxBackupTime), or if the band may crash workers.
+/// Grants the fastest helpers backup tasks for the rows of a lease that is being rendered. The rows
+/// are divided in proportion to the helpers' work rates. Returns false if no rows or no helpers are
+/// left, if the backup tasks would take too long (kMaxBackupTime), or if the band may crash
+/// workers.
 bool BackupTasks::back_up(const Straggler& late, std::vector<Worker*>& idle) {
   const Lease lease = *context_.leases.find(late.lease);
   Job& job = context_.jobs.at(lease.job);
@@ -236,7 +237,7 @@ bool BackupTasks::back_up(const Straggler& late, std::vector<Worker*>& idle) {
     }
     rows.first = band.rows.last;
     const std::string& from = context_.workers.by_id(lease.worker)->name;
-    context_.act(action::LogReassignment{job.id, band, from, helper.name, true});
+    context_.act(action::LogReassignment{job.id, band, from, helper.name, /*begun=*/true});
     const LeaseId id = context_.leases.new_id();
     job.backups.insert(id);
     ++job.backups_granted;

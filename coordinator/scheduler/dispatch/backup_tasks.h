@@ -2,9 +2,10 @@
 
 // Shares the work at the end of a job, when no rows are free and some workers are idle while others
 // are late (stragglers). A lease that its worker has not begun is moved to an idle worker
-// ("stolen"). The rows of a lease that is being rendered are given to idle workers as well, as
-// backup tasks (speculative execution; Dean & Ghemawat 2004, "MapReduce", section 3.6), in several
-// parts if that is sooner. The first result counts, and ends the other leases of its rows.
+// ("stolen"). For the rows of a lease that is being rendered, idle workers get backup tasks
+// (speculative execution; Dean & Ghemawat 2004, "MapReduce", section 3.6). If one helper would need
+// too long, the rows are divided among several. The first result of a row counts, and ends the
+// other leases of the row.
 
 #include <vector>
 
@@ -35,8 +36,8 @@ class BackupTasks {
   /// A lease, and when it is expected to be done.
   struct Straggler {
     LeaseId lease = 0;
-    double begins_in_s = 0;  ///< after the leases that its worker renders before it
-    double done_in_s = 0;
+    double begins_in_s = 0;     ///< time until its worker has rendered the leases before it
+    double done_in_s = 0;       ///< time until its worker has rendered it as well
     bool has_no_backup = true;  ///< it has no backup task, and is not one
   };
 

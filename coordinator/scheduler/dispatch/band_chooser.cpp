@@ -64,9 +64,9 @@ std::optional<Band> without(Band free, const std::vector<Band>& avoid) {
   return free.rows.first < free.rows.last ? std::optional(free) : std::nullopt;
 }
 
-/// Returns the work of the job that is neither leased nor stored. It is estimated, not added up row
-/// by row: the free rows of this pass are assumed to lie from the first row of `free` on, those of
-/// other passes all over the image.
+/// Returns an estimate of the work of the job that is neither leased nor stored. The free samples
+/// of the pass of `free` are assumed to be spread over the rows from the first row of `free` on.
+/// The free samples of other passes are assumed to be spread over the whole image.
 double work_left(const Job& job, const Band& free) {
   const std::uint32_t height = job.spec.settings.height;
   const Pass* pass = job.pass_of(free);
@@ -192,8 +192,8 @@ Band BandChooser::sized(const Job& job, const Worker& worker, const Band& free) 
   const double farm =
       std::max(sizing.work_rate,
                work_rate_per_thread(job) * static_cast<double>(context_.available.threads()));
-  // With a share of 2, the band may have all of the work that is left, so nothing is left for other
-  // workers.
+  // size_band() gives the band half of this share of the work that is left. So with a share of 2,
+  // the band may have all of it. This is for a job that only this worker is to render.
   sizing.farm_share = job.alone ? 2 : sizing.work_rate / farm;
   sizing.work_left = std::max(work_left(job, free), job.cost_of(free));
   sizing.target_s = context_.options.band_target_s;

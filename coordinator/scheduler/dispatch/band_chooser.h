@@ -53,7 +53,8 @@ class BandChooser {
   /// other workers (Eligibility); std::nullopt: there is none for this worker. Counts the probes
   /// that it returns or skips (Job::probes).
   std::optional<Band> choose(Job& job, const Worker& worker) const;
-  /// Returns the same as choose(), but never a probe.
+  /// Returns the first free band that is not left to other workers, and never a probe.
+  /// std::nullopt: there is none for this worker.
   std::optional<Band> choose_free(const Job& job, const Worker& worker) const;
   /// Returns the band that the worker should get from `free`, a free piece of the job. The band
   /// begins at the first row of `free`.

@@ -29,7 +29,7 @@ void Dispatcher::lease_free() {
 
 /// Grants the worker one lease, if there is one for it.
 void Dispatcher::lease_to(Worker& worker) {
-  if (holds_suspect(worker)) {
+  if (holds_suspect(worker)) {  // a worker that holds a suspect band gets nothing else
     return;
   }
   const auto& leasable = context_.jobs.leasable();

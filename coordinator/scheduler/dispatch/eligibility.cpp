@@ -1,7 +1,7 @@
-// A worker may render a job if the job's package fits into its memory and it has not failed too
-// often at the job. It leaves a band (a range of rows and samples) to other workers, as long as
-// there are any, if it has failed at the band, or if its machine was lost while it rendered the
-// band.
+// A worker may render a job if the job's package fits into the worker's memory and the worker has
+// not failed too often at the job. A band (a range of rows and samples) that a worker failed is
+// left to other workers as long as one of them can render it. So is a band that the worker's
+// machine was rendering when the machine was lost.
 
 #include "coordinator/scheduler/dispatch/eligibility.h"
 

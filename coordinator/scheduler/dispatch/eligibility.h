@@ -1,8 +1,8 @@
 #pragma once
 
-// Decides whether a worker may render a job, and a band (a range of rows and samples) of it. A
-// worker leaves a band to other workers, while there are any that can render it, if the worker
-// failed the band, or if its machine was lost while it rendered the band.
+// Decides whether a worker may render a job, and a band (a range of rows and samples) of the job. A
+// band that a worker failed is left to other workers as long as one of them can render it. So is a
+// band that the worker's machine was rendering when the machine was lost.
 
 #include <cstdint>
 #include <vector>

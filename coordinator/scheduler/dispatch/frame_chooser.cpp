@@ -1,6 +1,6 @@
 // Each frame of a sequence is rendered by a job of its own, its frame job. order_for() lists the
 // frame jobs of a sequence in the order in which a worker should take them: first the frame that it
-// renders now, then frames that nobody renders, last frames that other workers render.
+// renders now, then the frames that nobody renders, and then the frames that other workers render.
 
 #include "coordinator/scheduler/dispatch/frame_chooser.h"
 
@@ -35,7 +35,7 @@ std::vector<Job*> FrameChooser::order_for(const Worker& worker, const Sequence& 
   }
   const auto free = static_cast<std::size_t>(
       std::count_if(fresh.begin(), fresh.end(), [](const Job* job) { return job->any_free(); }));
-  // For each worker, at least one frame is left that no worker renders yet.
+  // True if the frames that no worker renders yet are at least as many as the workers.
   const bool many =
       free + sequence.counts().of(FrameState::kWaiting) >= context_.available.eligible();
   for (std::vector<Job*>* jobs : {&fresh, &others}) {

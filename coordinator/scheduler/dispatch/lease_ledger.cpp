@@ -121,9 +121,9 @@ void LeaseLedger::note_progress(const Worker& worker, std::size_t from) {
   }
 }
 
-/// The lease `ended` has ended. Each of its backup tasks becomes the owner of the rows of the
-/// backup task's band that are not stored. A backup task is revoked instead if all rows of its band
-/// are stored, or if another lease owns samples of its rows that are not stored.
+/// Called when the lease `ended` has ended. Each backup task of this lease now becomes an ordinary
+/// lease, which owns the wanted (not stored) rows of its band. But if its band has no wanted rows,
+/// or if another lease owns samples of them, the backup task is revoked.
 void LeaseLedger::promote_backups(Job& job, LeaseId ended) {
   const std::set<LeaseId> backups = job.backups;
   for (const LeaseId id : backups) {

@@ -18,8 +18,8 @@ class LeaseLedger {
   /// Says whether the worker is told that a lease has ended (action::Revoke).
   enum class Revoke { kNo, kYes };
 
-  /// Makes the lease `id` of this band for the worker, which then owns these rows. Other leases
-  /// that thereby lose all of their rows end.
+  /// Gives the worker a lease of this band with the id `id`. The new lease takes over the rows of
+  /// the band that are not stored. A lease that has lost all of its rows in this way is ended.
   void grant(Worker& worker, Job& job, Pass& pass, const Band& band, LeaseId id);
   /// Adds a lease to the job and to the worker, but not to the coverage of the pass. Other classes
   /// call it only for leases that own no rows: backup tasks (second leases of late bands) and

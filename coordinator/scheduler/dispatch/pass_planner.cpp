@@ -26,9 +26,10 @@ void PassPlanner::plan_first(Job& job) {
       fix_samples(job, rule->samples);
     }
     plan_until(job, rule->samples);
-  } else if (job.passes.empty()) {
+  } else if (job.passes.empty()) {  // no checkpoint yet: the error is unknown (-1)
     plan_until(job, job.timed() ? std::min(kBlockSamples, job.max_samples())
-                                : next_checkpoint(0, -1, 0, job.max_samples()));
+                                : next_checkpoint(/*samples=*/0, /*error=*/-1, /*target=*/0,
+                                                  job.max_samples()));
   }
 }
 
@@ -54,12 +55,15 @@ bool PassPlanner::plan_timed(Job& job) {
   if (left <= 0 || incomplete >= kMaxIncompletePasses) {
     return false;
   }
+  // Number of samples per pixel that are expected to fit into the remaining time.
   const double fits = left * job.throughput.per_second(now) / static_cast<double>(job.pixels());
   context_.emit(
       record::PassPlanned{job.id, next_timed_pass(job.planned_samples(), fits, rule->max_samples)});
   return true;
 }
 
+// The record SamplesFixed ends the job after `samples`, so the leases of later samples are ended
+// first.
 void PassPlanner::fix_samples(Job& job, std::uint64_t samples) {
   std::vector<LeaseId> beyond;
   for (const LeaseId id : job.leases) {

@@ -23,7 +23,7 @@ constexpr double kMinWeight = 0.15;
 void measure_work_rate(Worker& worker, Job& job, const input::BandStored& in) {
   Worker::OnJob& on_job = worker.on_job[job.id];
   const double work = job.cost_of(in.band);  // as predicted
-  // For a worker without a measured rate, work_rate() multiplies the job's mean rate per thread by
+  // If the worker's rate is not measured yet, `expected` is the job's mean rate per thread times
   // the worker's number of threads.
   if (job.work_rate.measured()) {
     const double expected = work_rate(worker, job);

@@ -48,8 +48,8 @@ void JobLifecycle::advance(Job& job) {
 
 void JobLifecycle::pass_merged(const input::PassMerged& in) {
   Job* job = context_.jobs.find(in.job);
-  // If the error is of more samples than are complete, it was measured on pixels that are free
-  // again.
+  // An error of fewer samples than the last one is out of date. If an error is of more samples than
+  // are complete, some of the rows on which it was measured are free again.
   if (job == nullptr || is_final(job->state) || in.samples < job->error_samples ||
       in.samples > job->complete_samples()) {
     return;
@@ -165,7 +165,7 @@ void JobLifecycle::storage_back() {
 
 void JobLifecycle::resume(Job& job) {
   context_.emit(record::StateChanged{job.id, JobState::kRunning, ""});
-  for (const LeaseId id : job.leases) {  // workers kept these while it was paused
+  for (const LeaseId id : job.leases) {  // leases that workers kept while the job was paused
     context_.leases.find(id)->advanced_at = context_.clock.timeout_clock();
     ledger_.start_clocks(job);
   }

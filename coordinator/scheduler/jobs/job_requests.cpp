@@ -44,7 +44,8 @@ void JobRequests::submit(const input::Submit& in) {
     }
     return;
   }
-  if (absl::Status status = refusal(in.spec.stop, in.spec.settings, in.priority, 1); !status.ok()) {
+  if (absl::Status status = refusal(in.spec.stop, in.spec.settings, in.priority, /*more=*/1);
+      !status.ok()) {
     context_.answer(std::move(status));
     return;
   }
@@ -135,7 +136,7 @@ void JobRequests::pause(const input::Pause& in) {
 }
 
 void JobRequests::hold(Job& job) {
-  context_.emit(record::HoldChanged{job.id, true});
+  context_.emit(record::HoldChanged{job.id, /*held=*/true});
   context_.emit(record::StateChanged{job.id, JobState::kPaused, kPausedByUser});
   std::vector<LeaseId> not_begun;
   for (const LeaseId id : job.leases) {
@@ -155,7 +156,7 @@ void JobRequests::resume(const input::Resume& in) {
 
 void JobRequests::release(Job& job) {
   if (job.held) {
-    context_.emit(record::HoldChanged{job.id, false});
+    context_.emit(record::HoldChanged{job.id, /*held=*/false});
   }
   if (job.state == JobState::kPaused) {
     lifecycle_.resume(job);

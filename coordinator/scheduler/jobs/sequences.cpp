@@ -29,7 +29,8 @@ constexpr std::size_t kMaxOpenFrames = wire::kActiveJobs / 2;
 /// Maximum number of bytes of a list of frame numbers in a message.
 constexpr std::size_t kMaxNumbers = 200;
 
-/// Returns the reason of a sequence with failed frames.
+/// Returns the sentence that tells users which frames of the sequence failed, and why the first of
+/// them did.
 std::string failed_text(const Sequence& sequence) {
   const std::vector<FrameNumber> failed = sequence.numbers(FrameState::kFailed);
   std::string numbers = frames_text(failed);
@@ -106,8 +107,8 @@ void Sequences::add_frames(const input::AddFrames& in) {
   }
   for (const FrameScene& scene : in.scenes) {
     if (sequence->frame(scene.number)->state == FrameState::kExpected) {
-      context_.emit(
-          record::FrameWaits{in.job, scene.number, scene.manifest, scene.package_bytes, 0, ""});
+      context_.emit(record::FrameWaits{in.job, scene.number, scene.manifest, scene.package_bytes,
+                                       /*failures=*/0, /*reason=*/""});
     }
   }
 }
@@ -147,7 +148,7 @@ void Sequences::retry(const input::RetryFrames& in) {
     context_.emit(record::StateChanged{in.job, JobState::kRunning, ""});
   }
   for (const FrameNumber number : numbers) {
-    wait_again(*sequence, number, 0, "");
+    wait_again(*sequence, number, /*failures=*/0, /*reason=*/"");
   }
 }
 
@@ -176,8 +177,9 @@ void Sequences::cancel(const input::Cancel& in) {
   }
 }
 
-/// Ends the sequence; jobs of its frames that are not final are cancelled. If the sequence is
-/// cancelled, these frames do not count as failed: their jobs are forgotten, and they wait.
+/// Ends the sequence, and cancels its frame jobs that are not final. If the sequence itself is
+/// cancelled, these frame jobs are also forgotten, so that their frames count as waiting and not as
+/// failed.
 void Sequences::end(Sequence& sequence, JobState state, const std::string& reason) {
   context_.emit(record::TimeSpent{sequence.id, sequence.elapsed(context_.clock.wall())});
   context_.emit(record::StateChanged{sequence.id, state, clean_text(reason, wire::kReasonBytes)});
@@ -187,7 +189,7 @@ void Sequences::end(Sequence& sequence, JobState state, const std::string& reaso
     const FrameNumber frame = job.spec.frame;
     lifecycle_.end(job, JobState::kCancelled, reason);
     if (state == JobState::kCancelled) {
-      wait_again(sequence, frame, 0, "");
+      wait_again(sequence, frame, /*failures=*/0, /*reason=*/"");
     }
   }
 }

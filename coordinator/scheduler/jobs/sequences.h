@@ -33,7 +33,8 @@ class Sequences {
   /// failed, if no frame has failed, or if the sequence was begun with another pixel version.
   void retry(const input::RetryFrames& in);
 
-  // The following requests are as those in JobRequests, for a sequence. REQUIRE owns(in.job).
+  // The following four functions do for a sequence what the functions of the same names in
+  // JobRequests do for a job. REQUIRES: owns(in.job).
   void cancel(const input::Cancel& in);
   void pause(const input::Pause& in);
   void resume(const input::Resume& in);
@@ -44,7 +45,8 @@ class Sequences {
   /// Tries failed frames again, makes the next frame jobs, and ends sequences of which each frame
   /// is done or has failed. MUST be called in each step before work is given to workers.
   void advance();
-  /// Journals the elapsed times at intervals, as JobLifecycle::note_time.
+  /// Writes the elapsed times of the sequences to the journal at intervals. A crash loses at most
+  /// one second or one fiftieth of the time, whichever is longer.
   void note_times();
   /// After a restart: lets the elapsed time of each sequence go on from the journalled time; fails
   /// sequences that were begun with another pixel version.

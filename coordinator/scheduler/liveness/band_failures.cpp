@@ -1,6 +1,6 @@
-// A failure is noted at the job and its lease is ended, so that another worker gets the band (a
-// range of rows and samples). A band that fails too often, or that no worker may render any more,
-// fails its job.
+// When a worker fails a band (a range of rows and samples), the failure is noted in the job, and
+// the lease is ended, so that another worker gets the band. A job fails if one of its bands fails
+// too often, or if no connected worker may render the job any more.
 
 #include "coordinator/scheduler/liveness/band_failures.h"
 

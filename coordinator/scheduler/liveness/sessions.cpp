@@ -1,5 +1,6 @@
-// hello() admits or refuses a worker and reconciles the leases that it still holds with those of
-// the scheduler. disconnect() frees the leases of a worker that has left or fell silent.
+// hello() admits or refuses a worker, and reconciles the leases that the worker still holds with
+// the leases that the scheduler has for it. disconnect() frees the leases of a worker that has left
+// or fell silent.
 
 #include "coordinator/scheduler/liveness/sessions.h"
 
@@ -175,8 +176,8 @@ void Sessions::reconcile_leases(Worker& worker, const std::vector<WorkerHello::H
 /// Confirms a lease of this epoch (run of the coordinator). Adopts a lease of an earlier epoch,
 /// that is, grants it again with its id, if rows of its band are wanted (not stored). A lease of a
 /// finished band is adopted even if other workers hold leases of these rows. A lease of an
-/// unfinished band is adopted only if no other worker holds one. Returns false if the worker must
-/// drop the lease.
+/// unfinished band is adopted only if no other worker holds a lease of these rows. Returns false if
+/// the worker must drop the lease.
 bool Sessions::keep_lease(Worker& worker, const WorkerHello::Held& held) {
   Job* job = context_.jobs.find(held.job);
   Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(held.band);
@@ -192,8 +193,8 @@ bool Sessions::keep_lease(Worker& worker, const WorkerHello::Held& held) {
       lease->advanced_at = context_.clock.timeout_clock();
       lease->in_hello = true;
       context_.act(action::Lease{*worker.session, held.lease, job->id, job->spec.manifest,
-                                 job->spec.settings, held.band, pass->tiles_of(held.band), 1,
-                                 lease->audit});
+                                 job->spec.settings, held.band, pass->tiles_of(held.band),
+                                 /*attempt=*/1, lease->audit});
     }
     return same;
   }

@@ -88,8 +88,8 @@ class Audit {
   const Result* result_of(const Reporter& reporter) const;
   /// Returns true if machines returned different results and none is known to be right.
   bool disputed() const { return results_.size() > 1; }
-  /// Returns true if the stored rows may be wrong: the audit is disputed, and not only by browsers
-  /// against a native worker.
+  /// Returns true if the audit is disputed and the stored rows may be wrong. They are not doubted
+  /// if a native worker stored them and all other results are of browsers.
   bool doubtful() const;
   /// Returns true if all results are of browsers.
   bool only_browsers() const;

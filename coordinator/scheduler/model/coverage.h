@@ -38,9 +38,9 @@ class Coverage {
     std::vector<LeaseId> overtaken;  ///< leases that lost cells
   };
 
-  /// Gives the band's samples to `owner`. A row in which some of these samples are stored already
-  /// stays as it is, because the film cannot take a part of a node. A lease that loses a part of
-  /// its samples in a row loses the whole row: the rest becomes free.
+  /// Gives the band's samples to `owner`. If some of these samples are already stored in a row,
+  /// the row is not changed, because the film cannot take a part of a node. A lease that loses a
+  /// part of its samples in a row loses the whole row: the rest becomes free.
   Change assign(const Band& band, Owner owner);
 
   /// Frees the part of the band that the lease still owns.

@@ -11,8 +11,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Minimum of Pass::tile_row_shares, which predict the work of a band. It is above 0, because rows
-/// in which no samples are taken still have to be sent and stored.
+/// Minimum of Pass::tile_row_shares, by which the work of a band is predicted. Such a share is the
+/// number of samples taken in a row of tiles, divided by the number with uniform sampling. The
+/// minimum is above 0, because rows without samples still have to be sent and stored.
 constexpr float kMinShare = 0.01f;
 
 }  // namespace
@@ -41,8 +42,8 @@ const Pass* Job::pass_of(const Band& band) const {
     return nullptr;
   }
   const Pass& pass = *std::prev(after);
-  // A range that ends inside a block of 8 samples is a node of the summation tree only at the end
-  // of the pass.
+  // The samples of a band are a node of the summation tree: an aligned power-of-two number of
+  // blocks of 8 samples. Only the last block of a pass may have fewer samples.
   const bool whole_blocks = band.samples.last % kBlockSamples == 0;
   const bool node = band.samples.last <= pass.samples.last && is_node(band.samples) &&
                     (whole_blocks || band.samples.last == pass.samples.last);
