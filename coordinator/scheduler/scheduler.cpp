@@ -69,9 +69,9 @@ void Scheduler::on(const input::Tick&) {
   sequences_.note_times();
 }
 
-/// First compares the result with the stored digests of its rows, which may show that the sending
-/// machine is wrong. Otherwise measures the work rate, counts the rows as stored, and ends the
-/// leases whose rows nobody needs any more.
+/// First compares the result with the stored digests of its rows, which may put the sending machine
+/// under quarantine. If the machine is not under quarantine, measures the work rate, counts the
+/// rows as stored, and ends the leases whose rows nobody needs any more.
 void Scheduler::on(const input::BandStored& in) {
   Job* job = context_.jobs.find(in.job);
   Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(in.band);
@@ -94,8 +94,8 @@ void Scheduler::on(const input::BandStored& in) {
   if (worker != nullptr) {
     measure(*worker, *job, in);
     worker->on_job[job->id].failures = 0;
-    // A suspect band (one that a worker held when it was lost) says nothing about how often native
-    // workers crash by chance, and neither does a browser.
+    // From the counted bands, crashes_ estimates how often native workers crash by chance. So bands
+    // of browsers and suspect bands (bands that a worker held when it was lost) are not counted.
     if (!job->is_suspect(in.band) && !worker->browser) {
       crashes_.count_band();
     }

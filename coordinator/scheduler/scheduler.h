@@ -78,8 +78,8 @@ class Scheduler {
   /// Returns the frames of a sequence whose FrameView::changed is greater than `after`, or all
   /// frames if `after` is 0. They ascend by number. std::nullopt: there is no such sequence.
   std::optional<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
-  /// Returns all jobs and sequences with the packages and files that must be kept for them; frame
-  /// jobs of a known sequence belong to it.
+  /// Returns all jobs and sequences with the packages and files that must be kept for them. If the
+  /// sequence of a frame job is known, the frame job is listed in the entry of the sequence only.
   std::vector<KeptJob> kept() const { return views_.kept(); }
   std::vector<WorkerView> workers(Time now) const;  ///< sorted by name
   /// Returns true if the worker process with this instance id joined as a browser. Browsers that

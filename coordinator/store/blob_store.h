@@ -95,8 +95,8 @@ class BlobStore : public BlobSource {
  private:
   BlobStore(std::string folder, std::unique_ptr<PartialBlobs> partials)
       : folder_(std::move(folder)), partials_(std::move(partials)) {}
-  /// Checks the digest of the blob's open file, unless it was checked before. DATA_LOSS: as for
-  /// get().
+  /// Checks the digest of the blob's open file, unless it was checked before. DATA_LOSS: the file
+  /// is damaged or cannot be read, and was removed.
   absl::Status check(const wire::Digest& digest, const File& file) EXCLUDES(mutex_);
 
   std::string folder_;

@@ -13,9 +13,9 @@ namespace bandsaw::coordinator {
 
 struct Finished {
   Image image;
-  /// Mean of the first part of each pixel's samples (Film::first_part), from which the denoiser
-  /// estimates the noise of the image. Absent if some pixel has only one block of samples (8
-  /// samples), or if the integrator computes no radiance.
+  /// Mean of the first part (about half) of each pixel's samples (Film::first_part), from which the
+  /// denoiser estimates the noise of the image. Absent if some pixel has only one block of samples
+  /// (8 samples), or if the integrator computes no radiance.
   std::optional<Image> first;
   /// Number of samples of each pixel, the same in all channels. Only for an adaptive job; in other
   /// jobs all pixels have the same number.

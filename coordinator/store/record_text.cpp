@@ -132,7 +132,7 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "time_spent") {
     return record::TimeSpent{.job = in.number("job"), .elapsed_s = in.real("elapsed_s")};
   }
-  if (kind == "job_summary" || kind == "figures") {  // "figures": before version 8
+  if (kind == "job_summary" || kind == "figures") {  // "figures": schema versions below 8
     return read_summary(in);
   }
   if (kind == "error_measured") {
@@ -141,7 +141,7 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "share_counted") {
     return read_share(in);
   }
-  if (kind == "failure_log" || kind == "last_words") {  // "last_words": before version 8
+  if (kind == "failure_log" || kind == "last_words") {  // "last_words": schema versions below 8
     return record::FailureLog{.job = in.number("job"),
                               .worker = in.text("worker"),
                               .log = absl::StrSplit(in.text("log"), '\n', absl::SkipEmpty())};
@@ -156,7 +156,7 @@ Record read_record(absl::string_view kind, FieldReader& in) {
     return read_frame(in);
   }
   if (kind == "worker_joined") {
-    record::WorkerJoined joined;  // versions below 10 had no browsers
+    record::WorkerJoined joined;  // schema versions below 10 lack the field `browser`
     joined.browser = in.next_is("browser") && in.number("browser", 1) == 1;
     joined.instance = in.text("instance");
     return joined;

@@ -21,7 +21,7 @@ struct RecordText {
 RecordText to_text(const Record& record);
 
 /// Parses a record. DATA_LOSS: the kind or a field is unknown, or a field is missing, malformed or
-/// out of range. The message names it.
+/// out of range. The message names the kind or the field.
 absl::StatusOr<Record> from_text(const RecordText& text);
 
 }  // namespace bandsaw::coordinator

@@ -99,7 +99,7 @@ std::optional<Record> read_audit(absl::string_view kind, FieldReader& in) {
     return record::ErrorForgotten{.job = in.number("job")};
   }
   if (kind == "worker_quarantined") {
-    record::WorkerQuarantined quarantined;
+    record::WorkerQuarantined quarantined;  // schema versions below 11 lack the field `browser`
     quarantined.browser = in.next_is("browser") && in.number("browser", 1) == 1;
     quarantined.process = read_process(in);
     quarantined.name = in.text("name");

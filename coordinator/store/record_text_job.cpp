@@ -55,7 +55,7 @@ RenderSettings read_settings(FieldReader& in) {
           .height = static_cast<std::uint32_t>(in.number("height", kMaxSide)),
           .max_depth = static_cast<std::uint32_t>(in.number("max_depth", kMaxDepth)),
           .seed = in.number("seed"),
-          // Journals of versions with a single integrator lack this field.
+          // Journals of the schema versions that had a single integrator lack this field.
           .integrator = in.next_is("integrator")
                             ? static_cast<Integrator>(in.number("integrator", kLastGuideIntegrator))
                             : Integrator::kPath};
@@ -80,7 +80,7 @@ FrameNumber read_number(FieldReader& in) {
          kMaxFrameNumber;
 }
 
-/// Journals of versions below 10 lack this field.
+/// Journals of schema versions below 10 lack this field.
 std::uint64_t read_package_bytes(FieldReader& in) {
   return in.next_is("package_bytes") ? in.number("package_bytes") : 0;
 }

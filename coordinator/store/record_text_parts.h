@@ -17,8 +17,9 @@ namespace bandsaw::coordinator {
 void write_job(FieldWriter& out, const record::JobAdded& added);
 record::JobAdded read_job(FieldReader& in);
 
-/// Writes the plan of an adaptive job: the samples that each pixel gets before the plan, and one
-/// digit for each half of a tile, its level, which determines how many samples it gets.
+/// Writes the plan of an adaptive job: the number of samples that each pixel gets before the plan,
+/// and one digit for each half tile (half of the pixels of a tile). The digit is the level of the
+/// half tile, which determines how many samples its pixels get.
 void write_tiles(FieldWriter& out, const record::TilesPlanned& r);
 /// Reports an error in `in` if a level is not a hexadecimal digit in lower case.
 record::TilesPlanned read_tiles(FieldReader& in);
@@ -48,7 +49,7 @@ const char* write_audit(FieldWriter& out, const record::RowDisputed& r);
 const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r);
 const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r);
 const char* write_audit(FieldWriter& out, const record::QuarantineLifted& r);
-/// Returns the record of this kind; std::nullopt if the kind is none of those above.
+/// Reads the output of write_audit(); std::nullopt if `kind` is the kind of another record.
 std::optional<Record> read_audit(absl::string_view kind, FieldReader& in);
 
 }  // namespace bandsaw::coordinator

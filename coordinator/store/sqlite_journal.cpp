@@ -22,8 +22,8 @@ constexpr char kTables[] =
 /// Returns the SQL statement that sets the file's schema version to kSchema.
 std::string version_statement() { return absl::StrCat("PRAGMA user_version = ", kSchema, ";"); }
 
-/// Returns a checksum of a record. It detects a changed byte in a value, which SQLite itself does
-/// not.
+/// Returns a checksum of a record. SQLite itself does not detect a changed byte in a value, but the
+/// checksum does.
 std::string seal(std::uint64_t sequence, const RecordText& text) {
   return wire::sha256(absl::StrCat(sequence, "\n", text.kind, "\n", text.fields))
       .hex()

@@ -43,7 +43,7 @@ class StagedFile {
  private:
   explicit StagedFile(File file) : file_(std::move(file)) {}
   File file_;
-  bool staged_ = true;
+  bool staged_ = true;  ///< the destructor removes the file
 };
 
 }  // namespace bandsaw::coordinator

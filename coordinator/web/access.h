@@ -71,8 +71,9 @@ std::string bearer_secret(const HttpRequest& request);
 
 /// Returns true if `host`, the header Host of a request, may name this dashboard. It may be an IP
 /// address, localhost, `machine` (this machine's own name, also with ".local" after it) or `named`
-/// (the name that the user has given to the dashboard), each with or without a port. A request of a
-/// foreign page whose name resolves to this machine (DNS rebinding) has that foreign name.
+/// (the name that the user has given to the dashboard), each with or without a port. A foreign site
+/// can make its own name resolve to this machine (DNS rebinding). Then the header Host of a request
+/// from its pages has the foreign name, so the result is false.
 bool is_own_host(const std::string& host, const std::string& machine, const std::string& named);
 
 }  // namespace bandsaw::coordinator

@@ -67,8 +67,8 @@ class BrowserLeases {
 
   Engine& engine_;
   Mutex mutex_;
-  std::uint64_t leases_ GUARDED_BY(mutex_) = 0;
-  std::map<std::string, Leases> browsers_ GUARDED_BY(mutex_);                      ///< by instance
+  std::uint64_t leases_ GUARDED_BY(mutex_) = 0;                ///< number of leases that were noted
+  std::map<std::string, Leases> browsers_ GUARDED_BY(mutex_);  ///< by instance
   std::map<std::string, std::shared_ptr<const Blobs>> scenes_ GUARDED_BY(mutex_);  ///< by manifest
 };
 

@@ -119,14 +119,15 @@ class BrowserSocket final : public WorkerSession,
 
   /// Answers the WebSocket handshake of `request`, and begins to read messages.
   void begin(const HttpRequest& request) {
-    stream_.set_option(websocket::stream_base::timeout{limits_.handshake, limits_.idle, true});
+    stream_.set_option(websocket::stream_base::timeout{limits_.handshake, limits_.idle,
+                                                       /*keep_alive_pings=*/true});
     stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
       response.set(boost::beast::http::field::sec_websocket_protocol, kJoinProtocol);
     }));
     stream_.read_message_max(kMaxMessageBytes);
     stream_.binary(true);
     boost::beast::http::request<boost::beast::http::empty_body> head(boost::beast::http::verb::get,
-                                                                     request.path, 11);
+                                                                     request.path, /*version=*/11);
     for (const auto& [name, value] : request.headers) {
       head.insert(name, value);
     }
@@ -257,7 +258,7 @@ class BrowserSockets::Impl {
         access_(access),
         leases_(leases),
         limits_(limits),
-        io_(std::make_shared<IoContext>(1)),
+        io_(std::make_shared<IoContext>(/*concurrency_hint=*/1)),
         work_(io_->get_executor()),
         timer_(*io_) {}
 
@@ -369,7 +370,7 @@ class BrowserSockets::Impl {
       std::make_shared<std::atomic<std::size_t>>(0);
   const std::shared_ptr<IoContext> io_;
   boost::asio::executor_work_guard<IoContext::executor_type> work_;
-  // The rest is used by the thread only.
+  // After start(), timer_, is_stopping_ and sockets_ are used by thread_ only.
   boost::asio::steady_timer timer_;
   bool is_stopping_ = false;
   std::set<std::shared_ptr<BrowserSocket>> sockets_;

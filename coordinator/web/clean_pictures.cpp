@@ -137,6 +137,8 @@ absl::StatusOr<CleanPictures::State> CleanPictures::state(JobId id) {
       why.Update(absl::AbortedError(
           absl::StrCat("job ", guide, ", which the clean image needs, ", state_name(view->state))));
     } else {
+      // A job that is not done counts less than 1. So `done` reaches the number of jobs only when
+      // all of them are done.
       done += view->state == JobState::kDone ? 1 : std::min(view->fraction, 0.99);
     }
   }
@@ -194,7 +196,7 @@ absl::StatusOr<CleanPictures::Kept> CleanPictures::filtered(const JobView& job,
                            .shape = std::move(shape.result.image)};
   Pool pool(1);
   Kept kept{denoise(input, kernels().front()->fit, pool), image.result.display, *std::move(share)};
-  kept.share.resize(2 * pixels * sizeof(Rgb));
+  kept.share.resize(2 * pixels * sizeof(Rgb));  // of the clean image and its error
   return kept;
 }
 

@@ -21,8 +21,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Thread-safe. One picture is filtered at a time, on one thread, so that browsers cannot take the
-/// machine's CPU from the farm.
+/// Thread-safe. One picture is filtered at a time, on one thread, so that users of the dashboard
+/// cannot take the machine's CPU from the farm.
 class CleanPictures {
  public:
   using Bytes = std::shared_ptr<const std::string>;
@@ -53,8 +53,9 @@ class CleanPictures {
   absl::StatusOr<State> state(JobId job) EXCLUDES(mutex_);
   /// Returns a file of the clean picture with at most `most_side` pixels per side.
   /// `most_side` = 0: the picture is not reduced. An EXR file has the layers `raw` and `error`, as
-  /// `bandsaw render --denoise` writes it. FAILED_PRECONDITION: the state is not kReady. Errors as
-  /// picture_of (coordinator/rpc/picture.h).
+  /// `bandsaw render --denoise` writes it. FAILED_PRECONDITION: the state is not kReady.
+  /// For an EXR file, also the errors of result_of() (coordinator/rpc/picture.h), which reads the
+  /// layer `raw`.
   absl::StatusOr<Bytes> file(JobId job, std::uint32_t most_side, ImageFormat format)
       EXCLUDES(mutex_);
 

@@ -38,8 +38,8 @@ class Connection {
   /// Waits for bytes and reads at most `size`, which is not 0. Returns their number; 0: the
   /// connection has ended, or its deadline has passed.
   std::size_t read(char* bytes, std::size_t size);
-  /// Writes at most `size` bytes, which is not 0, as soon as some can be written. The result is
-  /// that of read().
+  /// Writes at most `size` bytes, which is not 0, as soon as some can be written. Returns how many
+  /// bytes it wrote; 0: the connection has ended, or its deadline has passed.
   std::size_t write(const char* bytes, std::size_t size);
 
   /// Result of one attempt to read or write. If `bytes` and `wait_for` are both 0, the connection

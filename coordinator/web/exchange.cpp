@@ -141,11 +141,11 @@ class Exchange {
     }
   }
 
-  /// Returns the next bytes of the body, as HttpBody.
+  /// Returns the next bytes of the body; no bytes: the body has ended.
   absl::StatusOr<absl::string_view> read_body() {
     beast::error_code error;
     if (std::exchange(awaits_continue_, false)) {
-      const http::response<http::empty_body> go_on(http::status::continue_, 11);
+      const http::response<http::empty_body> go_on(http::status::continue_, /*version=*/11);
       http::response_serializer<http::empty_body> serializer(go_on);
       http::write_header(stream_, serializer, error);
     }
@@ -168,7 +168,7 @@ class Exchange {
 
   void write(const HttpRequest& request, const HttpReply& reply) {
     using Bytes = http::span_body<const char>;
-    http::response<Bytes> response(static_cast<http::status>(reply.status), 11);
+    http::response<Bytes> response(static_cast<http::status>(reply.status), /*version=*/11);
     response.set(http::field::connection, "close");
     for (const auto& [name, value] : headers_) {
       response.insert(name, value);

@@ -62,7 +62,7 @@ std::optional<ByteRange> range_of(absl::string_view header, std::uint64_t size) 
       (ends.first.empty() && !has_last) || (!ends.first.empty() && has_last && last < first)) {
     return std::nullopt;
   }
-  if (ends.first.empty()) {  // the last bytes
+  if (ends.first.empty()) {  // "bytes=-N": the last N bytes
     return last == 0 || size == 0 ? ByteRange{1, 0}
                                   : ByteRange{size - std::min(last, size), size - 1};
   }
@@ -99,12 +99,13 @@ std::string HttpRequest::parameter(absl::string_view name) const {
 void parse_target(absl::string_view target, HttpRequest& request) {
   const std::pair<absl::string_view, absl::string_view> parts =
       absl::StrSplit(target, absl::MaxSplits('?', 1));
-  request.path = decoded(parts.first, false);
+  request.path = decoded(parts.first, /*plus_is_space=*/false);
   request.parameters.clear();
   for (const absl::string_view one : absl::StrSplit(parts.second, '&', absl::SkipEmpty())) {
     const std::pair<absl::string_view, absl::string_view> named =
         absl::StrSplit(one, absl::MaxSplits('=', 1));
-    request.parameters.emplace_back(decoded(named.first, true), decoded(named.second, true));
+    request.parameters.emplace_back(decoded(named.first, /*plus_is_space=*/true),
+                                    decoded(named.second, /*plus_is_space=*/true));
   }
 }
 

@@ -54,7 +54,7 @@ struct HttpReply {
   std::vector<HttpField> headers = {};
   absl::string_view bytes = {};           ///< the body
   std::shared_ptr<const void> held = {};  ///< keeps `bytes` alive; nullptr: they outlive the server
-  TakeOver take_over = {};                ///< set: gets the connection, and no response is written
+  TakeOver take_over = {};  ///< if set, it gets the connection, and no response is written
 };
 
 /// Returns a response 200 that owns this body.

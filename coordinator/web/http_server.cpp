@@ -23,7 +23,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::chrono::milliseconds kWaitForDescriptors{100};  // when all of them are in use
+/// Time before the next accept, if the last one failed because file descriptors or memory ran out.
+constexpr std::chrono::milliseconds kWaitForDescriptors{100};
 
 struct FreeAddresses {
   void operator()(addrinfo* addresses) const { freeaddrinfo(addresses); }

@@ -26,6 +26,8 @@ HttpReply answer_with(const Changed& changed) {
   return reply(job);
 }
 
+/// Adds the request POST /api/jobs/ID/NAME, which calls `command` for the job and answers with the
+/// state of the job after it.
 void add_command(Router& router, Engine& engine, const char* name, JobCommand command) {
   router.post(absl::StrCat("/api/jobs/*/", name), [&engine, command](const HttpRequest& request,
                                                                      const HttpBody&) {
@@ -85,7 +87,7 @@ absl::StatusOr<farm::ListFramesReply> frames(Engine& engine, const HttpRequest& 
 absl::StatusOr<farm::JobStatus> retry(Engine& engine, const HttpRequest& request) {
   ASSIGN_OR_RETURN(const JobId id, job_of(request));
   ASSIGN_OR_RETURN(const JobView view, blocking_call<Changed>([&](auto answer) {
-                     engine.retry_frames(id, {}, answer);
+                     engine.retry_frames(id, /*frames=*/{}, answer);
                    }));
   return to_message(view);
 }

@@ -74,8 +74,8 @@ void add_counts(Text& out, const std::vector<JobView>& jobs,
   }
 }
 
-/// Writes one line for each job that is not over. A negative value means that the value is unknown;
-/// the job then has no line.
+/// Writes the metric `name`, with one line for each job that is not over. A job whose value is
+/// unknown (negative) has no line.
 template <class Value>
 void add_jobs(Text& out, const char* name, const char* help, const std::vector<JobView>& jobs,
               Value value) {

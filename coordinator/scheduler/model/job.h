@@ -51,8 +51,9 @@ class Job {
  public:
   Job(JobId id, JobSpec spec, std::uint32_t pixel_version);
 
-  /// Returns the pass that contains the band's samples. nullptr: there is none, the samples are not
-  /// a node of the summation tree (renderlib/render/band.h), or the rows are not in the image.
+  /// Returns the pass that contains the band's samples. nullptr: there is none, the rows are not in
+  /// the image, or the samples are not a node of the summation tree, that is, an aligned
+  /// power-of-two number of blocks of 8 samples (renderlib/render/band.h).
   Pass* pass_of(const Band& band);
   const Pass* pass_of(const Band& band) const;
 
@@ -63,11 +64,11 @@ class Job {
   void plan_tiles(TilePlan plan);
   /// Makes the job end after this many samples: removes all later passes.
   void fix_samples(std::uint64_t samples);
-  /// Frees everything that the process stored in any pass, and drops its share and the audits of
-  /// its bands. Returns false if it had stored nothing.
+  /// Frees everything that the process stored in any pass, so that it is rendered again. Drops the
+  /// share of the process and the audits of its bands. Returns false if it had stored nothing.
   bool retract(WorkerProcessId process);
-  /// Frees a band that the process stored, and forgets that it was audited. Frees nothing if
-  /// Pass::has_stored is false.
+  /// Frees a band that the process stored, so that it is rendered again, and forgets that the band
+  /// was audited. Frees nothing if Pass::has_stored is false.
   void remove_stored(const Band& band, WorkerProcessId process);
   /// Forgets the disputes about rows of a band that the process stored: they are decided, or the
   /// rows are lost.
@@ -136,8 +137,8 @@ class Job {
   double error = -1;  ///< at `error_samples`; negative: unknown
   std::uint64_t error_samples = 0;
   ErrorCurve curve;
-  /// An error checkpoint that waits for audits, because it would decide from pixels that may be
-  /// wrong.
+  /// An estimate of the error that waits for audits before it decides how the job goes on. Until
+  /// the audits have a verdict, the pixels of the image may be wrong.
   std::optional<input::PassMerged> pending_checkpoint;
 
   std::set<LeaseId> leases;

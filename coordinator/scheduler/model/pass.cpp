@@ -117,8 +117,8 @@ std::optional<Totals> Pass::remove_stored(const Band& band, WorkerProcessId proc
   return totals;
 }
 
-/// Adds all parts up again: a part cannot be subtracted, because Counters holds the location of the
-/// first bad sample.
+/// Adds all parts up again. The removed part cannot be subtracted: Counters holds the location of
+/// the first bad sample, and after a subtraction the location in the other parts would be unknown.
 void Pass::recompute_totals() {
   stored = {};
   for (const auto& [id, part] : parts) {

@@ -30,8 +30,8 @@ struct Totals {
   }
 };
 
-/// Digests of the stored rows of one pass. A second result for the same samples is compared with
-/// them.
+/// Digests (hashes of the pixel sums) of the stored rows of one pass. A second result for the same
+/// samples is compared with the digests.
 class RowDigests {
  public:
   /// Keeps the digests of `rows`. `digests`: one for each row of the band.
@@ -86,7 +86,8 @@ struct Pass {
   /// rows.
   void add_stored(WorkerProcessId process, const Band& band, const std::vector<RowRange>& rows,
                   const Totals& totals);
-  /// Frees everything that the process stored. Returns false if it had stored nothing.
+  /// Frees everything that the process stored, so that it is rendered again. Returns false if it
+  /// had stored nothing.
   bool retract(WorkerProcessId process);
   /// Returns true if the process stored exactly this band and it was not freed since.
   bool has_stored(const Band& band, WorkerProcessId process) const;

@@ -56,6 +56,7 @@ std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to) {
 std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target,
                               std::uint64_t max_samples) {
   const std::uint64_t now = steps_of(samples);
+  // Returns the step that lies `part` steps, but at least one step, after the last checkpoint.
   const auto more = [now](std::uint64_t part) { return now + std::max<std::uint64_t>(1, part); };
   std::uint64_t next = more(now / 4);
   if (!(error >= 0)) {
@@ -94,8 +95,9 @@ bool time_to_plan_tiles(double error, double target) {
 }
 
 double next_target(double target, bool tiles_to_plan) {
-  // Tiles are planned once the error is at most this many times the target. With random sampling, a
-  // 4 times smaller error needs 16 times the samples.
+  // The number of samples of each half tile is planned once the error is at most kPilotErrorRatio
+  // times the target. With random sampling, reducing the error to a quarter takes 16 times the
+  // samples.
   constexpr double kPilotErrorRatio = 4;
   return tiles_to_plan ? kPilotErrorRatio * target : target;
 }

@@ -21,13 +21,14 @@ std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to);
 
 /// Error checkpoints before the last sample are multiples of this number of samples.
 inline constexpr std::uint64_t kCheckpointStep = 16;
-/// The fewest samples per pixel of which the error is estimated.
+/// The fewest samples per pixel from which the error is estimated.
 inline constexpr std::uint64_t kMinCheckpoint = 32;
 
 /// Returns the next error checkpoint: the number of samples per pixel at which the error is
 /// compared with `target` again. It is at most max_samples. It is at least kMinCheckpoint, unless
 /// max_samples is less. Passes up to a checkpoint run without a barrier between them. `samples`:
-/// the last checkpoint, 0: none yet; `error`: measured there, negative or NaN if unknown.
+/// the last checkpoint; 0: there is none yet. `error`: the error at the last checkpoint; negative
+/// or NaN: unknown.
 ///
 /// The error of an image falls between n^-1/2 (random samples) and n^-1 (well stratified samples).
 /// The checkpoint is the number of samples at which an error that falls as n^-1/2 reaches the
@@ -39,8 +40,8 @@ std::uint64_t next_checkpoint(std::uint64_t samples, double error, double target
                               std::uint64_t max_samples);
 
 /// Returns the sample at which a job with this error target is expected to end: the first
-/// checkpoint, from `planned` (the next one) on, at which the extrapolated error reaches `target`.
-/// std::nullopt: no error is known yet.
+/// checkpoint at which the extrapolated error reaches `target`. `planned`: the next checkpoint,
+/// with which the search begins. std::nullopt: no error is known yet.
 std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
                                           std::uint64_t planned, std::uint64_t max_samples);
 

@@ -49,7 +49,8 @@ class RecentRate {
     return sum / std::clamp(now - since_, 1.0, static_cast<double>(kSeconds));
   }
 
-  /// Forgets all amounts, and makes the time count from `now` on instead of from the first amount.
+  /// Forgets all amounts. The time over which the rate is taken begins at `now`, not at the first
+  /// amount that is added later.
   void start(Time now) {
     *this = {};
     started_ = true;
@@ -65,6 +66,7 @@ class RecentRate {
     return static_cast<std::size_t>(second - std::floor(second / kSeconds) * kSeconds);
   }
 
+  /// Clears the buckets of the seconds after newest_ up to `now`, which may hold older amounts.
   void forget(Time now) {
     const double second = std::floor(now);
     for (double gone = std::max(newest_ + 1, second - kSeconds + 1); gone <= second; ++gone) {
@@ -73,11 +75,11 @@ class RecentRate {
     newest_ = std::max(newest_, second);
   }
 
-  /// Amounts of the last seconds, at index second modulo kSeconds.
+  /// The amounts of each of the last kSeconds seconds. Second s has the index s modulo kSeconds.
   std::array<double, kSeconds> buckets_{};
   bool started_ = false;
   Time since_ = 0;
-  double newest_ = 0;
+  double newest_ = 0;  ///< the last second, a whole number, for which the buckets are valid
 };
 
 }  // namespace bandsaw::coordinator

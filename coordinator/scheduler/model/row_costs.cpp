@@ -41,7 +41,8 @@ double CostMap::add(std::uint32_t first, std::uint32_t last,
   return sum;
 }
 
-// The sums of groups hold for uniform sampling only.
+// Adds the sums of the groups [whole, after), which lie completely in the range, and the costs of
+// the other rows one by one. The sums of groups hold for uniform sampling only.
 double CostMap::of(const RowRange& rows, absl::Span<const float> tile_row_shares) const {
   const std::uint32_t whole = (rows.first + kGroup - 1) / kGroup;
   const std::uint32_t after = rows.last / kGroup;
@@ -86,8 +87,8 @@ void RowTimes::measure(const RowRange& rows, double seconds) {
   measured_ = true;
 }
 
-// At the upper or lower edge of the image only one side of the gap is measured. Its time is used
-// for both sides.
+// A gap at the upper or lower edge of the image has a measured row on one side only. The time of
+// that row is used for both sides.
 RowTimes::Gap RowTimes::gap_at(std::uint32_t row) const {
   Gap gap{{row, row + 1}};
   while (gap.rows.first > 0 && rows_[gap.rows.first - 1] == kUnknown) {

@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 
 /// Relative cost of each row, learnt from the bands that were rendered. The render time of a band
 /// is predicted as the cost of its rows, divided by its worker's work rate. Only ratios of costs
-/// have a meaning. Every row costs 1 until something is measured.
+/// have a meaning. Every row costs 1 until learn() changes its cost.
 class CostMap {
  public:
   CostMap() = default;
@@ -32,8 +32,8 @@ class CostMap {
   std::uint32_t fitting(const RowRange& rows, double max_cost,
                         absl::Span<const float> tile_row_shares = {}) const;
 
-  /// Corrects the cost of rows that took `ratio` times as long as predicted: it is multiplied by
-  /// ratio^0.75. The rest of the difference is attributed to the worker.
+  /// Corrects the costs of rows that took `ratio` times as long as predicted: each cost is
+  /// multiplied by ratio^0.75. The rest of the difference is attributed to the worker.
   void learn(const RowRange& rows, double ratio);
 
  private:
@@ -47,9 +47,9 @@ class CostMap {
   std::vector<double> groups_;  ///< sums over kGroup rows each
 };
 
-/// Measured render time of each row. The cost map cannot predict the remaining time of a job,
-/// because its scale drifts and half of its rows are guesses. Here every number was measured, and
-/// rows without a measurement are interpolated.
+/// Measured render time of each row. CostMap cannot predict the remaining time of a job: learn()
+/// changes the scale of the costs, and the cost of a row that was not rendered yet is a guess.
+/// RowTimes has measured times only, and interpolates the times of rows without a measurement.
 class RowTimes {
  public:
   /// height > 0

@@ -28,11 +28,12 @@ class Sequence {
     FrameNumber number = 0;
     DigestHex manifest;  ///< empty: not known yet
     FrameState state = FrameState::kExpected;
-    JobId job = 0;                    ///< its frame job; 0: none
-    std::uint32_t failures = 0;       ///< number of its earlier jobs that failed
-    std::string reason;               ///< reason of the last failure; empty: none
-    std::uint64_t changed = 0;        ///< as in FrameView
-    std::uint64_t package_bytes = 0;  ///< as in JobSpec
+    JobId job = 0;               ///< its frame job; 0: none
+    std::uint32_t failures = 0;  ///< number of its earlier jobs that failed
+    std::string reason;          ///< reason of the last failure; empty: none
+    /// Number of the frame's last change in this epoch, counted over all frames; 0: none.
+    std::uint64_t changed = 0;
+    std::uint64_t package_bytes = 0;  ///< bytes of its scene package; 0: unknown
   };
 
   Sequence(JobId id, SequenceSpec spec, std::uint32_t pixel_version);
@@ -66,7 +67,7 @@ class Sequence {
   void wait(const FrameScene& scene, std::uint32_t failures, const std::string& reason);
   /// Notes that `job`, the frame job of the frame, was made.
   void start(FrameNumber number, JobId job);
-  /// Ends the frame whose job this is. REQUIRES: is_final(job.state).
+  /// Ends the frame whose frame job is `job`. REQUIRES: is_final(job.state).
   void end(const Job& job);
 
   JobId id = 0;

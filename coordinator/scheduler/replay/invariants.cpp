@@ -78,8 +78,9 @@ std::optional<std::string> broken_workers(const Context& context) {
   return std::nullopt;
 }
 
-/// Checks that each lease that owns a cell of the pass's coverage is one of this job and contains
-/// the cell, and that strips and cells partition the pass (model/coverage.h).
+/// Checks the coverage of a pass, which is divided into cells (each a range of rows and samples
+/// with one owner; model/coverage.h). The cells MUST partition the pass. If the owner of a cell is
+/// a lease, this MUST be a lease of the job, and its band MUST contain the cell.
 std::optional<std::string> broken_pass(const Context& context, const Job& job, const Pass& pass) {
   std::optional<std::string> broken;
   auto partition = pass.coverage.check([&](LeaseId id, const Band& cell) {
@@ -196,6 +197,7 @@ std::optional<std::string> broken_invariant(const Context& context) {
   if (!context.step_is_empty()) {
     return "a step ended with actions or records left";
   }
+  // The frame jobs of active sequences do not count against the limit.
   std::size_t active = context.jobs.active().size();
   for (const JobId id : context.sequences.active()) {
     active -= context.sequences.at(id).open_jobs().size();

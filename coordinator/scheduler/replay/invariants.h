@@ -10,8 +10,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns a sentence about the first invariant that does not hold; std::nullopt: all hold. They
-/// hold between two steps.
+/// Returns a sentence about the first invariant that does not hold; std::nullopt: all hold. Between
+/// two steps, all invariants must hold.
 std::optional<std::string> broken_invariant(const Context& context);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 // After a restart, the bands on disk (ranges of rows and samples that workers have rendered) are
-// added one by one. finish() compares those that were rendered twice, and continues each job that
-// is not final.
+// added one by one. finish() compares the bands that were rendered twice, and continues each job
+// that is not final.
 
 #include "coordinator/scheduler/replay/restart.h"
 
@@ -86,7 +86,8 @@ void Restart::resume(Job& job) {
     return;
   }
   if (job.state != JobState::kRunning) {
-    // Paused: the disk is tried again. Finishing: the result was not written yet.
+    // If the job was paused because of the disk, the disk is tried again. If the job was finishing,
+    // its result was not written yet.
     context_.emit(record::StateChanged{job.id, JobState::kRunning, ""});
   }
   context_.jobs.mark_leasable(job);

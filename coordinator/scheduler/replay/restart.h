@@ -36,9 +36,9 @@ class Restart {
   /// damaged.
   void note_damage(JobId id, std::uint64_t bytes);
   /// Ends the replay: begins the reconnect barrier (nothing is leased until former workers are
-  /// back), opens the audits of disputed rows again, compares duplicate bands, and continues each
-  /// job. A job that was begun with another pixel version (a number that changes whenever rendered
-  /// pixels change) fails.
+  /// back), opens the audits of disputed rows (rows for which two machines returned different
+  /// pixels) again, compares duplicate bands, and continues each job. A job that was begun with
+  /// another pixel version (a number that changes whenever rendered pixels change) fails.
   void finish();
 
  private:

@@ -98,13 +98,14 @@ std::vector<Record> snapshot(const Context& context) {
   for (const auto& [id, job] : context.jobs.all()) {
     add_job(job, records);
   }
-  // If the last job was forgotten, this keeps its id from being used again.
+  // If the job with the last id was forgotten, this record keeps the id from being used again.
   if (const JobId next = context.jobs.next_id(); next > 1 &&
                                                  !context.jobs.all().contains(next - 1) &&
                                                  context.sequences.find(next - 1) == nullptr) {
     records.push_back(record::JobForgotten{next - 1});
   }
   context.quarantine.add_records(records);
+  // A browser that has left joins and leaves in the replay, so that it stays known as a browser.
   for (const auto& [process, instance] : context.browsers) {
     if (!context.joined.contains(instance)) {
       records.push_back(record::WorkerJoined{instance, true});

@@ -80,6 +80,7 @@ void Quarantine::retract(Job& job, WorkerProcessId process, const std::string& w
   if (job.image_requested) {
     return;
   }
+  // The audits of the rows that are freed end, so the leases of these audits are useless.
   std::vector<LeaseId> useless;
   for (const Audit& audit : job.audits) {
     if (audit.stored().reporter.process == process && audit.lease != 0) {

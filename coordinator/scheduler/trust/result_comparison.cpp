@@ -1,7 +1,7 @@
 // An audit compares the results of several machines for the same band, a range of rows and samples.
-// A result is added to each open audit of its rows. If there is none and a row differs from the
-// stored one, an audit is opened for that row. Each audit that has a verdict is closed, and
-// machines that were wrong are quarantined.
+// A result is added to each open audit of its rows. If a row differs from the stored row and no
+// audit of that row is open, an audit is opened for it. Each audit that has a verdict is closed,
+// and machines that were wrong are quarantined.
 
 #include "coordinator/scheduler/trust/result_comparison.h"
 
@@ -131,7 +131,7 @@ void ResultComparison::reopen_disputes(Job& job) {
     if (audit == job.audits.end()) {
       audit = job.audits.insert(audit, Audit(one.band, result(one.stored)));
     }
-    audit->add(result(one.other), false);
+    audit->add(result(one.other), /*requested=*/false);
   }
 }
 
@@ -152,6 +152,7 @@ void ResultComparison::compare(Job& job, const Pass& pass, const input::BandStor
     const Lease* lease = context_.leases.find(audit.lease);
     const bool requested = lease != nullptr && worker != nullptr && lease->worker == worker->id;
     const bool is_first = audit.result_of(reporter) == nullptr;
+    // `before`: an earlier result of the same machine for this audit, if the new result differs.
     if (const auto before = audit.add({reporter, *digests}, requested)) {
       contradicted.emplace_back(audit.band(), *before);
     } else if (is_first) {

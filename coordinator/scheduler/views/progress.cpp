@@ -43,6 +43,7 @@ double time_of_free(const Job& job) {
   const std::uint32_t height = job.spec.settings.height;
   const double beyond = expected_samples(job) - static_cast<double>(job.planned_samples());
   const double share = job.passes.empty() ? 1 : job.passes.back().mean_share();
+  // `column_s` is the thread time, in seconds, of one column of pixels.
   double column_s = std::max(0.0, beyond) * share * job.row_times.of_all();
   for (const Pass& pass : job.passes) {
     // Rows are leased from the top. So the free samples are assumed to be spread evenly over the
@@ -69,7 +70,7 @@ double time_of_leased(const Context& context, const Job& job, Time now) {
     const double takes =
         static_cast<double>(lease.band.samples.samples()) * job.spec.settings.width *
         job.row_times.of(lease.band.rows, job.pass_of(lease.band)->tile_row_shares);
-    // A worker renders its first lease; the others have not begun.
+    // A worker renders the band of its first lease. It has not begun its other leases.
     const double passed = worker.leases.front() == id ? (now - lease.begun_at) * worker.threads : 0;
     sum += std::clamp(takes - passed, 0.0, takes);
   }

@@ -40,7 +40,7 @@ double remaining_of(const Sequence& sequence, double parts, Time now) {
     return -1;
   }
   const double passed = sequence.elapsed(now) - sequence.elapsed_then;
-  // With less than half a frame, the pace is not known well enough.
+  // While less than half a frame is rendered, the pace is not known well enough.
   return finished > 0.5 && passed > 0 ? left * passed / finished : -1;
 }
 
@@ -80,6 +80,7 @@ void add_workers(const Context& context, const Sequence& sequence, JobView& view
             [](const JobWorkerView& a, const JobWorkerView& b) { return a.name < b.name; });
 }
 
+/// Cuts a list of frame numbers after at most kMaxNumbers bytes, at a comma.
 std::string shortened(std::string numbers) {
   return numbers.size() <= kMaxNumbers
              ? numbers

@@ -9,8 +9,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the view of a sequence, in the form of a job's view. It has the sums over all frames,
-/// the workers that are rendering a frame, and the largest error of the frames that are done.
+/// Returns the view of a sequence, in the form of a job's view. It has the samples, counters and
+/// CPU time of all frames together, the workers that are rendering a frame, and the largest error
+/// of the frames that are done.
 JobView sequence_view(const Context& context, const Sequence& sequence, Time now);
 
 /// Returns the frames whose FrameView::changed is greater than `after`, or all frames if `after` is

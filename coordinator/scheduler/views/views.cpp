@@ -206,11 +206,13 @@ std::string Views::idle_reason(const Worker& worker) const {
   return reason;
 }
 
-/// Returns why the worker may not render the job. REQUIRES: Eligibility::may_render is false.
+/// Returns why the worker may not render the job. REQUIRES: Eligibility::may_render is false. If
+/// the farm renders in browsers only, a native worker renders only bands that browsers have
+/// rendered, so that the results are compared.
 std::string Views::refusal(const Worker& worker, const Job& job) const {
   return !Eligibility::fits(worker, job)              ? memory_reason(worker, job)
          : Eligibility::failed_too_often(worker, job) ? "it failed too often"
-         : worker.browser ? "native workers have to compare what browsers rendered first"
+         : worker.browser ? "native workers must first compare what browsers have rendered"
                           : "the farm renders in browsers only (--browsers only); it compares";
 }
 
@@ -346,9 +348,9 @@ std::vector<std::string> Views::why(JobId id, Time now) const {
   return lines;
 }
 
-/// Returns the sequence's reason, if any, the sentences about its frames, then those about the
-/// first frame that is being rendered. If the sequence is done or cancelled, returns one sentence
-/// that says so.
+/// Returns the sequence's reason, if any, then the sentences about all its frames, then the
+/// sentences about the first frame that is being rendered. If the sequence is done or cancelled,
+/// returns one sentence that says so.
 std::vector<std::string> Views::why_of_sequence(const Sequence& sequence, Time now) const {
   if (sequence.state == JobState::kDone || sequence.state == JobState::kCancelled) {
     return {sequence.state == JobState::kDone ? "it is done" : "it was cancelled"};

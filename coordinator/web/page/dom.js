@@ -61,6 +61,7 @@ export function count(value) {
 
 export const rate = (perSecond) => `${count(perSecond)}samples/s`;
 
+/// Returns a time as text: "4.2 s", "3:05 min" or "1:02:03 h".
 export function duration(seconds) {
   if (seconds < 60) return `${digits(seconds, 2)} s`;
   const whole = Math.round(seconds);

@@ -54,8 +54,9 @@ export function frames(id) {
   const retry = el("button", {hidden: true, onclick: () => attempt(() => post(`/api/jobs/${id}/retry`))}, "Retry what failed");
   const open = el("a.button", {hidden: true}, "This frame");
 
-  // The numbers of the frames in the strip, and of those among them that are done.
+  // The numbers of the frames in the strip.
   const shown = () => all.filter((one, i) => i % Math.ceil(all.length / most) === 0);
+  // The numbers of the frames in the strip that are done.
   const done = () => shown().filter((one) => stateOf(known.get(one)) === "done");
 
   /// Shows the frame with the number `one` large, if it is done.
@@ -119,6 +120,8 @@ export function frames(id) {
       stage.style.aspectRatio = `${width} / ${height}`;
       stage.style.maxWidth = `calc(60vh * ${width / height})`;
       strip.style.setProperty("--aspect", `${width} / ${height}`);
+      // Each run of the coordinator numbers the changes from 1. So after a restart, all frames are
+      // requested again.
       let reply = await get(`/api/jobs/${id}/frames?after=${after}`);
       if (reply.epoch !== epoch) {
         if (after !== "0") reply = await get(`/api/jobs/${id}/frames?after=0`);
@@ -139,7 +142,7 @@ export function frames(id) {
         }
       }
       for (const one of show_cells) cells.get(one)?.update(known.get(one));
-      // There is no picture yet, or it could not be loaded.
+      // If no large picture was loaded yet, or it could not be loaded, shows a frame that is done.
       if (!img.hasAttribute("src") && done().length > 0) show(chosen ?? done()[0]);
       play.disabled = done().length < 2;
       retry.hidden = (status.frames?.failed ?? 0) === 0;

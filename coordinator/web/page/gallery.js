@@ -88,6 +88,7 @@ function controls() {
   return el("div.row", {}, size, quality);
 }
 
+/// Returns the view of the gallery: {element, update()}.
 export function galleryView() {
   const body = el("div");
   const lists = new Map();

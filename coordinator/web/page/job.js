@@ -29,7 +29,8 @@ function figuresOf(status) {
   };
 }
 
-/// Returns {element, update(status)}, the buttons and the priority by which users command job `id`.
+/// Returns {element, update(status)}. The element has the buttons that pause, resume and cancel the job
+/// `id`, and the field in which users change its priority.
 function actions(id) {
   const command = (order) => () => attempt(() => post(`/api/jobs/${id}/${order}`));
   const pause = el("button", {onclick: command("pause")}, "Pause");

@@ -50,6 +50,7 @@ function jobRow(first) {
   };
 }
 
+/// Returns the view of all jobs: {element, update(overview)}.
 export function jobsView() {
   const list = el("ul.jobs");
   const empty = el("p.empty", {hidden: true}, "No jobs yet. Drop a .glb or a .textproto here, look into the gallery, or use ",

@@ -53,6 +53,7 @@ class Awake {
   }
 }
 
+/// Starts the renderer, when the user has pressed the button, and shows what it renders.
 async function work() {
   show("work");
   text($("phase"), "Starting");
@@ -116,6 +117,7 @@ async function work() {
   update();
 }
 
+/// Checks that this browser can join the farm. Then shows the button that starts the renderer.
 async function enter() {
   if (!secret) {
     problem("The link is incomplete", "This page is opened by a link that ends in # and a secret; open the whole link, or scan its code again.");

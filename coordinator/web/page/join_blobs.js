@@ -2,11 +2,11 @@
 
 import {Backoff, pause} from "/join_wait.js";
 
-// At most so many bytes of blobs are kept, because several renderers load the same scene at about
-// the same time.
+// Maximum number of bytes of the blobs that are kept. Blobs are kept because several renderers load
+// the same scene at about the same time.
 const KEPT_BYTES = 64 * 2 ** 20;
-// After so many answers with wrong bytes, fetching the blob fails: the coordinator's copy must be
-// wrong.
+// Fetching a blob fails when this number of answers had wrong bytes, because then the coordinator's
+// copy must be wrong.
 const WRONG_TIMES = 3;
 
 /// The link has ended or was revoked.
@@ -90,7 +90,8 @@ export class Blobs {
   }
 
   /// Makes one request and returns the bytes. `again`: the browser's cache is not used, because it
-  /// has wrong bytes. Throws Final, LinkEnded, or another Error if the request can be repeated.
+  /// has wrong bytes. Throws Final or LinkEnded. If the request can be repeated, throws another
+  /// Error.
   async once(digest, again, took) {
     const response = await fetch(`${this.base}/join/blob/${digest}`, {headers: this.headers(), cache: again ? "reload" : "default"});
     if (response.status === 401) throw new LinkEnded(sentence(await response.text()));

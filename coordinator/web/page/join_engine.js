@@ -14,6 +14,7 @@ export function describe(agent = navigator.userAgent) {
   const found = /(Firefox|Edg|OPR|Chrome|CriOS|FxiOS|Version)\/(\d+)/g;
   const all = [...agent.matchAll(found)].map(([, name, version]) => ({name, version}));
   const names = {Edg: "Edge", OPR: "Opera", CriOS: "Chrome", FxiOS: "Firefox", Version: "Safari"};
+  // Edge and Opera also name Chrome, before their own name.
   const one = all.find(({name}) => name === "Edg" || name === "OPR") ?? all[0];
   const browser = one ? `${names[one.name] ?? one.name} ${one.version}` : "a browser";
   const on = [[/Android/, "Android"], [/iPhone|iPad/, "iOS"], [/Windows/, "Windows"], [/Mac OS/, "macOS"], [/CrOS/, "ChromeOS"],
