@@ -14,22 +14,22 @@ void RowDigests::keep(const Band& band, const std::vector<RowRange>& rows,
   if (rows.empty()) {
     return;
   }
-  auto& of_node = known_[band.samples];
+  auto& by_row = known_[band.samples];
   for (const RowRange& range : rows) {
     for (std::uint32_t row = range.first; row < range.last; ++row) {
-      of_node.insert_or_assign(row, digests[row - band.rows.first]);
+      by_row.insert_or_assign(row, digests[row - band.rows.first]);
     }
   }
 }
 
 std::optional<std::uint32_t> RowDigests::first_difference(
     const Band& band, const std::vector<std::uint64_t>& digests) const {
-  const auto of_node = known_.find(band.samples);
-  if (of_node == known_.end()) {
+  const auto by_row = known_.find(band.samples);
+  if (by_row == known_.end()) {
     return std::nullopt;
   }
-  for (auto it = of_node->second.lower_bound(band.rows.first);
-       it != of_node->second.end() && it->first < band.rows.last; ++it) {
+  for (auto it = by_row->second.lower_bound(band.rows.first);
+       it != by_row->second.end() && it->first < band.rows.last; ++it) {
     if (it->second != digests[it->first - band.rows.first]) {
       return it->first;
     }
@@ -38,18 +38,18 @@ std::optional<std::uint32_t> RowDigests::first_difference(
 }
 
 std::optional<std::uint64_t> RowDigests::of(const SampleRange& samples, std::uint32_t row) const {
-  const auto of_node = known_.find(samples);
-  if (of_node == known_.end()) {
+  const auto by_row = known_.find(samples);
+  if (by_row == known_.end()) {
     return std::nullopt;
   }
-  const auto digest = of_node->second.find(row);
-  return digest == of_node->second.end() ? std::nullopt : std::optional(digest->second);
+  const auto digest = by_row->second.find(row);
+  return digest == by_row->second.end() ? std::nullopt : std::optional(digest->second);
 }
 
 void RowDigests::forget(const Band& band) {
-  if (const auto of_node = known_.find(band.samples); of_node != known_.end()) {
-    of_node->second.erase(of_node->second.lower_bound(band.rows.first),
-                          of_node->second.lower_bound(band.rows.last));
+  if (const auto by_row = known_.find(band.samples); by_row != known_.end()) {
+    by_row->second.erase(by_row->second.lower_bound(band.rows.first),
+                         by_row->second.lower_bound(band.rows.last));
   }
 }
 
@@ -126,11 +126,11 @@ void Pass::recompute_totals() {
   }
 }
 
-WorkerProcessId Pass::process_of_row(const SampleRange& node, std::uint32_t row) const {
+WorkerProcessId Pass::process_of_row(const SampleRange& wanted, std::uint32_t row) const {
   for (const auto& [process, part] : parts) {
     for (const StoredBand& one : part.bands) {
       const RowRange& rows = one.band.rows;
-      if (one.band.samples == node && rows.first <= row && row < rows.last) {
+      if (one.band.samples == wanted && rows.first <= row && row < rows.last) {
         return process;
       }
     }
