@@ -32,7 +32,8 @@ shape { quad { corner: [$3, $4, 0]  u: [$5, 0, 0]  v: [0, $6, 0] }  material: "m
 SCENE
 }
 
-panel() { # OUT WIDTH HEIGHT GREY: renders the pictures in $work/panel, pixel for pixel.
+# Renders OUT, an image of WIDTH x HEIGHT pixels: the quads in the file $work/panel before a background of GREY. A scene unit is a pixel.
+panel() { # OUT WIDTH HEIGHT GREY
   cat - "$work/panel" >"$work/panel.textproto" <<SCENE
 camera { position: [$(awk "BEGIN { print $2 / 2 \", \" $3 / 2 }"), 1]  rotate { axis: [0, 1, 0]  degrees: 0 }
          orthographic { height: $3 } }

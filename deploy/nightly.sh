@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs the tests that are too long for CI, in parts: every label of CTest, sanitizers, the other compiler, the other Debian, ARM64, fuzzing
+# Runs the tests that are too long for CI, in parts: every label of CTest, sanitizers, builds by clang, Debian 12 and 13, ARM64, fuzzing
 # and more. It continues after a part that fails, and writes a table that says of each part whether it passed, failed or was skipped.
 # Exit 1: a part in the table failed.
 # Usage: deploy/nightly.sh [--continue] [--fuzz-minutes N] [--calibration-minutes N] [--out FOLDER] [PART...]
@@ -77,7 +77,7 @@ part_asan-ubsan() {
 
 # The system's libraries are not built for ThreadSanitizer, so it does not see their locks. Therefore it ignores their accesses to memory.
 # Two groups of tests are left out: one reads JSON into protobuf's Struct, whose layout in the library differs from that in a program
-# built for ThreadSanitizer; one starts a worker without these options and compares its last message.
+# built for ThreadSanitizer; one starts a worker without TSAN_OPTIONS and compares its last message.
 part_tsan() {
   export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt:ignore_noninstrumented_modules=1"
   preset tsan unit_scheduler unit_store unit_engine unit_worker farm &&

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds the renderer as a WebAssembly module, which browsers load when they join a farm as workers. The results are in build/wasm:
-# bandsaw.wasm, the same compressed as bandsaw.wasm.br, and bandsaw_test.wasm for the tests with the label wasm. The first two are copied
+# bandsaw.wasm, its compressed copy bandsaw.wasm.br, and bandsaw_test.wasm for the tests with the label wasm. The first two are copied
 # to build/release/share/bandsaw/browser. The coordinator of the release build finds them in this folder, and an installation copies them
 # from it.
 # The script first installs the compiler and tools (deploy/install.sh wasm), and unpacks Debian's source packages of Abseil and protobuf

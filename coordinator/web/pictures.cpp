@@ -23,8 +23,8 @@ struct HeldFile {
   MemoryBudget::Share share;
 };
 
-/// Encodes the image as a file, which replaces it in memory. During encoding both are in memory,
-/// but only one image is encoded at a time.
+/// Encodes the image as a file, then frees the image. During encoding, the image and the file are
+/// both in memory, but only one image is encoded at a time.
 absl::StatusOr<Pictures::Bytes> encoded(HeldImage image, ImageFormat format) {
   ASSIGN_OR_RETURN(const std::vector<std::byte> bytes,
                    encode_image(image.result.image, format, image.result.display));

@@ -30,12 +30,13 @@ class Pictures {
   /// Returns a file of the job's present image, which is at most a second old. If the job is done,
   /// it is the finished image. The image has at most `most_side` pixels per side. NOT_FOUND: there
   /// is no such job, or no band of the job is stored. All three functions return RESOURCE_EXHAUSTED
-  /// in the cases of picture_of (coordinator/rpc/picture.h).
+  /// if images that are viewed or downloaded at the same time leave too little memory.
   absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side, ImageFormat format)
       EXCLUDES(making_);
-  /// Returns the finished image. Errors as Engine::result.
+  /// Returns the finished image. FAILED_PRECONDITION: the job is not done. NOT_FOUND: there is no
+  /// such job, or its result has no image. DATA_LOSS: the stored image is missing or damaged.
   absl::StatusOr<Bytes> image(JobId job, ImageFormat format) EXCLUDES(making_);
-  /// Returns the report of the finished image. Errors as Engine::result.
+  /// Returns the report of the finished image. Its errors are those of image().
   absl::StatusOr<Bytes> report(JobId job, const MakeReport& make) EXCLUDES(making_);
 
  private:

@@ -1,4 +1,5 @@
-// Converts the modules of libqrencode to true (dark) and false.
+// Converts the modules (cells) of a code that libqrencode has made. libqrencode stores one byte for
+// each module; its lowest bit is 1 if the module is dark.
 
 #include "coordinator/web/qr_code.h"
 
@@ -18,8 +19,9 @@ struct FreeCode {
 }  // namespace
 
 absl::StatusOr<QrCode> qr_code(absl::string_view text) {
+  // The version of a code is its size. 0: the smallest version that has room for the text.
   const std::unique_ptr<QRcode, FreeCode> made(
-      QRcode_encodeString8bit(std::string(text).c_str(), 0, QR_ECLEVEL_M));
+      QRcode_encodeString8bit(std::string(text).c_str(), /*version=*/0, QR_ECLEVEL_M));
   if (made == nullptr) {
     return absl::InvalidArgumentError(
         absl::StrCat("a QR code cannot hold this text of ", text.size(), " bytes"));

@@ -24,11 +24,11 @@ struct QrCode {
   }
 };
 
-/// Returns the code of a text, with error correction of level M (15 %). INVALID_ARGUMENT: the text
-/// is too long for a code.
+/// Returns the code of a text. Its error correction has level M: the text can be read although
+/// about 15 % of the code are damaged. INVALID_ARGUMENT: the text is too long for a code.
 absl::StatusOr<QrCode> qr_code(absl::string_view text);
 
-/// Returns an SVG image with its margin, dark on white.
+/// Returns the code with a margin around it as an SVG image, dark on white.
 std::string qr_svg(const QrCode& code);
 
 }  // namespace bandsaw::coordinator

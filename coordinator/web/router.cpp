@@ -21,13 +21,14 @@ void Router::add(bool post, const std::string& pattern, HttpHandler answer) {
 }
 
 void Router::get(std::string pattern, std::function<HttpReply(const HttpRequest&)> answer) {
-  add(false, pattern, [answer = std::move(answer)](const HttpRequest& request, const HttpBody&) {
-    return answer(request);
-  });
+  add(/*post=*/false, pattern,
+      [answer = std::move(answer)](const HttpRequest& request, const HttpBody&) {
+        return answer(request);
+      });
 }
 
 void Router::post(std::string pattern, HttpHandler answer) {
-  add(true, pattern, std::move(answer));
+  add(/*post=*/true, pattern, std::move(answer));
 }
 
 bool Router::fits(const Route& route, HttpRequest& request) {

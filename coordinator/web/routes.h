@@ -28,6 +28,7 @@ void add_login(Router& router, Access& access);
 void add_farm(Router& router, Engine& engine);
 void add_jobs(Router& router, Engine& engine);
 void add_pictures(Router& router, Pictures& pictures, const MakeReport& report);
+/// Adds the requests for denoised pictures of finished jobs.
 void add_clean_pictures(Router& router, CleanPictures& pictures);
 void add_scenes(Router& router, Scenes& scenes);
 /// Adds the requests that submit a scene whose files are sent separately, each file once.

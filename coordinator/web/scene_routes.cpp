@@ -19,7 +19,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kMaxPackageBytes = 2048ull << 20;  // of the file that is dropped
+constexpr std::uint64_t kMaxPackageBytes = 2048ull << 20;  // of the scene file
 
 /// A temporary folder for one file: the importer can read below this folder only.
 class Upload {
@@ -74,8 +74,8 @@ class Upload {
   std::FILE* file_ = nullptr;
 };
 
-/// Returns the file's name without folders, with unsafe characters replaced. INVALID_ARGUMENT: its
-/// suffix is not that of a format whose scenes may consist of one file.
+/// Returns the file's name without folders, with unsafe characters replaced. INVALID_ARGUMENT: a
+/// file with this suffix cannot be a complete scene.
 absl::StatusOr<std::string> file_name(const std::string& given) {
   constexpr std::size_t kMaxStem = 80;
   std::string name = given.substr(given.find_last_of("/\\") + 1);

@@ -17,14 +17,14 @@ absl::StatusOr<web::Submitted> Scenes::submit(const std::string& path, const Sce
     return absl::UnavailableError("other scenes are being read; try again in a moment");
   }
   ASSIGN_OR_RETURN(const SceneOnFarm scene, import_scene_(path, wanted.inside, stop_));
-  const JobSpec spec{
-      .request_id =
-          wanted.request_id.empty() ? "dashboard-" + link::random_hex(8) : wanted.request_id,
-      .name = wanted.title.empty() ? scene.info.name : wanted.title,
-      .manifest = scene.manifest,
-      .settings = settings_of(
-          scene.info, wanted.width == 0 ? std::nullopt : std::optional(wanted.width), std::nullopt),
-      .stop = wanted.stop};
+  const JobSpec spec{.request_id = wanted.request_id.empty() ? "dashboard-" + link::random_hex(8)
+                                                             : wanted.request_id,
+                     .name = wanted.title.empty() ? scene.info.name : wanted.title,
+                     .manifest = scene.manifest,
+                     .settings = settings_of(
+                         scene.info, wanted.width == 0 ? std::nullopt : std::optional(wanted.width),
+                         /*height=*/std::nullopt),
+                     .stop = wanted.stop};
   RETURN_IF_ERROR(validate(spec.settings));
   using Answer = absl::StatusOr<JobId>;
   ASSIGN_OR_RETURN(const JobId job,

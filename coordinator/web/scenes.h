@@ -23,9 +23,10 @@ struct SceneOnFarm {
   PackageInfo info;
 };
 
-/// Imports a scene file, or the scene `inside` of a zip file (empty: the only scene in it), and
-/// stores its package. Blocks; CANCELLED soon after `stop` becomes true. Returns the errors of the
-/// importer, whose messages name the file, and those of the store.
+/// Imports the scene file `path` and stores its package. If `path` is a zip file, `inside` names
+/// the scene file in it; empty: the only one. The call blocks, and fails with CANCELLED soon after
+/// `stop` becomes true. Other errors are those of the importer, whose messages name the file, and
+/// those of the store.
 using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(
     const std::string& path, const std::string& inside, const std::atomic<bool>& stop)>;
 

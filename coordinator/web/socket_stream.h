@@ -71,6 +71,7 @@ class SocketStream {
     return boost::asio::async_compose<Token, void(ErrorCode)>(
         [this, begun = false](auto& self, ErrorCode error = {}) mutable {
           if (!std::exchange(begun, true)) {
+            // An operation must not complete within the call that begins it.
             boost::asio::post(get_executor(),
                               boost::beast::bind_front_handler(std::move(self), ErrorCode()));
             return;
@@ -133,7 +134,7 @@ class SocketStream {
           const Connection::Attempt done = attempt(*connection_, buffer);
           if (done.bytes > 0) {
             self.complete({}, done.bytes);
-          } else if (done.wait_for == 0) {
+          } else if (done.wait_for == 0) {  // the connection has ended
             self.complete(boost::asio::error::eof, 0);
           } else {
             socket_.async_wait(done.wait_for == POLLIN ? Socket::wait_read : Socket::wait_write,

@@ -49,7 +49,7 @@ constexpr std::optional<Machine> machine_named(absl::string_view name) {
 /// the file changes. It contains no secret.
 struct WorkerProgram {
   Machine machine = kThisMachine;
-  std::string version;  ///< version in the mark that the program's file contains
+  std::string version;  ///< as the program's bytes state it (proto/wire/worker_mark.h)
   std::string bytes;
   wire::Digest digest;  ///< digest of `bytes`
 };

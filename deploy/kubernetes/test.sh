@@ -21,6 +21,7 @@ has '^  name: coordinator$'
 has '^  serviceName: bandsaw$'
 has '^        - 0.0.0.0:7878$'
 grep -q 'coordinator-0.bandsaw:7878' "$here/README.md"
+# The service has no address of its own. The pods of coordinator and workers do not run as root, and cannot write to their root file system.
 [ "$(grep -c 'clusterIP: None' <<<"$built")" -eq 1 ]
 [ "$(grep -c 'runAsNonRoot: true' <<<"$built")" -eq 2 ]
 [ "$(grep -c 'readOnlyRootFilesystem: true' <<<"$built")" -eq 2 ]
@@ -35,4 +36,4 @@ for option in --join --cache --name --threads; do
   has "^        - $option\$"
   grep -q -e "$option " <<<"$help" || { echo "bandsaw-worker has no $option" >&2; exit 1; }
 done
-echo "the parts agree with each other and with the programs"
+echo "the files agree with each other and with the options of the programs"

@@ -63,10 +63,11 @@ class Refused(BandsawError):
 
 
 class JoinString:
-    """The parts of a users' join string: `addresses` ((host, port), the farm's gRPC port), `web`
-    ((host, port) of the dashboard; host is None if the string names only the port; `web` is None if it names
-    neither), `certificate` (SHA-256, 32 bytes; None: the farm runs with --insecure) and `secret`.
-    proto/link/join.h describes the form."""
+    """The parts of a users' join string. proto/link/join.h describes its form.
+
+    `addresses`: a list of (host, port) of the farm's gRPC server. `web`: (host, port) of the dashboard; host is None if
+    the string names only a port, and `web` is None if the string does not name the dashboard. `certificate`: SHA-256,
+    32 bytes; None: the farm runs with --insecure. `secret`: a text."""
 
     def __init__(self, text):
         rest = text.strip()

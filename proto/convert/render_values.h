@@ -16,7 +16,7 @@ RenderSettings settings_of(const farm::Settings& message);
 farm::Band to_message(const Band& band);
 Band band_of(const farm::Band& message);
 
-/// The times of the message, which Counters does not have, are left 0.
+/// Leaves the times of the message 0, because renderlib's Counters has no times.
 farm::Counters to_message(const Counters& counters);
 Counters counters_of(const farm::Counters& message);
 

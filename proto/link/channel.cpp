@@ -43,7 +43,7 @@ Connected open_channels(const std::string& address,
                         const std::shared_ptr<grpc::ChannelCredentials>& credentials, bool tls) {
   Connected connected{.address = address, .control = nullptr, .bulk = nullptr};
   for (const bool bulk : {false, true}) {
-    grpc::ChannelArguments args = channel_arguments(bulk);
+    grpc::ChannelArguments args = channel_arguments(/*own_connection=*/bulk);
     if (tls) {
       args.SetSslTargetNameOverride(kServerName);
     }
@@ -74,11 +74,11 @@ absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Di
   }
   grpc::SslCredentialsOptions options;
   options.pem_root_certs = *std::move(pem);
-  return open_channels(address, grpc::SslCredentials(options), true);
+  return open_channels(address, grpc::SslCredentials(options), /*tls=*/true);
 }
 
 absl::StatusOr<Connected> connect_plain(const std::string& address, const Deadline& deadline) {
-  Connected connected = open_channels(address, grpc::InsecureChannelCredentials(), false);
+  Connected connected = open_channels(address, grpc::InsecureChannelCredentials(), /*tls=*/false);
   while (!connected.control->WaitForConnected(std::chrono::system_clock::now() +
                                               Deadline::kInterval)) {
     if (std::chrono::steady_clock::now() >= deadline.end || deadline.is_stopped()) {

@@ -34,11 +34,12 @@ struct Connected {
 };
 
 /// Tries the addresses in order, each for at most `timeout` (a refused connection fails at once).
-/// Stops soon after `stopped` returns true (UNAVAILABLE); see Deadline.
-/// Verifies the server's identity only; a wrong secret or role is detected by the first call.
-/// UNAVAILABLE: no address answered, or this machine's clock is outside the certificate's validity
-/// (the message gives the reason for each address). UNAUTHENTICATED: a server on another machine,
-/// or the server at every address, presented a certificate other than that of the join string.
+/// Calls `stopped` about every 100 ms while it waits, and fails with UNAVAILABLE soon after
+/// `stopped` returns true. Verifies the server's identity only; a wrong secret or role is detected
+/// by the first call. UNAVAILABLE: no address answered, or this machine's clock is outside the
+/// certificate's validity (the message gives the reason for each address). UNAUTHENTICATED: a
+/// server on another machine, or the server at every address, presented a certificate other than
+/// that of the join string.
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout,
                                   const std::function<bool()>& stopped = {});
 

@@ -21,6 +21,7 @@ using Session = std::unique_ptr<SSL, decltype(&SSL_free)>;
 using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
 using Bio = std::unique_ptr<BIO, decltype(&BIO_free_all)>;
 
+/// Removes all bytes from the memory buffer and returns them.
 std::string take_all(BIO* bio) {
   std::string bytes(BIO_ctrl_pending(bio), '\0');
   const int got = bytes.empty() ? 0 : BIO_read(bio, bytes.data(), static_cast<int>(bytes.size()));

@@ -134,7 +134,8 @@ absl::StatusOr<Identity> renew_secret(const std::string& folder, Role role) {
 }
 
 absl::StatusOr<Role> role_of_secret(const Identity& identity, const std::string& secret) {
-  // Always compares both, so that the time does not reveal which secret was close.
+  // Compares with both secrets in every case, so that the time does not depend on the result of the
+  // first comparison.
   const bool worker = is_same_secret(identity.worker_secret, secret);
   const bool farm = is_same_secret(identity.farm_secret, secret);
   if (worker) {

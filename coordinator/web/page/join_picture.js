@@ -1,6 +1,7 @@
 // The picture on the page /join: the rows that this device has rendered.
 
-const maxSide = 2048;  // of the canvas; of a larger picture only every n-th pixel is shown
+// Limit of the width and of the height of the canvas, in pixels. Of a larger picture only every n-th pixel is shown.
+const maxSide = 2048;
 
 export class Picture {
   #canvas;
@@ -16,8 +17,9 @@ export class Picture {
     this.#note = note;
   }
 
-  /// Draws the rows of a state of the engine: {job, width, height, rows: {first, last, rgb}}, with four
-  /// bytes a pixel.
+  /// Draws the rows [first, last) of a job's picture, if the argument has `rows`. The argument is a
+  /// state that the engine reports: {job, width, height, rows: {first, last, rgb}}. `rgb` has four
+  /// bytes for each pixel.
   draw({job, width, height, rows}) {
     if (!rows || !width || !height) return;
     const of = `${job} ${width} ${height}`;

@@ -42,6 +42,8 @@ const calls = {
 /// Returns the buffers that move to the receiver instead of being copied.
 const moved = (value) => [value?.sums, value?.rgb?.buffer].filter((one) => one);
 
+/// Returns the fields {error} or {fatal, error} of the answer to a call that threw `error`. A
+/// RuntimeError or a RangeError is fatal: the instance has crashed or had no memory left.
 function problem(error) {
   if (!(error instanceof WebAssembly.RuntimeError) && !(error instanceof RangeError)) return {error: error.message};
   const used = program ? Math.round(program.memory.buffer.byteLength / 1e6) : 0;

@@ -11,8 +11,9 @@ const BLOBS_AHEAD = 4;
 // (coordinator/scheduler/README.md).
 export const MEMORY_PER_BLOB_BYTE = 4;
 
-/// The renderer has ended; another one can be started in its place. `sceneBytes`: if the renderer
-/// had or was loading exactly one scene, the number of bytes of that scene's blobs; otherwise 0.
+/// The renderer has ended. Another renderer can be started in its place. `sceneBytes`: the bytes of
+/// the blobs of the only scene that the renderer had loaded or was loading. If there was no such
+/// scene, or more than one, `sceneBytes` is 0.
 export class RendererEnded extends Error {
   constructor(why, sceneBytes) {
     super(why);
@@ -74,6 +75,7 @@ export class Renderer {
     this.asked.clear();
   }
 
+  /// Returns the error with which all requests fail after the renderer has ended.
   error() {
     const sizes = [...this.scenes.values()].map(({size}) => size);
     if (this.loading > 0) sizes.push(this.loading);
@@ -119,8 +121,8 @@ export class Renderer {
     }
   }
 
-  /// Loads a scene, as load(). First drops other scenes, until there is a place and memory for this
-  /// one.
+  /// Does the work of load(). First drops other scenes, until there is a place and memory for the
+  /// new scene.
   async loadBlobs(scene, get, step) {
     while (this.scenes.size >= MAX_SCENES) await this.drop();
     const manifest = await get(scene);

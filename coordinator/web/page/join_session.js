@@ -243,6 +243,8 @@ function welcomed() {
   leaveIfDrained();
 }
 
+/// Handles the coordinator's order to leave: ends the engine if the tab may never join again, otherwise closes the stream.
+/// disconnected() opens the next stream after the waiting time.
 function dismiss({reason, wait_ms: wait, for_ever: forEver}) {
   log(`dismissed: ${reason}`);
   if (forEver) {
@@ -269,7 +271,8 @@ function beat() {
 
 // ---- Rendering. ----
 
-/// Begins a band. `start`: as bandsaw_session_receive answers it (worker/browser/exports.h).
+/// Begins a band. `start`: {task, job, manifest, width, height, first, last, samples, lease}. `task` is the band's id in this tab,
+/// `first` and `last` are its range of rows, and `samples` is the number of samples of all its pixels together.
 function take(start) {
   log(`leased job=${start.job} rows=${start.first}:${start.last}`);
   tooLarge = null;

@@ -94,7 +94,9 @@ export class Program {
     return result;
   }
 
-  /// Returns a copy of the bytes of a BandsawAnswer, or throws its error.
+  /// Returns a copy of the bytes of a BandsawAnswer, or throws them as an error. `answer`: the
+  /// address of the BandsawAnswer. This is three 32-bit words: the address of the bytes, their
+  /// number, and 1 if they are the text of an error.
   read(answer) {
     const view = new DataView(this.memory.buffer);
     const at = answer >>> 0;

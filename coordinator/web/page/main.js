@@ -35,6 +35,7 @@ function showLogin() {
   root.querySelector("input").focus();
 }
 
+/// Shows the view that the address after the # names, or the view of the jobs if it names none. Marks the view's link in the header.
 function route() {
   const hash = routes.some(([pattern]) => pattern.test(location.hash)) ? location.hash : "#/jobs";
   for (const [pattern, make] of routes) {

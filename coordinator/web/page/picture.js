@@ -66,6 +66,7 @@ export function picture() {
       legend.replaceChildren(...names.map((name) => {
         const swatch = el("i");
         swatch.style.background = colour(name);
+        // The name is empty if the coordinator does not know it, as for rows that were rendered before its restart.
         return el("li", {}, swatch, `${name || "before the restart"} · ${rows(name)} rows`);
       }));
       toggle.hidden = names.length === 0;

@@ -4,7 +4,8 @@ import {get} from "./api.js";
 import {duration, el, keyed, percent, rate, text} from "./dom.js";
 import {browserLink} from "./link.js";
 
-/// Returns the card of a worker, {element, update({worker, share})}. `share`: its part of the farm's speed, [0, 1].
+/// Returns the card of a worker, {element, update({worker, share})}. `first`: the worker's status when the card is made; the name on
+/// the card does not change later. `share`: the worker's part of the farm's speed, [0, 1].
 function workerCard(first) {
   const state = el("span.state");
   const speed = el("span.soft.small");

@@ -79,6 +79,7 @@ class BANDSAW_PT_sampling(bpy.types.Panel):
         layout.operator(BANDSAW_OT_check.bl_idname)
 
 
+# Lists the warnings of the last render: the things that Bandsaw does not show as Blender does.
 class BANDSAW_PT_omitted(bpy.types.Panel):
     bl_label = "Not Shown as It Is"
     bl_space_type = "PROPERTIES"

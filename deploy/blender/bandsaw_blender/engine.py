@@ -176,7 +176,7 @@ class BandsawEngine(bpy.types.RenderEngine):
 
     def show_progress(self, progress):
         self.update_progress(progress.fraction)
-        omitted = f" | {len(last_warnings)} things are not shown as they are: see Render Properties" if last_warnings else ""
+        omitted = f" | {len(last_warnings)} things are not shown as in Blender: see Render Properties" if last_warnings else ""
         self.update_stats("", str(progress) + omitted)
 
     def show_preview(self, job, result, width, height):

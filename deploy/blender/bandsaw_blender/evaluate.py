@@ -21,8 +21,9 @@ class Points:
 
     Each coordinate is an array (n, 3), or None if the points do not have it. `generated`, `object`
     (the parameter `local`) and `normal` are in the object's space, `position` and `world_normal` in
-    the world's. `uv` is a dictionary from the names of uv maps to arrays (n, 2). In it, "" names
-    the active map, and a value None stands for a map of the mesh that the points do not have.
+    the world's. `uv` is a dictionary from the names of uv maps to arrays (n, 2). The key "" stands
+    for the active map. The value None means that the mesh has a map of this name, but the points
+    have no coordinates in it.
     `used`: a set that gets the names of the coordinates that nodes need, except for uvs."""
 
     def __init__(self, count, uv=None, generated=None, local=None, normal=None, position=None, world_normal=None, used=None):

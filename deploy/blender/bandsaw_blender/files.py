@@ -16,6 +16,7 @@ def exr(pixels):
         return name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data
 
     box = struct.pack("<iiii", 0, 0, width - 1, height - 1)
+    # For each channel: its name, the type 2 (float), four unused bytes, and a sample in every column and every row.
     channels = b"".join(name + b"\0" + struct.pack("<iBBBBii", 2, 0, 0, 0, 0, 1, 1) for name in (b"B", b"G", b"R")) + b"\0"
     head = b"".join((
         struct.pack("<ii", 20000630, 2),  # OpenEXR's magic number, and version 2 of the format

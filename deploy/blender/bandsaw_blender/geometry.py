@@ -97,7 +97,7 @@ class Pose:
             self.normals = _corner_normals(mesh, loops)
 
     def fits(self, other):
-        """Returns true if both are the same mesh with its vertices at other places."""
+        """Returns true if both are poses of the same mesh, which may differ in the places of vertices and in normals."""
         return (len(self.positions) == len(other.positions) and np.array_equal(self.vertex_of_loop, other.vertex_of_loop) and
                 (self.normals is None) == (other.normals is None))
 

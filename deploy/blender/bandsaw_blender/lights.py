@@ -77,6 +77,7 @@ def finish_suns(out, center, radius):
         distance = 4096 * max(radius, 1e-3)
         half = angle / 2
         radiance = tint / (math.pi * math.sin(half) ** 2)
+        # True: the camera does not see the disk.
         out.lamp({"disk": {"center": vector(center - toward * distance), "normal": vector(toward), "radius": distance * math.tan(half)}}, radiance, True)
 
 

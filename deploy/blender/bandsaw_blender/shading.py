@@ -685,11 +685,11 @@ class Shader:
         return made
 
     def old_diffuse(self, metallic, roughness, index):
-        """Returns the factor by which a base colour is multiplied to make a surface as bright as
-        with the Principled BSDF of Blender before version 4. That BSDF adds its reflection to its
-        diffuse part. In Bandsaw, the diffuse part gets only the light that is not reflected. That
-        BSDF's diffuse part (Burley 2012) also depends on the roughness. The formula is fitted to
-        the values in deploy/blender/README.md."""
+        """Returns a factor for the base colour. With it, a surface is as bright as in Blender before
+        version 4. The old Principled BSDF adds its reflection to its diffuse part, but in Bandsaw
+        the diffuse part gets only the light that is not reflected. The old diffuse part (Burley
+        2012) also depends on the roughness. The formula is fitted to the values in
+        deploy/blender/README.md."""
         if self.version >= (4, 0, 0) or metallic.constant is None or roughness.constant is None:
             return 1.0
         r, f0 = roughness.number, ((index - 1) / (index + 1)) ** 2
