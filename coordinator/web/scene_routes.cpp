@@ -19,7 +19,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kMaxPackageBytes = 2048ull << 20;  // of the scene file
+constexpr std::uint64_t kMaxUploadBytes = 2048ull << 20;  // of the scene file
 
 /// A temporary folder for one file: the importer can read below this folder only.
 class Upload {
@@ -51,7 +51,7 @@ class Upload {
 
  private:
   absl::Status copy(const HttpBody& body) const {
-    std::uint64_t left = kMaxPackageBytes;
+    std::uint64_t left = kMaxUploadBytes;
     while (true) {
       ASSIGN_OR_RETURN(const absl::string_view bytes, body());
       if (bytes.empty()) {
@@ -59,7 +59,7 @@ class Upload {
       }
       if (bytes.size() > left) {
         return absl::InvalidArgumentError(
-            absl::StrCat("a scene has at most ", kMaxPackageBytes >> 20,
+            absl::StrCat("a scene has at most ", kMaxUploadBytes >> 20,
                          " MiB here; `bandsaw submit` takes larger scenes"));
       }
       left -= bytes.size();
