@@ -1,7 +1,7 @@
 #pragma once
 
-// SHA-256 digests. A blob (a part of a scene package) is named by its digest. The digest of a band
-// is the checksum of the pixels that a worker sends.
+// SHA-256 digests. A blob (a part of a scene package) is named by its digest. When a worker sends
+// the pixels of a band (a range of rows), their digest is the checksum.
 
 #include <array>
 #include <compare>

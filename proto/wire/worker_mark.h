@@ -13,8 +13,9 @@ namespace bandsaw::wire {
 struct WorkerMark {
   char magic[16] = "\177bandsaw-worker";
   std::uint32_t protocol = kProtocol;
-  std::uint32_t pixel_version = 0;  ///< kPixelVersion of renderlib
-  char version[24] = "";            ///< visible ASCII characters; ends with a zero
+  /// kPixelVersion of renderlib, which changes whenever the renderer computes other pixels.
+  std::uint32_t pixel_version = 0;
+  char version[24] = "";  ///< visible ASCII characters; ends with a zero
 };
 static_assert(sizeof(WorkerMark) == 48);
 

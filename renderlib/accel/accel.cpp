@@ -1,7 +1,7 @@
 // The BVHs have two levels. Each mesh and each group of shapes has a BVH (top_tree.h, Prototype).
 // Above them, one tree contains the loose shapes (those of no mesh and no group) and the instances
-// that rest, and another tree the instances that move. A query (query.h) traces the first of these
-// trees, then the second if there is one.
+// that rest, and another tree the instances that move. A query (query.h) traces the tree of the
+// loose shapes, and then, if there are moving instances, the tree of these instances.
 
 #include "renderlib/accel/accel.h"
 

@@ -21,7 +21,7 @@ enum class Traversal {
   kBruteForce,  ///< tests all primitives: the same hits, slowly; for comparison
 };
 
-/// The BVHs of one Geometry. A Scene has one, and integrate/ traces its rays through it.
+/// The BVHs of one Geometry. A Scene has one Accel, and integrate/ traces rays through it.
 class Accel {
  public:
   /// Builds the BVHs. `geometry` MUST outlive the result and not change. Moving instances are only

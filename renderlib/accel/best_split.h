@@ -36,7 +36,8 @@ class Binning {
   /// Returns false if all centres have about the same coordinate on this axis, so that no plane
   /// separates them.
   bool has_extent(std::size_t axis) const { return has_extent_[axis]; }
-  /// Returns in lanes 0 to 2 the bin plus a fraction, in [0, kBins - 1] for any centre.
+  /// `centre` is the twice_centre() of an item. Returns in lanes 0 to 2 the item's bin on each
+  /// axis, plus a fraction. The values are in [0, kBins - 1].
   Float8 place(Float8 centre) const {
     return min((centre - first_) * scale_, Float8(static_cast<float>(kBins - 1)));
   }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Capacity of one BVH. Validation refuses larger geometry (scene/check_counts.h); building a BVH
-// asserts it.
+// Capacity of one BVH. Validation refuses larger geometry (scene/check_counts.h). The functions
+// that build a BVH assert that the capacity is not exceeded.
 
 #include <cstddef>
 

@@ -9,8 +9,9 @@
 
 namespace bandsaw {
 
-/// Bound of the relative rounding error of a corner's weight, which is its barycentric coordinate
-/// times `volume`, the dot product of the normal and the ray's direction.
+/// Bound of the relative rounding error of a corner's weight. The weight is the corner's
+/// barycentric coordinate times `volume`. `volume` is the dot product of the triangle's normal and
+/// the ray's direction.
 inline constexpr float kWeightError = 26 * 0x1p-24f;
 /// Bound of the relative rounding error of `volume`, and of the distance times `volume`.
 inline constexpr float kDistanceError = 24 * 0x1p-24f;

@@ -14,7 +14,7 @@
 namespace bandsaw {
 
 struct FlatPack {
-  static_assert(kPackSize == kCornerStride, "hits refer to corners");
+  static_assert(kPackSize == kCornerStride, "Hit::corners has the stride kCornerStride");
 
   /// [3 * corner + axis][lane]; unused lanes are zero.
   using Corners = std::array<std::array<float, kPackSize>, 9>;

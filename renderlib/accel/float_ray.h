@@ -13,9 +13,9 @@
 namespace bandsaw {
 
 struct FloatRay {
-  /// near[k] and far[k] are the rows of WideNode::bounds through which the ray enters and leaves
-  /// the slab of axis k, as byte offsets (WideNode::plane). The distance to a plane at coordinate b
-  /// is b * factor + offset.
+  /// The ray enters the slab of axis k through the plane in row near[k] of WideNode::bounds, and
+  /// leaves the slab through the plane in row far[k]. Rows are given as byte offsets
+  /// (WideNode::plane). The distance to a plane at coordinate b is b * factor + offset.
   std::array<std::size_t, 3> near;
   std::array<std::size_t, 3> far;
   std::array<float, 3> near_factor;

@@ -13,8 +13,9 @@
 namespace bandsaw {
 namespace {
 
-/// If a bound and a vertex within it are interpolated in float, the error is at most 7u of the
-/// larger of both ends, where u is 2^-24 (README.md, "Moving boxes").
+/// If a bound and a vertex within it are interpolated in float, the error is at most 7u times the
+/// larger absolute value of the bound at the two ends, where u is 2^-24 (README.md, "Moving
+/// boxes").
 constexpr double kLerpError = 8 * 0x1p-24;
 /// Covers the underflow of floats.
 constexpr double kTiny = 0x1p-120;

@@ -22,6 +22,8 @@ bool one_kind(absl::Span<const TreeItem> items) {
                      [kind](const TreeItem& item) { return item.kind == kind; });
 }
 
+/// Returns true if the items cannot form one leaf. A leaf has one instance, or up to kPackSize
+/// primitives of one kind.
 bool must_split(absl::Span<const TreeItem> items) {
   return items.size() > kPackSize || !one_kind(items) ||
          (items.size() > 1 && items.front().kind == LeafKind::kInstance);

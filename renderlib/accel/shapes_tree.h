@@ -1,8 +1,8 @@
 #pragma once
 
-// BVH over loose shapes, i.e. spheres, quads, triangles and disks that belong to no mesh. They are
-// the shapes of a group in its own space, or the shapes of the world together with its instances
-// (top_tree.h).
+// BVH over loose shapes, i.e. spheres, quads, triangles and disks that belong to no mesh. The BVH
+// of a group contains the group's shapes, in the group's own space. The BVH of the world contains
+// the world's shapes and, in addition, instances (top_tree.h).
 
 #include <cstdint>
 #include <vector>

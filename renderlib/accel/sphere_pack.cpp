@@ -1,7 +1,7 @@
 // Fills the lanes of a pack one after the other. Numbers are rounded to float so that the float
 // test cannot miss a sphere that the exact test hits. For this, radii are rounded upwards. The
-// float test bounds the rounding errors of the centres by means of `reach`. This is at least the
-// sum of the centre's |coordinates| and the radius of every sphere.
+// float test bounds the rounding errors of the centres by means of `reach`. For every sphere,
+// `reach` is at least the radius plus the sum of the centre's |coordinates|.
 
 #include "renderlib/accel/sphere_pack.h"
 

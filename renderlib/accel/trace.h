@@ -109,7 +109,7 @@ inline bool trace_spheres(const SpherePack& pack, const Shapes& shapes, const Tr
         return true;
       }
       if constexpr (Query::kBothSides) {
-        if (intersect(ray, shapes.spheres[index], true, crossing)) {
+        if (intersect(ray, shapes.spheres[index], /*starts_on_it=*/true, crossing)) {
           query.found(id, crossing);
         }
       }

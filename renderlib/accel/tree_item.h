@@ -63,6 +63,7 @@ class LaneBox {
  private:
   using Lanes = std::array<float, 8>;
   explicit LaneBox(Float8 lanes) : lanes_(lanes) {}
+  /// Has the sign bit set in lanes 0 to 2, so that flip_by_sign() negates only `lo` of an item.
   static Float8 low() {
     static constexpr Lanes kLow = {-0.0f, -0.0f, -0.0f, 0, 0, 0, 0, 0};
     return Float8::load(kLow.data());

@@ -13,8 +13,9 @@
 namespace bandsaw {
 
 /// Writes the file. Returns FAILED_PRECONDITION if the path exists and is not a regular file,
-/// otherwise the system's error (file.h, errno_status). On any error no temporary file remains, and
-/// the target is unchanged, unless only the sync of the folder failed.
+/// otherwise the system's error (file.h, errno_status). After an error no temporary file remains.
+/// If only the sync of the folder failed, the target is the new file. After any other error the
+/// target is unchanged.
 absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes);
 
 /// Gives the file `part`, which another program has written, its final name `path`. Both are in

@@ -17,7 +17,8 @@
 namespace bandsaw {
 
 /// Returns the canonical status for an errno: ENOENT is NOT_FOUND, EACCES PERMISSION_DENIED, ENOSPC
-/// RESOURCE_EXHAUSTED, …; the message is "what: strerror".
+/// RESOURCE_EXHAUSTED, …; the message is "what: strerror". EFBIG, a limit on the size of a file, is
+/// RESOURCE_EXHAUSTED like a full disk.
 absl::Status errno_status(int error, const std::string& what);
 
 /// Returns true if `status`, which a function of File returned, says that the disk cannot read a

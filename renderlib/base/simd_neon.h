@@ -78,7 +78,8 @@ class Float8 {
   }
   friend Float8 about_fused(Float8 a, Float8 b, Float8 c) { return fused(a, b, c); }
   friend Float8 about_fused_minus(Float8 a, Float8 b, Float8 c) { return fused_minus(a, b, c); }
-  /// vminq_f32 and vmaxq_f32 are not used, because they return NaN if either operand is NaN, and
+  /// min() and max() must return b if either operand is NaN, and if both are zeros (simd_plain.h).
+  /// So vminq_f32 and vmaxq_f32 are not used: they return NaN if either operand is NaN, and they
   /// treat -0 as less than +0.
   friend Float8 min(Float8 a, Float8 b) {
     return {vbslq_f32(vcltq_f32(a.low_, b.low_), a.low_, b.low_),

@@ -117,7 +117,7 @@ class Float8 {
   friend Float8 flip_by_sign(const Float8& a, const Float8& sign) {
     return lanes([&](std::size_t i) { return std::signbit(sign.v_[i]) ? -a.v_[i] : a.v_[i]; });
   }
-  /// Comparisons are false in lanes where either is NaN.
+  /// Comparisons are false in lanes where either operand is NaN.
   friend Mask8 operator<(const Float8& a, const Float8& b) {
     return mask([&](std::size_t i) { return a.v_[i] < b.v_[i]; });
   }

@@ -3,7 +3,7 @@
 // The rays that pass through a thin lens and through one point on its plane of focus, the point in
 // focus. Each point of the lens is the start of one of these rays, so the directions in which the
 // rays continue beyond the point in focus correspond to points of the lens. Light sampling through
-// the lens uses this (integrate/through_lens.h).
+// the lens converts these directions to points of the lens (integrate/through_lens.h).
 
 #include <optional>
 

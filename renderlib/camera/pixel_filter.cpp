@@ -11,7 +11,7 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the inverse of the cumulative distribution of 1 - |x| on [-1, 1].
+/// Returns the inverse of the cumulative distribution of the density 1 - |x| on [-1, 1], at `u`.
 double tent(double u) { return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 * (1 - u)); }
 
 /// Samples a normal distribution of standard deviation 1, truncated at the radius 3 (Box and Muller

@@ -1,7 +1,8 @@
 // Collects the differences between image and reference for each block (a tile of 16 x 16 pixels),
 // computes Student's t of their mean, and counts the blocks whose t is too large to be noise. The
-// mean difference of a group of pixels is one value, because pixels of one group may share paths.
-// Each half of a tile's pixels (a half tile) has its own groups (render/pixel_groups.h).
+// pixels of a block are divided into groups (render/pixel_groups.h). Pixels of one group may share
+// paths, so their noise is not independent. Student's t needs independent values, so the mean
+// difference of a group counts as one value.
 
 #include "renderlib/compare/bias.h"
 
@@ -103,6 +104,7 @@ void add_group(const Image& image, const Image& reference, absl::Span<const Pixe
 }
 
 // Returns the moments of the mean differences of all groups in a tile. Adds the groups to `totals`.
+// Each half of the tile's pixels (a half tile) has its own groups.
 Moments block_of(const Image& image, const Image& reference, const TileGrid& grid, std::size_t tile,
                  Totals& totals) {
   Moments block;

@@ -9,10 +9,11 @@
 
 namespace bandsaw {
 
-/// Result of the test. Blocks are the tiles of 16 x 16 pixels (render/tile_samples.h). Pixels of
-/// one group may share paths (render/pixel_groups.h), and the noise of different groups is
-/// independent. So the mean difference in luminance of the pixels of one group is one value. For
-/// each block, Student's t of the mean is computed from the spread of the block's values, which
+/// Result of the test. Blocks are the tiles of 16 x 16 pixels (render/tile_samples.h). The pixels
+/// of a block are divided into groups (render/pixel_groups.h). Pixels of one group may share paths,
+/// and the noise of different groups is independent. So the mean difference in luminance of one
+/// group is one value. Student's t of a block is the mean of the block's values, divided by the
+/// standard error of this mean. The standard error is computed from the spread of the values, so it
 /// includes the noise of the reference. Blocks of fewer than 8 values are left out.
 struct BiasTest {
   std::uint32_t blocks = 0;

@@ -17,7 +17,7 @@
 namespace bandsaw {
 namespace {
 
-/// This is added to divisors, so that ratios for dark pixels do not dominate.
+/// Is added to the divisors of relative errors, so that dark pixels do not dominate.
 constexpr double kDivisorOffset = 0.01;
 
 /// Sums over all finite channel values.

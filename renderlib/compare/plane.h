@@ -9,7 +9,7 @@
 
 namespace bandsaw {
 
-/// An image of one number a pixel.
+/// An image with one number for each pixel.
 struct Plane {
   std::uint32_t width = 0;
   std::uint32_t height = 0;

@@ -4,8 +4,8 @@
 //
 // The samples of each pixel are divided into two parts. Their means are the two halves of the
 // image, and `first_share` is the share of the first part in a pixel's samples. Each half is
-// filtered alone. As the halves are independent, the difference between a filtered half and the
-// other half that was not filtered shows the error of the filter.
+// filtered alone. As the halves are independent, the error of the filter can be estimated: one half
+// after the filter is compared with the other half before the filter.
 
 #include "renderlib/denoise/denoise.h"
 

@@ -181,7 +181,7 @@ void TileFit::store(int column, int row, std::size_t filter, NormalEquations (&e
 /// Computes the filtered values of rows from the models of one filter.
 class Evaluation {
  public:
-  /// `first_row` as in TileFit.
+  /// `first_row`: the row of centres that is row 0 of the models.
   Evaluation(const FitInput& input, int first_row, const Models& models, FitOutput& output)
       : input_(input), first_row_(first_row), models_(models), output_(output) {}
 

@@ -6,11 +6,12 @@
 // divided into two independent parts. A half is a whole image: the means of one of these parts.
 //
 // For every second pixel of every second row (a centre) and each half, a linear function of the
-// position and the guides is fitted to the pixels of a window, by weighted least squares. The
-// weight of a pixel falls with the distance between its patch and that of the centre in the other
-// half (Rousselle et al. 2012, "Adaptive Rendering with Non-Local Means Filtering", section 4), and
-// with the difference of their guides. A pixel's value is the weighted mean of the functions of the
-// centres around it.
+// position and the guides is fitted to the pixels of a window, by weighted least squares. A patch
+// is the square of pixels around a pixel. The weight of a pixel falls with the distance between the
+// pixel's patch and the centre's patch, which are compared in the other half (Rousselle et al.
+// 2012, "Adaptive Rendering with Non-Local Means Filtering", section 4). It also falls with the
+// difference between the guides of the pixel and of the centre. A pixel's value is the weighted
+// mean of the functions of the centres around it.
 
 #include <array>
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Estimates the error of a denoised image from denoised images of the two parts of its samples. It
-// needs to know nothing else about the filter, so any filter can be used, for example
+// Estimates the error of a denoised image from denoised images of the two parts of its samples. The
+// estimate uses nothing else of the filter, so any filter can be used, for example
 // OpenImageDenoise.
 
 #include "renderlib/denoise/halves.h"

@@ -80,7 +80,7 @@ SurfaceSmoothing::SurfaceSmoothing(const FitInput& input, Pool& pool)
       for (int i = 0; i < kSide * kSide; ++i) {
         const int dx = i % kSide - kRadius;
         const int dy = i / kSide - kRadius;
-        // 1 for pixels inside the image whose values are valid.
+        // `inside` is 1 for the centre and for usable pixels of wanted rows, otherwise 0.
         const bool wanted = y + dy >= input.wanted.first && y + dy < input.wanted.last;
         const float inside = dx == 0 && dy == 0 ? 1.0f
                              : wanted           ? input.valid.at(x + dx, y + dy)

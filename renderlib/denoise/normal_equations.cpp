@@ -64,6 +64,7 @@ void NormalEquations::add(const Float8& weight, const Float8 (&terms)[kTerms],
 }
 
 void NormalEquations::add_ridge() {
+  // The first term is 1, so products[0] is the sum of the weights.
   const Float8 ridge = products[0] * Float8(kRidge);
   std::size_t at = kTerms;
   for (std::size_t i = 1; i < kTerms; ++i) {
