@@ -36,13 +36,14 @@ reference() {
       }
       pending = ""
     }
-    function add_row(name, type, words) {
-      rows[name, ++count[name]] = type
+    function add_row(name, row, words) {
+      rows[name, ++count[name]] = row
       row_words[name, count[name]] = words
     }
-    # A comment line belongs to the following field, so a trailing comment must not continue on the next line.
+    # A comment line belongs to the following field, so a trailing comment must not continue on the next line. A line that continues
+    # a trailing comment is recognised by its indentation: it is deeper than that of the fields.
     match($0, /^ *\/\//) && RLENGTH > 2 * depth + 2 {
-      print "proto/scene.proto:" NR ": a comment that goes on must stand above its field" > "/dev/stderr"
+      print "proto/scene.proto:" NR ": a comment of several lines must stand above its field" > "/dev/stderr"
       exit bad = 1
     }
     { sub(/^ +/, "") }

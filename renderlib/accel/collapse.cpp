@@ -21,8 +21,8 @@ constexpr float kPackCost = 1.5f;
 
 /// Minimum costs of a subtree of the binary tree. Element i is the cost if the subtree may fill at
 /// most i + 1 slots of the wide node above it, each with a part of the subtree. Element 0: the
-/// subtree fills one slot, so it becomes a leaf, or its root becomes a wide node. Element 7 is also
-/// the total cost of the children of that wide node.
+/// subtree fills one slot, so it becomes a leaf, or its root becomes a wide node. If the root
+/// becomes a wide node, element 7 is the total cost of this node's children.
 struct Costs {
   std::array<float, kSlots> slots;
 };
@@ -49,9 +49,9 @@ class Collapse {
   };
   /// Sets the costs of node `index` from those of its children, which MUST be set already.
   void set_costs(std::size_t index);
-  /// Returns how many of `slots` (>= 2) the left child gets at minimum cost, and sets `cost` to
-  /// that cost.
-  std::size_t left_share(const BinaryNode& node, std::size_t slots, float& cost) const;
+  /// Returns how many of `slots` (>= 2) the left child gets at minimum cost, and sets `least` to
+  /// this minimum.
+  std::size_t left_share(const BinaryNode& node, std::size_t slots, float& least) const;
   void choose(std::uint32_t index, std::size_t slots, Members& members) const;
   float cost(std::uint32_t index, std::size_t slots) const {
     return costs_[index].slots[slots - 1];
