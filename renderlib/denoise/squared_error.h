@@ -24,8 +24,9 @@ T squared_error(T a, T b, T first, T second, T share) {
 }
 
 /// Returns the larger of an estimated squared error and `variance`, the part of the error that is
-/// noise: share (1 - share) (a - b)^2. The estimate alone may be far too small, even negative,
-/// because two parts of one Sobol' sequence differ more than independent parts.
+/// noise: share (1 - share) (a - b)^2. The estimate alone may be far too small, even negative: two
+/// parts of one Sobol' sequence differ more than independent parts, so that squared_error()
+/// subtracts too much.
 template <class T>
 T at_least_variance(T squared_error, T variance) {
   return squared_error > variance ? squared_error : variance;

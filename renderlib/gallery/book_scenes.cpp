@@ -38,6 +38,7 @@ class Numbers {
 
 std::string list(const Vec3& v) { return absl::StrFormat("[%.4g, %.4g, %.4g]", v.x, v.y, v.z); }
 
+/// Returns a sphere as text of a scene file. `more` is the text of further fields of the shape.
 std::string sphere(const Vec3& center, double radius, absl::string_view material,
                    absl::string_view more = "") {
   return absl::StrFormat("shape { sphere { center: %s  radius: %g }  material: \"%s\"%s }\n",
@@ -77,7 +78,7 @@ std::string small_sphere(int number, const Vec3& center, bool bouncing, Numbers&
 std::string ground_of_boxes() {
   constexpr int kBoxesPerSide = 20;
   constexpr double kWidth = 100;
-  Numbers numbers(1);
+  Numbers numbers(/*seed=*/1);
   std::string out;
   for (int i = 0; i < kBoxesPerSide; ++i) {
     for (int j = 0; j < kBoxesPerSide; ++j) {
@@ -94,7 +95,7 @@ std::string ground_of_boxes() {
 
 std::string cube_of_spheres() {
   constexpr int kSpheres = 1000;
-  Numbers numbers(2);
+  Numbers numbers(/*seed=*/2);
   std::string out = "group {\n  name: \"cube\"\n";
   for (int i = 0; i < kSpheres; ++i) {
     absl::StrAppend(&out, "  ", sphere(numbers.vec(0, 165), 10, "white"));
@@ -168,7 +169,7 @@ std::string many_spheres(bool bouncing) {
       bouncing ? "  shutter_close: 1 }\n" : " }\n",
       bouncing ? "image { width: 400  height: 225 }\n" : "image { width: 1200  height: 675 }\n",
       kOnTheGround);
-  Numbers numbers(bouncing ? 4 : 3);
+  Numbers numbers(/*seed=*/bouncing ? 4 : 3);
   for (int a = -11; a < 11; ++a) {
     for (int b = -11; b < 11; ++b) {
       const double x = a + numbers.between(0, 0.9);

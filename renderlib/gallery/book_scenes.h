@@ -10,7 +10,7 @@
 namespace bandsaw::gallery {
 
 /// Returns the last scene of the first book. If `bouncing` is true, returns the first scene of the
-/// second book instead, whose small diffuse spheres move up while the shutter is open.
+/// second book instead, in which the small diffuse spheres move up while the shutter is open.
 std::string many_spheres(bool bouncing);
 
 /// Returns the last scene of the second book.

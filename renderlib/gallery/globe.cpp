@@ -64,7 +64,7 @@ Vec3 sea(double height, double broad) {
   return lerp(open, kShelf, rise(-kShelfDepth, 0, height));
 }
 
-/// Returns the colour of land. `latitude` is the absolute value of its sine.
+/// Returns the colour of land. `latitude` is the absolute value of the sine of the latitude.
 Vec3 land(double height, double rain, double latitude) {
   const double dry = rise(0.02, 0.3, 0.32 - 1.6 * std::abs(latitude - 0.32) - 1.3 * rain);
   const double cold = rise(0.68, 0.84, latitude + 0.25 * height - 0.12 * rain);
@@ -92,7 +92,7 @@ Vec3 uncovered(const Vec3& p, double latitude, double rain, int octaves) {
 
 /// Returns the colour of the point `p` on the unit sphere.
 Vec3 color_at(const Vec3& p, int octaves) {
-  const double latitude = std::abs(p.y);  // its sine: 0 at the equator, 1 at the poles
+  const double latitude = std::abs(p.y);  // as a sine: 0 at the equator, 1 at the poles
   const double rain = fractal(p * 2.3 + kRainAt, 0, 3);
   const double ice = rise(0.93, 0.955, latitude + 0.08 * rain);
   return ice == 1 ? kIce : lerp(uncovered(p, latitude, rain, octaves), kIce, ice);

@@ -72,8 +72,8 @@ absl::Status make_all(const std::string& folder) {
     RETURN_IF_ERROR(write(absl::StrCat(folder, "/evening_", kSides[i], ".hdr"),
                           encode_hdr(evening_sky_side(i, 48))));
   }
-  RETURN_IF_ERROR(write(books + "/one_weekend.textproto", many_spheres(false)));
-  RETURN_IF_ERROR(write(books + "/bouncing_spheres.textproto", many_spheres(true)));
+  RETURN_IF_ERROR(write(books + "/one_weekend.textproto", many_spheres(/*bouncing=*/false)));
+  RETURN_IF_ERROR(write(books + "/bouncing_spheres.textproto", many_spheres(/*bouncing=*/true)));
   RETURN_IF_ERROR(write(books + "/next_week.textproto", next_week_final()));
   for (const std::uint32_t rows : {512, 1024, 2048, 4096}) {
     ASSIGN_OR_RETURN(const auto png, encode_png(2 * rows, rows, globe_map(rows, pool)));

@@ -61,9 +61,9 @@ Vec3 direction(double azimuth_degrees, double height_degrees) {
   return {height.cos * azimuth.cos, height.sin, height.cos * azimuth.sin};
 }
 
-/// Returns the amount of cloud in a direction above the horizon, in [0, 0.85]: turbulence at the
-/// point where the direction intersects a layer above, stretched along x. `from` is subtracted, so
-/// a larger value leaves less cloud.
+/// Returns the amount of cloud in a direction above the horizon, in [0, 0.85]. It is the turbulence
+/// at the point where the direction meets a layer of clouds, which are stretched along x. `from` is
+/// subtracted, so a larger value leaves less cloud.
 float cover(const Vec3& unit, double from) {
   const double layer = 1 / (unit.y + 0.12);
   const double cloud =
@@ -94,7 +94,7 @@ Rgb evening_sky(const Vec3& unit) {
 }
 
 Rgb dusk_sky(const Vec3& unit) {
-  // 1 at the azimuth of sunset, 0 opposite.
+  // `side` is 1 at the azimuth of sunset and 0 opposite.
   const double flat = std::sqrt(unit.x * unit.x + unit.z * unit.z);
   const double side =
       flat > 0 ? (1 + dot({unit.x, 0, unit.z}, direction(kSunAzimuth, 0)) / flat) / 2 : 0.5;

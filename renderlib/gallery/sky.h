@@ -14,8 +14,8 @@ namespace bandsaw::gallery {
 /// +z, 25 degrees high.
 Rgb evening_sky(const Vec3& unit);
 
-/// Returns the radiance at the same place after sunset: a glow at the horizon, deep blue above, and
-/// a high bright cloud, which is a soft light from the side.
+/// Returns the radiance from a unit direction after sunset: a glow at the horizon, deep blue above,
+/// and a high bright cloud, which is a soft light from the side.
 Rgb dusk_sky(const Vec3& unit);
 
 /// These functions return the skies as equirectangular images of 2 * rows x rows texels; each texel
@@ -23,8 +23,8 @@ Rgb dusk_sky(const Vec3& unit);
 Image evening_sky_map(std::uint32_t rows);
 Image dusk_sky_map(std::uint32_t rows);
 
-/// Returns the evening sky as one side of a cube map: 0 to 5 are +x, -x, +y, -y, +z, -z, oriented
-/// as in renderlib/light/environment.h.
+/// Returns the evening sky as one face of a cube map with `side` x `side` texels. Faces 0 to 5 are
+/// +x, -x, +y, -y, +z, -z, oriented as in renderlib/light/environment.h.
 Image evening_sky_side(std::uint32_t face, std::uint32_t side);
 
 }  // namespace bandsaw::gallery

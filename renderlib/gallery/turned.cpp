@@ -11,7 +11,7 @@ namespace bandsaw::gallery {
 namespace {
 
 // Profiles are lists of points (radius, height); lathe.h turns them around the y axis.
-constexpr int kAround = 28;  // vertices of a ring
+constexpr int kAround = 28;  // number of faces of a ring
 
 }  // namespace
 

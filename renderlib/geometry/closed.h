@@ -10,8 +10,9 @@ namespace bandsaw {
 
 /// Returns the number of edges that the triangles do not pass equally often in both directions; it
 /// is 0 for a closed mesh. Vertices at equal positions count as one, whatever their index. If the
-/// mesh deforms, vertices count as one only if their positions are equal at both ends, so that the
-/// result holds at all times. Indices MUST be valid and positions finite.
+/// mesh deforms, vertices count as one only if their positions are equal at both ends of the
+/// shutter interval, so that the result holds at all times. Indices MUST be valid and positions
+/// finite.
 std::size_t open_edges(const Mesh& mesh);
 
 }  // namespace bandsaw

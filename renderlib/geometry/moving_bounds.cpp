@@ -47,8 +47,8 @@ double translation_length(const Transform& t) {
   return length(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]});
 }
 
-/// Returns the bounds for the placed point. `c` holds the bounds for the point before the
-/// placement, which does not change with time.
+/// Returns the bounds for a point after a placement that does not change with time. `c` holds the
+/// bounds for the point before the placement.
 Course through(const Transform& placement, const Course& c) {
   const double n = norm(placement);
   return {n * c.distance + translation_length(placement), n * c.speed, n * c.bend};

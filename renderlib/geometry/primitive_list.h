@@ -31,7 +31,7 @@ class PrimitiveList {
   struct Part {
     std::uint32_t instance = 0;                          ///< PrimitiveId::instance
     const std::vector<std::uint32_t>* chosen = nullptr;  ///< their numbers; null: all
-    std::uint64_t up_to = 0;  ///< number of primitives of the parts up to this one
+    std::uint64_t up_to = 0;  ///< number of primitives of this part and all parts before it
   };
   /// Adds a part with this number of primitives, unless that is 0.
   void add(std::uint32_t instance, const std::vector<std::uint32_t>* chosen,

@@ -11,8 +11,9 @@
 namespace bandsaw {
 
 /// Identifies a primitive of the scene. Instance 0 stands for the loose shapes of the world (shapes
-/// of no mesh and no group), instance i + 1 for Geometry::instances[i]. `primitive` numbers the
-/// triangles of its mesh, or the shapes in the order of geometry/shapes.h, Shapes.
+/// of no mesh and no group), instance i + 1 for Geometry::instances[i]. `primitive` is the number
+/// of a triangle in the instance's mesh, or of a loose shape in the world or in the instance's
+/// group. Loose shapes are numbered in the order spheres, quads, triangles, disks.
 struct PrimitiveId {
   std::uint32_t instance = 0xffffffffu;
   std::uint32_t primitive = 0xffffffffu;
@@ -32,7 +33,8 @@ struct Ray {
 };
 
 /// The BVH stores the triangles of a leaf in packs of eight. The numbers of the eight triangles are
-/// interleaved, so consecutive numbers of one triangle are this many floats apart (Hit::corners).
+/// interleaved, so consecutive numbers of one triangle are kCornerStride floats apart
+/// (Hit::corners).
 inline constexpr std::size_t kCornerStride = 8;
 
 /// The closest hit: the lexicographically lowest (t, instance, primitive), independent of the BVH.

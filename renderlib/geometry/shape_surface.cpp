@@ -45,8 +45,9 @@ SurfacePoint on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit, boo
   return p;
 }
 
-/// Returns the surface of a triangle or quad with corner `a` and edges `e1` and `e2`. `ready` is
-/// its precomputed unit normal, which is zero if the shape has no area; nullptr if there is none.
+/// Returns the surface of a triangle or quad with corner `a` and edges `e1` and `e2`. `ready`
+/// points to the unit normal that prepare_normals() has stored, which is zero if the shape has no
+/// area. It is nullptr if no normals are stored.
 SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, const Vec3* ready,
                      MaterialId material, const Ray& ray, const Hit& hit) {
   SurfacePoint p;
@@ -110,9 +111,13 @@ Placement::Placement(const Transform& t) {
   moved = max_abs(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]});
 }
 
-// The inverse transforms rays back to the primitive's own space, together with the rounding error
-// of their origins. This error is a few 2^-53 of `scale`, the largest number from which the
-// position was computed. README.md, "Squashed space", derives the constants.
+// The rounding error of a ray's origin in the world is a few 2^-53 of `scale`, the largest number
+// from which the position was computed. When the ray is transformed back to the primitive's own
+// space, the error grows by up to |M^-1| = norm(cofactors) / |determinant|, where M is the linear
+// part of the placement. In squashed space the origin is therefore moved along the normal of the
+// primitive's own space, by the distance kOffset kSquashedShare `scale` |M^-1|. In the world this
+// is the vector `away`, whose component along the world's normal is `offset`. README.md, "Squashed
+// space", derives the constants.
 void Placement::set_offset(const SurfacePoint& local, SurfacePoint& placed) const {
   const double largest_in_object = local.offset / kOffset;
   const double scale = std::max({max_abs(placed.position), largest_in_object * norm(rows), moved});

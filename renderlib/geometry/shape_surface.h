@@ -47,7 +47,7 @@ inline Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray) {
   return unit_normal(across(e1, e2), ray);
 }
 
-/// Implements prepare_surfaces() for the shapes of one space.
+/// Precomputes the unit normals of the quads and triangles of one space (Shapes::flat_normals).
 void prepare_normals(Shapes& shapes);
 
 /// Effect of a placement p -> M p + t on normals and lengths.

@@ -1,8 +1,8 @@
 #pragma once
 
-// Geometry as plain values: the description of a scene contains it, and Accel traces it. Meshes
-// keep float32 positions in their own space; placements stay double and are never applied to the
-// vertices in advance.
+// Geometry as plain values: the description of a scene contains it, and the ray tracer (Accel)
+// finds hits in it. Meshes keep float32 positions in their own space; placements stay double and
+// are never applied to the vertices in advance.
 
 #include <array>
 #include <cstdint>

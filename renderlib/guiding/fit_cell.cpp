@@ -187,7 +187,7 @@ Cluster cluster_of(const Place& place, absl::Span<const Seen> seen, std::size_t 
   spread /= cluster.weight;
   // The cone contains the farthest direction, with a margin for few records. Uniform directions in
   // a cone have half of its 1 - cos on average, so the mean suggests 2 * mean for the cone. At most
-  // twice this is used, so that single directions far from the axis do not widen the cone. The last
+  // 4 * mean is used, so that single directions far from the axis do not widen the cone. The last
   // term widens the cone where light comes from several distances. There the direction of the light
   // changes relative to the axis when the point moves within the cell.
   const auto n = static_cast<double>(last - first);

@@ -48,7 +48,7 @@ struct TrainedGuiding {
 struct PhotonMapKey {
   std::uint64_t seed = 0;
   std::uint32_t number = 0;   ///< maps of higher numbers have smaller disks of photons
-  std::uint64_t photons = 0;  ///< number of photons of caustics that are started
+  std::uint64_t photons = 0;  ///< number of photons that are started for caustics
   GuidingKey field = {};      ///< key of the field whose training decided on the sources
   friend bool operator==(const PhotonMapKey&, const PhotonMapKey&) = default;
 };
@@ -61,7 +61,7 @@ struct TracedMaps {
   /// (integrate/indirect_photons.h).
   PhotonMap indirect;
   /// In scene units. A path takes indirect light from `indirect` if its length since the last
-  /// receiver is at least this distance. It is 0 if `indirect` is empty, which is then never used.
+  /// receiver is at least this distance. If `indirect` is empty, the distance is 0 and not used.
   double gather_distance = 0;
   /// Effective number of the points at which the photons of `indirect` start: the squared sum of
   /// their powers over the sum of the squares (Kish 1965, "Survey Sampling").

@@ -61,9 +61,10 @@ struct GuidingShares {
   double photons = 0;
 };
 
-/// Returns the shares. The share of photons is the part of their light in all light, limited to
-/// [1/8, 1/2], or 0 if their light is hardly noticeable. The share of paths is GuidingCell::share
-/// times the rest, 1 minus the share of photons.
+/// Returns the shares. Let p be the irradiance of the cell of photons, divided by the sum of the
+/// irradiances of both cells. The share of photons is p, limited to [1/8, 1/2], or 0 if the light
+/// of the photons is hardly noticeable. The share of paths is (1 - share of photons) times the
+/// GuidingCell::share of the cell of paths. The share of a cell without balls is 0.
 GuidingShares shares_of(const GuidingCells& cells);
 
 /// Cells as seen from a point: cones of directions, from which paths sample.

@@ -18,9 +18,16 @@ constexpr double kNarrowest = 4e-6;
 
 }  // namespace
 
+/// Returns the probabilities with which a direction is sampled towards the balls of the two cells
+/// at a point. `cells.photons` was fitted to photons, and `cells.paths` to light that paths from
+/// the camera found.
 GuidingShares shares_of(const GuidingCells& cells) {
-  // Weak light of a small source is rarely sampled, and then the sample is bright. Light that adds
-  // less than this to the second moment, in units of the squared mean of all light, is not noticed.
+  // Weak light can still be noisy: if its source is small, it is rarely sampled, and then the
+  // sample is bright. GuidingCell::moment shows this noise: it is the second moment of the cell's
+  // light, sampled without guiding, in units of the squared mean of this light. `part` is the
+  // photons' part of all light, which is the irradiance of both cells. In units of the squared mean
+  // of all light, the second moment of the photons' light is therefore part^2 * moment. If it is at
+  // most kMinMoment, the noise is not noticed, and no directions are sampled from this cell.
   constexpr double kMinMoment = 0.001;
   constexpr double kMinShare = 0.125;
   constexpr double kMaxShare = 0.5;

@@ -61,7 +61,7 @@ GuidingTree::GuidingTree(std::vector<GuidingRecord> records, Pool& pool) {
     return;
   }
   std::vector<std::size_t> starts;
-  split(records, 0, records.size(), 0, starts);
+  split(records, 0, records.size(), /*depth=*/0, starts);
   starts.push_back(records.size());
   // A leaf's records are sorted by side, and each side becomes a cell.
   std::vector<std::array<std::optional<GuidingCell>, 6>> fitted(leaves_.size());

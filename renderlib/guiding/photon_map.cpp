@@ -124,7 +124,8 @@ std::optional<std::uint32_t> divide(std::vector<StoredPhoton>& photons, std::uin
 /// Adds the place of photons [first, last) and its descendants, in depth-first order, and sorts the
 /// photons accordingly. `area` is the area that a photon occupies in the parent. `seed` determines
 /// the random points at which places are divided. Radii differ on the two sides of such a point.
-/// The points are random so that these steps do not add up to a visible line over several maps.
+/// The points are random so that the steps of the radius do not add up to a visible line over
+/// several maps.
 void add_places(std::vector<StoredPhoton>& photons, std::uint32_t first, std::uint32_t last,
                 int depth, double area, std::uint64_t seed, std::vector<Place>& places) {
   const absl::Span<const StoredPhoton> own(photons.data() + first, last - first);
@@ -197,7 +198,8 @@ std::vector<StoredPhoton> with_disks(std::vector<StoredPhoton> photons, double r
     });
     if (from != to) {
       add_places(photons, static_cast<std::uint32_t>(from - photons.begin()),
-                 static_cast<std::uint32_t>(to - photons.begin()), 0, kInfinity, seed, places);
+                 static_cast<std::uint32_t>(to - photons.begin()), /*depth=*/0, /*area=*/kInfinity,
+                 seed, places);
     }
     from = to;
   }

@@ -37,12 +37,12 @@ class PhotonMap {
 
   PhotonMap() = default;
   /// Builds the map. The positions of the photons are relative to `origin`. `radius_factor` > 0
-  /// scales all radii. `seed` decides how space is divided into
-  /// parts whose photons have disks of one radius. `share_on_surface` is called for each photon,
-  /// when its radius is known, on the threads of the pool. It returns the share of the photon's
-  /// power, in (0, 1], that falls on the surface and not beyond an edge. The power is divided by
-  /// this share. It may also reduce the radius. The map depends on its arguments and the order of
-  /// the photons, not on the threads.
+  /// scales all radii. `seed` decides how space is divided into parts whose photons have disks of
+  /// one radius. When a photon's radius is known, `share_on_surface` is called for it, on the
+  /// threads of the pool. This function may reduce the radius. It returns the share of the photon's
+  /// power, in (0, 1], that falls on the surface and not beyond an edge, and the power is divided
+  /// by this share. The map depends on its arguments and the order of the photons, not on the
+  /// threads.
   PhotonMap(std::vector<StoredPhoton> photons, const Vec3& origin, double radius_factor,
             std::uint64_t seed, Pool& pool,
             absl::FunctionRef<double(StoredPhoton&)> share_on_surface);

@@ -61,8 +61,9 @@ std::optional<Portals::Sample> Portals::sample(const Vec3& from, double choice, 
   const Portal& portal = portals_[chosen];
   const Vec2 at = view.rectangles[chosen]->sample(u, v);
   const Vec3 direction = normalize(portal.corner + portal.u * at.x + portal.v * at.y - from);
-  // The pdf counts each portal that the direction passes through. It counts at least one, because
-  // rounding may place a direction at the border of the chosen portal outside of that portal.
+  // The pdf is the number of portals through which the direction passes, divided by the solid angle
+  // of all portals. The direction was chosen within a portal, so the number is at least 1. Because
+  // of rounding, passed() may still return 0 at the border of the chosen portal.
   const std::uint32_t count = std::max(passed(view, from, direction), 1u);
   return Sample{direction, count / view.solid_angle};
 }

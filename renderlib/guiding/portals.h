@@ -1,9 +1,9 @@
 #pragma once
 
 // Openings through which the background lights a room, for example windows. At a surface, path
-// tracing also samples a direction through one of them, uniformly by solid angle (Bitterli, Novák
-// and Jarosz 2015, "Portal-Masked Environment Map Sampling", section 2: portals), because most
-// other directions end at a wall.
+// tracing also samples a direction through one of the openings, uniformly by solid angle, because
+// most other directions end at a wall (Bitterli, Novák and Jarosz 2015, "Portal-Masked Environment
+// Map Sampling", section 2: portals).
 
 #include <array>
 #include <cstdint>

@@ -33,8 +33,8 @@ struct Channel {
   std::vector<float> values;
 };
 
-/// Returns the component `of` of all pixels as a channel. If `half` is true, the values are clamped
-/// to the range of halves.
+/// Returns one component of all pixels as a channel; the pointer `of` selects the component. If
+/// `half` is true, the values are clamped to the range of halves.
 Channel channel(const std::string& name, const Image& image, float Rgb::*of, bool half) {
   Channel to{name, half, {}};
   to.values.reserve(image.pixels.size());

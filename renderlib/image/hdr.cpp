@@ -94,8 +94,8 @@ std::vector<std::byte> encode_hdr(const Image& image) {
     out.push_back(static_cast<std::byte>(c));
   }
   RowWriter writer(out);
-  // Readers expect runs only in rows of these widths. Rows of other widths are written without
-  // runs, in the older form of the format.
+  // Readers expect runs only in rows of 8 to 32,767 pixels. Other rows are written without runs, in
+  // the older form of the format.
   const bool runs = image.width >= 8 && image.width < 32768;
   std::vector<Rgbe> row(image.width);
   for (std::uint32_t y = 0; y < image.height; ++y) {

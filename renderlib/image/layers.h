@@ -14,7 +14,7 @@ struct Layer {
   std::string name;  ///< for "albedo" the channels are albedo.R, albedo.G, albedo.B
   Image image;       ///< MUST have the size of the main image
   /// True if the layer is one number per pixel, which is the red component of `image`. The file
-  /// then has the channel name.Z for the layer, which is always stored as floats.
+  /// then has one channel for the layer, NAME.Z. This channel is always stored as floats.
   bool is_number = false;
 };
 

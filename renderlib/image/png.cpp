@@ -22,7 +22,8 @@
 namespace bandsaw {
 namespace {
 
-// stb counts bytes in int, and its compressor doubles its buffer; this size is safe.
+// Maximum size of the codes, in bytes. stb counts bytes in int, and its compressor doubles the size
+// of its buffer. Up to kMaxBytes the count cannot overflow.
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 29;
 
 /// Called by stb with parts of the file; `context` is the vector to which they are appended.

@@ -21,9 +21,9 @@ struct NodeMotion {
   Vec3 translate;                                   ///< translation in the rest pose
   Quaternion rotate;                                ///< rotation in the rest pose
   Vec3 scale{1, 1, 1};                              ///< scale in the rest pose
-  std::optional<Curve> translation = std::nullopt;  ///< width 3
-  std::optional<Curve> rotation = std::nullopt;     ///< width 4: x, y, z, w
-  std::optional<Curve> scaling = std::nullopt;      ///< width 3
+  std::optional<Curve> translation = std::nullopt;  ///< numbers x, y, z
+  std::optional<Curve> rotation = std::nullopt;     ///< numbers x, y, z, w
+  std::optional<Curve> scaling = std::nullopt;      ///< numbers x, y, z
 
   /// Returns the node's transform relative to its parent.
   Transform at(double time) const;
@@ -53,8 +53,7 @@ struct Animation {
   /// Moving nodes, keyed by their number in Assimp's tree, parents first. Until Assimp has loaded a
   /// glTF file, the key is the node's index in that file.
   std::map<std::size_t, NodeMotion> nodes = {};
-  /// Weights of morph targets, keyed by node as in `nodes`. The width of a curve is the number of
-  /// targets.
+  /// Weights of morph targets, keyed by node as in `nodes`. A curve has one number for each target.
   std::map<std::size_t, Curve> weights = {};
 };
 

@@ -82,8 +82,8 @@ std::vector<double> Curve::at(double time) const {
     }
     // A cubic Hermite spline (glTF 2.0, appendix C.5).
     const double length = times_[place.next] - times_[place.key];
-    const double leaving = length * tangent(place.key, i, false);
-    const double arriving = length * tangent(place.next, i, true);
+    const double leaving = length * tangent(place.key, i, /*before=*/false);
+    const double arriving = length * tangent(place.next, i, /*before=*/true);
     out[i] = (2 * u * u * u - 3 * u * u + 1) * from[i] + (u * u * u - 2 * u * u + u) * leaving +
              (3 * u * u - 2 * u * u * u) * to[i] + (u * u * u - u * u) * arriving;
   }
@@ -117,7 +117,7 @@ bool Curve::rests(double from, double to) const {
       return false;
     }
     for (std::size_t i = 0; has_tangents && i < width_; ++i) {
-      if (tangent(key, i, false) != 0 || tangent(key + 1, i, true) != 0) {
+      if (tangent(key, i, /*before=*/false) != 0 || tangent(key + 1, i, /*before=*/true) != 0) {
         return false;
       }
     }

@@ -21,8 +21,8 @@ struct PlyFile {
 /// "color_1", "color_2"), and so do "r", "g", "b" and "red", "green", "blue". A group of two, or of
 /// more than three numbers, is skipped. In attributes, unsigned bytes are divided by 255.
 /// Elements that are neither vertices nor faces are skipped. The error is INVALID_ARGUMENT if the
-/// file is damaged, ends before the elements that its header announces, has no face, has a face
-/// with an index that is no vertex, or has a vertex with a number that is not finite.
+/// file is damaged, lacks elements that its header announces, has no face, has a face with an index
+/// that is no vertex, or has a vertex with a number that is not finite.
 absl::StatusOr<PlyFile> read_ply(absl::string_view bytes);
 
 }  // namespace bandsaw

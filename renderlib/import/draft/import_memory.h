@@ -1,7 +1,8 @@
 #pragma once
 
-// Memory that the imports of one scene at several frames share, so that its models, its image
-// textures and a foreign scene need not be read again.
+// Memory that the imports of one scene at several frames share, so that its models and image
+// textures are read only once. A scene of another renderer (a foreign scene) is converted only
+// once.
 
 #include <map>
 #include <memory>

@@ -20,7 +20,8 @@ struct NamedFile {
   absl::StatusOr<std::string> read(std::uint64_t max_bytes) const;
 };
 
-/// Finds a file. Errors as SceneFolder::resolve.
+/// Finds a file. The errors are those of SceneFolder::resolve(): NOT_FOUND, INVALID_ARGUMENT or
+/// PERMISSION_DENIED.
 absl::StatusOr<NamedFile> find_named_file(const std::string& name, const SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -1,7 +1,8 @@
 // place() copies frames and instances to another place. A copied frame without a parent gets the
 // frame of the place as its parent. A copied instance without a frame gets the frame of the place
-// as its frame. Both are transformed by the place. Indices of frames are shifted, because the
-// copied frames follow those of `to`.
+// as its frame. Only these frames and instances are transformed by Place::to_frame, because all
+// others move with one of these frames. Indices of frames are shifted, because the copied frames
+// follow the frames that `to` already has.
 
 #include "renderlib/import/draft/placements.h"
 

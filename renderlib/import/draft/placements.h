@@ -1,8 +1,8 @@
 #pragma once
 
-// A Placements holds instances of meshes and groups, and moving coordinate systems (Frame), in one
-// space: the scene or a group. They are collected here before they are added to the scene's
-// geometry.
+// An object of type Placements describes one space: the scene or a group. It holds instances of
+// meshes and groups, and the moving coordinate systems (Frame) of the space. An import collects
+// these instances and frames before it adds them to the scene's geometry.
 
 #include <optional>
 #include <vector>
@@ -13,7 +13,7 @@ namespace bandsaw {
 
 struct Placements {
   std::vector<Frame> frames;
-  std::vector<Instance> instances;  ///< refer to the frames above
+  std::vector<Instance> instances;  ///< Instance::frame is an index in `frames`, or kNoFrame
 };
 
 /// Contents of one space: visible instances, and the closed shapes that media fill, which are
@@ -29,19 +29,19 @@ struct Contents {
 /// the message that describes a scene package.
 inline constexpr std::size_t kMaxPlacements = 500'000;
 
-/// Place of an instance in a Placements: the transform to the frame `frame` or, if that is
-/// kNoFrame, to the space of the Placements.
+/// Where an instance is in the space of a Placements.
 struct Place {
-  Transform to_frame;
+  Transform to_frame;  ///< leads to `frame`, or to the space if `frame` is kNoFrame
   FrameId frame = kNoFrame;
 };
 
 /// Appends the frame and returns its index in `to`.
 FrameId add_frame(Frame frame, Placements& to);
 
-/// Adds all placements of `what` to `to` at a place; `material`, if set, replaces their materials.
-/// Returns false if a placement would be singular; in that case only some of the placements have
-/// been added to `to`.
+/// Copies all frames and instances of `what` to `to`, at the place `at` of the space of `to`. If
+/// `material` is set, it replaces the materials of the copied instances. Returns false if the
+/// transform of a copied instance would be singular. Then only some of the instances have been
+/// added to `to`.
 bool place(const Placements& what, const Place& at, std::optional<MaterialId> material,
            Placements& to);
 

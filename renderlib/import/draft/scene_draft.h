@@ -63,7 +63,7 @@ struct SceneDraft {
   /// Cameras of the models. If a model is placed several times, its first placement counts.
   std::vector<FoundCamera> cameras;
   Shutter shutter;            ///< of the frame that is imported, in the scene's time
-  AnimationChoice animation;  ///< for models for which the scene file names none
+  AnimationChoice animation;  ///< for models whose animation the scene file does not name
 
   Contents world;
   /// Destination of the shapes and placements that are read: the scene, or a group while it is read

@@ -115,8 +115,9 @@ std::vector<sock_filter> program() {
       jump(kEqual, kArchitecture, 1, 0),
       statement(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
       statement(kLoad, offsetof(seccomp_data, nr)),
-      // On x86-64, call numbers from kX32 up are aliases of the same calls (x32 ABI), so they fail.
-      // Other architectures have no such numbers.
+      // On x86-64, call numbers from kX32 up are aliases of the same calls (x32 ABI). The
+      // comparisons with kForbidden would miss the aliases, so all of them fail. Other
+      // architectures have no such numbers.
       jump(kAtLeast, kX32, 0, 1),
       answer(EPERM),
       // clone3 fails with ENOSYS, so that the C library falls back to clone, whose flags can be

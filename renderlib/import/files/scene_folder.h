@@ -22,13 +22,13 @@ class SceneFolder {
   static absl::StatusOr<SceneFolder> around(const std::string& scene_path,
                                             const std::string& folder);
 
-  /// Returns the real path of the regular file to which a file in `folder` refers by `name`.
-  /// `folder` is absolute, and is this folder or lies below it. Messages do not contain the
-  /// referring file; they contain `name`, unless it is empty or has a zero byte. Returns
-  /// INVALID_ARGUMENT if the name is empty, has a zero byte or is not that of a regular file.
-  /// Returns PERMISSION_DENIED if the name is an absolute path, if it leads outside of the scene's
-  /// folder, directly or through a symbolic link, or if the process may not access the file.
-  /// Returns NOT_FOUND if there is no such file.
+  /// A file in `folder` refers to another file by `name`, a path relative to `folder`. Returns the
+  /// real path of the other file. `folder` is absolute, and is this folder or lies below it.
+  /// Messages contain `name`, unless it is empty or has a zero byte, but not the name of the file
+  /// in `folder`. Returns INVALID_ARGUMENT if the name is empty, has a zero byte or is not that of
+  /// a regular file. Returns PERMISSION_DENIED if the name is an absolute path, if it leads outside
+  /// of the scene's folder, directly or through a symbolic link, or if the process may not access
+  /// the file. Returns NOT_FOUND if there is no such file.
   absl::StatusOr<std::string> resolve(const std::string& name, const std::string& folder) const;
 
   /// As resolve(). If resolve() fails and `name` has no slash, searches `folder`, without its

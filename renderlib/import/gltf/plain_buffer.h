@@ -1,7 +1,8 @@
 #pragma once
 
-// Builds the single buffer of a plain glTF document (plain_gltf.h): the bytes of its arrays, and
-// the accessors and buffer views that say where each array is and of what type.
+// Builds the single buffer of a plain glTF document, which any reader of glTF understands
+// (plain_gltf.h): the bytes of the document's arrays, and the accessors and buffer views that say
+// where each array is and of what type.
 
 #include <cstdint>
 #include <string>

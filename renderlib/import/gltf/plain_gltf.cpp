@@ -139,8 +139,8 @@ class Rewriter {
     return pose;
   }
 
-  /// Copies each mesh that nodes pose differently, once for each pose after the first, so that each
-  /// mesh has one pose. The copies share the accessors.
+  /// Gives each mesh a single pose: if nodes use a mesh in several poses, each pose after the first
+  /// gets a copy of the mesh. The copies share the accessors.
   void separate_poses() {
     // Index of the mesh in the document, keyed by its index in the file and by the pose.
     std::map<std::pair<std::size_t, Json>, std::size_t> posed;
