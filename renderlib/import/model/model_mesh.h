@@ -16,7 +16,7 @@ namespace bandsaw {
 struct ModelMesh {
   MeshId mesh{};
   MaterialId material{};
-  bool skinned = false;  ///< its vertices are in the model's space and not in that of its node
+  bool skinned = false;  ///< the vertices are in the model's space, not in the node's space
 };
 
 /// Indexed by Assimp's number of the mesh; absent for meshes without a triangle that can be

@@ -33,6 +33,8 @@ bool has_own_base(const MaterialReader& reader) {
   return reader.gltf() != nullptr && reader.gltf()->has_metallic_roughness;
 }
 
+/// Returns the slot of the texture of the base colour. A material that is not described by
+/// pbrMetallicRoughness may have a diffuse texture instead.
 Slot base_slot(const MaterialReader& reader) {
   const Slot base{aiTextureType_BASE_COLOR};
   return has_own_base(reader) ? base : either(reader, base, {aiTextureType_DIFFUSE});
@@ -136,9 +138,9 @@ absl::Status read_layers(MaterialReader& reader, MetallicRoughness& to) {
   return absl::OkStatus();
 }
 
-// Converts KHR_materials_pbrSpecularGlossiness without its image. A surface without a diffuse
-// texture whose specular colour is brighter than 0.5 is taken as a metal. Its metallic share m is
-// chosen so that the mixture (1 - m) 0.04 + m is as bright as the specular colour.
+// Converts KHR_materials_pbrSpecularGlossiness without its image. If the surface has no diffuse
+// texture and its specular colour is brighter than 0.5, it is taken as a metal. The metallic share
+// m is chosen so that the mixture (1 - m) 0.04 + m is as bright as the specular colour.
 void from_glossiness(MaterialReader& reader, double glossiness, MetallicRoughness& to) {
   to.roughness.factor = 1 - glossiness;
   to.metallic.factor = 0;
@@ -146,7 +148,8 @@ void from_glossiness(MaterialReader& reader, double glossiness, MetallicRoughnes
   const Rgb specular = reader.color("$clr.specular", 1).value_or(Rgb{1, 1, 1});
   to.base_color.factor = diffuse;
   if (reader.has({aiTextureType_SPECULAR})) {
-    reader.unsupported("its specular-glossiness map is left out: it is taken as not metallic");
+    reader.unsupported(
+        "its specular-glossiness map is left out; the material is taken as not metallic");
     return;
   }
   constexpr double kDielectric = 0.04;

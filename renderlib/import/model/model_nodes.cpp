@@ -29,9 +29,9 @@ Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
 struct CameraAtNode {
   const aiCamera* camera = nullptr;
-  std::string name = {};                              ///< its own name
+  std::string name = {};                              ///< the camera's own name
   std::optional<double> vertical_fov = std::nullopt;  ///< in radians; none: use Assimp's angle
-  std::optional<double> height = std::nullopt;        ///< as ColladaLens::height
+  std::optional<double> height = std::nullopt;        ///< if orthographic; in units of the node
 };
 
 // Returns the vertical field of view in degrees. Assimp's reader of glTF 1 stores the vertical

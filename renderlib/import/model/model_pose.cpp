@@ -25,6 +25,7 @@ std::vector<Float3> vectors(const aiVector3D* from, std::size_t count) {
   return to;
 }
 
+/// Adds `weight` times the difference between `target` and `base` to each vector of `to`.
 void add_target(const aiVector3D* target, const aiVector3D* base, double weight,
                 std::vector<Float3>& to) {
   for (std::size_t i = 0; i < to.size(); ++i) {
@@ -40,7 +41,8 @@ void add_scaled(const Transform& t, double by, Transform& sum) {
   }
 }
 
-/// Adds the targets whose weight is not 0.
+/// Adds the targets whose weight is not 0. If `weights` is empty, the targets have the weights of
+/// the file.
 void add_morph_targets(const aiMesh& from, const std::vector<double>& weights, Vertices& to) {
   for (unsigned i = 0; i < from.mNumAnimMeshes; ++i) {
     const aiAnimMesh& target = *from.mAnimMeshes[i];

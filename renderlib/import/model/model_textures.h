@@ -19,9 +19,9 @@ class ModelTextures {
       : scene_(scene), path_(model_path), draft_(draft) {}
 
   /// Finds an image by its name in the model and adds it as a texture. The image is embedded, or it
-  /// is a file. The name of a file may have backslashes, be percent-encoded or differ in case. It
-  /// may also be a path of another machine whose last part is in the model's folder. Returns
-  /// NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT with the reason.
+  /// is a file. The name of a file may have backslashes, be percent-encoded or differ in case. If
+  /// the name leads to no file in the scene's folder, its last part is looked up in the model's
+  /// folder. Returns NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT with the reason.
   absl::StatusOr<TextureId> find(const std::string& file, const TextureStore::Use& use) const;
 
   /// Returns OK if find() would find a file or an embedded image, otherwise its error.

@@ -1,6 +1,6 @@
 // Repairs a model's mesh. Normals that are zero or not finite are computed from the triangles, and
-// uvs that are not finite become 0. Vertices that no triangle uses are removed if a vertex is not
-// finite.
+// uvs that are not finite become 0. If any vertex of the mesh is not finite, all vertices that no
+// triangle uses are removed.
 
 #include "renderlib/import/model/repair_mesh.h"
 #include "renderlib/math/float3.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// Repairs those defects of imported meshes that need no guess at what was meant.
+// Repairs defects of an imported mesh, but only where this needs no guess at what was meant.
 
 #include <cstddef>
 

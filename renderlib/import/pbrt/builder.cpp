@@ -31,6 +31,7 @@ constexpr ColorSpace kColorSpaces[] = {
       {-0.27648, 1.37272, -0.09624},
       {-0.01538, -0.15298, 1.16835}}}};
 
+/// Converts linear RGB from the colour space `space` to linear sRGB.
 Rgb3 in_srgb(const Rgb3& rgb, const std::string& space) {
   for (const ColorSpace& known : kColorSpaces) {
     if (space == known.name && space != "srgb") {

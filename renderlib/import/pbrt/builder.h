@@ -54,7 +54,7 @@ struct Builder {
   bool has_motion = false;  ///< something in the scene moves
   Extent extent;
 
-  /// Textures by name: those of colours and those of numbers.
+  /// Textures of colours and textures of numbers, by their names in the pbrt scene.
   std::map<std::string, scene::Texture> color_textures;
   std::map<std::string, scene::Texture> float_textures;
   std::map<std::string, std::shared_ptr<const Surface>> materials;
@@ -84,7 +84,7 @@ struct Builder {
   void warn_once(const Place& place, absl::string_view what);
   /// Warns of each parameter that was not used.
   void warn_of_unused(const Parameters& parameters);
-  /// Texts of warn_once(), and an entry for each medium whose unused parameters were named.
+  /// Texts of warn_once(), and an entry for each medium whose unused parameters caused warnings.
   std::set<std::string> warned;
 };
 
@@ -121,8 +121,8 @@ absl::StatusOr<std::optional<std::string>> read_or_warn(const std::string& name,
 // Each of these functions converts a directive (textures.cpp, materials.cpp, shapes.cpp,
 // lights.cpp). They add the result to the builder, except make_surface(), which returns the result.
 // `type` is the type that the directive names ("sphere"). For a texture, `type` is "spectrum" or
-// "float", and `kind` is the class of the texture ("imagemap"). `label` begins the name of the
-// material.
+// "float", and `kind` is the class of the texture ("imagemap"). The name of the material begins
+// with `label`.
 absl::Status add_texture(const std::string& name, const std::string& type, const std::string& kind,
                          Parameters parameters, const State& state, Builder& builder);
 absl::StatusOr<std::shared_ptr<const Surface>> make_surface(const std::string& type,

@@ -213,6 +213,7 @@ class Interpreter {
     return absl::OkStatus();
   }
 
+  /// Reads a directive that changes nothing in Bandsaw's image.
   absl::Status without_effect(const Place& place) { return typed(place, "").status(); }
   absl::Status nothing(const Place&) { return absl::OkStatus(); }
 
@@ -230,7 +231,7 @@ class Interpreter {
     return absl::OkStatus();
   }
 
-  /// Restores the graphics state for each imported file that ended before the last token.
+  /// Restores the graphics state for each imported file that ended before the token read last.
   void end_imports() {
     while (!imports_.empty() && tokens_.depth() < imports_.back().depth) {
       warn_of_missing_ends(imports_.back().name);

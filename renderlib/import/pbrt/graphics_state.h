@@ -40,8 +40,8 @@ class GraphicsState {
   /// Ends the imported file that was begun last, which MUST exist. The state is again the one that
   /// was current when begin_import() was called.
   void end_import();
-  /// Returns the number of states that are saved. Inside of an imported file, only the states count
-  /// that this file saved.
+  /// Returns the number of states that are saved. Inside of an imported file, counts only the
+  /// states that this file has saved.
   std::size_t depth() const { return saved_.size(); }
 
   /// Adds the parameters that Attribute sets for all following directives of the kind `target`

@@ -76,6 +76,7 @@ absl::StatusOr<std::optional<Image>> read_picture(const std::string& file, const
   return *std::move(picture);
 }
 
+/// Returns the point of the parameter `name`, in world space.
 absl::StatusOr<Vec3> point(const LightSource& from, const std::string& name,
                            const Vec3& otherwise) {
   ASSIGN_OR_RETURN(const Vec3 p, from.parameters.point(name, otherwise));
@@ -97,7 +98,8 @@ absl::Status distant(const LightSource& from) {
 }
 
 /// Adds a point light. Its intensity is multiplied by `mean_of_image`, the mean of a goniometric
-/// light's image (1 for other lights). `own_power`: the power that it has with luminance 1.
+/// light's image (1 for other lights). `own_power`: the power of the light if its parameter I
+/// has luminance 1.
 absl::Status point_light(const LightSource& from, double mean_of_image, double own_power) {
   ASSIGN_OR_RETURN(const Vec3 position, point(from, "from", {0, 0, 0}));
   ASSIGN_OR_RETURN(const double factor, from.factor_for("power", own_power));
@@ -283,7 +285,7 @@ absl::Status add_light(const std::string& type, const Parameters& parameters, co
   if (type == "distant") {
     status = distant(from);
   } else if (type == "point") {
-    status = point_light(from, 1, 4 * kPi);
+    status = point_light(from, /*mean_of_image=*/1, /*own_power=*/4 * kPi);
   } else if (type == "spot") {
     status = spot(from);
   } else if (type == "infinite") {

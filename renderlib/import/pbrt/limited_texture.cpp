@@ -1,6 +1,6 @@
 // Limits the values of textures to 1, because pbrt clamps a reflectance to 1 where it uses the
-// reflectance. An image that exceeds 1, by itself or by its factor, becomes a made file: an image
-// with the limited values that the converter makes and adds to the scene.
+// reflectance. If an image exceeds 1, by itself or by its factor, the converter makes an image with
+// the limited values and adds it to the scene as a made file.
 
 #include <algorithm>
 

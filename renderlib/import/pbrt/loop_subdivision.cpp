@@ -20,7 +20,7 @@ namespace {
 using Triangle = std::array<std::uint32_t, 3>;
 constexpr std::size_t kMaxTriangles = 50'000'000;
 
-/// An edge from its smaller vertex to its larger, and the vertices opposite to it.
+/// An edge between the vertices with the indices a < b, and the vertices opposite to the edge.
 struct Edge {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -41,8 +41,8 @@ std::pair<std::uint32_t, std::uint32_t> key_of(std::uint32_t a, std::uint32_t b)
 }
 
 /// Lists the neighbours of a vertex in order around it. For each triangle of the vertex, `next`
-/// maps the corner after the vertex to the corner before it. Returns false if the triangles do not
-/// form a single ring.
+/// maps the corner after the vertex to the corner before it. Sets `is_open` to true if the vertex
+/// is on the boundary. Returns false if the triangles do not form a single ring.
 bool walk_ring(const std::map<std::uint32_t, std::uint32_t>& next, std::vector<std::uint32_t>& ring,
                bool& is_open) {
   std::map<std::uint32_t, bool> has_predecessor;

@@ -11,7 +11,7 @@
 
 namespace bandsaw::pbrt {
 
-/// A material as it is written, and what is needed to convert it.
+/// The parameters of a pbrt material, and what is needed to convert them.
 struct MaterialSource {
   const Parameters& parameters;
   const State& state;

@@ -12,8 +12,8 @@
 namespace bandsaw::pbrt {
 namespace {
 
-/// Writes `texture` to a field of `message`: to the field that `color` returns if the texture is a
-/// constant colour, otherwise to the field that `other` returns.
+/// Writes `texture` to a field of `message`. If the texture is a constant colour, `color` returns
+/// this field. Otherwise `other` returns it.
 void set_color_or_texture(scene::Texture texture, scene::Color* (*color)(void*),
                           scene::Texture* (*other)(void*), void* message) {
   if (texture.has_color()) {
@@ -134,6 +134,8 @@ absl::Status diffuse_transmission(const MaterialSource& from, Surface& to) {
   return absl::OkStatus();
 }
 
+/// Converts a mix of two named materials. If one of the two cannot be part of a mix, the result is
+/// the other material alone, with a warning.
 absl::Status mix(const MaterialSource& from, Surface& to) {
   ASSIGN_OR_RETURN(const std::vector<std::string> names, from.parameters.texts("materials"));
   if (names.size() != 2) {

@@ -99,7 +99,7 @@ absl::Status read_grid(const MediumParts& from, const std::string& name, const T
   }
   ASSIGN_OR_RETURN(const Vec3 p0, in.point("p0", {0, 0, 0}));
   ASSIGN_OR_RETURN(const Vec3 p1, in.point("p1", {1, 1, 1}));
-  to->set_file(from.builder.made.add("volume", ".vol", volume_file(values, size, 1)));
+  to->set_file(from.builder.made.add("volume", ".vol", volume_file(values, size, /*channels=*/1)));
   to->set_unit_box(true);
   const Transform box = translation(p0) * scaling(p1 - p0);
   set_matrix(to_shape * from.medium.to_world * box, to->mutable_matrix());
@@ -155,7 +155,8 @@ absl::StatusOr<std::string> medium_name(const std::string& name, const Place& pl
     use_all(in);
     return std::string();
   }
-  // A medium is converted for each shape that it fills, but its unused parameters are named once.
+  // A medium is converted for each shape that it fills. Its unused parameters cause warnings only
+  // the first time.
   if (builder.warned.insert(absl::StrCat("medium ", name)).second) {
     builder.warn_of_unused(in);
   }

@@ -16,9 +16,10 @@ absl::StatusOr<std::optional<PlyMesh>> mesh_of(const std::string& type,
                                                const Parameters& parameters, Builder& builder);
 
 /// Returns Loop's subdivision of a closed or open manifold mesh after `levels` levels, in [0, 8].
-/// Its vertices are at their limits and have the normals of the limit surface (Loop 1987; Hoppe et
-/// al. 1994, appendix A). The error is INVALID_ARGUMENT for a mesh that is no manifold, and
-/// RESOURCE_EXHAUSTED for one that becomes too large.
+/// Its vertices lie on the limit surface, to which further levels would converge, and have the
+/// normals of this surface (Loop 1987; Hoppe et al. 1994, appendix A). The error is
+/// INVALID_ARGUMENT for a mesh that is no manifold, and RESOURCE_EXHAUSTED for one that becomes too
+/// large.
 absl::StatusOr<PlyMesh> subdivided(const std::vector<Vec3>& points,
                                    const std::vector<std::array<std::uint32_t, 3>>& triangles,
                                    int levels);

@@ -51,7 +51,7 @@ Rgb3 reflectance_of(const spectrum::Metal& metal, double outside) {
   return out;
 }
 
-/// Returns the roughness of a glTF material, whose square is alpha. If the roughness is a texture,
+/// Returns the roughness as glTF defines it: the square root of alpha. If `roughness` is a texture,
 /// warns and takes an alpha of 0.5 instead. `what` is the surface that has the roughness.
 double gltf_roughness(const MaterialSource& from, const Roughness& roughness,
                       absl::string_view what) {

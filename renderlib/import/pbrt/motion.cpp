@@ -132,6 +132,7 @@ void add_moving(const Place& place, const Transforms& transforms, Placed placed,
   add(std::move(placed), builder);
 }
 
+/// Adds an object, with keys if the two transformations differ, otherwise with one matrix.
 template <class Placed>
 void add_any(const Place& place, const Transforms& transforms, Placed placed, Builder& builder) {
   if (!(transforms[0] == transforms[1])) {
@@ -178,7 +179,8 @@ scene::Group& add_helper_group(Builder& builder, std::string& name) {
   auto& groups = *builder.out.mutable_group();
   scene::Group* group = groups.Add();
   if (builder.group != nullptr) {
-    // A group must come before the one in which it is placed, which ObjectBegin has opened.
+    // The new group will be placed in the group that ObjectBegin has opened, so it must come before
+    // the open group.
     const int last = groups.size() - 1;
     groups.SwapElements(last - 1, last);
     builder.group = groups.Mutable(last);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Places models and instances in our scene, with keys if pbrt moves them from one transformation to
-// another.
+// Places models and instances in our scene. If pbrt moves them from one transformation to another,
+// they get two keys, which are poses at given times.
 
 #include "renderlib/import/pbrt/builder.h"
 
@@ -25,8 +25,8 @@ scene::Group& add_helper_group(Builder& builder, std::string& name);
 
 /// Adds a model or an instance to the open group, or to the scene if no group is open. It is placed
 /// by a matrix, or by keys if the two transformations differ. If the motion changes the shear,
-/// mirrors, or has no duration, the model or instance stays at the first transformation, with a
-/// warning.
+/// mirrors the object, or has no duration, the model or instance stays at the first transformation,
+/// with a warning.
 void add_placed(const Place& place, const Transforms& transforms, scene::Model model,
                 Builder& builder);
 void add_placed(const Place& place, const Transforms& transforms, scene::Instance instance,

@@ -23,8 +23,8 @@ Vec2 octahedral_of(const Vec3& direction);
 /// pixel. `to_light` maps directions from the world to the light's space.
 Image equirectangular(const Sky& sky, const Transform& to_light);
 
-/// Returns the illuminance of a surface that faces +z in the light's space, if the radiance is that
-/// of the image.
+/// Returns the illuminance of a surface that faces +z in the light's space and is lit by the image
+/// alone.
 double illuminance_of(const Sky& sky);
 
 }  // namespace bandsaw::pbrt

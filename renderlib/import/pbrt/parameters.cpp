@@ -64,6 +64,7 @@ absl::Status add_value(const Token& token, bool has_texts, Parameter& to) {
                             absl::StrCat(text_of(token.place), ": too many values"));
 }
 
+/// Reads the value that follows, or a list of values in brackets.
 absl::Status read_values(Tokens& tokens, bool has_texts, Parameter& to) {
   ASSIGN_OR_RETURN(std::optional<Token> token, tokens.next());
   if (!token || token->kind == Token::Kind::kClose) {

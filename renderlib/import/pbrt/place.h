@@ -10,7 +10,7 @@
 namespace bandsaw::pbrt {
 
 struct Place {
-  std::string file;  ///< as it was named: "kitchen.pbrt"
+  std::string file;  ///< name, relative to the scene's folder: "kitchen.pbrt"
   int line = 0;      ///< from 1
 };
 

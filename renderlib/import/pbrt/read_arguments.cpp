@@ -40,7 +40,7 @@ absl::StatusOr<std::vector<double>> read_numbers(Tokens& tokens, const Place& pl
   if (out.size() == count && in_brackets) {
     ASSIGN_OR_RETURN(token, tokens.next());
     if (!token || token->kind != Token::Kind::kClose) {
-      out.clear();
+      out.clear();  // the closing bracket is missing, which is an error
     }
   }
   return out.size() == count ? absl::StatusOr<std::vector<double>>(std::move(out))

@@ -35,7 +35,7 @@ bool is_moving(const State& state) { return !(state.transforms[0] == state.trans
 
 /// Returns true if the material looks different with other uvs.
 bool depends_on_uvs(const scene::Material& material) {
-  // A material refers to a texture that is not constant by the field `use`.
+  // If a texture is not constant, the material refers to it in a field `use`.
   return material.ShortDebugString().find("use:") != std::string::npos || material.has_mix() ||
          material.has_normal_texture() || material.gltf().has_normal_texture() ||
          material.conductor().surface().has_alpha_v() ||
@@ -60,8 +60,9 @@ struct Sides {
 };
 
 /// Returns the name of the medium inside a closed shape. The name is empty if the shape needs no
-/// medium of its own, or if the medium has no counterpart. `to_shape` maps the world to the space
-/// in which the shape is written.
+/// medium of its own, or if the medium has no counterpart. If there is a medium outside but none
+/// inside, the name is that of the vacuum. `to_shape` maps the world to the space in which the
+/// shape is written.
 absl::StatusOr<std::string> interior_of(const Shape& shape, const Sides& sides,
                                         const Transform& to_shape) {
   if (!sides.differ() || !shape.state.surface->transmits) {
@@ -266,7 +267,7 @@ absl::Status add_mesh(Shape& shape, Sides sides) {
     if (is_plain_file(shape, file, sides)) {
       ASSIGN_OR_RETURN(const auto bytes,
                        read_or_warn(file, shape.place(), "the shape is left out", shape.builder));
-      return bytes ? add_model(shape, file, false, sides) : absl::OkStatus();
+      return bytes ? add_model(shape, file, /*closed=*/false, sides) : absl::OkStatus();
     }
   }
   ASSIGN_OR_RETURN(auto mesh, mesh_of(shape.type, shape.parameters, shape.builder));

@@ -20,7 +20,7 @@ using Transforms = std::array<Transform, 2>;
 /// A material before it is combined with a shape's emission and opacity.
 struct Surface {
   scene::Material material;  ///< without a name
-  std::string label;         ///< begins its name in our scene: "Floor"
+  std::string label;         ///< the name in our scene begins with it: "Floor"
   bool is_null = false;      ///< "interface": the surface is invisible
   bool transmits = false;    ///< light passes it, so media on its sides matter
   bool is_black = false;     ///< reflects nothing; if it emits, it becomes an Emissive material

@@ -74,6 +74,8 @@ scene::ImageTexture::Wrap wrap_of(const std::string& wrap) {
                                             : scene::ImageTexture::WRAP_REPEAT;
 }
 
+/// Returns true if the image's values are linear, false if they are sRGB. sRGB replaces an encoding
+/// with a gamma exponent, with a warning.
 absl::StatusOr<bool> is_linear(const TextureSource& from, const std::string& file) {
   ASSIGN_OR_RETURN(const std::string encoding, from.parameters.text("encoding", ""));
   if (absl::StartsWith(encoding, "gamma")) {

@@ -216,9 +216,9 @@ absl::StatusOr<std::vector<double>> read_screen(const Parameters& in, double asp
   return screen;
 }
 
-/// Sets the camera, and the size of the rendered part of the image. If this is not the whole image,
-/// or if the screen window is off centre or its pixels are not square, the camera gets a window in
-/// screen space.
+/// Sets the camera, and the size of the rendered part of the image. If this part is not the whole
+/// image, if the screen window is off centre, or if the pixels are not square, the camera gets a
+/// window in screen space.
 absl::Status read_camera(const ViewSource& view, const Film& film, Builder& builder) {
   Parameters none;
   const Parameters& in = view.camera ? view.camera->second : none;

@@ -13,12 +13,12 @@ struct ViewSource {
   std::optional<std::pair<std::string, Parameters>> film;
   std::optional<std::pair<std::string, Parameters>> filter;
   std::optional<std::pair<std::string, Parameters>> integrator;
-  Transforms to_camera;  ///< the current transformation at Camera
+  Transforms to_camera;  ///< from the world to the camera, at the start and end of the motion
   std::string medium;    ///< medium around the camera; empty: none
   Place medium_place;
 };
 
-/// Sets camera, image and integrator of the scene, the times of its shutter and
+/// Sets the camera with its shutter times, the image and the integrator of the scene. Also sets
 /// Builder::light_factor.
 absl::Status set_view(const ViewSource& view, Builder& builder);
 

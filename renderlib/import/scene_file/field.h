@@ -1,6 +1,6 @@
 #pragma once
 
-// A field of a scene file: its message, its path, and its line and column for errors.
+// A Field is a message in a scene file, with its path, and with its line and column for errors.
 
 #include <google/protobuf/message.h>
 #include <google/protobuf/text_format.h>

@@ -1,6 +1,7 @@
 #pragma once
 
-// Parses the text of a scene file to proto/scene.proto, without interpreting it.
+// Parses the text of a scene file to the message Scene of proto/scene.proto, without interpreting
+// it.
 
 #include <google/protobuf/text_format.h>
 

@@ -37,7 +37,7 @@ absl::Status read_emission(const Field& in, const scene::Gltf& from, SceneDraft&
   return absl::OkStatus();
 }
 
-// Sets the textures of metallic and roughness: one for both, or one for each.
+// Reads the factors and the textures of metallic and roughness. The two may share one texture.
 absl::Status read_metallic_roughness(const Field& in, const scene::Gltf& from, SceneDraft& draft,
                                      MetallicRoughness& to) {
   const bool both = from.has_metallic_roughness_texture();
@@ -136,7 +136,7 @@ absl::Status read_alpha(const Field& in, const scene::Gltf& from, SceneDraft& dr
   if (!scene::Gltf::AlphaMode_IsValid(from.alpha_mode())) {
     return in.error("alpha_mode", absl::StrCat("is no mode: ", from.alpha_mode()));
   }
-  // The enums are declared in the same order.
+  // AlphaMode and the enum of the scene file have their values in the same order.
   to.mode = static_cast<AlphaMode>(from.alpha_mode());
   ASSIGN_OR_RETURN(to.value.texture,
                    texture_or_white(in, "alpha_texture", from.has_alpha_texture(),

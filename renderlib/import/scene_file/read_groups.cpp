@@ -1,6 +1,6 @@
 // Reads the groups and instances of a scene file. A group's shapes and models are read once into a
-// Contents (draft/placements.h). Each instance of the group copies the placements of this Contents,
-// transformed, into the scene or into another group.
+// Contents, which holds placements of meshes and groups (draft/placements.h). Each instance of the
+// group copies these placements, transformed, into the scene or into another group.
 
 #include "renderlib/import/scene_file/read_groups.h"
 

@@ -1,6 +1,6 @@
 // Reads the materials of a scene file: read_kind() calls one function for each kind. Then the
-// relief, the opacity and the emission are read, which all kinds except emissive, gltf and mix can
-// have.
+// relief (a normal map or a bump map), the opacity and the emission are read, which all kinds
+// except emissive, gltf and mix can have.
 
 #include "renderlib/import/scene_file/read_materials.h"
 
@@ -133,8 +133,8 @@ absl::StatusOr<Material> read_sheet(const Field& in, const scene::DiffuseTransmi
              : in.error("transmittance", "reflectance and transmittance must not exceed 1 in sum");
 }
 
-// Returns the material that the field `field` of a mixture names as one of its two parts. It must
-// be written before the mixture.
+// Returns one of the two materials of a mixture: the one that the field `field` of the mixture
+// names. This material must be written before the mixture.
 absl::StatusOr<MaterialId> find_part(const Field& in, const char* field, const std::string& name,
                                      const SceneDraft& draft) {
   if (name.empty()) {
@@ -212,8 +212,8 @@ absl::Status read_relief(const Field& in, const scene::Material& from, SceneDraf
         to.height, read_texture(in.child("bump_texture"), from.bump_texture(), kMaxHeight, draft));
     if (uses_object_space(draft.out.scene.textures, *to.height)) {
       return in.error("bump_texture",
-                      "a height map lies in uv or in world space: write space: "
-                      "SPACE_WORLD or leave it out");
+                      "a height map cannot lie in object space: leave out space, or write "
+                      "space: SPACE_WORLD");
     }
   }
   to.normal_scale = from.has_normal_scale() ? from.normal_scale() : 1;

@@ -33,7 +33,7 @@ absl::StatusOr<Microfacets> read_microfacets(const Field& in, const scene::Micro
     return in.error("masking", absl::StrCat("is no masking: ", from.masking()));
   }
   Microfacets to;
-  // The enums are declared in the same order.
+  // The enums of Microfacets and of the scene file have their values in the same order.
   to.distribution = static_cast<Microfacets::Distribution>(from.distribution());
   to.masking = static_cast<Microfacets::Masking>(from.masking());
   ASSIGN_OR_RETURN(to.alpha_u_map, read_map(in, "alpha_texture", from.has_alpha_texture(),
@@ -42,11 +42,11 @@ absl::StatusOr<Microfacets> read_microfacets(const Field& in, const scene::Micro
   RETURN_IF_ERROR(check_range(in, "alpha", to.alpha_u, 0, 1));
   to.alpha_v_map = to.alpha_u_map;
   if (from.has_alpha_v_texture()) {
-    ASSIGN_OR_RETURN(to.alpha_v_map,
-                     read_map(in, "alpha_v_texture", true, from.alpha_v_texture(), draft));
+    ASSIGN_OR_RETURN(to.alpha_v_map, read_map(in, "alpha_v_texture", /*given=*/true,
+                                              from.alpha_v_texture(), draft));
   }
-  // A texture without a constant is multiplied by 1. Where values for v are absent, those for u are
-  // used.
+  // A texture without a constant is multiplied by 1. If the file gives no values for v, the values
+  // for u are used.
   const bool only_v = from.has_alpha_v_texture() && !from.has_alpha();
   to.alpha_v = from.has_alpha_v() ? from.alpha_v() : only_v ? 1 : to.alpha_u;
   RETURN_IF_ERROR(check_range(in, "alpha_v", to.alpha_v, 0, 1));

@@ -1,5 +1,6 @@
-// Reads the models that a scene file names: reads each model file once, places its meshes by the
-// entry's matrix or keys, and adds its lights, cameras and the media inside of its meshes.
+// Reads the entries `model` of a scene file. Each model file is read once. An entry places the
+// meshes of its file, by a matrix or by keys (placements at given times), and adds the file's
+// lights, its cameras, and the media inside of its meshes.
 
 #include "renderlib/import/scene_file/read_models.h"
 
@@ -48,7 +49,7 @@ absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const sc
   return std::make_shared<const Model>(*std::move(model));
 }
 
-/// Reads each model once, even if it is named several times.
+/// Returns the model of an entry. Reads its file once, even if several entries name the file.
 absl::StatusOr<std::shared_ptr<const Model>> find_file(const Field& in, const scene::Model& from,
                                                        SceneDraft& draft) {
   std::shared_ptr<const Model>& model =

@@ -1,6 +1,7 @@
 // Reads placements of models and instances in a scene file: scale, rotations and translation, or a
-// matrix. Between keys the shortest rotation is used. So if the angles of two keys about one axis
-// differ by more than kMaxTurn, further keys are added in between, and full turns are not lost.
+// matrix. A moving object has keys, which are placements at given times. Between keys the shortest
+// rotation is used. So if the angles of two keys about one axis differ by more than kMaxTurn,
+// further keys are added in between, and full turns are not lost.
 
 #include "renderlib/import/scene_file/read_placement.h"
 

@@ -1,5 +1,5 @@
-// Reads the parameters of both principled materials of a scene file. Templates read the parameters
-// that both materials have.
+// Reads both principled materials of a scene file: `principled` and `thin_principled`. Templates
+// read the parameters that both materials have.
 
 #include "renderlib/import/scene_file/read_principled.h"
 
@@ -109,7 +109,7 @@ absl::StatusOr<Material> read_thin_principled(const Field& in, const scene::Thin
   RETURN_IF_ERROR(check_range(in, "index_of_refraction", to.index_of_refraction, 1, 5));
   RETURN_IF_ERROR(read_common_numbers(in, from, draft, to));
   ASSIGN_OR_RETURN(to.diff_trans, read_number(in, "diff_trans", from.has_diff_trans(),
-                                              from.diff_trans(), 0, draft, 2));
+                                              from.diff_trans(), 0, draft, /*most=*/2));
   return to;
 }
 

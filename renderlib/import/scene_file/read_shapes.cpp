@@ -184,7 +184,8 @@ absl::Status read_filled_sphere(const Field& in, const scene::Shape& from, Scene
   return read_shape(in, from, filled_with(medium), draft.out.scene.media.boundaries);
 }
 
-/// Adds the medium inside a sphere or a box.
+/// Adds the boundary of the medium inside a sphere or a box. If the shutter has a duration, the
+/// boundary moves with the shape.
 absl::Status read_interior(const Field& in, const scene::Shape& from, SceneDraft& draft) {
   const bool rests_in_scene = draft.placed == &draft.world && from.velocity().empty();
   if (rests_in_scene && from.kind_case() == scene::Shape::kSphere) {

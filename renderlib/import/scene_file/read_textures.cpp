@@ -56,8 +56,10 @@ absl::StatusOr<Vec2> read_vec2(const Field& in, const std::string& name, const N
 
 /// Reads the transform of texture coordinates, which first scales, then rotates, then translates.
 absl::StatusOr<UvTransform> read_uv_transform(const Field& in, const scene::ImageTexture& from) {
-  ASSIGN_OR_RETURN(const Vec2 scale, read_vec2(in, "uv_scale", from.uv_scale(), true, 1));
-  ASSIGN_OR_RETURN(const Vec2 offset, read_vec2(in, "uv_offset", from.uv_offset(), false, 0));
+  ASSIGN_OR_RETURN(const Vec2 scale,
+                   read_vec2(in, "uv_scale", from.uv_scale(), /*one_for_both=*/true, 1));
+  ASSIGN_OR_RETURN(const Vec2 offset,
+                   read_vec2(in, "uv_offset", from.uv_offset(), /*one_for_both=*/false, 0));
   if (!std::isfinite(from.uv_rotate())) {
     return in.error("uv_rotate", absl::StrCat("must be finite, is ", from.uv_rotate()));
   }
@@ -239,8 +241,8 @@ MaybeId read_ramp(const Field& in, const scene::RampTexture& from, float most, S
 
 MaybeId read_mix(const Field& in, const scene::MixTexture& from, float most, SceneDraft& draft) {
   MixTexture to;
-  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), most, -1, draft));
-  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), most, -1, draft));
+  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), most, /*otherwise=*/-1, draft));
+  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), most, /*otherwise=*/-1, draft));
   ASSIGN_OR_RETURN(to.amount, read_part(in, "amount", from.amount(), kMaxRadiance, 0.5f, draft));
   return draft.textures.add(to);
 }
@@ -248,8 +250,8 @@ MaybeId read_mix(const Field& in, const scene::MixTexture& from, float most, Sce
 // The factors may be above the limit of the product. read_texture() checks the product.
 MaybeId read_product(const Field& in, const scene::ProductTexture& from, SceneDraft& draft) {
   ProductTexture to;
-  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), kMaxRadiance, -1, draft));
-  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), kMaxRadiance, -1, draft));
+  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), kMaxRadiance, /*otherwise=*/-1, draft));
+  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), kMaxRadiance, /*otherwise=*/-1, draft));
   return draft.textures.add(to);
 }
 

@@ -91,8 +91,8 @@ absl::StatusOr<Environment> read_cube_map(const Field& in, const scene::CubeMap&
   return to;
 }
 
-/// Returns `view`, whose position is set, with the direction of a camera that the field `rotate`
-/// gives. Without rotation such a camera looks along -z, and y is up.
+/// Sets the direction of `view` by the field `rotate` of the camera, and returns the view. The
+/// position of `view` MUST be set. An unrotated camera looks along -z, and y is up.
 absl::StatusOr<View> read_turned(const Field& in, const scene::Camera& from, View view) {
   if (!from.look_at().empty() || !from.up().empty()) {
     return in.error("rotate", "stands instead of look_at and up: write one or the other");

@@ -89,9 +89,9 @@ absl::StatusOr<VolumeGrid> read_grid(const Field& in, const scene::VolumeGrid& f
   return grid;
 }
 
-/// Returns the index of a grid among the grids of the scene, and the factor of its numbers. The
-/// grid is read from its file if no grid of the scene has the same settings. `otherwise`: see
-/// read_file().
+/// Returns the index of a grid among the grids of the scene, and the factor of its numbers. If no
+/// grid of the scene has the same settings, the grid is read from its file. `otherwise` is the name
+/// that is looked for in the file if the scene file names no grid.
 absl::StatusOr<GridUse> read_use(const Field& in, const scene::VolumeGrid& from,
                                  const std::string& otherwise, SceneDraft& draft) {
   constexpr double kMaxScale = std::numeric_limits<float>::max();

@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads the grids of numbers with which media of a scene file vary in space (density, albedo,
-// emission, temperature), from volume files.
+// Reads the grids of a medium from volume files. A grid holds numbers that vary in space: density,
+// albedo, emission or temperature.
 
 #include "absl/status/statusor.h"
 #include "proto/scene.pb.h"
