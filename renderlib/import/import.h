@@ -55,11 +55,11 @@ absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const Import
 /// (*.xml), or a single model. A model without a camera gets a camera that frames it, and a model
 /// without a light source gets a default sky. Only files below the folder of `path` (for Mitsuba,
 /// below `choices.folder` if it is set) are read. An invalid value is INVALID_ARGUMENT, for example
-/// "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1"; a file that is missing or
-/// outside of the folder is NOT_FOUND or PERMISSION_DENIED with its name. `memory` is passed to the
-/// imports of all frames of one scene. Models, image textures and the foreign scene are kept from
-/// one import to the next, and the imported scenes share their equal parts. nullptr: nothing is
-/// kept.
+/// "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1". A missing
+/// file is NOT_FOUND, and a file outside of the folder is PERMISSION_DENIED, both with the file's
+/// name. `memory` is passed to the imports of all frames of one scene. It keeps models, image
+/// textures and the foreign scene from one import to the next, and the imported scenes share their
+/// equal parts. If `memory` is nullptr, nothing is kept.
 absl::StatusOr<ImportedScene> import_scene(const std::string& path,
                                            const ImportChoices& choices = {},
                                            ImportMemory* memory = nullptr);

@@ -109,6 +109,7 @@ absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft&
   RETURN_IF_ERROR(read_lights(root, from, draft));
   RETURN_IF_ERROR(read_models(root, from.model(), draft));
   RETURN_IF_ERROR(read_instances(root, from.instance(), draft));
+  // `seen` are the visible instances, `filled` the closed shapes that media fill.
   scene.geometry.frames = std::move(draft.world.seen.frames);
   scene.geometry.instances = std::move(draft.world.seen.instances);
   scene.media.boundaries.frames = std::move(draft.world.filled.frames);
@@ -189,7 +190,8 @@ scene::Background as_proto(const Background& sky) {
   return out;
 }
 
-/// Returns a scene file that shows the same as a model that has been read alone (read_model_alone).
+/// Returns a scene file that renders to the same image as the model in `draft`, which
+/// read_model_alone() has read.
 scene::Scene scene_of_model(const SceneDraft& draft) {
   scene::Scene scene;
   scene.add_model()->set_file(draft.file);
@@ -267,11 +269,11 @@ absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
   }
   // The shutter of a new draft opens and closes at time 0, so the model is read in its pose at 0.
   SceneDraft at_zero(draft.folder, draft.file, draft.memory);
-  ASSIGN_OR_RETURN(Model model, read_model(real, false, at_zero, animation));
+  ASSIGN_OR_RETURN(Model model, read_model(real, /*with_materials=*/false, at_zero, animation));
   if (model.instances.empty()) {
     // If the rest pose hides the model too, read_model() returns an error. An empty model then
     // makes framed() return the default camera.
-    model = read_model(real, false, at_zero).value_or(Model{});
+    model = read_model(real, /*with_materials=*/false, at_zero).value_or(Model{});
   }
   at_zero.out.scene.geometry.instances = model.instances;
   return MovingCamera{framed(at_zero.out, draft.shutter)};
@@ -285,7 +287,7 @@ absl::Status read_model_alone(const std::string& path, const ImportChoices& choi
   const Field root(draft.file, defaults, nullptr);
   ASSIGN_OR_RETURN(draft.shutter, shutter_of_frame(root, defaults, choices.frame));
   const AnimationChoice animation{choices.animation, choices.frame.has_value()};
-  ASSIGN_OR_RETURN(const Model model, read_model(real, true, draft, animation));
+  ASSIGN_OR_RETURN(const Model model, read_model(real, /*with_materials=*/true, draft, animation));
   draft.out.scene.geometry.frames = model.frames;
   draft.out.scene.geometry.instances = model.instances;
   draft.out.scene.media.boundaries.frames = model.frames;

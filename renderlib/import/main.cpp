@@ -7,9 +7,9 @@
 //
 // This mode imports a scene. It writes FOLDER/manifest, and FOLDER/<digest> for each blob. The
 // choices (import.h, ImportChoices) are environment=FILE, camera=NAME, strict, define:NAME=VALUE (a
-// parameter of a Mitsuba scene), folder=FOLDER (of a Mitsuba scene: read files anywhere below this
-// folder, which contains that of the scene), frame=N, fps=F, shutter=SHARE (fps and shutter only
-// after frame) and animation=NAME.
+// parameter of a Mitsuba scene), folder=OUTER (for a Mitsuba scene: files anywhere below OUTER,
+// which contains the scene's own folder, may be read), frame=N, fps=F, shutter=SHARE (fps and
+// shutter only after frame) and animation=NAME.
 //
 //   bandsaw-import frames FILE FOLDER SECONDS BYTES frame=N [CHOICE ...]
 //
@@ -242,7 +242,7 @@ absl::Status unzip_to(const std::string& path, const std::string& folder) {
 
 constexpr char kUsage[] =
     "usage: bandsaw-import scene|frames|text|image|unzip FILE FOLDER SECONDS BYTES "
-    "[environment=FILE] [camera=NAME] [strict] [define:NAME=VALUE ...] [folder=FOLDER] "
+    "[environment=FILE] [camera=NAME] [strict] [define:NAME=VALUE ...] [folder=OUTER] "
     "[frame=N [fps=F] "
     "[shutter=SHARE]] [animation=NAME]";
 

@@ -20,24 +20,25 @@ struct PlainGltf {
   /// True for glTF 1, which is not rewritten. Then `root` is the JSON of the file, or empty for a
   /// binary file, and all other members are empty.
   bool is_first_version = false;
-  Json root;           ///< refers to one buffer, whose uri is kPlainBuffer
-  std::string buffer;  ///< bytes of that buffer
-  std::vector<std::string> animation_names;
+  Json root;                                 ///< refers to one buffer, whose uri is kPlainBuffer
+  std::string buffer;                        ///< bytes of that buffer
+  std::vector<std::string> animation_names;  ///< of all animations of the file
   /// The chosen animation; its nodes are keyed by their index in the file.
   std::optional<Animation> animation;
 };
 inline constexpr char kPlainBuffer[] = "plain.bin";
 
 /// Reads the model at `path`, a real path below `scene`, and the buffers to which it refers. Images
-/// in files stay there; all other images that textures use are moved to the buffer, and an image
-/// that no texture uses keeps only its number. Animations other than the chosen one, tangents and
-/// attributes that glTF does not define are omitted. In the result each mesh has one pose: if
-/// several nodes pose a mesh differently, by skins or weights of morph targets, the mesh is copied
-/// to the end of the list for each pose after the first. The weights of a node become those of its
-/// mesh. Everything else keeps its place and number. Returns NOT_FOUND if there is no such
-/// animation, INVALID_ARGUMENT if the file is damaged or requires an extension that replaces
-/// vertices or images by unreadable bytes, NOT_FOUND or PERMISSION_DENIED for a buffer's file, and
-/// RESOURCE_EXHAUSTED for more than 8 GiB of buffers and decoded arrays.
+/// in files stay there. All other images that textures use are moved to the buffer. An image that
+/// no texture uses stays in the list without its bytes, so that later images keep their numbers.
+/// Animations other than the chosen one, tangents and attributes that glTF does not define are
+/// omitted. In the result each mesh has one pose: if several nodes pose a mesh differently, by
+/// skins or weights of morph targets, the mesh is copied to the end of the list for each pose after
+/// the first. The weights of a node become those of its mesh. Everything else keeps its place and
+/// number. Returns NOT_FOUND if the file does not have the chosen animation, INVALID_ARGUMENT if
+/// the file is damaged or requires an extension that replaces vertices or images by unreadable
+/// bytes, NOT_FOUND or PERMISSION_DENIED for a buffer's file, and RESOURCE_EXHAUSTED for more than
+/// 8 GiB of buffers and decoded arrays.
 absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene,
                                           const AnimationChoice& choice = {});
 

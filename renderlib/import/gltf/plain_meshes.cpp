@@ -36,6 +36,7 @@ const Semantic* semantic_of(absl::string_view attribute) {
   return found == std::end(kSemantics) ? nullptr : found;
 }
 
+/// Returns INVALID_ARGUMENT if the accessor's vectors are too short or too long for the attribute.
 absl::Status check_shape(const std::string& attribute, const AccessorShape& shape) {
   const Semantic& semantic = *semantic_of(attribute);
   return shape.components >= semantic.least_components &&

@@ -1,6 +1,7 @@
 #pragma once
 
-// Rewrites the meshes of a glTF file for a plain document (plain_gltf.h).
+// Rewrites the meshes of a glTF file so that their arrays lie in one buffer and have one type each:
+// attributes are floats, except for joints, which are 16-bit integers; indices are 32-bit.
 
 #include <cstdint>
 #include <map>

@@ -15,8 +15,8 @@ bool is_exr(absl::string_view bytes);
 /// are halves or floats, and its scan lines or tiles are stored in any order. Alpha is omitted. The
 /// image is the display window; pixels outside of the data window are black. Returns linear floats,
 /// rows from the top, of any value including NaN. The size is checked before anything is decoded.
-/// Returns INVALID_ARGUMENT if the file cannot be decoded, with the reason, without the file's
-/// name.
+/// Returns INVALID_ARGUMENT if the file cannot be decoded. The message gives the reason but not the
+/// file's name.
 absl::StatusOr<ImageTexture> decode_exr(absl::string_view bytes);
 
 }  // namespace bandsaw

@@ -62,8 +62,8 @@ bool is_pfm(absl::string_view bytes) {
 /// Decodes a portable float map (PFM), which renderlib/image writes and stb_image does not support.
 /// The file has "PF" for three channels or "Pf" for one, width, height, and a scale whose sign is
 /// the byte order. Then the rows follow, from the bottom. A single channel becomes three equal
-/// ones. Values may be anything including NaN, because such an image is the result of a rendering
-/// and not an input of a scene. Returns INVALID_ARGUMENT if the file is broken or truncated.
+/// ones. Values may be anything including NaN, because `bandsaw compare` also reads renderings that
+/// have such values. Returns INVALID_ARGUMENT if the file is broken or truncated.
 absl::StatusOr<Image> decode_pfm(absl::string_view bytes) {
   const std::size_t channels = take_word(bytes) == "PF" ? 3 : 1;
   Image image;
@@ -135,7 +135,7 @@ bool is_png_with_trns(absl::string_view bytes) {
     if (type == "tRNS" || type == "IDAT") {
       return type == "tRNS";
     }
-    const std::size_t length = first_number(bytes, true);
+    const std::size_t length = first_number(bytes, /*big_endian=*/true);
     bytes.remove_prefix(std::min(bytes.size(), kAround + length));
   }
   return false;
@@ -314,8 +314,8 @@ absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes) {
   alpha.height = 1;
   std::vector<std::byte> texels{std::byte{255}};
   if (shape.channels == 2 || shape.channels == 4) {
-    // The file is decoded to four channels, of which the last is alpha, even if it has only grey
-    // and alpha.
+    // A file with only grey and alpha is decoded to four channels too, so alpha is always the last
+    // of four.
     Shape found;
     ASSIGN_OR_RETURN(const Pixels<stbi_uc> pixels, decode_pixels(bytes, 4, found));
     alpha.width = static_cast<std::uint32_t>(found.width);

@@ -13,7 +13,7 @@
 
 namespace bandsaw {
 
-/// Maximum size of an image file, because stb_image takes the size as an int.
+/// Image files of this size or more are refused, because stb_image takes the size as an int.
 inline constexpr std::uint64_t kMaxImageFileBytes = std::uint64_t{2} << 30;
 
 /// Warning about an image with an alpha channel.
@@ -27,7 +27,8 @@ enum class Gray { kExpanded, kKept };
 /// bits are omitted with a warning. A PNM file with 16 bits for each value is an error. HDR and EXR
 /// become linear floats. Except for EXR, the texels stay in the decoder's memory and are not
 /// copied. Sizes are checked before anything is decoded. Returns INVALID_ARGUMENT, or
-/// RESOURCE_EXHAUSTED for a file of 2 GiB or more, with the reason, without the file's name.
+/// RESOURCE_EXHAUSTED for a file of 2 GiB or more. The message gives the reason but not the file's
+/// name.
 absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
                                           std::vector<std::string>& warnings,
                                           Gray gray = Gray::kExpanded);

@@ -20,12 +20,12 @@ struct WebpHeader {
 };
 
 /// Reads the properties of an image without decoding it. Returns INVALID_ARGUMENT if the image is
-/// broken or an animation, with the reason, without the file's name.
+/// broken or an animation. The message gives the reason but not the file's name.
 absl::StatusOr<WebpHeader> webp_header(absl::string_view bytes);
 
 /// Decodes a lossy or lossless image to 8-bit sRGB: `channels` (3, or 4 with alpha) bytes for each
 /// pixel, rows from the top. The size is that of webp_header(). Returns INVALID_ARGUMENT if the
-/// image is broken or truncated, with the reason, without the file's name.
+/// image is broken or truncated. The message gives the reason but not the file's name.
 absl::StatusOr<std::shared_ptr<std::uint8_t>> decode_webp(absl::string_view bytes, int channels);
 
 }  // namespace bandsaw

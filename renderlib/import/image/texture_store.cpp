@@ -108,8 +108,7 @@ ImageTexture index_map_of_reflectance(const ImageTexture& amounts, double index)
     };
     const double amount = 0.2126 * value(0) + 0.7152 * value(1) + 0.0722 * value(2);
     const double f = root * std::sqrt(std::clamp(amount, 0.0, 1.0));
-    // F0 is f^2 for the index (1 + f) / (1 - f). The map holds that index minus 1, as a share of
-    // `index` minus 1.
+    // The index n = (1 + f) / (1 - f) has the F0 f^2. The map holds (n - 1) / (index - 1).
     const double share = 2 * f / (1 - f) / (index - 1);
     if (floats) {
       const auto stored = static_cast<float>(share);

@@ -36,7 +36,7 @@ class TextureStore {
                Memory* memory = nullptr)
       : textures_(textures), warnings_(warnings), memory_(memory) {}
 
-  /// Returns the texture of one value; equal ones are stored once.
+  /// Returns a texture that is `value` everywhere. All requests of one value get the same texture.
   TextureId constant(const Rgb& value);
   TextureId add(Texture texture);
 

@@ -162,6 +162,7 @@ absl::Status BsdfReader::thin_dielectric(const Parameters& from, Draft& draft) {
   ASSIGN_OR_RETURN(const double index, relative_index(from, "bk7", draft));
   draft.turned = false;  // a pane is the same on both sides
   to.set_index_of_refraction(std::clamp(index, 1.0, 5.0));
+  // Some of Mitsuba's integrators do not count the passage through a pane towards max_depth.
   to.set_free_passage(to_.passages_are_free);
   RETURN_IF_ERROR(color_only(from, "specular_reflectance", [&] { return to.mutable_specular(); }));
   return color_only(from, "specular_transmittance", [&] { return to.mutable_transmission(); });

@@ -42,8 +42,9 @@ class BsdfReader {
   absl::Status color_only(const Parameters& from, const std::string& name,
                           const std::function<scene::Color*()>& color);
   absl::Status diffuse(const Parameters& from, Draft& draft);
-  /// Returns the ratio of the indices of refraction, inside over outside. If that is below 1,
-  /// returns its inverse and sets Draft::turned.
+  /// Returns the ratio of the indices of refraction, inside over outside. If the ratio is below
+  /// 1, returns its inverse and sets Draft::turned. If the bsdf has no int_ior, the material named
+  /// `inside` ("bk7") gives the index inside.
   absl::StatusOr<double> relative_index(const Parameters& from, const char* inside, Draft& draft);
   /// Reads the distribution and the roughness of a rough bsdf. `otherwise` is the alpha if none is
   /// given.

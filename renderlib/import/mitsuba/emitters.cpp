@@ -1,4 +1,4 @@
-// Converts the emitters of a Mitsuba scene that are not surfaces: one function for each type.
+// Converts the lights and environments of a Mitsuba scene, with one function for each type.
 // Environment maps are resampled, because Mitsuba places their first and last row at the poles.
 
 #include "renderlib/import/mitsuba/emitters.h"
@@ -153,7 +153,7 @@ void add_rotation(const Transform& turn, google::protobuf::RepeatedPtrField<scen
     return;
   }
   Vec3 axis = twice_sine_axis;
-  if (sine < 1e-6) {  // half a turn: R + 1 = 2 a a^T
+  if (sine < 1e-6) {  // half a turn R around the axis a: R + 1 = 2 a a^T
     const Vec3 columns[] = {{turn.m[0][0] + 1, turn.m[1][0], turn.m[2][0]},
                             {turn.m[0][1], turn.m[1][1] + 1, turn.m[2][1]},
                             {turn.m[0][2], turn.m[1][2], turn.m[2][2] + 1}};
@@ -220,7 +220,7 @@ absl::Status environment(const Parameters& from, scene::Scene& scene, Conversion
   map.set_file(file->name);
   if (image->height >= 2) {
     ASSIGN_OR_RETURN(const std::vector<std::byte> made,
-                     encode_exr(with_rows_between_poles(*image, frame.mirrored), false));
+                     encode_exr(with_rows_between_poles(*image, frame.mirrored), /*half=*/false));
     map.set_file(to.made.add("environment", ".exr",
                              std::string(reinterpret_cast<const char*>(made.data()), made.size())));
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Converts emitters of Mitsuba scenes that are not surfaces: lights and environments.
+// Converts lights and environments of Mitsuba scenes, which are the emitters without a surface.
 
 #include "absl/status/status.h"
 #include "proto/scene.pb.h"

@@ -27,9 +27,11 @@ class Files {
   /// does not exist.
   absl::Status add_folder(const std::string& name, const std::string& referring);
 
-  /// Finds a file. Errors as SceneFolder::resolve.
+  /// Finds a file. Returns NOT_FOUND if it is missing, PERMISSION_DENIED if `name` leads outside of
+  /// the import's folder or the file may not be read, and INVALID_ARGUMENT if `name` is not that of
+  /// a regular file.
   absl::StatusOr<FoundFile> find(const std::string& name) const;
-  /// Finds a file by the name that find() gave it. Errors as SceneFolder::resolve.
+  /// Finds a file by the name that find() gave it. The errors are those of find().
   absl::StatusOr<FoundFile> known(const std::string& name) const;
   /// Returns the bytes of a file. Returns RESOURCE_EXHAUSTED or INVALID_ARGUMENT if the file has
   /// more than `max_bytes` bytes.

@@ -45,6 +45,7 @@ class MediumReader {
   }
 
  private:
+  /// Sets absorption and scattering as colours, both multiplied by `scale`.
   static absl::Status set_colors(const Rgb& absorbs, const Rgb& scatters, double scale,
                                  scene::Medium& medium) {
     const auto not_negative = [](float c) { return std::max(c, 0.0f); };
@@ -55,7 +56,7 @@ class MediumReader {
     return absl::OkStatus();
   }
 
-  /// Sets the density and the albedo, of which at least one is a grid. Without a grid, the density
+  /// Sets the density and the albedo, of which at least one is a grid. A density without a grid
   /// is one number, so a coloured extinction becomes its mean, with a warning.
   absl::Status set_grids(const Parameters& from, const Coefficient& extinction,
                          const Coefficient& albedo, double scale, scene::Medium& medium) {

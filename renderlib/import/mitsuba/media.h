@@ -28,6 +28,8 @@ class Media {
  private:
   scene::Scene& scene_;
   Conversion& to_;
+  /// Names of the media that were made. The key is the medium with the placement of its shape, or
+  /// with the identity if the medium has no grid.
   std::map<std::pair<const Object*, std::array<std::array<double, 4>, 3>>, std::string> known_;
   std::map<std::string, int> names_;  ///< number of media made for each id; "medium": no id
 };

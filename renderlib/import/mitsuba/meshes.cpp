@@ -188,7 +188,7 @@ absl::StatusOr<MeshFile> Meshes::made_of(SourceMesh source, const MeshRequest& r
     const Atlas atlas(mesh.triangles.size());
     for (const MeshAttribute* attribute : used) {
       ASSIGN_OR_RETURN(const std::vector<std::byte> bytes,
-                       encode_exr(image_of(*attribute, mesh, atlas), false));
+                       encode_exr(image_of(*attribute, mesh, atlas), /*half=*/false));
       file.surface.attributes[attribute->name] =
           to_.made.add(attribute->name, ".exr",
                        std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));

@@ -21,9 +21,9 @@ struct MeshRequest {
   FoundFile file;
   std::string type;                       ///< "obj", "ply" or "serialized"
   std::int64_t index = 0;                 ///< of the mesh in a "serialized" file
-  bool flip_v = false;                    ///< as in read_obj() (source_mesh.h)
+  bool flip_v = false;                    ///< v of the file is 1 - v of Mitsuba
   bool face_normals = false;              ///< without normals of vertices
-  bool turned = false;                    ///< its other side is the outside
+  bool turned = false;                    ///< the mesh must be turned inside out
   bool mirrored = false;                  ///< its placement mirrors it
   bool handed = false;                    ///< u, v and the normal must be right-handed
   bool closed = false;                    ///< it must be one mesh, because a medium is inside

@@ -36,6 +36,7 @@ absl::StatusOr<double> Parameters::number(const std::string& name, double otherw
   if (const auto* value = std::get_if<std::int64_t>(&property->value)) {
     return static_cast<double>(*value);
   }
+  // A spectrum without samples is constant, so it is a number.
   if (const auto* value = std::get_if<Spectrum>(&property->value);
       value != nullptr && value->samples.empty()) {
     return value->constant;

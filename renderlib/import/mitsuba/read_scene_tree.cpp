@@ -155,6 +155,8 @@ class Reader {
   }
 
  private:
+  /// A <ref> element. When all files are read, the value of in->properties[property] becomes the
+  /// object with this id.
   struct Reference {
     Object* in;
     std::size_t property;
@@ -559,8 +561,9 @@ class Reader {
     }
     const bool is_group = object.tag == "scene" || object.tag == "shape";
     if (!is_group && size > kMaxParts) {
-      return error_at(object.place, absl::StrCat("<", object.tag, "> has more than ", kMaxParts,
-                                                 " parts, counted each time that they are used"));
+      return error_at(object.place,
+                      absl::StrCat("<", object.tag, "> has more than ", kMaxParts,
+                                   " parts; a part counts each time that it is used"));
     }
     visiting_.erase(&object);
     sizes_[&object] = size;
@@ -573,7 +576,7 @@ class Reader {
   std::set<std::string> unused_;  ///< parameters of the user that nothing has used yet
   std::uint64_t bytes_ = 0;
   int includes_ = 0;
-  std::vector<std::string> open_;  ///< real paths of the files that are being included
+  std::vector<std::string> open_;  ///< real paths of the files whose <include> is being read
   std::vector<std::unique_ptr<Source>> sources_;
   std::vector<std::unique_ptr<pugi::xml_document>> documents_;
   std::map<std::string, Object*> by_id_;

@@ -136,6 +136,7 @@ absl::StatusOr<std::uint64_t> offset_of(absl::string_view bytes, std::int64_t in
   return offset;
 }
 
+/// Reads `count` vectors, each of `n` finite numbers of type From, and converts them to floats.
 template <class From, std::size_t n>
 absl::Status read_vectors(Inflater& in, std::uint64_t count,
                           std::vector<std::array<float, n>>& to) {
@@ -173,6 +174,7 @@ absl::Status read_vertices(Inflater& in, std::uint32_t flags, std::uint64_t coun
 }
 
 absl::Status read_triangles(Inflater& in, std::uint64_t count, PlyMesh& mesh) {
+  // A triangle has three 32-bit indices, which are 12 bytes.
   if (count == 0 || count > kMaxMeshBytes / 12) {
     return damaged(absl::StrCat("it has ", count, " triangles"));
   }
@@ -222,7 +224,7 @@ absl::StatusOr<SourceMesh> read_serialized(absl::string_view bytes, std::int64_t
   RETURN_IF_ERROR(read_triangles(in, triangles, out.mesh));
   out.faceted = (flags & kFaceNormals) != 0;
   if (!out.mesh.colors.empty()) {
-    MeshAttribute color{"vertex_color", false, 3, {}};
+    MeshAttribute color{"vertex_color", /*per_face=*/false, /*channels=*/3, {}};
     for (const auto& c : out.mesh.colors) {
       color.values.insert(color.values.end(), c.begin(), c.end());
     }

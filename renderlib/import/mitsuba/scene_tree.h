@@ -28,7 +28,7 @@ std::string text_of(const Place& place);
 /// Returns INVALID_ARGUMENT: "scene.xml:12: <what>".
 absl::Status error_at(const Place& place, const std::string& what);
 /// Returns the error `why` with the place before its message, unless the message begins with a
-/// place in this file.
+/// place in the same file.
 absl::Status at_place(const Place& place, const absl::Status& why);
 
 struct Object;

@@ -374,6 +374,7 @@ absl::Status ShapeReader::add_disk(const Parameters& from, const Surface& surfac
   shape.set_material(material.name);
   const Vec3 x = open.to_world.direction({1, 0, 0});
   const Vec3 y = open.to_world.direction({0, 1, 0});
+  // True if the transform keeps the disk round. Any other disk becomes an instance of a unit disk.
   const bool round = std::abs(length(x) - length(y)) <= 1e-9 * length(x) &&
                      std::abs(dot(x, y)) <= 1e-9 * length_squared(x);
   shape.mutable_disk()->set_radius(round ? length(x) : 1);

@@ -118,7 +118,7 @@ absl::StatusOr<scene::Texture> bitmap(const Parameters& from, const TexturedSurf
     image.set_filter(scene::ImageTexture::FILTER_NEAREST);
   }
   ASSIGN_OR_RETURN(bool raw, from.boolean("raw", false));
-  // Version 0.x has a gamma. With 0, the file decides.
+  // Version 0.x has a gamma: 1 means linear texels, and 0 leaves the encoding to the file.
   ASSIGN_OR_RETURN(const double gamma, from.number("gamma", 0));
   raw = raw || gamma == 1;
   if (raw) {
@@ -144,7 +144,8 @@ std::string checker_image() { return std::string("P5 2 2 255\n") + "\xff" + '\0'
 /// has color0.
 absl::StatusOr<scene::Texture> checkerboard(const Parameters& from, ColorOf of,
                                             const TexturedSurface& surface, Conversion& to) {
-  const bool number = of == ColorOf::kNumber;  // exchanges the two values, as ColorOf describes
+  // In a checkerboard of numbers, Mitsuba exchanges the two values.
+  const bool number = of == ColorOf::kNumber;
   ASSIGN_OR_RETURN(const scene::Texture color0,
                    number ? part_of(from, "color1", 0.2f, of, surface, to)
                           : part_of(from, "color0", 0.4f, of, surface, to));

@@ -102,7 +102,7 @@ std::vector<std::string> animation_names(const aiScene& scene) {
 Animation read_animation(const aiScene& scene, std::size_t index) {
   const aiAnimation& from = *scene.mAnimations[index];
   const double ticks = from.mTicksPerSecond > 0 ? from.mTicksPerSecond : kDefaultTicks;
-  const NodePlaces places = node_places(scene, nullptr, 0);
+  const NodePlaces places = node_places(scene, /*animation=*/nullptr, /*time=*/0);
   Animation to{.name = from.mName.C_Str()};
   for (unsigned i = 0; i < from.mNumChannels; ++i) {
     const auto node = places.by_name.find(from.mChannels[i]->mNodeName.C_Str());

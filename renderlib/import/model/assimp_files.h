@@ -51,7 +51,9 @@ class AssimpFiles : public Assimp::IOSystem {
   void Close(Assimp::IOStream* stream) override;
 
  private:
-  /// Returns the real path of a file. Errors as SceneFolder::resolve.
+  /// Returns the real path of a file. Returns NOT_FOUND if it is missing, PERMISSION_DENIED if it
+  /// lies outside of the scene's folder or may not be read, and INVALID_ARGUMENT if `file` is not
+  /// the name of a regular file.
   absl::StatusOr<std::string> find(const std::string& file) const;
   bool is_in_memory(const char* file) const { return model_.bytes && file == model_.path; }
   const SceneFolder& folder_;

@@ -27,7 +27,7 @@ std::optional<double> vertical_fov(const pugi::xml_node& perspective, double asp
   if (vertical > 0 || horizontal == 0) {
     return vertical > 0 ? std::optional(vertical * kPi / 180) : std::nullopt;
   }
-  const SinCos half = sincos_turns(horizontal / 720);
+  const SinCos half = sincos_turns(horizontal / 720);  // of half the angle
   return 2 * atan2(half.sin, half.cos * aspect);
 }
 

@@ -32,11 +32,12 @@ void for_each_vertex(const Geometry& geometry, const std::vector<Instance>& inst
   }
 }
 
-// Finds the nearest place of a camera that sees all points, in one direction of the image,
-// horizontal or vertical. A camera at (a, d) with half-angle tangent t sees a point (x, z), z
-// towards the camera, if |x - a| <= t (d - z). So d t >= x + t z - a and d t >= -x + t z + a. Over
-// all points, let R be the maximum of x + t z, and L the maximum of -x + t z. Then the least d is
-// (R + L) / (2 t), and it is reached at a = (R - L) / 2.
+// Considers one axis of the image, horizontal or vertical, and finds the nearest place from which a
+// camera sees all points along this axis. A camera at (a, d) with half-angle tangent t sees a point
+// (x, z), z towards the camera, if |x - a| <= t (d - z). So d t >= x + t z - a and
+// d t >= -x + t z + a. Over all points, let R (`right`) be the maximum of x + t z, and L (`left`)
+// the maximum of -x + t z. Then the least d is (R + L) / (2 t), and it is reached at
+// a = (R - L) / 2.
 struct Fit {
   double tangent;
   double right = -std::numeric_limits<double>::infinity();

@@ -43,7 +43,7 @@ struct GltfMaterial {
   std::string name;
   std::optional<GltfVolume> volume;
   std::vector<std::string>
-      unsupported;  ///< features that are not rendered, as in UnsupportedFeatures
+      unsupported;  ///< warnings of features that are not rendered: "its sheen is left out"
   /// Keyed by the member's name in the JSON: "baseColorTexture", "clearcoatNormalTexture".
   std::map<std::string, GltfTexture> textures;
   std::optional<double> emissive_strength;    ///< KHR_materials_emissive_strength

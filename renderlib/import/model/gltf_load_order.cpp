@@ -95,7 +95,7 @@ class Walk {
       for (const Json& joint : items(*skin, "joints")) {
         const auto node = numbers_.find(item(root_, "nodes", joint.get<double>()));
         if (node == numbers_.end()) {
-          nodes.clear();
+          nodes.clear();  // a bone outside of the default scene
           break;
         }
         nodes.push_back(node->second);

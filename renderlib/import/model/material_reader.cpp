@@ -137,6 +137,8 @@ void MaterialReader::find_dead_files() {
 }
 
 const GltfMaterial* MaterialReader::gltf() const {
+  // The materials of the JSON are in Assimp's order. The one at this index is right if it has the
+  // same name or no name. Otherwise the material is found by its name.
   const std::vector<GltfMaterial>& all = file_.gltf.materials;
   aiString name;
   material_.Get(AI_MATKEY_NAME, name);
@@ -144,8 +146,8 @@ const GltfMaterial* MaterialReader::gltf() const {
   if (index_ < all.size() && (all[index_].name.empty() || is_this(all[index_]))) {
     return &all[index_];
   }
-  // A material without a name, such as Assimp's default material, is not one of the materials in
-  // the JSON.
+  // A material without a name that is not at its index is not in the JSON. An example is Assimp's
+  // default material.
   const auto found = name.length == 0 ? all.end() : std::find_if(all.begin(), all.end(), is_this);
   return found == all.end() ? nullptr : &*found;
 }

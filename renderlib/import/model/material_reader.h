@@ -51,8 +51,8 @@ class MaterialReader {
   /// The meaning of a texture's texels: sRGB colours, linear numbers, or numbers in the alpha
   /// channel.
   enum class As { kColor, kNumber, kAlpha };
-  /// Returns false if the material does not have the texture, or if the texture's file is missing
-  /// in a format in which that is only a warning.
+  /// Returns false if the material does not have the texture. In a model of ModelKind::kOther, also
+  /// returns false, after a warning, if the texture's file is missing or must not be read.
   bool has(Slot slot) const;
   /// Returns the texture with its wrap mode, filter, transform and uv set, its texels multiplied by
   /// `factor`; a white texture if has() is false. Errors name the material.

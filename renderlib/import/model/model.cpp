@@ -60,6 +60,7 @@ absl::Status read_failure(const std::string& name, const RefusedFiles& refused,
       name, ": cannot be read: ", reason.empty() ? "it is damaged or not supported" : reason));
 }
 
+// Warns once of each file that Assimp could not open.
 void warn_of_missing(const std::string& name, RefusedFiles refused, SceneDraft& draft) {
   auto& files = refused.missing;
   std::sort(files.begin(), files.end());
@@ -69,6 +70,7 @@ void warn_of_missing(const std::string& name, RefusedFiles refused, SceneDraft& 
   }
 }
 
+// Warns of the animations, scenes, ranges of lights, extensions and options that are not used.
 void warn_of_unused(const std::vector<std::string>& animations, ModelFile& file) {
   const auto warn = [&](std::size_t count, absl::string_view what) {
     if (count > 0) {

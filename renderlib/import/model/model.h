@@ -42,14 +42,14 @@ Camera placed(Camera camera, const Transform& placement);
 bool is_model_file(const std::string& path);
 
 /// Reads a model. `path` is a real path below the draft's folder. Without `with_materials` no
-/// texture is read, and the materials of the placements are unspecified. Omitted and repaired parts
-/// are warnings of the draft. Messages begin with the file's name. Returns INVALID_ARGUMENT if the
-/// model is broken or has no triangles, NOT_FOUND if a file that it needs or the chosen animation
-/// is missing, and PERMISSION_DENIED for a file outside of the scene's folder. `animation` chooses
-/// one of the model's animations, which is evaluated over the draft's shutter interval. Nodes move
-/// during the interval. Vertices of skins and morph targets have one position at the beginning of
-/// the interval and one at its end. With an animation the model may have no placements, because a
-/// scale of 0 hides a node.
+/// texture is read, and the materials of the placements are unspecified. Each omitted or repaired
+/// part adds a warning to the draft. Messages begin with the file's name. Returns INVALID_ARGUMENT
+/// if the model is broken or has no triangles, NOT_FOUND if a file that it needs or the chosen
+/// animation is missing, and PERMISSION_DENIED for a file outside of the scene's folder.
+/// `animation` chooses one of the model's animations, which is evaluated over the draft's shutter
+/// interval. Nodes move during the interval. Vertices of skins and morph targets have one position
+/// at the beginning of the interval and one at its end. With an animation the model may have no
+/// placements, because a scale of 0 hides a node.
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft,
                                  const AnimationChoice& animation = {});
 

@@ -18,7 +18,7 @@ using As = MaterialReader::As;
 using Slot = MaterialReader::Slot;
 constexpr float kMaxRadiance = 1e30f;
 
-/// The numbers of the material; implausible ones have been replaced.
+/// The values of the material. Implausible values have been replaced.
 struct Classic {
   Rgb base;
   bool textured = false;        ///< the base colour has a texture
@@ -155,7 +155,7 @@ bool is_lamp(const Classic& from) {
 absl::StatusOr<ModelMaterial> read_classic(MaterialReader& reader) {
   const Classic from = read_numbers(reader);
   if (is_lamp(from)) {
-    return reader.add(Emissive{reader.draft().textures.constant(from.glow), false});
+    return reader.add(Emissive{reader.draft().textures.constant(from.glow), /*one_sided=*/false});
   }
   const Slot slot{reader.has({aiTextureType_DIFFUSE}) ? aiTextureType_DIFFUSE
                                                       : aiTextureType_BASE_COLOR};

@@ -25,7 +25,7 @@ enum class ModelKind {
   kOther,
 };
 
-/// A model that is being converted to the draft, the scene that is being read. The references to
+/// A model while it is converted and added to `draft`, the unfinished scene. The references to
 /// the scene, the JSON's values, the options of MTL files, the lenses, the animation and the still
 /// meshes are those of a LoadedModel (model/loaded_model.h).
 struct ModelFile {

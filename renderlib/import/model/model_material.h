@@ -37,7 +37,7 @@ struct ModelMaterial {
 /// with the names of the model and the material.
 absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned index);
 
-/// These functions implement read_model_material() for the two kinds.
+/// These functions implement read_model_material() for metallic-roughness and for older materials.
 absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader);
 absl::StatusOr<ModelMaterial> read_classic(MaterialReader& reader);
 

@@ -212,7 +212,8 @@ std::vector<double> weights_of(const ModelFile& file, unsigned mesh, const NodeP
   return curve == file.animation->weights.end() ? std::vector<double>() : curve->second.at(time);
 }
 
-/// Returns the pose of a mesh at a time; `places` are the places of the nodes at this time.
+/// Returns the pose of a mesh at a time; `places` are the places of the nodes at this time. In a
+/// mesh with a skin, the vertices without a bone follow the node of the mesh.
 MeshPose pose_of(const ModelFile& file, unsigned number, const NodePlaces& places, double time) {
   MeshPose pose{.weights = weights_of(file, number, places, time)};
   if (file.scene.mMeshes[number]->HasBones()) {
