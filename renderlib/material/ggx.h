@@ -27,8 +27,8 @@ inline double ggx_distribution(const Vec3& h, double alpha) {
   return 1 / (kPi * alpha * alpha * t * t);
 }
 
-/// Returns the length of w with x and y multiplied by alpha. With this length s, G1 = 2 z / (z +
-/// s).
+/// Returns the length of w with x and y multiplied by alpha. With this length s and z = |w.z|,
+/// G1(w) is 2 z / (z + s).
 inline double ggx_stretched(const Vec3& w, double alpha) {
   return std::sqrt(alpha * alpha * (w.x * w.x + w.y * w.y) + w.z * w.z);
 }
@@ -49,8 +49,8 @@ inline double ggx_shadowing(const Vec3& o, const Vec3& i, double alpha) {
   return below > 0 ? zi * (zo + so) / below : 0;
 }
 
-/// Returns the pdf of visible normals h as seen from o, divided by |dot(o, h)|; finite at grazing
-/// angles.
+/// Returns the pdf of visible normals h as seen from o, divided by |dot(o, h)|. The quotient is
+/// finite at grazing angles.
 inline double ggx_visible_over_cos(const Vec3& o, const Vec3& h, double alpha) {
   return 2 * ggx_distribution(h, alpha) / (std::abs(o.z) + ggx_stretched(o, alpha));
 }

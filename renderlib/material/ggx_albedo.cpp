@@ -18,8 +18,8 @@ GgxAlbedo mixed(const GgxAlbedo& a, const GgxAlbedo& b, double t) {
 
 /// Returns the albedo for a direction with this cosine to the normal. It is integrated by the
 /// midpoint rule over the unit square from which visible normals are sampled. The integrand is the
-/// shadowing term, which is at most 1. Values near 1 of v, the second number, sample the tail of
-/// the distribution, so points are denser near v = 1. With these numbers of points the table is
+/// shadowing term, which is at most 1. The second number, v, samples the tail of the distribution
+/// where it is near 1, so points are denser there. With these numbers of points the table is
 /// within 2e-3 of the integral (tests).
 GgxAlbedo integrated(double cos_theta, double alpha) {
   constexpr int kTurns = 16;
@@ -76,7 +76,8 @@ GgxAlbedo GgxAlbedoTable::at(double cos_theta, double roughness) const {
     const auto left = static_cast<std::size_t>(column);
     return mixed(values[left], values[left + 1], x - column);
   };
-  // While the table is computed, only the current row may be read.
+  // The constructor calls at() for the roughness of one row while later rows are not computed yet.
+  // So only this row is read if the roughness is exactly that of a row.
   return y == row            ? of(row)
          : y == kRoughnesses ? of(kRoughnesses)
                              : mixed(of(row), of(row + 1), y - row);

@@ -35,11 +35,13 @@ struct Microfacets {
   enum class Distribution : std::uint8_t { kGgx, kBeckmann };
   enum class Masking : std::uint8_t {
     kSeparable,   ///< G1(wo) G1(wi), as in Walter et al. 2007
-    kCorrelated,  ///< by the height of a facet (Heitz 2014)
+    kCorrelated,  ///< masking and shadowing both depend on the facet's height (Heitz 2014)
   };
   Distribution distribution = Distribution::kGgx;
   Masking masking = Masking::kSeparable;
-  double alpha_u = 0;  ///< [0, 1]; smooth where both are below kMinAlpha (material/ggx.h)
+  /// Each alpha is in [0, 1]. The surface is smooth where both are below kMinAlpha
+  /// (material/ggx.h).
+  double alpha_u = 0;
   double alpha_v = 0;
   std::optional<TextureId> alpha_u_map = std::nullopt;  ///< its luminance multiplies alpha_u
   std::optional<TextureId> alpha_v_map = std::nullopt;

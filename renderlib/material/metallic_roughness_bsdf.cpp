@@ -86,6 +86,9 @@ void add_above(const MetallicRoughnessBsdf& bsdf, const Local& directions, doubl
   sum.pdf += bsdf.chances[kReflection] * mirror.pdf;
   const double matte = (1 - bsdf.metallic) * (1 - bsdf.transmission);
   const double pdf = cosine_hemisphere_pdf(directions.i.z);
+  // With the albedo a of the reflection, the diffuse light has the factor
+  // (1 - a(wo)) (1 - a(wi)) / (1 - mean of a) (Kelemen and Szirmay-Kalos 2001, eq. 5). `left` is
+  // 1 - a(wi), and matte_share is the rest of the factor.
   if (matte > 0) {
     const double left = 1 - ggx_albedo_table().at(directions.i.z, bsdf.surface.roughness)(bsdf.f0);
     sum.value += scaled(bsdf.base, matte * pdf * bsdf.matte_share * left * through);

@@ -6,9 +6,9 @@
 //
 // Where glTF's mixing would not conserve energy, less is reflected. The layer below gets the light
 // that is not reflected, according to the reflection's albedo in both directions (Kelemen and
-// Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model", eq. 5). So no
-// direction sends out more than comes in, and the BSDF is reciprocal. Fresnel reflectance is
-// Schlick's.
+// Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model", eq. 5). So the
+// BSDF never scatters more light than comes in from a direction, and it is reciprocal. Fresnel
+// reflectance is Schlick's.
 
 #include <array>
 #include <optional>

@@ -4,7 +4,7 @@
 // Spizzichino 1963), isotropic or not. Directions are unit vectors in the local frame of the
 // surface, with z > 0. In this frame, z is the normal, and x lies along the uv coordinate u. For
 // both distributions, facet normals are sampled from the visible normals of GGX. With
-// x = tan^2 / alpha^2, Beckmann's density over GGX's is exp(-x) (1 + x)^2, which is at most 4 / e.
+// t = tan^2 / alpha^2, Beckmann's density over GGX's is exp(-t) (1 + t)^2, which is at most 4 / e.
 // So the weights of samples stay bounded, and no error function is needed.
 
 #include <algorithm>
@@ -46,7 +46,8 @@ inline std::optional<Facets> facets_at(const Microfacets& surface,
                 surface.masking};
 }
 
-/// Returns alpha^2 tan^2 of w, times z^2.
+/// Returns (alpha_u x)^2 + (alpha_v y)^2 for w = (x, y, z). If both alphas are equal, this is
+/// alpha^2 tan^2 z^2.
 inline double facet_slope2(const Vec3& w, const Facets& f) {
   const double x = f.alpha_u * w.x;
   const double y = f.alpha_v * w.y;

@@ -22,10 +22,10 @@ struct Shares {
   double transmitted = 0;
 };
 
-/// Returns the shares that a rough boundary reflects and transmits of light from a direction with
-/// this cosine. They are integrated by the midpoint rule over the unit square from which facets are
-/// sampled. Values near 1 of v, the second number, sample the tail of the distribution, so points
-/// are denser near v = 1.
+/// Returns the reflected and the transmitted share of light that meets a rough boundary from a
+/// direction with this cosine. They are integrated by the midpoint rule over the unit square from
+/// which facets are sampled. The second number, v, samples the tail of the distribution where it is
+/// near 1, so points are denser there.
 Shares shares_of(double cos_theta, double eta, const Facets& facets) {
   constexpr int kTurns = 16;
   constexpr int kHeights = 64;

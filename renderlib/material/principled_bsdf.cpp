@@ -74,6 +74,8 @@ void add_coat(const PrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValu
 }
 
 void add_refraction(const PrincipledBsdf& bsdf, const Vec3& i, BsdfValue& sum) {
+  // The half vector of a refraction (Walter et al. 2007, eq. 16). The division below by
+  // copysign(size, h.z) turns it to the side of the normal.
   Vec3 h = -(bsdf.o + i * bsdf.eta);
   const double size = length(h);
   if (!(size > 0)) {
@@ -99,8 +101,8 @@ void add_refraction(const PrincipledBsdf& bsdf, const Vec3& i, BsdfValue& sum) {
 }
 
 /// Sets the selection probabilities in proportion to rough estimates of the lobes' albedos. The
-/// estimates of the specular lobes, and of a diffuse lobe that is present, are at least kMinAlbedo,
-/// so that these lobes are not rare.
+/// estimates of the specular lobes, and of a diffuse lobe that is present, are at least 0.1
+/// (kMinAlbedo), so that these lobes are not sampled too rarely.
 void choose_chances(PrincipledBsdf& bsdf) {
   if (bsdf.inside) {
     bsdf.chances = {bsdf.refracting > 0 ? 1.0 : 0.0, 0, 0};

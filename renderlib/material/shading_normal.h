@@ -25,10 +25,11 @@ Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
 Vec3 mapped_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
                    double scale);
 
-/// Returns the unit shading normal, on the outside, of the surface displaced along its normals by
-/// the luminance of a height map times `scale`, in scene units (Blinn 1978, "Simulation of Wrinkled
-/// Surfaces", without the derivative of the normal). The point MUST have the derivatives of the
-/// map's uvs (add_uv_derivatives). If they are zero, returns the undisplaced shading normal.
+/// Returns the unit shading normal, on the outside, of the displaced surface. The displacement
+/// along the surface's normals, in scene units, is the luminance of the height map `map` times
+/// `scale` (Blinn 1978, "Simulation of Wrinkled Surfaces", without the derivative of the normal).
+/// The point MUST have the derivatives of the map's uvs (add_uv_derivatives). If they are zero,
+/// returns the undisplaced shading normal.
 Vec3 displaced_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
                       double scale);
 

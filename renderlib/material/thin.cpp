@@ -13,8 +13,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the probability with which the first of two lobes is sampled: in proportion to the
-/// brightest channel of each.
+/// Returns the probability with which the first of two lobes is sampled. The probabilities of both
+/// lobes are in proportion to their brightest channels.
 double chance_of(const Rgb& first, const Rgb& second) {
   const double a = max_component(first);
   const double sum = a + double{max_component(second)};
@@ -26,6 +26,7 @@ double chance_of(const Rgb& first, const Rgb& second) {
 ThinDielectricBsdf thin_dielectric(const ThinDielectric& pane, const SidedNormals& normal,
                                    const Vec3& wo) {
   const double face = fresnel(std::min(1.0, dot(wo, normal.shading)), pane.index_of_refraction);
+  // The light that both faces reflect, with all reflections between them (thin.h).
   const double both = 2 * face / (1 + face);
   ThinDielectricBsdf bsdf{normal, wo, pane.specular * static_cast<float>(both),
                           pane.transmission * static_cast<float>(1 - both)};

@@ -1,6 +1,7 @@
 #pragma once
 
-// Thin sheets that light passes without being bent: clear panes, and sheets that scatter diffusely.
+// Thin sheets that do not refract light: clear panes, and sheets that reflect and transmit
+// diffusely.
 
 #include <optional>
 

@@ -1,9 +1,9 @@
 #pragma once
 
 // Elementary functions with the same bits on every CPU and C library: built only from + - * / sqrt
-// and fma. (glibc selects variants of its double functions by CPU, which differ in the last
-// bits.) Except for pow(), their error is at most 2 units in the last place over the stated domain.
-// renderlib never calls the <cmath> functions of the same names.
+// and fma. (glibc selects a variant of its double functions by CPU, and the variants differ in the
+// last bits.) Except for pow(), their error is at most 2 units in the last place over the stated
+// domain. renderlib never calls the <cmath> functions of the same names.
 
 namespace bandsaw {
 

@@ -8,9 +8,9 @@
 
 namespace bandsaw {
 
-/// Returns c[0] + c[1] x + … + c[N-1] x^(N-1) by Horner's rule, with one rounding per step; `I` is
-/// the index of the first coefficient that is used. It is recursive, because compilers do not
-/// unroll the loop.
+/// Returns c[0] + c[1] x + … + c[N-1] x^(N-1) by Horner's rule, with one rounding per step. For the
+/// recursion, `I` is the index of the first coefficient that is used. The function is recursive,
+/// because compilers would not unroll a loop over the coefficients.
 template <std::size_t I = 0, std::size_t N>
 inline double polynomial(double x, const double (&c)[N]) {
   if constexpr (I + 1 == N) {

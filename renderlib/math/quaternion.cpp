@@ -20,7 +20,7 @@ double dot(const Quaternion& a, const Quaternion& b) {
   return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/// Returns of_a a + of_b b.
+/// Returns the sum of a times `of_a` and b times `of_b`.
 Quaternion mix(const Quaternion& a, double of_a, const Quaternion& b, double of_b) {
   return {a.w * of_a + b.w * of_b, a.x * of_a + b.x * of_b, a.y * of_a + b.y * of_b,
           a.z * of_a + b.z * of_b};
@@ -71,6 +71,7 @@ Transform rotation(const Quaternion& q) {
 }
 
 double turn_between(const Quaternion& a, const Quaternion& b) {
+  // The rotation turns by twice the angle between the quaternions.
   return angle(a, nearer(a, b)) * kInvPi;
 }
 

@@ -27,8 +27,9 @@ constexpr float max_component(const Rgb& a) { return std::max({a.r, a.g, a.b}); 
 constexpr bool is_black(const Rgb& a) { return a.r == 0 && a.g == 0 && a.b == 0; }
 /// Returns the Rec. 709 luminance.
 constexpr float luminance(const Rgb& a) { return 0.2126f * a.r + 0.7152f * a.g + 0.0722f * a.b; }
-/// Returns the same as luminance(), except for rounding: for a grey the result is exactly the grey,
-/// so that it can be compared with a limit. The result of luminance() may be slightly smaller.
+/// Returns the Rec. 709 luminance, without rounding errors for greys: if r, g and b are equal, the
+/// result is exactly this number. So it can be compared with a limit, while luminance() may return
+/// a slightly smaller number.
 constexpr float luminance_exact_for_grays(const Rgb& a) {
   return a.g + 0.2126f * (a.r - a.g) + 0.0722f * (a.b - a.g);
 }

@@ -23,7 +23,7 @@ TwoDoubles scaled(const TwoDoubles& unit, double r) {
   return {product.hi, fused(unit.lo, r, product.lo)};
 }
 
-/// Sine and cosine as unevaluated sums.
+/// Sine and cosine, each as an unevaluated sum of two doubles.
 struct Parts {
   TwoDoubles sin;
   TwoDoubles cos;
@@ -41,7 +41,7 @@ Parts parts_reduced(const TwoDoubles& x) {
   // sin(hi + lo) = sin(hi) + lo (1 - hi^2 / 2) + …
   const double sin_rest =
       fused(square * x.hi, polynomial(square, kSin), fused(-0.5 * square, x.lo, x.lo));
-  // cos(hi + lo) = 1 - hi^2 / 2 + (hi^4 (…) - hi lo), the first difference kept exactly.
+  // cos(hi + lo) = 1 - hi^2 / 2 + (hi^4 (…) - hi lo). 1 - hi^2 / 2 is kept exactly, as a sum.
   const TwoDoubles half_square = two_product(0.5 * x.hi, x.hi);
   const TwoDoubles one_minus = fast_two_sum(1, -half_square.hi);
   const double cos_rest = fused(square * square, polynomial(square, kCos),
@@ -54,7 +54,8 @@ SinCos sincos_reduced(const TwoDoubles& x) {
   return {p.sin.hi + p.sin.lo, p.cos.hi + p.cos.lo};
 }
 
-/// Rotates the result by `count` quarter turns; `count` is an integer.
+/// Returns sine and cosine of an angle plus `count` quarter turns. `a` is sine and cosine of the
+/// angle; `count` is an integer.
 SinCos quarter_turns(const SinCos& a, double count) {
   const double count_mod_4 = count - 4 * std::floor(count / 4);
   switch (static_cast<int>(count_mod_4)) {

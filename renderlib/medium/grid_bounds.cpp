@@ -94,8 +94,8 @@ GridBounds::GridBounds(const VolumeGrid& grid)
                 ? zeros
                 : bounds_of_parts(reader, brick, {inside(0, x), inside(1, y), inside(2, z)});
         for (std::uint32_t i = 0; i < (linear ? kParts : 1); ++i) {
-          // A brick's first layer matters to the brick before it, its last layer to the one after
-          // it.
+          // A brick's first layer counts for the brick before it, and its last layer counts for the
+          // brick after it.
           const auto neighbour = [](std::uint32_t at, std::uint32_t part) {
             return part == kAll ? at : part == kFirstLayer ? at - 1 : at + 1;
           };

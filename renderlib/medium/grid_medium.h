@@ -25,7 +25,8 @@ struct Region {
 };
 
 /// The regions of a medium: a block of cubes, and everything around it. The space of the regions is
-/// the cell space (volume_grid.h) of the density grid, or of another grid if there is none.
+/// the cell space (volume_grid.h) of the density grid, or of another grid if the medium has no
+/// density grid.
 struct Regions {
   Transform from_medium;  ///< from the medium's space to that of the regions
   /// The block, in the space of the regions. The last cube along an axis may extend beyond `high`.

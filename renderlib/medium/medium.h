@@ -22,9 +22,9 @@ struct GridUse {
   friend bool operator==(const GridUse&, const GridUse&) = default;
 };
 
-/// Grids by which a medium varies in space; outside of its box the value of a grid is 0. The values
-/// of the grids at a point determine the properties of the medium there. In the equations,
-/// absorption, scattering and emission on the right are those of struct Medium:
+/// Grids by which a medium varies in space. Outside of its box, a grid has the value 0. The values
+/// of the grids at a point determine the properties of the medium at this point. In the equations,
+/// absorption, scattering and emission on the right are the members of struct Medium:
 ///
 ///   density     = value of the density grid, by channel if it has three; 1 without this grid
 ///   extinction  = density (absorption + scattering)
@@ -61,8 +61,8 @@ inline constexpr double kMaxG = 0.999;
 /// Maximum coefficient: at this value, 1e-12 scene units have an optical depth of 1.
 inline constexpr float kMaxPerUnit = 1e12f;
 
-/// Returns true if a channel emits and has no extinction: an infinite medium would be infinitely
-/// bright.
+/// Returns true if a channel emits and has no extinction. Without an end, such a medium would be
+/// infinitely bright.
 constexpr bool is_endless_glow(const Medium& m) {
   const auto endless = [](float emission, float absorption, float scattering) {
     return emission > 0 && absorption == 0 && scattering == 0;

@@ -13,8 +13,8 @@
 namespace bandsaw {
 namespace {
 
-/// Inverts the distribution function of the cosine for k = 2 u - 1. This polynomial form avoids the
-/// division by g of the usual one.
+/// Inverts the distribution function of the cosine for k = 2 u - 1. The usual form of the inverse
+/// divides by g; this form does not.
 double sample_cosine(double g, double k) {
   const double numerator = 2 * k + g * (k * k + 3) + 2 * g * g * k + g * g * g * (k * k - 1);
   const double denominator = 1 + g * k;

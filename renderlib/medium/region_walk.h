@@ -2,7 +2,7 @@
 
 // Finds the regions of a medium along a ray, one after the other (Amanatides and Woo 1987, "A Fast
 // Voxel Traversal Algorithm for Ray Tracing"). A region is a part of space with bounds of the
-// density (grid_medium.h).
+// density (grid_medium.h). The regions are the cubes of a block, and the space around the block.
 
 #include <algorithm>
 #include <array>
@@ -60,7 +60,7 @@ class RegionWalk {
     if (enter_ < leave_) {
       begin_block();
     } else {
-      enter_ = leave_ = length;  // the ray passes by
+      enter_ = leave_ = length;  // the ray misses the block
     }
   }
 

@@ -63,7 +63,9 @@ struct Passage {
   ScatteringPoint scattered;
 };
 
-/// Sends light of weight `throughput` through the segment as `fly` does, but lets it pass.
+/// Sends light of weight `throughput` (>= 0, finite) through the first `length` (> 0, may be
+/// infinite) of the ray. The path always passes this segment, and is attenuated in it.
+/// Passage::scattered stands for the light that is scattered.
 Passage pass(const GridMedium& medium, const GridRay& ray, double length, const Rgb& throughput,
              NumberStream& numbers);
 

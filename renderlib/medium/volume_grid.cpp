@@ -103,6 +103,7 @@ absl::Status check_outside(const VolumeGrid& grid, const GridReader& reader, std
   return absl::OkStatus();
 }
 
+/// Calls check_outside() for every stored brick that reaches beyond the box.
 absl::Status check_all_outside(const VolumeGrid& grid) {
   const GridReader reader(grid);
   const auto [nx, ny, nz] = brick_counts(grid.cells);

@@ -29,6 +29,9 @@
 namespace bandsaw {
 namespace {
 
+// In the calls of decode_enum(), the number after the value is the first valid value of the
+// protocol's enum: 0, or 1 if 0 means "unspecified".
+
 absl::StatusOr<UvSet> uv_set(int value, const std::string& field) {
   return decode_enum<UvSet>(value, 0, package::UvSet_MAX, field + ".uv_set");
 }
@@ -284,6 +287,7 @@ class Decoder {
   absl::Status add_mesh(const package::Mesh& from, const std::string& field, MeshList& to) {
     const std::string message = parts_ != nullptr ? from.SerializeAsString() : "";
     if (std::shared_ptr<const Mesh> known = parts_ != nullptr ? parts_->mesh(message) : nullptr) {
+      // A mesh that occurs twice in this package is known too, but it is not validated yet.
       if (own_.find(known.get()) == own_.end()) {
         shared_.insert(known.get());
       }

@@ -1,5 +1,5 @@
-// Decodes camera, filter, local shading and background. Only the form is checked here; validate()
-// checks the values.
+// Decodes camera, filter, local shading (ambient light and the distance of ambient occlusion) and
+// background. Only the form is checked here; validate() checks the values.
 
 #include "renderlib/package/decode_surface.h"
 
@@ -47,6 +47,7 @@ absl::StatusOr<Camera> decode_camera(const package::Camera& from, const std::str
     }
     window = {from.window(0), from.window(1), from.window(2), from.window(3)};
   }
+  // The height of a perspective camera is 0.
   if (from.orthographic_height() != 0) {
     return Camera(OrthographicCamera{view.position, view.look_at, view.up,
                                      from.orthographic_height(), from.mirrored(), shutter, window});
@@ -64,8 +65,8 @@ absl::StatusOr<Camera> decode_camera(const package::Camera& from, const std::str
 absl::StatusOr<PixelFilter> decode_filter(const package::Manifest& manifest) {
   PixelFilter filter;
   if (manifest.has_filter()) {
-    ASSIGN_OR_RETURN(filter.kind,
-                     decode_enum<PixelFilter::Kind>(manifest.filter().kind(), 3, "filter.kind"));
+    ASSIGN_OR_RETURN(filter.kind, decode_enum<PixelFilter::Kind>(manifest.filter().kind(),
+                                                                 /*last=*/3, "filter.kind"));
     filter.radius = manifest.filter().radius();
   }
   return filter;

@@ -142,7 +142,8 @@ void encode_light(const DeltaLight& from, package::Light& to) { std::visit(Encod
 absl::StatusOr<Environment> decode_environment(const package::Environment& from) {
   const std::string field = "background.environment";
   Environment to;
-  ASSIGN_OR_RETURN(to.kind, decode_enum<Environment::Kind>(from.kind(), 2, field + ".kind"));
+  ASSIGN_OR_RETURN(to.kind,
+                   decode_enum<Environment::Kind>(from.kind(), /*last=*/2, field + ".kind"));
   for (const std::uint32_t image : from.image()) {
     to.images.push_back(TextureId{image});
   }

@@ -59,7 +59,8 @@ absl::Status check_groups(const std::string& prefix, const Groups& groups) {
   return absl::OkStatus();
 }
 
-/// Does the checks of check_counts(). Its messages lack the prefix "scene package: ".
+/// Checks that no mesh, no group, and no list of shapes outside of groups has more shapes than a
+/// BVH can hold. The messages lack the prefix "scene package: ".
 absl::Status check_all(const package::Manifest& manifest) {
   ShapeCounts loose = counts_of(manifest);
   loose.instances = static_cast<std::uint64_t>(manifest.instance_size());
@@ -172,7 +173,8 @@ absl::Status for_each_mesh_blob(const Meshes& meshes, const std::string& name, V
   return absl::OkStatus();
 }
 
-// Calls visit(blob, path) for the blobs of the shapes of a manifest or group, as for_each_blob().
+// Calls visit(blob, path of its field) for each blob of the shapes in a manifest or a group, until
+// a call returns an error.
 template <class Message, class Visit>
 absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Visit& visit) {
   if (m.has_spheres()) {

@@ -1,8 +1,8 @@
 #pragma once
 
 // Conversion of the values that describe materials to and from proto/package.proto: colours
-// (Rgb), textures with a factor (Channel, Tint) and numbers of textures. Decoding checks only the
-// form, not the values (scene/validate.h).
+// (Rgb), textures with a factor (Channel, Tint) and references to textures by number. Decoding
+// checks only the form, not the values (scene/validate.h).
 
 #include <cstdint>
 #include <optional>

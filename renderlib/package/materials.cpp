@@ -135,7 +135,8 @@ Relief decode(const package::Relief& from) {
 
 absl::StatusOr<Alpha> decode(const package::Alpha& from, const std::string& field) {
   Alpha to;
-  ASSIGN_OR_RETURN(to.mode, decode_enum<AlphaMode>(from.mode(), 0, 2, field + ".mode"));
+  ASSIGN_OR_RETURN(to.mode,
+                   decode_enum<AlphaMode>(from.mode(), /*first=*/0, /*last=*/2, field + ".mode"));
   to.value = decode(from.value());
   to.luminance = from.luminance();
   to.cutoff = from.cutoff();
@@ -149,11 +150,12 @@ Metal decode(const package::Metal& from) {
 
 absl::StatusOr<Microfacets> decode(const package::Microfacets& from, const std::string& field) {
   Microfacets to;
-  ASSIGN_OR_RETURN(to.distribution,
-                   decode_enum<Microfacets::Distribution>(static_cast<int>(from.distribution()), 0,
-                                                          1, field + ".distribution"));
-  ASSIGN_OR_RETURN(to.masking, decode_enum<Microfacets::Masking>(static_cast<int>(from.masking()),
-                                                                 0, 1, field + ".masking"));
+  ASSIGN_OR_RETURN(to.distribution, decode_enum<Microfacets::Distribution>(
+                                        static_cast<int>(from.distribution()),
+                                        /*first=*/0, /*last=*/1, field + ".distribution"));
+  ASSIGN_OR_RETURN(to.masking,
+                   decode_enum<Microfacets::Masking>(static_cast<int>(from.masking()),
+                                                     /*first=*/0, /*last=*/1, field + ".masking"));
   to.alpha_u = from.alpha_u();
   to.alpha_v = from.alpha_v();
   to.alpha_u_map = texture_if(from.has_alpha_u_texture(), from.alpha_u_texture());

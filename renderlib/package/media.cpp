@@ -72,7 +72,7 @@ absl::StatusOr<MediumGrids> decode_grids(const package::Medium& from, const std:
     grids.temperature = decode(from.temperature_grid());
   }
   grids.temperature_offset = from.temperature_offset();
-  ASSIGN_OR_RETURN(grids.blackbody, decode_enum<BlackbodyScale>(from.blackbody(), 0,
+  ASSIGN_OR_RETURN(grids.blackbody, decode_enum<BlackbodyScale>(from.blackbody(), /*first=*/0,
                                                                 package::Medium::BlackbodyScale_MAX,
                                                                 field + ".blackbody"));
   return grids;

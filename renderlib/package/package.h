@@ -42,7 +42,7 @@ struct BlobRef {
 std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs,
                            EncodedParts* parts = nullptr);
 
-/// Returns the data that are stored in the manifest itself, so no blobs are needed. Errors are
+/// Returns the PackageInfo. It is stored in the manifest itself, so no blobs are needed. Errors are
 /// those of parse_manifest() (manifest.h): INVALID_ARGUMENT with the field.
 absl::StatusOr<PackageInfo> package_info(const std::string& manifest);
 

@@ -1,4 +1,6 @@
-// Encodes frames and instances, with transforms as lists of 12 numbers, and decodes them.
+// Encodes and decodes instances and the frames in which they are placed. A frame is a coordinate
+// system that may move: each of its keys is a time and the transform at this time. Transforms are
+// encoded as lists of 12 numbers.
 
 #include "renderlib/package/placements.h"
 

@@ -75,10 +75,10 @@ class Mean {
 
 /// Returns the level of each tile, given the weight of each tile. The factor of a tile is its
 /// weight (at most kMaxOverMean times the mean) divided by the root mean square of all weights. It
-/// is rounded to the factor of a level. With these factors, one more sample of a tile reduces the
-/// error as much as one more sample of a tile that is sampled uniformly, such as a tile of the
-/// other half of the image. (For a tile that is sampled uniformly, the reduction depends on the
-/// root of the mean variance.)
+/// is rounded to the factor of a level. The divisor makes planned tiles comparable with tiles that
+/// are sampled uniformly, such as the other half of the image if no plan is made for it: one more
+/// sample reduces the error of both by the same amount on average. (For uniform sampling this
+/// amount is proportional to the mean variance, that is, to the mean of the squared weights.)
 std::vector<int> levels_of(std::vector<double> weights) {
   const auto count = static_cast<double>(weights.size());
   const double most = kMaxOverMean * std::accumulate(weights.begin(), weights.end(), 0.0) / count;
@@ -208,7 +208,7 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
 
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples) {
-  BANDSAW_CHECK(tiles.size() == grid.half_tiles(), "one error a half tile");
+  BANDSAW_CHECK(tiles.size() == grid.half_tiles(), "there is one entry for each half tile");
   TilePlan plan{.pilot = samples, .levels = std::string(tiles.size(), kEvenLevel)};
   for (const std::size_t half : {0, 1}) {
     const std::vector<int> levels = plan_by(grid, tiles, 1 - half);

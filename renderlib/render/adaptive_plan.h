@@ -37,9 +37,9 @@ struct TileError {
   double relative = 0;       ///< variance / (value^2 + 0.01)
 };
 
-/// Errors of a half tile. Its groups of pixels are numbered in PixelGroups (render/pixel_groups.h).
-/// Entry 0 is for the pixels in groups with even numbers, and entry 1 for those in groups with odd
-/// numbers. The two errors are independent.
+/// Errors of a half tile. Its pixels form numbered groups, in which pixels may share paths
+/// (render/pixel_groups.h). Entry 0 is for the pixels in groups with even numbers, and entry 1 is
+/// for the pixels in groups with odd numbers. The two errors are independent.
 using HalfTileErrors = std::array<TileError, 2>;
 
 /// The level of a half tile that gets as many samples as with uniform sampling. The name does not

@@ -28,8 +28,8 @@ std::vector<SampleRange> maximal_nodes(std::uint64_t samples) {
   std::vector<SampleRange> nodes;
   std::uint64_t first = 0;
   while (first < samples) {
-    // The samples taken so far are a multiple of every smaller power of two, so the largest node
-    // that fits is aligned.
+    // All nodes before `first` are longer, and their numbers of blocks are powers of two. So
+    // `first` is a multiple of the length of the largest node that fits, and this node is aligned.
     const std::uint64_t blocks = std::bit_floor(SampleRange{first, samples}.blocks());
     const std::uint64_t last = std::min(first + blocks * kBlockSamples, samples);
     nodes.push_back({first, last});

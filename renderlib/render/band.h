@@ -40,8 +40,8 @@ constexpr std::uint64_t longest_at(std::uint64_t block) { return block & (~block
 /// Returns the maximal aligned nodes of samples [0, samples), from left to right.
 std::vector<SampleRange> maximal_nodes(std::uint64_t samples);
 
-/// The halves of a node of two or more blocks. Neither is empty: if the right half would begin at
-/// or after the last sample, the range is a node of a lower level.
+/// The halves of a node of two or more blocks. Neither half is empty: if no sample were in the
+/// right half, the range would have fewer blocks and be a smaller node.
 struct Halves {
   SampleRange left;
   SampleRange right;

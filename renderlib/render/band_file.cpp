@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMagicSize = kBandRecordMagic.size();
 constexpr std::size_t kDigestSize = 64;
-/// Everything before the sums.
+/// Size of everything before the sums, in the order of the format (band_file.h).
 constexpr std::uint64_t kHeaderSize =
     kMagicSize + 8 + kDigestSize + 3 * 4 + 8 + 2 * 8 + 2 * 4 + 2 * 8 + 2 * 4 + 7 * 8 + 4;
 constexpr std::uint64_t kHashSize = 8;
@@ -82,8 +82,9 @@ absl::Status check(const BandRecord& record) {
     return absl::InvalidArgumentError(absl::StrCat("width: the pixels have ", pixels.width,
                                                    ", the settings ", record.settings.width));
   }
-  // The record does not contain which samples each half tile (half of the pixels of a tile,
-  // render/tile_samples.h) took, so only upper bounds can be checked.
+  // The record does not tell how many samples each pixel took. (In adaptive sampling, different
+  // tiles take different numbers of samples.) So the counters are checked against upper bounds
+  // only.
   const Counters& counters = pixels.counters;
   const RowRange& rows = pixels.band.rows;
   const std::uint64_t most = kMaxSamples * rows.count() * pixels.width;

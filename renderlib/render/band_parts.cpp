@@ -72,8 +72,9 @@ std::pair<BandPart, BandPart> halves_of(const BandPart& part, std::uint32_t widt
   std::vector<std::uint32_t> right(numbers.size());
   for (std::size_t i = 0; 2 * i < numbers.size(); ++i) {
     const SampleRange all = range_at(numbers, i);
-    // Half tiles with several blocks are halved; the others go to the left. If no half tile has
-    // several blocks, each goes to the left or right by the number of its map.
+    // The samples of a half tile with several blocks are halved, and those of a half tile with one
+    // block go to the left. If no half tile has several blocks, the number of its map decides
+    // whether a half tile goes to the left or to the right.
     Halves halves{all, {}};
     if (all.blocks() > 1) {
       halves = split(all);

@@ -62,8 +62,9 @@ void add_moving_group(SceneDescription& scene) {
   g.instances.push_back(placed);
 }
 
-/// Returns a scene with every kind of shape, material, light and texture, small enough that most
-/// paths hit several of them.
+/// Returns a scene with every kind of shape, several kinds of material and texture, and surfaces
+/// that emit light. It is so small that most paths hit several shapes. Other scenes are made from
+/// it.
 SceneDescription every_feature() {
   SceneDescription scene;
   scene.camera = PerspectiveCamera{.position = {0.3, 1.7, 5.1}, .look_at = {0, 1, 0}};
@@ -222,8 +223,8 @@ SceneDescription outdoors() {
   return scene;
 }
 
-/// Returns the scene of every_feature() with the materials of other renderers, and all properties
-/// that materials can have.
+/// Returns the scene of every_feature() with further kinds of material, and with a height map,
+/// transparency by alpha and emission.
 SceneDescription with_other_materials() {
   SceneDescription scene = every_feature();
   const auto texture = [](std::uint32_t i) { return TextureId{i}; };

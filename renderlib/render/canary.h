@@ -9,9 +9,10 @@ namespace bandsaw {
 
 struct Kernel;  // renderlib/render/kernel.h
 
-/// Returns a hash of the pixel sums of built-in scenes with every kind of shape, material, light,
-/// texture, camera and medium, and of values of the elementary functions, as `kernel` computes
-/// them. Takes a few milliseconds. `kernel` is one of kernels(); nullptr selects the first of them.
+/// Returns a hash of pixel sums and of values of the elementary functions, as `kernel` computes
+/// them. The pixels show built-in scenes with every kind of shape, light and camera, nearly every
+/// kind of material and texture, and media. Takes a few milliseconds. `kernel` is one of kernels();
+/// nullptr selects the first of them.
 std::uint64_t canary(const Kernel* kernel = nullptr);
 
 }  // namespace bandsaw

@@ -27,9 +27,9 @@ constexpr double kDivisorOffset = 0.01;
 // halves and about 1 with further nodes. So the group adds (2 + r) s^2 to the variance of T - V,
 // and on average (1 + r) s^2 to the sum of squares: the ratio is between 4/3 and 3/2. If the pixels
 // of a group are independent, the margin is too wide, by a factor of at most sqrt(10 / 3). That
-// matters little in an image of many pixels; and if one of eight pixels is bright, it dominates its
-// group's square anyway. Rare bright samples occur in both T and V, which makes the difference
-// smaller.
+// matters little in an image of many pixels. It does not matter either if one pixel of a group is
+// bright, because then this pixel dominates the square of the group. Rare bright samples occur in
+// both T and V, which makes the difference smaller.
 constexpr double kVarianceOverSquares = 1.5;
 // Width of the margin in standard deviations of T - V. If T - V were normal, 1.64 would suffice in
 // 19 of 20 cases. The larger value covers repeated stopping decisions. It also covers images of few

@@ -55,8 +55,8 @@ struct ErrorEstimate {
 inline constexpr std::uint64_t kBlackSamples = 1024;
 
 /// Returns ErrorEstimate::at_most() of an image with `samples` samples per pixel. Returns a
-/// negative number if the error is unknown: without an estimate, if it is not finite, or if the
-/// image is black and has fewer than kBlackSamples.
+/// negative number if the error is unknown. It is unknown if there is no estimate, if at_most() is
+/// not finite, or if the image is black and has fewer than kBlackSamples samples per pixel.
 double known_error(const std::optional<ErrorEstimate>& estimate, std::uint64_t samples);
 
 /// Sums of a pixel over one node of its samples. A node is an aligned range of a power-of-two
@@ -74,9 +74,9 @@ class ErrorSums {
   /// common mean is estimated by v = (a - b)^2 / 4. The variance of a further node of mean e is
   /// estimated by (e - (a + b) / 2)^2 - v, which is unbiased.
   void add(absl::Span<const NodeSums> nodes);
-  /// Ends a group of pixels: those added since the last call. The errors of pixels in one group
-  /// (render/pixel_groups.h) may be correlated by path reuse. The errors of pixels in different
-  /// groups are not correlated. The margin accounts for the correlations within groups.
+  /// Ends a group, which consists of the pixels added since the last call. The errors of pixels in
+  /// one group (render/pixel_groups.h) may be correlated by path reuse. The errors of pixels in
+  /// different groups are not correlated. The margin accounts for the correlations within groups.
   void end_group();
 
   /// Returns the estimate. At least one pixel MUST have been added, and its group ended.
