@@ -139,8 +139,9 @@ double PlasticCoat::At::internal_reflectance() const {
 
 void prepare_materials(absl::Span<Material> materials) {
   const auto same = [](const Plastic& a, const Plastic& b) {
-    const bool both_mapped = a.surface.alpha_u_map.has_value() == b.surface.alpha_u_map.has_value();
-    return a.index_of_refraction == b.index_of_refraction && both_mapped &&
+    const bool both_or_neither_mapped =
+        a.surface.alpha_u_map.has_value() == b.surface.alpha_u_map.has_value();
+    return a.index_of_refraction == b.index_of_refraction && both_or_neither_mapped &&
            a.surface.alpha_u == b.surface.alpha_u && a.surface.masking == b.surface.masking &&
            a.surface.distribution == b.surface.distribution;
   };
