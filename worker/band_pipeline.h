@@ -24,7 +24,8 @@ using LogTail = std::function<std::vector<std::string>()>;
 
 class BandPipeline {
  public:
-  /// `kernel`: the code that renders the scenes, as in Scene::build. `log_tail` may be nullptr.
+  /// `kernel`: the code that renders the scenes, one of kernels() (renderlib/render/kernel.h);
+  /// nullptr: the first of them. `log_tail` may be nullptr.
   /// `seed`: the seed of the random waits before a band is sent again. `calls` and `session` MUST
   /// outlive the pipeline.
   BandPipeline(SharedSession& session, std::unique_ptr<BlobCache> cache, int threads,
@@ -39,7 +40,7 @@ class BandPipeline {
   void connected() { uploader_.retry_now(); }
 
  private:
-  /// Loads a scene for the executor, as LoadScene.
+  /// Loads a scene for the executor, which calls this function as its LoadScene (scene_cache.h).
   absl::StatusOr<std::shared_ptr<const Scene>> load(const wire::Digest& manifest,
                                                     const std::atomic<bool>& stop,
                                                     const Prepared& prepared);

@@ -76,10 +76,10 @@ absl::Status check_machine() {
 [[gnu::used]] constexpr wire::WorkerMark kMark{.pixel_version = kPixelVersion,
                                                .version = BANDSAW_VERSION};
 
-// Exit codes; see command.h.
-constexpr int kUnfit = 1;
-constexpr int kWrongUsage = 2;
-constexpr int kInterrupted = 130;
+// Exit codes.
+constexpr int kUnfit = 1;          // the machine or the cache folder is unsuitable
+constexpr int kWrongUsage = 2;     // wrong options, or a wrong join string
+constexpr int kInterrupted = 130;  // a second SIGTERM or SIGINT
 
 struct Arguments {
   std::string join;
@@ -183,6 +183,8 @@ class SignalWatch {
   std::thread thread_;  ///< last: it reads the member above
 };
 
+/// Checks the machine and the arguments, and runs the daemon until it ends. Returns the exit code.
+/// `wrap_calls` replaces the calls to the coordinator in tests; nullptr: they are not replaced.
 int run(const Arguments& arguments, const WrapCalls& wrap_calls) {
   if (const absl::Status status = check_machine(); !status.ok()) {
     return fail(kUnfit, status);

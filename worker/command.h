@@ -8,8 +8,8 @@ namespace bandsaw::worker {
 /// drain is to finish the bands that the worker holds and to take no more. 0: the worker has
 /// drained, or was dismissed permanently. 1: the machine or the cache folder is unsuitable. 2:
 /// wrong usage, or a join string that is malformed or not valid for this farm. A second SIGTERM or
-/// SIGINT ends the process with 130. Erases join strings from `argv`. `wrap_calls`: as in
-/// DaemonOptions.
+/// SIGINT ends the process with 130. Erases join strings from `argv`. `wrap_calls`: a
+/// function that replaces the calls to the coordinator in tests; nullptr: they are not replaced.
 int run_command(int argc, char** argv, const WrapCalls& wrap_calls = nullptr);
 
 }  // namespace bandsaw::worker

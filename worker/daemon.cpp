@@ -61,8 +61,9 @@ class Daemon::Impl {
   void write_all(SessionStream& stream, SendQueue& queue);
   /// Sends new lines of the log. Returns false if the stream is broken.
   bool write_log(SessionStream& stream);
-  /// Updates the queue of log lines. A Welcome puts lines that may be lost back into the queue; any
-  /// other message means that the lines sent so far have arrived.
+  /// Updates the queue of log lines. If the message is Welcome, puts lines that may be lost back
+  /// into the queue. Any other message, except Refused, means that the lines sent so far have
+  /// arrived.
   void note_log(const farm::ToWorker& message);
   void handle(const farm::ToWorker& message, const std::string& address);
   void log_loss(const absl::Status& status);

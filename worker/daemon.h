@@ -29,7 +29,7 @@ using WrapCalls = std::function<std::unique_ptr<CoordinatorApi>(CoordinatorApi& 
 struct DaemonOptions {
   link::JoinString join;
   WorkerInfo info;                          ///< its number of threads is also the size of the pool
-  const Kernel* kernel = nullptr;           ///< the code that renders, as in Scene::build
+  const Kernel* kernel = nullptr;           ///< the code that renders; nullptr: the fastest kernel
   std::string cache_folder;                 ///< the folder for blobs of scenes
   std::uint64_t cache_bytes = 16ull << 30;  ///< maximum size of that folder
   /// Returns the last lines of the log, to be sent with a failed band; may be nullptr.
@@ -38,7 +38,7 @@ struct DaemonOptions {
   /// the name that it gave to the worker.
   std::function<void(const std::string& address, const std::string& name)> joined;
   std::shared_ptr<LogQueue> log = nullptr;  ///< lines for the coordinator; nullptr: none are sent
-  /// nullptr: rendering calls the coordinator directly.
+  /// For tests. nullptr: the calls of rendering go directly to the coordinator.
   WrapCalls wrap_calls = nullptr;
 };
 

@@ -2,7 +2,7 @@
 # Links a program with static archives instead of shared libraries where an archive exists.
 # Usage: link_archives.sh LIBRARIES COMPILER ARGUMENT...
 # LIBRARIES: names, in one argument, of libraries that the archives need besides those on the command line.
-# Debian's CMake packages name shared libraries only.
+# The script is needed because Debian's CMake packages name shared libraries only.
 # The order of the libraries on the command line is right for archives too.
 set -eu
 libraries=$1 compiler=$2

@@ -24,9 +24,10 @@
 namespace bandsaw {
 namespace {
 
-/// The set of samples of a row that are covered: a band with these samples has been added to the
-/// film. In adaptive sampling, a half tile may have taken other samples, or none, in this band. The
-/// set is a list of ranges, in which adjacent ranges are merged.
+/// The covered samples of one row. A sample of a row is covered once a band that has the row and
+/// the sample has been added to the film. In adaptive sampling, a half tile may have taken other
+/// samples, or none, in this band. The samples are stored as a list of ranges, in which adjacent
+/// ranges are merged.
 class CoveredSamples {
  public:
   /// Returns the covered range (after merging) that overlaps `samples`, if any.
@@ -145,7 +146,8 @@ struct Film::Rows {
   /// Inserts the sums of a row; `row` holds the sums of its pixels.
   void insert(std::uint32_t y, const SampleRange& samples, absl::Span<const double> row,
               const TileSamples& tiles);
-  /// Returns true if all pixels have two halves of equal size.
+  /// Returns true if the samples of every pixel begin with two nodes of equal size, the halves that
+  /// the error estimate needs.
   bool all_have_halves() const;
   /// Calls f(half tile, number of the group, number of its pixels) for each group of pixels
   /// (render/pixel_groups.h), and adds the pixels of the group to the `ErrorSums` that f returns.
@@ -368,6 +370,7 @@ std::vector<HalfTileErrors> Film::tile_errors() const {
   if (!rows_->strips.half_tiles() || !rows_->all_have_halves()) {
     return {};
   }
+  // Entry 0 is for the groups with even numbers, and entry 1 for the groups with odd numbers.
   using Sums = std::array<ErrorSums, 2>;
   std::vector<Sums> sums(rows_->strips.grid().half_tiles());
   std::vector<HalfTileErrors> errors(sums.size());

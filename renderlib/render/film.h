@@ -1,8 +1,10 @@
 #pragma once
 
-// The accumulation buffer of an image. It accepts bands (some rows, some samples) in any order,
-// stores every row's sums as nodes of the summation tree (render/band.h), merges siblings when both
-// are present, and produces the image.
+// The accumulation buffer of an image. It accepts bands (some rows, some samples) in any order and
+// produces the image. A pixel's samples are added as in a binary tree, the summation tree
+// (render/band.h). A node of this tree is the sum over an aligned range of 2^k blocks of 8 samples.
+// The film stores the nodes of every row that have arrived, and merges siblings when both are
+// present.
 //
 // In adaptive sampling, half tiles (half of the pixels of a tile) take their own samples in a pass
 // (render/tile_samples.h). Then a pixel's sum is that of the samples that the pixel has taken,
@@ -63,8 +65,8 @@ class Film {
   /// are for these rows only.
   Snapshot snapshot(std::uint32_t row_step = 1) const;
 
-  /// Returns the error of the samples that a snapshot shows; std::nullopt until every pixel has two
-  /// halves of equal size.
+  /// Returns the error of the samples that a snapshot shows. Returns std::nullopt until the samples
+  /// of every pixel begin with two nodes (halves) of equal size.
   std::optional<ErrorEstimate> error() const;
 
   /// One of two independent parts of the samples that a snapshot shows. The part contains about
@@ -73,8 +75,9 @@ class Film {
     Image mean;
     std::vector<float> share;  ///< share in each pixel's samples, (0, 1)
   };
-  /// Returns std::nullopt until every pixel has two nodes, that is, more than one block. In a
-  /// complete film, the part has first_part_samples() samples of each pixel (render/first_part.h).
+  /// Returns std::nullopt until every pixel has two nodes, that is, more than one block of 8
+  /// samples. In a complete film, the part has first_part_samples() samples of each pixel
+  /// (render/first_part.h).
   std::optional<FirstPart> first_part() const;
 
   /// Returns the errors of each half tile, for a film of half tiles: the input of plan_tiles. Empty

@@ -14,6 +14,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the share of a pixel's `samples` samples that is in the first part.
 float share_of(std::uint64_t samples) {
   return static_cast<float>(static_cast<double>(first_part_samples(samples)) /
                             static_cast<double>(samples));
@@ -25,8 +26,8 @@ std::uint64_t first_part_samples(std::uint64_t samples) {
   if (samples <= kBlockSamples) {
     return 0;
   }
-  // The nodes of a complete film (strip_nodes.cpp): the halves of the largest whole node at 0, then
-  // the largest nodes that fit.
+  // A complete film (strip_nodes.cpp) stores the two halves of the largest whole node that begins
+  // at sample 0. After them, it stores the largest nodes that fit.
   const std::uint64_t whole = std::bit_floor(samples / kBlockSamples) * kBlockSamples;
   std::uint64_t first = whole;
   std::uint64_t second = 0;

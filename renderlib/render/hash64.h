@@ -1,8 +1,9 @@
 #pragma once
 
 // A 64-bit hash of bytes that detects damage and differences; not cryptographic. Each word is
-// folded in by a multiplication and a rotation; the end uses the finaliser of SplitMix64. Its
-// values are part of the band file format and of the canary, so they MUST NOT change.
+// folded in by a multiplication and a rotation; the end uses the finaliser of SplitMix64. The hash
+// values are part of the band file format and of the canary (a small test render by which machines
+// are compared, canary.h), so they MUST NOT change.
 
 #include <bit>
 #include <cstddef>
@@ -22,7 +23,8 @@ class Hash64 {
     state_ = std::rotl(state_ ^ (word * kSplitMixIncrement), 29) * 0xbf58476d1ce4e5b9u + 1;
   }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-  /// Adds the bytes as little-endian words, the last padded with zeros, then their number.
+  /// Adds the bytes as little-endian words, of which the last is padded with zeros. Then adds the
+  /// number of bytes.
   void add(absl::Span<const std::byte> bytes) {
     std::size_t done = 0;
     for (; done + 8 <= bytes.size(); done += 8) {

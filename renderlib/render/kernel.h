@@ -32,8 +32,8 @@ struct Kernel {
                                             const TileSamples& tiles);
   /// The denoiser's fit() (denoise/fit.h).
   FitFunction fit;
-  /// Adds values of all functions of renderlib/math/elementary.h to the hash, by which kernels and
-  /// machines are compared.
+  /// Adds values of all functions of renderlib/math/elementary.h to the hash. Kernels and machines
+  /// are compared by such a hash.
   void (*add_elementary_functions)(Hash64& hash);
 
   /// Compiled like the rest of the program, for every machine that the program runs on.

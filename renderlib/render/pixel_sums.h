@@ -70,7 +70,7 @@ class PixelSums {
   /// Returns the sums of one block, which may be truncated.
   Sums leaf(absl::Span<const PixelPlace> places, const SampleRange& samples,
             absl::Span<ReusePixel> pixels, Counters& counters) const;
-  /// Takes one sample of each pixel; `pixels` receive its radiance.
+  /// Takes one sample of each pixel, and stores the radiance of each sample in `pixels`.
   void sample(absl::Span<const PixelPlace> places, std::uint64_t sample,
               absl::Span<ReusePixel> pixels) const;
   CameraRay camera_ray(const PixelSampler& sampler, const PixelPlace& place,

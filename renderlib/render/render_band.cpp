@@ -87,7 +87,8 @@ class Units {
   std::uint32_t per_strip_ = 1;      ///< units of a strip
 };
 
-/// The parameters that all parts of a band share.
+/// The parameters that all parts of a band share. If a band needs too many photon maps at once, its
+/// samples are divided into parts (render_with_maps). Any other band is a single part.
 struct Render {
   const Scene& scene;
   const RenderSettings& settings;
@@ -104,7 +105,7 @@ std::uint32_t maps_used(const TrainedGuiding& guiding) {
 
 absl::Status stopped() { return absl::CancelledError("the render was stopped"); }
 
-/// Renders a part with these photon maps, null if there are none.
+/// Renders a part of a band. `maps` are the photon maps of the part; null: without photon maps.
 absl::StatusOr<BandPixels> render_part(const Render& render, const BandPart& part,
                                        const PhotonMaps* maps, const RowsDone& progress) {
   const RenderSettings& settings = render.settings;
@@ -216,8 +217,9 @@ absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
   std::shared_ptr<const TrainedGuiding> guiding;
   if (settings.integrator == Integrator::kPathGuided || settings.integrator == Integrator::kPath) {
     const GuidingKey key = field_key(settings);
-    guiding = scene.guiding().get(
-        key, [&] { return train_guiding(scene, key, preparation_of(pool, stop, progress), true); });
+    guiding = scene.guiding().get(key, [&] {
+      return train_guiding(scene, key, preparation_of(pool, stop, progress), /*photon_maps=*/true);
+    });
     if (guiding == nullptr) {
       return stopped();
     }

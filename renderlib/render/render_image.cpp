@@ -20,6 +20,9 @@ std::vector<SampleRange> passes_of(std::uint64_t samples) {
   if (nodes.empty()) {
     return passes;
   }
+  // The first node is halved again and again, until one block is left. Each right half is a pass,
+  // and the remaining block is the first pass. These passes are collected from the last to the
+  // first.
   SampleRange left = nodes.front();
   while (left.blocks() > 1) {
     const Halves halves = split(left);
@@ -28,6 +31,7 @@ std::vector<SampleRange> passes_of(std::uint64_t samples) {
   }
   passes.push_back(left);
   std::reverse(passes.begin(), passes.end());
+  // Each further node is a pass of its own.
   passes.insert(passes.end(), nodes.begin() + 1, nodes.end());
   return passes;
 }

@@ -25,8 +25,9 @@ namespace bandsaw {
 /// possible nodes, and each of these nodes is one of the last passes.
 std::vector<SampleRange> passes_of(std::uint64_t samples);
 
-/// Returns the bands of the passes of samples [0, samples) over `rows`, pass by pass, from the top.
-/// A band has at most kBandPixels pixels, or one row if a row has more pixels.
+/// Divides `rows` into bands for each pass of passes_of(samples). Returns the bands pass by pass,
+/// and the bands of a pass from the top. A band has at most kBandPixels pixels, or one row if a row
+/// has more pixels.
 std::vector<Band> bands_of(std::uint64_t samples, const RowRange& rows, std::uint32_t width);
 inline constexpr std::uint64_t kBandPixels = std::uint64_t{1} << 20;
 
@@ -47,7 +48,8 @@ struct RenderedImage {
   Counters counters;
 };
 
-/// Renders the whole image. `spill_folder` is that of Film::create.
+/// Renders the whole image. `spill_folder` is the folder of the files that hold the film's sums;
+/// empty: the sums are in anonymous memory.
 absl::StatusOr<RenderedImage> render_image(const Scene& scene, const RenderSettings& settings,
                                            std::uint64_t samples, Pool& pool,
                                            const std::atomic<bool>& stop,

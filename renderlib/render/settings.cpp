@@ -29,6 +29,8 @@ absl::Status validate(const RenderSettings& settings) {
   if (settings.max_depth < 1 || settings.max_depth > kMaxDepth) {
     return out_of_range("max_depth", kMaxDepth, settings.max_depth);
   }
+  // is_guide() is true for the integrators that the denoiser uses. They are valid, but the error
+  // does not name them, because users cannot select them.
   const auto integrator = static_cast<int>(settings.integrator);
   if (integrator < 0 || (integrator > kLastIntegrator && !is_guide(settings.integrator))) {
     return absl::InvalidArgumentError(

@@ -19,9 +19,10 @@ bool siblings(const SampleRange& left, const SampleRange& right) {
 }
 
 /// Returns true if nodes i and i + 1 are to be merged. The first two nodes of a strip are the
-/// halves of the error estimate. They stay separate until the node after them is present and has as
-/// many samples as both together. Then they are merged into the new first half, and this node is
-/// the new second half. The sum of all nodes from left to right has the same bits before and after.
+/// halves of the error estimate. They stay separate until the third node is present and has as many
+/// samples as both halves together. Then the two halves are merged into the new first half, and the
+/// third node becomes the new second half. The sum of all nodes from left to right has the same
+/// bits before and after the merge.
 bool should_merge(const StripNodes& nodes, std::size_t i) {
   if (!siblings(nodes[i].range, nodes[i + 1].range)) {
     return false;

@@ -62,7 +62,8 @@ HalfRow half_row(const TileGrid& grid, std::uint32_t column, std::uint32_t half,
 class TileSamples {
  public:
   TileSamples() = default;
-  /// Makes the half tiles of the tiles that the rows overlap; none takes samples.
+  /// Makes an entry for each half tile of the tiles that the rows overlap. At first, no half tile
+  /// takes samples.
   TileSamples(std::uint32_t width, const RowRange& rows);
   /// Restores the result of numbers() for the same width and rows. Returns INVALID_ARGUMENT if the
   /// count of the numbers is wrong, or if a pair of them is neither empty nor a node that ends at
@@ -78,7 +79,7 @@ class TileSamples {
     return whole() ? band : range(taken_[index_of(x, y)]);
   }
   /// Sets the samples of half tile i, counted in the order of TileGrid from the first tile that the
-  /// rows overlap: a node of at most kMaxSamples.
+  /// rows overlap. `samples` is empty, or a node that ends at or before kMaxSamples.
   void set(std::size_t i, const SampleRange& samples) {
     taken_[i] = {static_cast<std::uint32_t>(samples.first),
                  static_cast<std::uint32_t>(samples.last)};

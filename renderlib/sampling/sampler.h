@@ -52,7 +52,8 @@ class NumberStream {
 class PixelSampler {
  public:
   PixelSampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y);
-  /// Returns the four numbers of a group (see below) for sample number `sample` of the pixel.
+  /// Returns the four numbers of a group for sample number `sample` of the pixel. `group` is
+  /// kGroupCamera, kGroupTime or the result of a function such as group_bsdf().
   Sample4 group(std::uint64_t sample, std::uint32_t group) const;
   /// Returns the stream of a sample and group; different from the numbers of `group()`.
   NumberStream stream(std::uint64_t sample, std::uint32_t group) const;
@@ -85,12 +86,13 @@ constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) 
   return 0x80000000u | (bounce & 0x7ffu) << 20 | (passed & 0xfffffu);
 }
 /// Media segment number `segment` (below 2^17) on the ray towards scattering `bounce` (below 2^11).
-/// `which` selects a group. Group 0 has four numbers: the choice between scattering and passing
-/// together with the colour channel, the free-flight distance, the strategy of light sampling, and
-/// the distance of light sampling. Group 1 is for the point on a light around which equiangular
-/// sampling is done (choice, u, v; medium/equiangular.h). Group 2 is for light sampling (choice, u,
-/// v, low bits of the choice). In media that vary in space, group 0 is for the first collision
-/// (choice, distance), and group 3 is the stream of all further numbers.
+/// A media segment is the part of a ray between two boundaries of media. `which` selects a group.
+/// Group 0 has four numbers: the choice between scattering and passing together with the colour
+/// channel, the free-flight distance, the strategy of light sampling, and the distance of light
+/// sampling. Group 1 is for the point on a light around which equiangular sampling is done (choice,
+/// u, v; medium/equiangular.h). Group 2 is for light sampling (choice, u, v, low bits of the
+/// choice). In media that vary in space, group 0 is for the first collision (choice, distance), and
+/// group 3 is the stream of all further numbers.
 constexpr std::uint32_t group_medium(std::uint32_t bounce, std::uint32_t segment,
                                      std::uint32_t which) {
   return 0x40000000u | (bounce & 0x7ffu) << 19 | (segment & 0x1ffffu) << 2 | which;

@@ -17,7 +17,8 @@ struct SphereSample {
 };
 
 /// Samples a point of the sphere as seen from `point`. Returns std::nullopt if the sampled
-/// direction has no finite pdf (a point on the sphere, a direction tangent to it).
+/// direction has no finite pdf. This happens if the sampled point is `point` itself, or if the
+/// direction is tangent to the sphere.
 std::optional<SphereSample> sample_sphere_light(const Vec3& center, double radius,
                                                 const Vec3& point, double u, double v);
 

@@ -37,8 +37,8 @@ class SphericalRectangle {
   double y0_ = 0;
   double y1_ = 0;
   double z0_ = 0;
-  double b0_ = 0;  ///< z components of the normals of the planes through the y0 and y1 edges
-  double b1_ = 0;
+  double b0_ = 0;     ///< z component of the normal of the plane through the origin and edge y0
+  double b1_ = 0;     ///< z component of the normal of the plane through the origin and edge y1
   double angle_ = 0;  ///< sum of the asins for the two corners at x0
   double solid_angle_ = 0;
 };

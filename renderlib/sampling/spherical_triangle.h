@@ -1,9 +1,10 @@
 #pragma once
 
 // Samples a triangle as seen from a point, uniformly in solid angle: Arvo 1995, "Stratified
-// Sampling of Spherical Triangles". The solid angle is computed by Van Oosterom and Strackee 1983,
-// "The Solid Angle of a Plane Triangle", whose numerator is a volume and keeps its precision.
-// Angles come from atan2 of a cross and a dot product.
+// Sampling of Spherical Triangles". The solid angle is computed with the formula of Van
+// Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle". Its numerator is a volume,
+// which keeps its precision. The sine of the angle at vertex a comes from a cross product, and the
+// cosine from a dot product.
 
 #include <optional>
 
@@ -13,8 +14,9 @@ namespace bandsaw {
 
 class SphericalTriangle {
  public:
-  /// Minimum solid angle in steradians. Below it the triangle is small or a sliver: the inversion
-  /// loses precision, and sampling uniformly by area is nearly uniform in solid angle.
+  /// Minimum solid angle in steradians. A triangle below this limit is small or a sliver. For such
+  /// a triangle the inversion loses precision, and sampling it uniformly by area is nearly uniform
+  /// in solid angle.
   static constexpr double kMinSolidAngle = 1e-3;
 
   /// Creates the triangle a, a + u, a + v as seen from `point`. Returns std::nullopt if its solid
@@ -39,8 +41,8 @@ class SphericalTriangle {
   Vec3 to_a_;  ///< from the point to vertex a
   Vec3 u_;
   Vec3 v_;
-  Vec3 a_;  ///< unit directions to the vertices
-  Vec3 b_;
+  Vec3 a_;                ///< unit direction to vertex a
+  Vec3 b_;                ///< unit direction to vertex b
   Vec3 toward_c_;         ///< unit tangent at a, towards c
   double cos_c_ = 0;      ///< cosine of the side from a to b
   double sin_alpha_ = 0;  ///< sine of the angle at a

@@ -14,8 +14,8 @@
 namespace bandsaw {
 namespace {
 
-/// Tolerance of the length of unit normals. Code that needs a more exact length normalises the
-/// normals again.
+/// Maximum difference between the length of a unit normal and 1. Code that needs a more exact
+/// length normalises the normals again.
 constexpr double kUnitSlack = 1e-6;
 
 absl::Status check_radius(const std::string& field, double radius) {

@@ -68,7 +68,7 @@ Rgb nearest(const ImageTexture& image, double x, double y) {
   const auto column = static_cast<std::int64_t>(std::floor(x * image.width));
   const auto row = static_cast<std::int64_t>(std::floor(y * image.height));
   return texel(image, wrapped_index(column, image.width, image.wrap),
-               // At the bottom, v = 0, `row` equals the height.
+               // At the bottom (v = 0), `row` equals the height, and the last row is taken.
                static_cast<std::uint32_t>(std::min<std::int64_t>(row, image.height - 1)));
 }
 

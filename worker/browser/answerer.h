@@ -18,7 +18,7 @@ class Answerer {
   /// Keeps a copy of the bytes.
   const BandsawAnswer* bytes(std::string bytes) {
     bytes_ = std::move(bytes);
-    return refer(bytes_.data(), bytes_.size(), 0);
+    return refer(bytes_.data(), bytes_.size(), /*failed=*/0);
   }
   const BandsawAnswer* none() { return bytes(""); }
   /// Answers with bytes of the caller. `data` MUST live until the next answer; `failed`: 0 or 1.
@@ -29,7 +29,7 @@ class Answerer {
   /// Answers with the error's message, cleaned and bounded in length, and marks it as failed.
   const BandsawAnswer* error(const absl::Status& status) {
     bytes_ = clean_text(std::string(status.message()), wire::kReasonBytes);
-    return refer(bytes_.data(), bytes_.size(), 1);
+    return refer(bytes_.data(), bytes_.size(), /*failed=*/1);
   }
   const BandsawAnswer* status(const absl::Status& status) {
     return status.ok() ? none() : error(status);

@@ -84,9 +84,9 @@ absl::Status BrowserRenderer::build_scene() {
   for (const auto& [digest, loaded] : scenes_) {
     earlier.push_back(loaded.scene);
   }
-  ASSIGN_OR_RETURN(
-      std::shared_ptr<const Scene> scene,
-      Scene::build(std::move(description), pool_, {}, Traversal::kBvh, nullptr, earlier));
+  ASSIGN_OR_RETURN(std::shared_ptr<const Scene> scene,
+                   Scene::build(std::move(description), pool_, /*forced=*/{}, Traversal::kBvh,
+                                /*kernel=*/nullptr, earlier));
   scenes_[begun->manifest] = {.scene = std::move(scene), .display = info.display};
   return absl::OkStatus();
 }

@@ -48,8 +48,8 @@ class BrowserRenderer {
   /// together; otherwise it is 1. NOT_FOUND: the scene is not loaded.
   absl::StatusOr<std::uint32_t> row_step(const wire::Digest& manifest) const;
 
-  /// Renders rows of a task's band. The sums have the same values as if the whole band were
-  /// rendered.
+  /// Renders rows of a task's band. The sums of these rows are the same as if the whole band were
+  /// rendered at once.
   /// NOT_FOUND: the scene is not loaded. INVALID_ARGUMENT: the rows do not lie in the band.
   /// `step` is called after each step of the preparation before the first row.
   absl::StatusOr<BandPixels> render(const Task& task, const RowRange& rows,
@@ -69,12 +69,12 @@ class BrowserRenderer {
   struct Begun {
     wire::Digest manifest;
     std::string text;
-    std::map<wire::Digest, std::uint64_t> sizes;
-    std::map<wire::Digest, SharedBytes> blobs;
+    std::map<wire::Digest, std::uint64_t> sizes;  ///< sizes of the blobs that the scene needs
+    std::map<wire::Digest, SharedBytes> blobs;    ///< the blobs that were added so far
   };
 
   Pool pool_;
-  DecodedParts parts_;
+  DecodedParts parts_;  ///< meshes and blobs of loaded scenes, which later scenes may share
   std::unique_ptr<Begun> begun_;
   std::map<wire::Digest, Loaded> scenes_;
 };

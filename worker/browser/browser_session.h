@@ -47,14 +47,17 @@ class BrowserSession {
   void disconnected() { session_.disconnected(); }
   std::string heartbeat() const;
 
-  // Rendering; see Session. Calls for a band that is not held have no effect.
+  // Rendering. Calls for a band that is not held have no effect.
+  /// Notes progress of the preparation. `prepared`: bytes fetched and steps done, a number that
+  /// only increases.
   void preparing(TaskId task, std::uint64_t prepared) { session_.preparing(task, prepared); }
   /// Notes that `rows_done` rows of the band are rendered, in all. `counters`: the bytes of the
   /// farm.Counters of the newly rendered rows. INVALID_ARGUMENT: these bytes are no farm.Counters.
   absl::Status rendering(TaskId task, std::uint32_t rows_done, const std::string& counters);
   /// Returns false if the band is not wanted any more.
   bool finished(TaskId task) { return session_.finished(task); }
-  /// Returns the message to send, or an empty text.
+  /// Removes a band that cannot be rendered. `log`: the last lines of the log. Returns the message
+  /// to send, or an empty text.
   std::string failed(TaskId task, const std::string& reason, const std::vector<std::string>& log);
 
   // Sending pixels.
@@ -80,6 +83,7 @@ class BrowserSession {
   };
 
   explicit BrowserSession(WorkerInfo info) : instance_(info.instance), session_(std::move(info)) {}
+  /// Removes a band after the coordinator's reply to its pixels.
   void drop(TaskId task);
 
   std::string instance_;

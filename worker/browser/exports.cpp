@@ -349,8 +349,9 @@ const BandsawAnswer* bandsaw_renderer_render(BandsawRenderer* renderer, const vo
   };
   const absl::Status status = render();
   const std::vector<double>& sums = renderer->pixels.sums;
-  return status.ok() ? renderer->answer.refer(sums.data(), sums.size() * sizeof(double), 0)
-                     : renderer->answer.error(status);
+  return status.ok()
+             ? renderer->answer.refer(sums.data(), sums.size() * sizeof(double), /*failed=*/0)
+             : renderer->answer.error(status);
 }
 
 const BandsawAnswer* bandsaw_renderer_counters(BandsawRenderer* renderer) {
@@ -359,5 +360,5 @@ const BandsawAnswer* bandsaw_renderer_counters(BandsawRenderer* renderer) {
 
 const BandsawAnswer* bandsaw_renderer_picture(BandsawRenderer* renderer) {
   renderer->picture = renderer->renderer.picture(renderer->task, renderer->pixels);
-  return renderer->answer.refer(renderer->picture.data(), renderer->picture.size(), 0);
+  return renderer->answer.refer(renderer->picture.data(), renderer->picture.size(), /*failed=*/0);
 }

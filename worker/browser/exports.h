@@ -55,6 +55,8 @@ const BandsawAnswer* bandsaw_session_receive(BandsawSession* session, const void
 const BandsawAnswer* bandsaw_session_disconnected(BandsawSession* session);
 /// The answer is JSON: {"connected", "welcomed", "drained": booleans, "name", "heartbeat_ms"}.
 const BandsawAnswer* bandsaw_session_state(BandsawSession* session);
+/// Notes progress of the preparation of a band. `prepared`: bytes fetched and steps done, a number
+/// that only increases.
 const BandsawAnswer* bandsaw_session_preparing(BandsawSession* session, uint32_t task,
                                                double prepared);
 /// `counters`: the answer of bandsaw_renderer_counters.
@@ -76,9 +78,12 @@ const BandsawAnswer* bandsaw_session_band_header(BandsawSession* session, uint32
 /// "unwanted".
 const BandsawAnswer* bandsaw_session_band_reply(BandsawSession* session, uint32_t task,
                                                 const void* reply, size_t size);
+/// Requests no more leases. `reason`: for the coordinator. After bandsaw_session_resume, the next
+/// stream requests leases again.
 const BandsawAnswer* bandsaw_session_drain(BandsawSession* session, const char* reason,
                                            size_t size);
 const BandsawAnswer* bandsaw_session_resume(BandsawSession* session);
+/// Makes the message that sends `lines`, the tab's log lines, to the coordinator.
 const BandsawAnswer* bandsaw_session_log(BandsawSession* session, const char* lines, size_t size);
 /// The answer is the SHA-256 of the bytes, 32 bytes. For pages without crypto.subtle.
 const BandsawAnswer* bandsaw_session_sha256(BandsawSession* session, const void* bytes,

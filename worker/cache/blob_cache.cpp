@@ -123,7 +123,7 @@ absl::StatusOr<std::unique_ptr<BlobCache>> BlobCache::open(std::string folder,
   for (const Entry& entry : entries(cache->folder_)) {
     bytes += entry.bytes;
   }
-  cache->make_room(bytes, "");
+  cache->make_room(bytes, /*newest=*/"");
   return cache;
 }
 
@@ -155,7 +155,7 @@ absl::StatusOr<int> BlobCache::open_part(const std::string& path) {
     }
     const int error = errno;
     if (error == ENOENT && !is_folder_made) {
-      std::error_code ignored;  // then opening the file fails again
+      std::error_code ignored;  // if this fails, opening the file fails again
       std::filesystem::create_directories(folder_, ignored);
       is_folder_made = true;
     } else if (!is_full(error) || !free_space(1)) {
@@ -200,7 +200,8 @@ void BlobCache::make_room(std::uint64_t added, const std::string& newest) {
 bool BlobCache::free_space(std::uint64_t wanted) {
   constexpr std::uint64_t kAtOnce = 64 << 20;  // so that the folder is not scanned for each chunk
   MutexLock lock(mutex_);
-  const std::uint64_t freed = remove_oldest(entries(folder_), std::max(wanted, kAtOnce), "");
+  const std::uint64_t freed =
+      remove_oldest(entries(folder_), std::max(wanted, kAtOnce), /*kept=*/"");
   bytes_ -= std::min(bytes_, freed);
   return freed > 0;
 }

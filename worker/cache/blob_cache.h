@@ -1,6 +1,6 @@
 #pragma once
 
-// The worker's cache on disk of blobs (arrays and manifests of scenes, named by their SHA-256). The
+// The worker's disk cache for blobs (arrays and manifests of scenes, named by their SHA-256). The
 // name of a file is `<folder>/<digest in hexadecimal>`. Files are written atomically. When the size
 // limit is exceeded, the least recently used files are removed. Several workers of one machine may
 // share a folder, because files appear by rename, a download holds a lock on its partial file, and
@@ -67,8 +67,8 @@ class BlobCache : public BlobSource {
   /// Opens the partial file `path` for reading and writing, and returns its descriptor. Creates the
   /// file and the cache's folder if they are missing. Errors are those of begin().
   absl::StatusOr<int> open_part(const std::string& path) EXCLUDES(mutex_);
-  /// Adds `added` bytes to the size of the cache, and evicts the least recently used files, except
-  /// `newest`, until the size limit is kept.
+  /// Notes that the cache has grown by `added` bytes. If it is above its size limit, evicts the
+  /// least recently used files, except the file `newest`, until the limit is kept.
   void make_room(std::uint64_t added, const std::string& newest) EXCLUDES(mutex_);
   /// Evicts the least recently used files because the disk is full, until at least `wanted` bytes
   /// are removed or no file is left. Returns false if there was nothing to evict.

@@ -134,9 +134,9 @@ absl::StatusOr<std::shared_ptr<const Scene>> PackageLoader::load(const wire::Dig
   parts_.forget_unused();
   const std::vector<std::shared_ptr<const Scene>> earlier = scenes_in_use();
   ASSIGN_OR_RETURN(SceneDescription description, decode_package(text, blobs, &parts_));
-  ASSIGN_OR_RETURN(
-      std::shared_ptr<const Scene> scene,
-      Scene::build(std::move(description), pool_, {}, Traversal::kBvh, kernel_, earlier));
+  ASSIGN_OR_RETURN(std::shared_ptr<const Scene> scene,
+                   Scene::build(std::move(description), pool_, /*forced=*/{}, Traversal::kBvh,
+                                kernel_, earlier));
   scenes_.push_back(scene);
   return scene;
 }

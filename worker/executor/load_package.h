@@ -45,6 +45,7 @@ class FetchingSource : public BlobSource {
   absl::Status fetch(const wire::Digest& digest);
   /// Makes one transfer, from the end of the partial file, and commits the blob.
   absl::Status download(const wire::Digest& digest, BlobCache::Download& partial);
+  /// Adds `amount` to the progress and reports the new sum.
   void step(std::uint64_t amount) { prepared_(progress_ += amount); }
 
   BlobCache& cache_;
@@ -59,7 +60,8 @@ class FetchingSource : public BlobSource {
 /// of a sequence takes time only for the parts that have changed.
 class PackageLoader {
  public:
-  /// `kernel`: as in Scene::build. `pool` MUST outlive the loader.
+  /// `kernel`: the code that builds and renders the scenes, one of kernels()
+  /// (renderlib/render/kernel.h); nullptr: the first of them. `pool` MUST outlive the loader.
   explicit PackageLoader(Pool& pool, const Kernel* kernel = nullptr)
       : pool_(pool), kernel_(kernel) {}
   /// Builds the scene. The errors are those of FetchingSource::get. In addition, INVALID_ARGUMENT:

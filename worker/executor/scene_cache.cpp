@@ -22,7 +22,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> SceneCache::get(const wire::Digest&
       return entries_.front().scene;
     }
   }
-  // The oldest scene is dropped before the next scene is built, so that memory need not hold both.
+  // The oldest scene is dropped before the next scene is built, so that memory need not hold the
+  // oldest and the next scene at the same time.
   while (entries_.size() >= kScenes) {
     entries_.pop_back();
   }

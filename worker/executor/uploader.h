@@ -50,8 +50,9 @@ class Uploader {
   CondVar changed_;
   bool closing_ GUARDED_BY(mutex_) = false;
   bool retry_now_ GUARDED_BY(mutex_) = false;
-  /// The bands that are not acknowledged. Their number is bounded: they still count against the
-  /// worker's credit, and the coordinator leases no more bands than the credit allows.
+  /// The bands that are not acknowledged. Their number is bounded, because they count against the
+  /// worker's credit. The credit is the maximum number of bands that the coordinator leases to the
+  /// worker at the same time.
   std::deque<std::shared_ptr<const FinishedBand>> bands_ GUARDED_BY(mutex_);
   Backoff backoff_;  ///< used by the thread only
   std::thread thread_;

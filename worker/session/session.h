@@ -24,7 +24,7 @@ struct WorkerInfo {
   std::uint32_t threads = 1;
   std::uint32_t max_bands = 3;  ///< leases that it accepts at the same time (its credit)
   std::uint32_t pixel_version = 0;
-  std::uint64_t canary = 0;        ///< hash of a small image, which shows that pixels are equal
+  std::uint64_t canary = 0;        ///< hash of a small test render; MUST equal the coordinator's
   std::uint64_t memory_bytes = 0;  ///< the memory that scenes may take here; 0: no limit
 };
 
@@ -61,6 +61,7 @@ class Session {
   farm::FromWorker hello() const;
   /// Changes the number of threads and the memory that the next Hello offers, as in WorkerInfo.
   void offer(std::uint32_t threads, std::uint64_t memory_bytes);
+  /// Takes a message of the coordinator. Returns the actions that the caller has to take.
   SessionEffects receive(const farm::ToWorker& message);
   void disconnected() { connected_ = false; }
   farm::FromWorker heartbeat() const;
@@ -100,13 +101,13 @@ class Session {
 
  private:
   enum class Stage { kWaiting, kPreparing, kRendering, kFinished };
-  /// A band that is held. The last two members are the progress, as in LeaseProgress (farm.proto).
+  /// A band that is held. Heartbeats report the last two members as the progress of the band.
   struct Held {
     Task task;
     LeaseName name;
     Stage stage = Stage::kWaiting;
-    std::uint64_t prepared = 0;
-    std::uint32_t rows_done = 0;
+    std::uint64_t prepared = 0;   ///< progress of the preparation, a number that only increases
+    std::uint32_t rows_done = 0;  ///< finished rows
   };
 
   void take_welcome(const farm::Welcome& welcome, SessionEffects& effects);

@@ -28,19 +28,30 @@ class SharedSession {
   bool was_welcomed() EXCLUDES(mutex_);
   std::string name() EXCLUDES(mutex_);
 
-  // For the rendering threads; see Session.
+  // For the rendering threads. Calls for a band that is not held do not change the session.
+  /// Notes progress of the preparation. `prepared`: bytes fetched and steps done, a number that
+  /// only increases.
   void preparing(TaskId task, std::uint64_t prepared) EXCLUDES(mutex_);
+  /// Notes that `rows_done` rows of the band are rendered. 0 means that rendering has begun, or
+  /// that another step of the preparation is done.
   void rendering(TaskId task, std::uint32_t rows_done) EXCLUDES(mutex_);
-  /// Returns false if the band is no longer needed; then discard its pixels.
+  /// Notes that all rows of the band are rendered and that its pixels wait to be sent. Returns
+  /// false if the band is no longer held; the caller then discards the pixels.
   bool finished(TaskId task) EXCLUDES(mutex_);
+  /// Removes a band that failed. Sends `reason` and the lines `log` to the coordinator if the
+  /// worker is connected and the band's lease is of the coordinator's present run (epoch).
   void failed(TaskId task, const std::string& reason, const std::vector<std::string>& log)
       EXCLUDES(mutex_);
+  /// Removes a finished band after the coordinator has stored its pixels, or has answered that they
+  /// are duplicate or unwanted.
   void settled(TaskId task) EXCLUDES(mutex_);
   /// Returns lease 0 if the band is no longer held. UNAVAILABLE: not connected to a coordinator.
   absl::StatusOr<LeaseName> lease_of(TaskId task) EXCLUDES(mutex_);
 
-  // For shutdown. drain() is Session::drain. leave() ends the session without finishing the bands.
+  // For shutdown.
+  /// Requests no more leases. The session is over when the worker holds no more bands.
   void drain(const std::string& reason) EXCLUDES(mutex_);
+  /// Ends the session without finishing the bands.
   void leave() EXCLUDES(mutex_);
   /// Returns true once the worker has drained, or after leave().
   bool over() EXCLUDES(mutex_);
