@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Returns the text of each `sh` block of a Markdown file.
 std::vector<std::string> shell_blocks(const std::string& path) {
   std::vector<std::string> blocks;
   std::ifstream file(path);

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Runs deploy/tutorial.md, block by block, on three machines made of network namespaces. Exit 77: these machines cannot be made here (run as
-# root). A block begins with the line ```sh on=HOST, where HOST is the machine that runs it. A word may follow HOST. `stays`: after the block has
-# printed "join", it continues in the background. `stops`: the block is not run; the background blocks of HOST are ended instead.
+# Runs deploy/tutorial.md, block by block, on three machines made of network namespaces. Exit status 77: these machines cannot be made
+# here, for example because the script does not run as root. A block begins with the line ```sh on=HOST, where HOST is the machine that runs it. A
+# word may follow HOST. `stays`: after the block has printed "join", it continues in the background. `stops`: the block is not run; the background
+# blocks of HOST are ended instead.
 # Usage: tutorial.sh BUILD-FOLDER
 set -euo pipefail
 build=$(cd "$1" && pwd)

@@ -9,12 +9,13 @@
 // in Mitsuba's tests), which are spread over all pixels. --out gets a PNG for each scene that has a
 // reference of the same size.
 //
-// A channel of a pixel fails if the p-value of its difference is below Sidak's level for the image
-// at 0.01. As in Mitsuba's tests, up to 0.25 % of the channels may fail. The variance of the
-// difference is the sum of two variances. The first is the variance of the rendered image. It is
-// the larger of two values: the reference's variance of one sample (at least 1e-4) over the number
-// of samples, and the variance that the seeds show. The second is the variance of the reference
-// image, which has 32,000 samples.
+// A channel of a pixel fails if the p-value of its difference from the reference is below Sidak's
+// level. At this level, at least one of N independent tests fails by chance with a probability of
+// 0.01, where N is the number of pixels. As in Mitsuba's tests, up to 0.25 % of the channels may
+// fail. The variance of the difference is the sum of two variances. The first is the variance of
+// the rendered image. It is the larger of two values: the reference's variance of one sample (at
+// least 1e-4) over the number of samples, and the variance that the seeds show. The second is the
+// variance of the reference image, which has 32,000 samples.
 
 #include <algorithm>
 #include <array>
@@ -87,6 +88,7 @@ absl::StatusOr<Rendered> render(const std::string& path, const Options& options,
   for (int seed = 0; seed < options.seeds; ++seed) {
     settings.seed = static_cast<std::uint64_t>(seed);
     std::vector<double> sums(3 * pixels);
+    // A node is an aligned range of samples that render_band() can add up in one call.
     for (const SampleRange& node : maximal_nodes(each)) {
       ASSIGN_OR_RETURN(const BandPixels band,
                        render_band(*scene, settings, {node, {0, settings.height}}, pool, stop,
@@ -118,7 +120,7 @@ absl::StatusOr<Image> read_image(const std::string& path) {
   return decode_picture(bytes);
 }
 
-/// Returns number i of the image's channels: those of the first pixel, of the second, and so on.
+/// Returns channel number i of the image. The three channels of a pixel have consecutive numbers.
 float channel_of(const Image& image, std::size_t i) {
   const Rgb& c = image.pixels[i / 3];
   return i % 3 == 0 ? c.r : i % 3 == 1 ? c.g : c.b;
@@ -183,8 +185,9 @@ Comparison compare(const Rendered& ours, const Image& reference, const Image& va
   return out;
 }
 
-/// Writes the rendered image, the reference and z side by side. z is shown red where the rendered
-/// image is brighter and blue where it is darker, fully at 5 standard deviations.
+/// Writes the rendered image, the reference and z side by side. z is shown in red where the
+/// rendered image is brighter, and in blue where it is darker. The colour has the value 1 if the
+/// mean of z over the three channels is 5 standard deviations.
 void write_images(const std::string& path, const Rendered& ours, const Image& reference,
                   const Comparison& found) {
   Image all{3 * ours.width, ours.height, {}};

@@ -102,7 +102,8 @@ awk -v without="$folder/without" -v references="$folder/references" '
   function root_mean(sum, n) { return sqrt(sum / n) }
   { ++runs; scene[runs] = $1; goal[runs] = $2; guess[runs] = $5; spent[runs] = $6; count[runs] = $7; error[runs] = $8
     if ($7 >= most[$1]) { most[$1] = $7; most_goal[$1] = $2 } }
-  # Returns the square of the noise of the reference. If images of n samples have the error e, a reference of m samples has e^2 n / m.
+  # Returns the square of the noise of the reference. If images of n samples have the true error e, a reference of m samples has the noise
+  # e sqrt(n / m), and the square of the measured error is e^2 (1 + n / m).
   function own_noise(name,   i, sum, n, samples) {
     sum = n = samples = 0
     for (i = 1; i <= runs; ++i) if (scene[i] == name && goal[i] == most_goal[name]) { ++n; sum += error[i] ^ 2; samples += count[i] }
@@ -136,7 +137,8 @@ awk -v without="$folder/without" -v references="$folder/references" '
     print "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
     for (i = 1; i <= keys_count; ++i) {
       key = keys[i]; split(key, name, " "); e = root_mean(squares[key], n[key]); m = samples[key] / n[key]
-      # Exponent of the decrease of the error between the targets; 1/2 if there is only one target.
+      # The error is proportional to samples ^ -slope. The slope is measured between the two targets, but is at least 0.4. If there is only one
+      # target, the slope is 1/2. `ideal` is the number of samples at which the error would be equal to the target.
       slope = 0.5; a = name[1] " 5"; b = name[1] " 2"
       if ((a in n) && (b in n) && samples[b] / n[b] > samples[a] / n[a])
         slope = log(root_mean(squares[a], n[a]) / root_mean(squares[b], n[b])) / log(samples[b] / n[b] / (samples[a] / n[a]))

@@ -58,7 +58,9 @@ std::vector<Moments> pixel_means(const SceneMaker& maker, std::uint32_t width, s
   return means;
 }
 
-// C9 for a mesh: a half-plane whose edge moves by ten pixels.
+// The mesh is a half-plane whose edge moves from x = 5 to x = 15. It covers a point while the edge
+// is to the right of the point. The expected value of a pixel is the mean, over the pixel, of the
+// share of the time for which this holds.
 TEST(Deforming, C9_AMovingEdgeIsALinearRamp) {
   constexpr int kWidth = 24;
   const Mesh half = changing_quad({{-100, -9, 0}, {5, -9, 0}, {5, 9, 0}, {-100, 9, 0}},

@@ -73,8 +73,9 @@ TEST(EnvironmentLight, L8OneTexelGivesTheLightOfTheQuadrature) {
                       return x == 20 && y == row ? 1e5f : 0.0f;
                     }));
     add_patch(maker, 0, maker.diffuse(1));
-    // The light of the interpolated image, L times solid angle times cosine, by quadrature over the
-    // rows. Across the columns the interpolated texel has the integral of one texel.
+    // The irradiance is the integral of the interpolated radiance times the cosine over the solid
+    // angle. It is computed by quadrature over the rows. Across the columns, interpolation does not
+    // change the integral, so the texel counts as one column of full brightness.
     double expected = 0;
     constexpr int kFine = 2000;
     for (int i = 0; i < kFine; ++i) {
@@ -302,8 +303,8 @@ TEST(DeltaLight, ASpotsImageCoversTheSquareAroundItsCone) {
                  .cos_outer = sincos_degrees(45).cos};
   spot.image = ProjectedImage{maker.texture(four_values()), {1, 0, 0}, {0, 0, -1}, 1, 1};
   maker.scene.lights = {spot};
-  // The intensity is 8 times the image. The distance is sqrt(4 + r^2), and the cosine of the angle
-  // is 2 / distance.
+  // The intensity is 8 times the image. The distance is sqrt(4 + x^2 + z^2) = sqrt(6), and the
+  // cosine of the angle is 2 / distance.
   for (const auto& [x, z, value] :
        {std::array<double, 3>{-1, 1, 1}, std::array<double, 3>{1, 1, 2},
         std::array<double, 3>{-1, -1, 3}, std::array<double, 3>{1, -1, 4}}) {

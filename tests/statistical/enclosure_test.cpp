@@ -84,7 +84,8 @@ TEST(Enclosure, OfACubeHasItsFormFactors) {
 }
 
 /// A light of intensity I is in the middle of a sphere of radius R. The direct irradiance of the
-/// wall is I / R^2, and interreflection multiplies it by 1 / (1 - rho).
+/// wall is I / R^2, and interreflection multiplies it by 1 / (1 - rho). The radiance of the wall is
+/// its irradiance times rho / pi. With I = 4 pi, R = 2 and rho = 0.5 it is 1.
 TEST(Enclosure, OfASphereAroundAPointLightHasTheClosedForm) {
   SceneMaker maker;
   maker.sphere({0, 0, 0}, 2, maker.diffuse(0.5f));
@@ -97,7 +98,7 @@ TEST(Enclosure, OfASphereAroundAPointLightHasTheClosedForm) {
 
 /// Expects that all surfaces together absorb the light's flux. The surfaces are the walls of a room
 /// and the sides of a block that floats in it. The absorbed flux is the sum of (1 - rho) E A over
-/// them. `albedos`: those of the six walls, and that of the block.
+/// them. `albedos`: the albedo of each of the six walls, and then the albedo of the block.
 void expect_balance(const std::array<float, 7>& albedos, std::uint64_t samples) {
   SceneMaker maker;
   std::vector<std::pair<Wall, float>> surfaces;

@@ -2,7 +2,7 @@
 
 // Estimates the mean radiance along one ray with its standard error, for the tests of this folder.
 // The Owen-scrambled samples of one seed are correlated, so the mean over the samples of one seed
-// is one observation. The standard error is that of many seeds.
+// is one observation. The standard error is computed from the observations of many seeds.
 
 #include "renderlib/integrate/path.h"
 #include "tests/support/statistics.h"

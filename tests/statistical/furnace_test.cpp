@@ -1,7 +1,7 @@
-// Compares scenes whose light after any number of bounces is known with the closed form. In other
-// scenes, compares light sampling, BSDF sampling and MIS, which must have the same mean. All means
-// must lie within 4 standard errors. An id such as O6 in a test's name is that of a case in
-// tests/hard_cases/cases.txt.
+// In some scenes, the light after any number of bounces has a closed form. The tests compare the
+// means in these scenes with the closed form. In other scenes, they compare light sampling, BSDF
+// sampling and MIS, which must have the same mean. All means must lie within 4 standard errors. An
+// id such as O6 in a test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gtest/gtest.h>
 
@@ -67,9 +67,9 @@ TEST(Furnace, ASmallLightGivesOneOverOneMinusRho) {
   const float rho = 0.8f;
   const double f = 1e-3;
   const auto scene = enclosure(rho, f).build();
-  const double expected =
-      rho * f /
-      (1 - rho * (1 - f));  // f rho / (1 - rho), except for the shadow of the light itself
+  // The direct light is rho f. Interreflection multiplies it by nearly 1 / (1 - rho). The factor is
+  // a little smaller, because the light covers the share f of the hemisphere.
+  const double expected = rho * f / (1 - rho * (1 - f));
   expect_value(test::radiance_along(*scene, kAtWall, {.max_depth = 1000}, 16384), expected, 1e-3);
 }
 

@@ -1,6 +1,6 @@
-// The radiance of scattering half-spaces under a white sky must be within 4 standard errors of the
-// closed form of Chandrasekhar, "Radiative Transfer", where mu is the cosine of the viewing
-// direction to the normal:
+// The radiance R of scattering half-spaces under a white sky must be within 4 standard errors of
+// the closed form of Chandrasekhar, "Radiative Transfer". In this form, mu is the cosine of the
+// angle between the viewing direction and the normal:
 //
 //   R = 1 - H(mu) sqrt(1 - albedo)
 //   H(mu) = exp(-mu / pi * integral over x in [0, pi / 2] of f(x))

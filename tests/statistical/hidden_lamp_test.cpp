@@ -16,7 +16,7 @@ using test::Moments;
 using test::SceneMaker;
 
 MaterialId hidden_lamp(SceneMaker& maker, float radiance) {
-  const MaterialId id = maker.lamp(radiance, true);
+  const MaterialId id = maker.lamp(radiance, /*one_sided=*/true);
   std::get<Emissive>(maker.scene.materials[index_of(id)].kind).hidden = true;
   return id;
 }

@@ -62,7 +62,8 @@ TEST(Media, V6AbsorptionIsExponential) {
 }
 
 /// First the camera is in the middle of a ball of smoke, and the light is inside of the ball, on
-/// its boundary or outside. Then both are in endless fog.
+/// its boundary or outside. Then both are in endless fog. The expected transmittance is
+/// exp(-0.5 d), where d is the length of the camera ray in the medium.
 TEST(Media, V7AroundTheCameraAttenuateALight) {
   const Ray ray{.origin = {0, 0, 0}, .direction = {0, 0, -1}};
   for (const double distance : {0.5, 2.0, 3.0}) {
@@ -336,7 +337,7 @@ TEST(MediaTechniques, AllTechniquesHaveTheSameMean) {
 }
 
 TEST(MediaTechniques, R8_RouletteKeepsTheMean) {
-  const auto scene = smoky_room(true);
+  const auto scene = smoky_room(/*with_fog=*/true);
   const Ray ray{.origin = {0.3, 1.4, 3.5}, .direction = normalize({-0.3, -0.4, -3.5})};
   const Moments with = test::radiance_along(*scene, ray, {.max_depth = 20}, 512);
   const Moments without =
@@ -386,7 +387,7 @@ TEST(MediaTechniques, AgreeUnderAnUnevenSky) {
   }
 }
 
-/// A light whose centre the ray hits.
+/// The camera ray goes through the centre of a light. MIS and light sampling have the same mean.
 TEST(MediaTechniques, V8AgreeOnARayThroughTheMiddleOfALight) {
   SceneMaker maker;
   maker.sphere({3, 0, 0}, 0.1, maker.lamp(50));

@@ -1,8 +1,9 @@
 #pragma once
 
 // Estimates the mean radiance along the rays of pixels that share the second vertices of their
-// paths (path reuse, renderlib/integrate/path_reuse.h), with standard errors. Everything else is as
-// in radiance_along() (estimate.h).
+// paths (path reuse, renderlib/integrate/path_reuse.h), with standard errors. The mean over the
+// samples of one seed is one observation, and the standard error is computed from the observations
+// of many seeds.
 
 #include <array>
 #include <vector>

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint64_t kSamples = 1024;
 
-/// Returns rays from the camera to points of the back wall.
+/// Returns rays from the camera through points in front of the back wall, at z = 400. The points
+/// have x from `from` to `to`, and y = `height`.
 std::array<Ray, kMaxReusePixels> rays_across(double from, double to, double height) {
   std::array<Ray, kMaxReusePixels> rays;
   for (std::size_t i = 0; i < rays.size(); ++i) {

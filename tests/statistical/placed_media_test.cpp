@@ -34,7 +34,7 @@ SceneMaker moving_ball(const Medium& medium, const Transform& from, const Transf
   return maker;
 }
 
-/// Returns the radiance along the ray while the shutter is open.
+/// Returns the radiance along the ray, averaged over the time in which the shutter is open.
 Moments seen_along(const Scene& scene, Ray ray, std::uint64_t samples) {
   Moments means;
   for (std::uint64_t seed = 0; seed < 32; ++seed) {

@@ -31,6 +31,8 @@ double irradiance_of(const std::vector<Vec3>& corners, const Vec3& n) {
   return std::abs(sum) / 2;
 }
 
+/// Adds a white diffuse patch at the origin with normal +y, and expects its irradiance within 4
+/// standard errors.
 void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples = 1024) {
   maker.quad({-0.001, 0, -0.001}, {0, 0, 0.002}, {0.002, 0, 0}, maker.diffuse(1));
   const auto scene = maker.build();
@@ -96,7 +98,8 @@ TEST(PolygonLight, X9AnInstanceEmitsAccordingToItsPlacedArea) {
 }
 
 TEST(PolygonLight, L12LightsCountOnceForEveryTechnique) {
-  // A light of triangles, a mirror and a pane of glass: each technique has the same mean.
+  // The scene has a light of triangles, a mirror ball and a glass ball. Each technique has the same
+  // mean.
   SceneMaker maker;
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(0.5f));
   maker.instance(test::grid(4), translation({0, 2, -1}) * rotation({1, 0, 0}, 60), maker.lamp(3));

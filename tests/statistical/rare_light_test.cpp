@@ -57,8 +57,8 @@ Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
         render_band(scene, settings, {pass, {0, kGrid.height}}, pool, kGoOn, {}, tiles);
     ASSERT_TRUE(pixels.ok() && film.add(*pixels, tiles).ok());
   };
-  // The pilot takes 64 samples of every pixel. If `adaptive` is true, the noise of these samples
-  // decides the plan for the passes after the pilot.
+  // The first three passes are the pilot, which takes 64 samples of every pixel. If `adaptive` is
+  // true, the noise of the pilot decides how many samples each half tile takes in the later passes.
   for (const SampleRange& pass : {SampleRange{0, 16}, {16, 32}, {32, 64}}) {
     take(pass, {});
   }
@@ -84,8 +84,8 @@ void expect_unbiased(const SceneMaker& maker) {
   Moments adaptive;
   std::uint64_t planned = 0;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-    even.add(render(*scene, 1000 + seed, false).mean);
-    const Rendered rendered = render(*scene, seed, true);
+    even.add(render(*scene, 1000 + seed, /*adaptive=*/false).mean);
+    const Rendered rendered = render(*scene, seed, /*adaptive=*/true);
     adaptive.add(rendered.mean);
     planned += rendered.planned ? 1 : 0;
   }

@@ -54,7 +54,8 @@ void fill(SceneMaker& maker, const Transform& to_world, const Medium& medium) {
   boundaries.instances.push_back(ball(to_world, filled_with(test::add(maker, medium))));
 }
 
-/// Returns a ray from outside to a point inside.
+/// Returns a ray to a random point inside the ball with the placement `to_world`. The ray starts at
+/// the distance 4 from this point, which is practically always outside, because the ball is thin.
 Ray random_ray(const Transform& to_world, Random& random) {
   const Vec3 target = to_world.point(0.57 * test::random_point(random));
   const Vec3 origin = target + 4 * test::random_direction(random);

@@ -17,7 +17,8 @@ namespace {
 /// The closest hit so far of one ray. The parameter `instance` has the values of
 /// PrimitiveId::instance: 0 for shapes that are in no instance, otherwise the index of the instance
 /// plus 1. `ray_.from` is the primitive on which the ray begins. If this primitive is flat, it
-/// cannot be hit again; a sphere can.
+/// cannot be hit again; a sphere can. The functions shapes(), mesh() and instance() intersect the
+/// ray with all primitives of their argument and pass each hit to consider().
 class Search {
  public:
   explicit Search(const Ray& ray) : ray_(ray) { best_.t = ray.t_max; }

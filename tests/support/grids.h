@@ -15,7 +15,7 @@ namespace bandsaw::test {
 inline VolumeGrid grid_of(
     const std::array<std::uint32_t, 3>& cells, const Vec3& low, const Vec3& high,
     const std::function<float(std::uint32_t, std::uint32_t, std::uint32_t)>& number) {
-  VolumeGrid grid = dense_grid(cells, 1, [&](std::size_t i) {
+  VolumeGrid grid = dense_grid(cells, /*channels=*/1, [&](std::size_t i) {
     const auto at = static_cast<std::uint32_t>(i);
     return number(at % cells[0], at / cells[0] % cells[1], at / cells[0] / cells[1]);
   });

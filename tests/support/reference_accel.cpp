@@ -74,7 +74,7 @@ ReferenceAccel::ReferenceAccel(const Geometry& geometry, bool brute_force)
   for (const Instance& instance : geometry.instances) {
     to_object_.push_back(inverse(instance.to_world));
   }
-  std::vector<Box> boxes;
+  std::vector<Box> boxes;  // of the loose shapes, which are in no instance
   for (const Sphere& sphere : geometry.spheres) {
     boxes.push_back(bandsaw::bounds(sphere));
   }

@@ -17,6 +17,7 @@ class SceneMaker {
   MaterialId material(Material material);
   MaterialId diffuse(float reflectance);
   MaterialId diffuse(const Rgb& reflectance);
+  /// Reflection adds a random point of a ball to the mirror direction. `fuzz`: radius of the ball.
   MaterialId metal(float reflectance, double fuzz);
   MaterialId glass(double index_of_refraction);
   /// `one_sided`: only the side of the normal emits.

@@ -19,8 +19,8 @@ class Moments {
   double variance() const;
   /// Standard error of the mean.
   double standard_error() const;
-  /// Returns the deviation of the mean from `expected` in standard errors. If all samples are
-  /// equal: 0 if they are the expected value, else infinity.
+  /// Returns the deviation of the mean from `expected` in standard errors. If the standard error is
+  /// 0, returns 0 for a mean that equals `expected`, and infinity for any other mean.
   double z(double expected) const;
 
  private:

@@ -281,8 +281,9 @@ TEST(Deforming, BoxesAndPackSizesAreValidAtEveryTime) {
   EXPECT_GT(checked, 1'000'000);
 }
 
-// The vertices move by about the largest float. The change of a box is larger than their movement
-// by a margin, so it exceeds the range of floats.
+// The vertices move by about the largest float. The change of a box is larger than the movement of
+// the vertices by a margin, so the change exceeds the range of floats. The boxes must still contain
+// their triangles.
 TEST(Deforming, BoxesAreValidIfTheirChangeOverflows) {
   for (const auto& [open, close] :
        {std::pair(-0x1.8459fep127f, 0x1.ee98p125f), std::pair(-0x1.cd5030p126f, 0x1.1957e6p127f)}) {
@@ -300,6 +301,7 @@ TEST(Deforming, BoxesAreValidIfTheirChangeOverflows) {
     ASSERT_TRUE(std::isfinite(close - open));
     const MeshTree tree = build_mesh_tree(mesh, nullptr);
     for (const double time : {0.25, 0.3, 0.875, 1.5}) {
+      // 20 triangles have 3 corners of 3 coordinates.
       EXPECT_EQ(check_boxes(tree, ShutterTime(kShutter, time)), 180);
     }
   }

@@ -88,7 +88,7 @@ TEST(DisableCulling, EveryBoxIsEntered) {
     }
   }
   tree.nodes.push_back(node);
-  const FloatRay past(trace_setup({0, 50, 0}, {0, 1e-30, 1}, 100), 11);
+  const FloatRay past(trace_setup({0, 50, 0}, {0, 1e-30, 1}, 100), /*reach=*/11);
   Float8 enter;
   EXPECT_EQ(enter_children(tree.nodes[0], past, 100, enter), 0u);
   disable_culling(tree);

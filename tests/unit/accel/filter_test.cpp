@@ -231,13 +231,13 @@ TYPED_TEST(Filter, NeverRejectsABoxThatContainsAHit) {
 TEST(Filters, GiveTheSameResultsWithEveryFloat8) {
   Random random(43);
   for (int i = 0; i < 50'000; ++i) {
-    const Pair pair = adversarial_pair(random, true);
+    const Pair pair = adversarial_pair(random, /*in_float=*/true);
     const FloatRay floats(pair.ray, 1e7f);
     FlatPack pack;
     FlatPacker packer(pack);
     WideNode node;
     for (std::size_t lane = 0; lane < kPackSize; ++lane) {
-      packer.add(to_float(adversarial_pair(random, true).corner), 0);
+      packer.add(to_float(adversarial_pair(random, /*in_float=*/true).corner), 0);
       for (auto& row : node.bounds) {
         row[lane] = static_cast<float>(random.uniform(-10, 10));
       }

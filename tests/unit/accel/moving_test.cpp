@@ -20,8 +20,9 @@ using test::Random;
 
 constexpr Interval kInterval = {0.25, 1.5};
 
-/// Adds a frame: a moving space that contains instances and other frames. `keys` are the positions
-/// of the motion. `placement` is applied after the motion, in the frame `parent`.
+/// Adds a frame: a moving space that contains instances and other frames. Each of the `keys` gives
+/// the position of the frame at one time. `placement` is applied after the motion, in the frame
+/// `parent`.
 FrameId add_frame(Geometry& g, std::vector<Key> keys, FrameId parent = kNoFrame,
                   const Transform& placement = {}) {
   g.frames.push_back({parent, placement, std::move(keys)});

@@ -136,6 +136,8 @@ TEST(Offset, O4_VisibleLightsAreNotSelfShadowed) {
   test::report_hard_case("O4", "200,000 shadow rays: none is occluded by its own light");
 }
 
+// The occluder is at the height 0.5. A light above the occluder is blocked. A light on it or below
+// it is not.
 TEST(Offset, O3_ANearOccluderBlocksALightAtAnyDistance) {
   Geometry g;
   g.quads.push_back({{-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, {}});

@@ -43,7 +43,7 @@ std::set<std::uint32_t> visited(const WideTree& tree, const Ray& ray) {
   const FloatRay floats(trace_setup(ray.origin, ray.direction, ray.t_max), tree.reach);
   const float bound = floats.above(ray.t_max);
   std::set<std::uint32_t> items;
-  traverse<true>(tree, floats, bound, [&](ChildRef leaf) {
+  traverse</*kSorted=*/true>(tree, floats, bound, [&](ChildRef leaf) {
     items.insert(leaf.leaf_index());
     return false;
   });

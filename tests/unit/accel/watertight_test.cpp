@@ -62,7 +62,7 @@ TEST(Watertight, AFlattenedMeshDoesNotLeak) {
   for (auto& p : mesh.positions) {
     p[1] *= 1e-6f;
   }
-  EXPECT_EQ(escapes(mesh, {}, 0, 20000, 7), 0);
+  EXPECT_EQ(escapes(mesh, {}, /*size=*/0, 20000, 7), 0);
 }
 
 TEST(Watertight, T3_MeshesOfEveryScaleDoNotLeakAndHaveEqualHits) {

@@ -12,6 +12,8 @@
 namespace bandsaw {
 namespace {
 
+/// Expects that the buffer has `size` bytes of zeros, can be written, and keeps its content when it
+/// is moved.
 void expect_usable(MappedBuffer& buffer, std::size_t size) {
   ASSERT_EQ(buffer.size(), size);
   const absl::Span<double> numbers = buffer.as<double>();

@@ -62,7 +62,8 @@ Lanes stored(const Float& x) {
   return lanes;
 }
 
-/// Returns the lanes that to_bytes(), the inverse of from_bytes(), copies.
+/// Returns the lanes. They are copied by to_bytes(), which writes the 32 bytes of the vector to any
+/// object of this size; from_bytes() reads them.
 template <class Float>
 Lanes in_bytes(const Float& x) {
   Lanes lanes;

@@ -1,8 +1,8 @@
 // The renderer in a browser's tab, called through the functions that it exports. Its pixels have
 // the same bytes as those of a native worker. It renders a band in parts of a few rows. Parts
 // should end at multiples of the row step. If the scene shares paths between pixels, the row step
-// is 16, the height of a tile; otherwise it is 1. The helpers good() and error_of() expect that a
-// call succeeds or fails, and return its answer.
+// is 16, the height of a tile; otherwise it is 1. A digest is passed as 64 hexadecimal digits. The
+// helpers good() and error_of() expect that a call succeeds or fails, and return its answer.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -201,6 +201,8 @@ TEST_F(BrowserRendererTest, MeshesAndTexturesGiveTheBytesOfANativeWorker) {
   }
 }
 
+// Adaptive sampling takes a range of samples for each half tile, which is half of the pixels of a
+// tile. The ranges of the half tiles differ here.
 TEST_F(BrowserRendererTest, HalfTilesWithDifferentSamplesGiveTheBytesOfANativeWorker) {
   for (const SceneDescription& scene : {test::cornell_box().scene, textured_meshes(0)}) {
     const wire::Digest manifest = add(scene);

@@ -83,6 +83,7 @@ class BrowserSessionTest : public ::testing::Test {
     return static_cast<std::uint32_t>(
         field(field(receive(lease(id, first_row)), "start"), "task").number_value());
   }
+  /// Reports that `rows` rows of the band are rendered in all. `counters`: those of the new rows.
   void render(std::uint32_t task, std::uint32_t rows, const Counters& counters) {
     const std::string bytes = to_message(counters).SerializeAsString();
     EXPECT_EQ(good(bandsaw_session_rendering(session_, task, rows, bytes.data(), bytes.size())),

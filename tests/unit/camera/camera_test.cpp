@@ -155,6 +155,8 @@ TEST(Camera, C4_APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
         squares += r * r / (kSteps * kSteps);
       }
     }
+    // The lens has the radius 0.15, and the plane of focus is at 5. The disk on this plane and the
+    // lens are the bases of two similar cones with their tip at (0, 0, -z).
     const double expected = 0.15 * std::abs(z - 5) / z;
     EXPECT_NEAR(largest, expected, 0.01 * expected) << z;
     // For a uniform distribution on a disk, the mean square distance from the centre is half the

@@ -1,6 +1,7 @@
-// When a command leaves a job early, for example at Ctrl-C, it prints the command that follows the
-// job again. That command repeats the files and the settings that the user asked for. The second
-// argument of come_back() is the file name that is printed if the user named no file.
+// When a command leaves a job early, for example at Ctrl-C, it prints a command with which the user
+// can watch the job again. The printed command repeats the files and the settings that the user
+// asked for. The second argument of come_back() is the file name that is printed if the user named
+// no file.
 
 #include <gtest/gtest.h>
 
