@@ -151,9 +151,9 @@ bool add_indirect(const Scene& scene, const PhotonSources& sources, const Photon
   double squares = 0;
   for (const PhotonOrigins& chunk : found) {
     maps.rays += chunk.rays;
-    for (const PhotonOrigin& origin : chunk.items) {
-      const double power = luminance(origin.power);
-      origins.push_back(origin);
+    for (const PhotonOrigin& start : chunk.items) {
+      const double power = luminance(start.power);
+      origins.push_back(start);
       sum += power;
       squares += power * power;
       luminance_up_to.push_back(sum);
