@@ -66,6 +66,11 @@ void Pool::parallel_for(std::int64_t count, absl::FunctionRef<void(std::int64_t)
   }
 }
 
+std::uint64_t Pool::calls_done() const {
+  MutexLock lock(mutex_);
+  return calls_done_;
+}
+
 void Pool::run() {
   MutexLock lock(mutex_);
   while (true) {
@@ -84,6 +89,7 @@ void Pool::run() {
     mutex_.unlock();
     std::exception_ptr error = call(range.body, index);
     mutex_.lock();
+    ++calls_done_;
     if (error != nullptr && range.error == nullptr) {
       range.error = std::move(error);
       range.next = range.count;

@@ -46,18 +46,21 @@ class Pool {
   /// have returned, the first exception is rethrown. MUST NOT be called from within a body.
   void parallel_for(std::int64_t count, absl::FunctionRef<void(std::int64_t)> body)
       EXCLUDES(mutex_);
+  /// Returns the number of calls of bodies that have returned since the pool was made.
+  std::uint64_t calls_done() const EXCLUDES(mutex_);
 
  private:
   struct Range;
   /// Runs in each thread until the pool is destroyed.
   void run() EXCLUDES(mutex_);
 
-  Mutex mutex_;
+  mutable Mutex mutex_;
   CondVar work_;  ///< a range was added, or the pool stops
   CondVar done_;  ///< a range was completed
   /// The ranges that have indices left, oldest first. Each is a local variable of a parallel_for()
   /// that has not returned.
   std::deque<Range*> ranges_ GUARDED_BY(mutex_);
+  std::uint64_t calls_done_ GUARDED_BY(mutex_) = 0;
   bool stopping_ GUARDED_BY(mutex_) = false;
   std::vector<std::thread> threads_;
 };

@@ -12,6 +12,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/package/package.h"
 #include "worker/executor/backoff.h"
+#include "worker/executor/pool_watch.h"
 
 namespace bandsaw::worker {
 namespace {
@@ -21,6 +22,8 @@ constexpr auto kPollInterval = std::chrono::milliseconds(50);
 // After so many downloads whose bytes do not have the digest, the source itself is considered
 // wrong.
 constexpr int kMaxWrongDownloads = 3;
+/// The interval at which the building of a scene reports progress.
+constexpr auto kReportInterval = std::chrono::milliseconds(1000);
 
 absl::Status stopped() { return absl::CancelledError("stopped"); }
 
@@ -134,6 +137,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> PackageLoader::load(const wire::Dig
   parts_.forget_unused();
   const std::vector<std::shared_ptr<const Scene>> earlier = scenes_in_use();
   ASSIGN_OR_RETURN(SceneDescription description, decode_package(text, blobs, &parts_));
+  const PoolWatch watch(pool_, kReportInterval, [&blobs] { blobs.step(1); });
   ASSIGN_OR_RETURN(std::shared_ptr<const Scene> scene,
                    Scene::build(std::move(description), pool_, /*forced=*/{}, Traversal::kBvh,
                                 kernel_, earlier));

@@ -29,8 +29,8 @@ using TransferBlob = std::function<absl::Status(const wire::Digest& digest, std:
 class FetchingSource : public BlobSource {
  public:
   /// `stop`: set by another thread to cancel. `prepared`: gets the progress, which is the sum of
-  /// the bytes fetched, the blobs read, and the short waits for another worker's download. All
-  /// references MUST outlive this object.
+  /// the bytes fetched, the blobs read, the short waits for another worker's download, and the
+  /// amounts that step() adds. All references MUST outlive this object.
   FetchingSource(BlobCache& cache, const TransferBlob& transfer, const std::atomic<bool>& stop,
                  const Prepared& prepared)
       : cache_(cache), transfer_(transfer), stop_(stop), prepared_(prepared) {}
@@ -38,6 +38,8 @@ class FetchingSource : public BlobSource {
   /// CANCELLED: stopped. NOT_FOUND: the coordinator has no such blob. RESOURCE_EXHAUSTED: the disk
   /// is full. If the connection is lost, waits for the next one.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
+  /// Adds `amount` to the progress, and reports the sum.
+  void step(std::uint64_t amount) { prepared_(progress_ += amount); }
 
  private:
   /// Downloads a blob into the cache. Repeats transfers that are interrupted, and waits while
@@ -45,8 +47,6 @@ class FetchingSource : public BlobSource {
   absl::Status fetch(const wire::Digest& digest);
   /// Makes one transfer, from the end of the partial file, and commits the blob.
   absl::Status download(const wire::Digest& digest, BlobCache::Download& partial);
-  /// Adds `amount` to the progress and reports the new sum.
-  void step(std::uint64_t amount) { prepared_(progress_ += amount); }
 
   BlobCache& cache_;
   const TransferBlob& transfer_;

@@ -23,6 +23,14 @@ TEST(Pool, CallsEachIndexOnce) {
   }
 }
 
+TEST(Pool, CountsTheCallsThatHaveReturned) {
+  Pool pool(3);
+  EXPECT_EQ(pool.calls_done(), 0u);
+  pool.parallel_for(100, [](std::int64_t) {});
+  pool.parallel_for(7, [](std::int64_t) {});
+  EXPECT_EQ(pool.calls_done(), 107u);
+}
+
 TEST(Pool, MakesNoCallForAnEmptyRange) {
   Pool pool(1);
   pool.parallel_for(0, [](std::int64_t) { FAIL(); });
