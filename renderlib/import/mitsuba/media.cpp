@@ -32,6 +32,10 @@ class MediumReader {
     if (from.has("sigma_a") || from.has("sigma_s")) {
       ASSIGN_OR_RETURN(const Coefficient absorbs, coefficient(from, "sigma_a", 0));
       ASSIGN_OR_RETURN(const Coefficient scatters, coefficient(from, "sigma_s", 0));
+      if (absorbs.grid || scatters.grid) {
+        return error_at(from.place(),
+                        "sigma_a and sigma_s cannot be grids; write sigma_t and albedo instead");
+      }
       return set_colors(absorbs.color, scatters.color, scale, medium);
     }
     const char* name = from.has("density") ? "density" : "sigma_t";  // "density": version 0.x

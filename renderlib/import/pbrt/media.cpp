@@ -45,7 +45,13 @@ absl::Status read_common(const MediumParts& from, const Rgb3& absorption, const 
   if (const Parameter* emitted = in.find("Le")) {
     ASSIGN_OR_RETURN(const Rgb3 le,
                      color_of(*emitted, ColorUse::kLight, from.state.color_space, from.builder));
-    ASSIGN_OR_RETURN(const double le_scale, in.number("Lescale", 1));
+    const Parameter* scales = in.find("Lescale");
+    double le_scale = 1;
+    if (scales != nullptr && scales->numbers.size() > 1) {
+      from.builder.warn(in.place, "the grid Lescale is left out");
+    } else {
+      ASSIGN_OR_RETURN(le_scale, in.number("Lescale", 1));
+    }
     // pbrt multiplies "Le" by the absorption when it renders; Bandsaw's emission is the product.
     Rgb3 emission = {};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -114,9 +120,6 @@ absl::Status read_uniform_grid(const MediumParts& from, const Transform& to_shap
   if (in.find("temperature") != nullptr) {
     RETURN_IF_ERROR(read_grid(from, "temperature", to_shape, to.mutable_temperature_grid()));
     from.builder.warn(in.place, "the grid's emission by temperature is not normalised as in pbrt");
-  }
-  if (in.find("Lescale") != nullptr) {
-    from.builder.warn(in.place, "the grid Lescale is left out");
   }
   in.ignore({"temperaturescale", "temperatureoffset"});
   return absl::OkStatus();

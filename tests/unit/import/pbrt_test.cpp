@@ -517,6 +517,22 @@ TEST(Pbrt, MediaFillClosedShapes) {
   EXPECT_EQ(scene.shape(0).material(), "");
 }
 
+TEST(Pbrt, AGridOfEmissionScalesIsLeftOutAndASingleScaleIsApplied) {
+  const auto text = [](const std::string& scales) {
+    return "WorldBegin\nMakeNamedMedium \"fire\" \"string type\" \"uniformgrid\" \"integer nx\" 2 "
+           "\"integer ny\" 1 \"integer nz\" 1 \"float density\" [1 2] \"rgb Le\" [1 1 1] "
+           "\"float Lescale\" [" +
+           scales + "]\nMediumInterface \"fire\" \"\"\nMaterial \"interface\"\nShape \"sphere\"";
+  };
+  const auto emission = [&](const std::string& scales) {
+    return scene_of(text(scales)).medium(0).emission().rgb(1);
+  };
+  EXPECT_THAT(warnings_of(text("1 3")), ElementsAre(HasSubstr("the grid Lescale is left out")));
+  EXPECT_THAT(warnings_of(text("3")), ElementsAre());
+  EXPECT_GT(emission("1 3"), 0);
+  EXPECT_NEAR(emission("3") / emission("1 3"), 3, 1e-6);
+}
+
 // The mesh becomes a binary PLY file, in which the first byte of -0.0025 is a line break. Assimp
 // skips a line break after the header, although a number may begin with such a byte.
 TEST(Pbrt, ANumberMayBeginWithALineBreak) {
