@@ -158,7 +158,8 @@ TEST(Architecture, EveryIncludeFollowsTheAllowedDependencies) {
   EXPECT_GT(checked, 100u);  // fewer: the pattern has missed some
 }
 
-// Assimp, too, may be used only in these folders.
+// Only renderlib/package and renderlib/import may use Protobuf. Assimp, too, is allowed in these
+// two folders only.
 TEST(Architecture, OnlyPackageAndImportUseProtobufInRenderlib) {
   for (const fs::path& source : sources()) {
     const std::string folder = source.parent_path().string();

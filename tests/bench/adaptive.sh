@@ -5,8 +5,8 @@
 # uniform renders, divided by this product of the adaptive renders. Both factors are means over the seeds. If the gain is above 1,
 # adaptive sampling is better.
 # Usage: tests/bench/adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE[:ERROR]...]]]]
-# ERROR should be so small that it takes some 200 samples a pixel or more: the first samples of an adaptive render, its pilot, decide
-# where more are taken, and from a pilot of fewer than 32 samples nothing is planned.
+# The first samples of an adaptive render are its pilot, which decides where more samples are taken. If the pilot has fewer than 32
+# samples a pixel, nothing is planned. So ERROR should be so small that a render takes some 200 samples a pixel or more.
 # The environment variable TIMES: a reference has this many times the samples of a uniform image (default 8).
 set -euo pipefail
 bandsaw=${1:?usage: adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE...]]]]}

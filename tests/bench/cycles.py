@@ -21,7 +21,7 @@ from mathutils import Matrix, Vector
 
 
 def parse(text):
-    """Returns a message in protobuf's text format as {field: [values]}; a value may be such a message."""
+    """Parses protobuf's text format. Returns the message as {field: [values]}; a nested message is such a dictionary too."""
     text = re.sub(r"#.*", "", text)
     tokens = iter(re.findall(r'"[^"]*"|[{}\[\]:,]|[^\s{}\[\]:,"]+', text) + ["}"])
 

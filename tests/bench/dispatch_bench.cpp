@@ -1,7 +1,7 @@
-// Measures the cost of a band, a range of rows and samples, for the real coordinator. The
-// coordinator receives each band through gRPC with TLS and writes it to the disk. Also measures how
-// much memory a connected worker takes. The workers are null workers: they render nothing and
-// answer each lease at once with black rows.
+// A band is a range of rows and samples of an image. Measures what a band costs the real
+// coordinator, which receives each band through gRPC with TLS and writes it to the disk. Also
+// measures how much memory a connected worker takes. The workers are null workers: they render
+// nothing and answer each lease at once with black rows.
 //
 //   dispatch_bench [SECONDS [WORKERS]]
 //
@@ -256,8 +256,8 @@ void bands(double seconds, int workers) {
   std::sort(all.begin(), all.end());
   BANDSAW_CHECK(!all.empty(), "some band was answered");
   std::printf(
-      "%zu bands of %d null worker(s) in %.1f s: %.0f bands/s; lease to acknowledged median "
-      "%.2f ms; coordinator %.0f µs CPU a band, %.0f MB\n",
+      "%zu bands of %d null worker(s) in %.1f s: %.0f bands/s; median time from the lease to the "
+      "acknowledgement %.2f ms; coordinator %.0f µs CPU a band, %.0f MB\n",
       all.size(), workers, passed, static_cast<double>(all.size()) / passed,
       1e3 * all[all.size() / 2],
       1e6 * (after.cpu_s - before.cpu_s) / static_cast<double>(all.size()), after.resident_mb);
@@ -308,7 +308,7 @@ void memory(int count) {
 }  // namespace bandsaw
 
 int main(int argc, char** argv) {
-  bandsaw::disk(2);
+  bandsaw::disk(/*seconds=*/2);
   for (const int workers : {1, 4, 5, 6, 16}) {
     bandsaw::bands(argc > 1 ? std::atof(argv[1]) : 10, workers);
   }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Wraps Embree in the interface of the two queries of Accel, the renderer's own BVHs, for
-// comparisons of speed. A build without BANDSAW_EMBREE has no Embree.
+// Gives Embree the same two ray queries as Accel, the renderer's own BVHs, so that their speeds can
+// be compared. A build without BANDSAW_EMBREE has no Embree.
 
 #include <memory>
 

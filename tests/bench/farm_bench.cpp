@@ -81,8 +81,9 @@ bool measure(const char* name, BenchFarm farm) {
 
 int main() {
   std::printf(
-      "| 1920x1080, 64 samples, 60 s of work for all; 10 runs | efficiency | tail | bands "
-      "rendered for nothing or to compare | CPU a band, of coordinator and simulation |\n"
+      "| 1920x1080, 64 samples, 60 s of work for all workers together; 10 runs | efficiency | "
+      "tail | bands rendered for nothing or to compare | "
+      "CPU a band, of coordinator and simulation |\n"
       "| --- | --- | --- | --- | --- |\n");
   bool ok = true;
   for (const double audit : {0.0, 0.01}) {

@@ -19,8 +19,8 @@ struct Figure {
   std::string remark;            ///< reason for an empty result, or another observation
 };
 
-/// Time from the moment at which a worker is killed, frozen (SIGSTOP) or cut off to the
-/// coordinator's report of its loss.
+/// Time until the coordinator reports the loss of a worker. The time begins when the worker is
+/// killed, frozen (SIGSTOP) or disconnected.
 std::vector<Figure> loss_figures();
 
 /// Time from the start of `bandsaw submit` to the first finished rows that it reports.

@@ -1,5 +1,6 @@
 // Measures the cost of each scene feature (renderlib/scene/scene_features.h). Each scene is
-// rendered with its own features and with unused features forced, in turns. Writes Markdown to
+// rendered in turns with its own features and with forced features. If an unused feature is forced,
+// the renderer does its work although this work does not change the pixels. Writes Markdown to
 // standard output.
 //
 //   features_bench SCENE...    scene files or models

@@ -1,5 +1,7 @@
-// Measures the growth of time and memory with the size of a scene: growth_bench [--quick] FOLDER
-// (README.md). Writes a table to standard output, and growth.json and growth_*.svg to the folder.
+// Measures how time and memory grow with the size of a scene (README.md). Writes a table to
+// standard output, and growth.json and growth_*.svg to the folder.
+//
+//   growth_bench [--quick] FOLDER    --quick omits the largest sizes
 
 #include <unistd.h>
 

@@ -90,7 +90,8 @@ void report(const char* set, const std::vector<Ray>& rays, std::vector<Kernel> k
                 static_cast<double>(rays.size()) / kernel.seconds * 1e-6);
   }
   for (std::size_t k = 1; k < kernels.size(); ++k) {
-    std::printf("  x %s %.2f", kernels[k].name.c_str(), kernels[k].seconds / kernels[0].seconds);
+    std::printf("  bandsaw/%s %.2f", kernels[k].name.c_str(),
+                kernels[k].seconds / kernels[0].seconds);
   }
   for (const Kernel& kernel : kernels) {
     std::printf("  %zu", kernel.hits);
@@ -140,7 +141,7 @@ int measure(const std::string& name) {
   const auto robust = EmbreeKernel::create(mesh, true, kEmbreeConfig);
   const auto fast = EmbreeKernel::create(mesh, false, kEmbreeConfig);
   if (fast) {
-    std::printf("; embree %.0f ms, %.1f bytes; time x %.2f", seconds.embree * 1e3,
+    std::printf("; embree %.0f ms, %.1f bytes; time bandsaw/embree %.2f", seconds.embree * 1e3,
                 static_cast<double>(fast->bytes()) / triangles, seconds.bandsaw / seconds.embree);
   }
   std::printf("\n");

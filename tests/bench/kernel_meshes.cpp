@@ -54,16 +54,17 @@ Mesh in_a_room(Mesh mesh) {
 
 Mesh bench_mesh(const std::string& name) {
   if (name == "icosphere") {
-    return test::icosphere(7);
+    return test::icosphere(/*levels=*/7);
   }
   if (name == "needles") {
-    return test::rough_sphere(20'000, 12, 6, 1);
+    return test::rough_sphere(/*slices=*/20'000, /*stacks=*/12, /*spread=*/6, /*seed=*/1);
   }
   if (name == "soup") {
-    return test::triangle_soup(200'000, 0.03, 3);
+    return test::triangle_soup(/*count=*/200'000, /*size=*/0.03, /*seed=*/3);
   }
   if (name == "room") {
-    return in_a_room(test::rough_sphere(500, 250, 1.05, 2));
+    return in_a_room(
+        test::rough_sphere(/*slices=*/500, /*stacks=*/250, /*spread=*/1.05, /*seed=*/2));
   }
   return from_file(name);
 }

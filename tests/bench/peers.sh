@@ -30,7 +30,7 @@ by_cycles() {
 
 renderers=(bandsaw)
 if command -v blender >/dev/null; then renderers+=(cycles); fi
-echo "| scene | renderer | M samples a CPU second | relMSE | efficiency | efficiency of Bandsaw over this |"
+echo "| scene | renderer | M samples a CPU second | relMSE | efficiency | efficiency of Bandsaw over that of the row |"
 echo "| --- | --- | --- | --- | --- | --- |"
 for scene in "${scenes[@]}"; do
   width=400

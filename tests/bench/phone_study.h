@@ -45,7 +45,7 @@ struct PhoneImage {
 
 struct PhoneStudy {
   std::string machine;  ///< name of the processor
-  int threads = 1;      ///< number of threads of "all"
+  int threads = 1;      ///< number of threads of PhoneImage::all
   std::string farm;     ///< "3 workers, 24 threads"; empty: no farm
   double peak_mb = 0;   ///< peak memory use of the program
   std::vector<PhoneImage> images;

@@ -2,8 +2,8 @@
 # Sends thousands of small jobs through one coordinator and one worker; measures the memory of both and the jobs per second.
 # Usage: tests/bench/soak.sh BIN-FOLDER [JOBS [KEPT]]   (default 10,000 and 1,000). A job takes about 0.1 s on two cores.
 # KEPT: the number of finished jobs that the coordinator keeps (--keep-jobs). Until it is reached, its memory grows with each job.
-# Prints a line after each tenth: jobs done, resident MB of coordinator and worker, MB of the coordinator's folder. The last line is
-# the growth of both processes in the second half.
+# Prints a line after each tenth of the jobs: jobs done, resident MB of coordinator and worker, MB of the coordinator's folder, jobs a
+# second. The last line says by how much the memory of both processes has grown during the second half of the jobs.
 set -euo pipefail
 bin=$(cd "${1:?usage: soak.sh BIN-FOLDER [JOBS [KEPT]]}" && pwd)
 jobs=${2:-10000} kept=${3:-1000}
@@ -37,4 +37,4 @@ for ((done = 0; done < jobs; done += step)); do
   ((2 * last < jobs)) || [ -n "${half:-}" ] || half=$coordinator half_worker=$worker half_at=$last
 done
 awk -v c="$coordinator" -v h="$half" -v w="$worker" -v hw="$half_worker" -v n=$((jobs - half_at)) 'BEGIN {
-  printf "the last %d jobs: coordinator %+.1f MB, worker %+.1f MB\n", n, c - h, w - hw }'
+  printf "growth during the last %d jobs: coordinator %+.1f MB, worker %+.1f MB\n", n, c - h, w - hw }'

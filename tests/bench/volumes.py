@@ -4,8 +4,8 @@
 
 Writes volumes.vdb (256^3 voxels of smoke, flames and temperatures) and three scenes: smoke.textproto,
 fire.textproto, and plain.textproto, homogeneous smoke in a ball for comparison. Prints for each grid
-its active voxels, its leaves, and the bytes of the leaves' numbers, which are the size of the sparse
-data.
+the number of active voxels, the number of leaves, and the size of the sparse data, which is the size of
+the leaves' numbers in bytes.
 """
 
 import os

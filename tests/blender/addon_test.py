@@ -196,7 +196,9 @@ class AddOn(unittest.TestCase):
         self.assertEqual(up.tolist(), [[[0, 0, 1]]])
         eye = {"window": [-2, 4, -3, 1]}
         self.assertEqual(engine.pass_pixels("depth", np.zeros((1, 1, 3)), eye).tolist(), [[[1e10]]])
-        # The farm's depth is along the ray: the pixels' centres are at (-0.5, 0), (2.5, 0), (-0.5, -2) and (2.5, -2), at distance 1.
+        # The farm's depth is along the ray, and Blender's is along the camera's axis. At distance 1 the pixels' centres are at (-0.5, 0), (2.5, 0),
+        # (-0.5, -2) and (2.5, -2), and `rays` has the distances from the camera to them. So 3 * rays must become 3. The rays of an orthographic
+        # camera are parallel to its axis, so the depths must not change.
         rays = np.sqrt([[1.25, 7.25], [5.25, 11.25]])
         for camera, depths in ((eye, np.full((2, 2), 3)), ({**eye, "orthographic": {}}, 3 * rays)):
             found = engine.pass_pixels("depth", np.repeat(3 * rays[:, :, None], 3, axis=2), camera)[:, :, 0]

@@ -10,6 +10,7 @@ bandsaw=$build/bin/bandsaw
 settings=(--fps 24 --shutter 0.5 --width 64 --height 48 --samples 256)
 /usr/bin/python3 "$here/walk.py" "$work/walk.glb"
 
+# serve ADDRESS:PORT STARTS starts the coordinator, and waits until its log shows that it has started STARTS times.
 serve() {
   "$bandsaw" serve --data "$work/walk" --listen "$1" --web none >>"$work/serve.log" 2>&1 &
   coordinator=$!

@@ -1,8 +1,8 @@
 // Tests that a machine gets the worker for its architecture, x86-64 or ARM64. Workers are installed
 // by `bandsaw invite` over ssh, and by the line that `bandsaw serve` prints for a user to paste on
-// another machine. The ARM64 machines are simulated by
-// a uname that prints their architecture, and the program for them is a file with an ARM64 ELF
-// header (tests/support/worker_file.h).
+// another machine. The ARM64 machines are simulated by a uname that prints their architecture. The
+// program for them is a file with an ARM64 ELF header and a mark, the record that states the
+// worker's version (tests/support/worker_file.h).
 
 #include <elf.h>
 #include <gmock/gmock.h>
@@ -87,7 +87,9 @@ TEST_F(InviteArchitectures, AFileThatIsNotTheProgramIsNotSent) {
   EXPECT_TRUE(got_nothing("phone"));
 }
 
-// uname prints the kernel's architecture, but the programs of a 32-bit system have another loader.
+// On such a system uname prints the kernel's architecture, but the loader of 64-bit programs is
+// missing, so the worker cannot start. The error must name the kind of system that the worker
+// needs. A script whose interpreter does not exist takes the place of the worker.
 TEST_F(InviteArchitectures, AThirtyTwoBitSystemOnA64BitKernelIsReported) {
   installed_.put_aarch64_worker(worker_file(EM_AARCH64, fitting_mark()));
   machines_.replace("phone", "chmod",
@@ -96,7 +98,8 @@ TEST_F(InviteArchitectures, AThirtyTwoBitSystemOnA64BitKernelIsReported) {
   EXPECT_EQ(invited.code, 1);
   EXPECT_THAT(invited.err, HasSubstr("phone: the worker does not run there: "));
   EXPECT_THAT(invited.err, HasSubstr("(it needs a 64-bit system with glibc)"));
-  EXPECT_EQ(invited.err.find('\n'), invited.err.size() - 1) << "not one line: " << invited.err;
+  EXPECT_EQ(invited.err.find('\n'), invited.err.size() - 1)
+      << "the error must be one line: " << invited.err;
 }
 
 TEST_F(InviteArchitectures, TheOutputOfAHostIsPrintedOnOneLine) {

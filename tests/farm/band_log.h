@@ -23,8 +23,8 @@ struct LoggedBand {
   }
 };
 
-/// Returns the bands of the lines with this verb, in order. In a worker's log: "rendered" (all
-/// pixels are computed) or "stored" (they are on the coordinator's disk).
+/// Returns the bands of the lines with this verb, in order. A worker's log has the verbs "rendered"
+/// (all pixels of the band are computed) and "stored" (they are on the coordinator's disk).
 std::vector<LoggedBand> logged_bands(const std::string& log, const std::string& verb);
 
 }  // namespace bandsaw::test

@@ -11,6 +11,7 @@
 namespace bandsaw::test {
 namespace {
 
+// kSlower is above 1 if the build has a sanitizer, which makes tests slow.
 const std::vector<std::string> kControlSettings = {
     "--width", "128", "--height", "128", "--samples", std::to_string(32 / kSlower)};
 

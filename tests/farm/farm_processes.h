@@ -26,10 +26,11 @@ inline void expect_success(const Finished& finished) {
 /// The processes of one farm. The destructor ends all of them.
 class FarmProcesses {
  public:
-  /// Starts `program`, the command bandsaw, as the coordinator with additional `options` (the
-  /// default disables audits, because tests count rendered bands). If `hosts` is given, the
-  /// coordinator runs on machine "coordinator" and each worker on the machine of its name; `hosts`
-  /// MUST outlive this object. nullptr: all processes are on loopback.
+  /// Starts `program`, the command bandsaw, as the coordinator with additional `options`. The
+  /// default options disable audits, which render some bands a second time, because tests count
+  /// rendered bands. If `hosts` is given, the coordinator runs on machine "coordinator" and each
+  /// worker on the machine of its name; `hosts` MUST outlive this object. nullptr: all processes
+  /// are on loopback.
   explicit FarmProcesses(const Hosts* hosts = nullptr,
                          std::vector<std::string> options = {"--audit", "0%"},
                          std::string program = BANDSAW_BIN);

@@ -23,6 +23,7 @@ namespace {
 
 using testing::HasSubstr;
 
+// kSlower is above 1 if the build has a sanitizer, which makes tests slow.
 std::vector<std::string> with_samples(std::vector<std::string> arguments, int samples) {
   arguments.insert(arguments.end(), {"--width", "128", "--height", "128", "--samples",
                                      std::to_string(samples / kSlower)});
@@ -166,7 +167,8 @@ TEST(FullDisk, AFullDiskBehindStandardOutputIsAnError) {
   }
 }
 
-// `render` ignores SIGPIPE, so that it writes the image although its reader has ended.
+// `render` ignores SIGPIPE. So it writes the image although `true`, which reads its standard
+// output, has ended.
 TEST(FullDisk, AReaderThatHasEndedIsNoError) {
   const TempDir folder;
   const Finished done =

@@ -1,5 +1,6 @@
 // Tests a farm with cables that are pulled, drop packets in one direction, are slow or lose
-// packets. Machines are network namespaces (needs root).
+// packets. Nothing is lost if the image has the bytes of a local render and no finished band is
+// rendered again. Machines are network namespaces (needs root).
 
 #include <gtest/gtest.h>
 

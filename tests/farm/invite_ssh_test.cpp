@@ -1,6 +1,6 @@
 // Tests `bandsaw invite`, which installs workers on other machines over ssh, and `bandsaw dismiss`,
-// which removes them, with the real ssh. It starts a real sshd itself, so the test needs no port
-// and no daemon.
+// which removes them, with the real ssh. ssh itself starts the real sshd (ProxyCommand), so the
+// test needs no port and no daemon.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

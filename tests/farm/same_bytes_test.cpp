@@ -28,8 +28,9 @@ std::vector<std::string> scenes() {
   return out;
 }
 
-// 72 samples are 9 blocks of 8. Because 9 is no power of two, a pixel's sum consists of several
-// nodes of the binary summation tree (glossary: proto/README.md), which come from different bands.
+// The samples of a pixel are summed in blocks of 8, and the sums of blocks in a binary tree
+// (glossary: proto/README.md). 72 samples are 9 blocks. Because 9 is no power of two, a pixel's sum
+// consists of several nodes of the tree, and these nodes come from different bands.
 const std::vector<std::string> kSettings = {"--width", "24", "--samples", "72", "--quiet"};
 
 std::vector<std::string> with_settings(std::vector<std::string> arguments) {

@@ -1,8 +1,8 @@
 // Random schedules of events on a farm of real processes. Workers are killed, frozen, disconnected
 // and asked to leave, other workers join, and the coordinator is killed. The image must have the
 // same bytes each time. The default is 10 schedules. BANDSAW_SCHEDULES=n runs n schedules.
-// BANDSAW_SEED=n runs only the schedule of seed n. The events are a function of the seed; their
-// timing relative to bands is not.
+// BANDSAW_SEED=n runs only the schedule of seed n. The seed determines the events, but not at which
+// bands they happen.
 
 #include <gtest/gtest.h>
 
@@ -24,6 +24,7 @@ namespace {
 
 constexpr int kMachines = 4;  // workers at most
 
+// kSlower is above 1 if the build has a sanitizer, which makes tests slow.
 std::vector<std::string> with_job(std::vector<std::string> arguments) {
   const std::vector<std::string> job = {
       "--width", "96", "--height", "96", "--samples", std::to_string(64 / kSlower), "--quiet"};

@@ -1,5 +1,5 @@
-// The command `bandsaw study` as run by a user. It renders scenes with several methods of sampling
-// and writes their error against time.
+// Tests the command `bandsaw study`. It renders scenes with several methods of sampling, and writes
+// a table and a plot of the methods' error against time.
 
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -13,6 +13,7 @@
 namespace bandsaw::test {
 namespace {
 
+// kSlower is above 1 if the build has a sanitizer, which makes tests slow.
 const std::vector<std::string> kSurvivalSettings = {
     "--width", "128", "--height", "128", "--samples", std::to_string(64 / kSlower)};
 

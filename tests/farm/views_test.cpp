@@ -181,7 +181,7 @@ TEST(Views, APreviewShowsTheRowsThatAreStored) {
   farm.add_worker("one", 1);
   const auto client = FarmClient::connect(*link::join_string_from(farm.farm_file()));
   ASSERT_TRUE(client.ok()) << client.status();
-  EXPECT_TRUE(absl::IsNotFound((*client)->preview(1, 0).status()));
+  EXPECT_TRUE(absl::IsNotFound((*client)->preview(/*job=*/1, /*most_side=*/0).status()));
   const Finished submitted =
       run(farm.command({"submit", kCornell, "--width", "64", "--samples", "1048576", "--detach"}));
   ASSERT_EQ(submitted.code, 0) << submitted.err;

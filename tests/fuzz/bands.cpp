@@ -22,10 +22,17 @@ bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
 
 class Sender {
  public:
-  /// Sends the next message. `what` is the sum of values that select its contents: 1 a header,
-  /// which begins a band; 2 a wrong byte; 4 more bytes than the band has. Four more values count
-  /// only if there is a header: 8 gives the band a negative sum; 16, 32 and 64 give the header
-  /// wrong rows, a wrong size and a wrong digest. `number` selects lengths and places.
+  /// Sends the next message. `number` selects lengths and places. The bits of `what` select the
+  /// contents of the message. Their values mean:
+  /// - 1: The message has a header, which begins a band.
+  /// - 2: A byte of the data is wrong.
+  /// - 4: The data has additional bytes at its end.
+  ///
+  /// The following bits have an effect only if the message has a header:
+  /// - 8: The band has a negative sum.
+  /// - 16: The header has wrong rows.
+  /// - 32: The header has a wrong size.
+  /// - 64: The header has a wrong digest.
   void step(std::uint8_t what, std::uint32_t number) {
     farm::BandChunk chunk;
     if ((what & 1) != 0) {

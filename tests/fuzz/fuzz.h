@@ -17,8 +17,8 @@ namespace bandsaw::fuzz {
 /// Tries the target with one input; ends the program if the reader does something wrong.
 void run(absl::Span<const std::uint8_t> input);
 
-/// Calls step(what, number) for every three bytes, at most `most` times: a sequence of events.
-/// `what` is the first byte, `number` the other two, little-endian.
+/// Reads the input as a sequence of events: calls step(what, number) for every three bytes, at most
+/// `most` times. `what` is the first byte, `number` the other two, little-endian.
 template <class F>
 void each_step(absl::Span<const std::uint8_t> input, std::size_t most, F step) {
   for (std::size_t at = 0; at + 3 <= std::min(input.size(), 3 * most); at += 3) {

@@ -90,7 +90,7 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
                         .certificate_digest = {},
                         .worker_secret = std::string(22, 'w'),
                         .farm_secret = std::string(22, 'f')},
-                       true, "farm.example.org");
+                       /*secure=*/true, /*host=*/"farm.example.org");
   as_lines(access, input);
   over_a_connection(access, input);
 }

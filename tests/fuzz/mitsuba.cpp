@@ -16,9 +16,10 @@ namespace bandsaw {
 namespace {
 
 void read_mesh(absl::string_view bytes) {
-  const auto mesh = absl::StartsWith(bytes, "ply")    ? mitsuba::read_ply(bytes, false)
-                    : absl::StartsWith(bytes, "\x1c") ? mitsuba::read_serialized(bytes, 0, true)
-                                                      : mitsuba::read_obj(bytes, true);
+  const auto mesh = absl::StartsWith(bytes, "ply") ? mitsuba::read_ply(bytes, /*flip_v=*/false)
+                    : absl::StartsWith(bytes, "\x1c")
+                        ? mitsuba::read_serialized(bytes, /*index=*/0, /*flip_v=*/true)
+                        : mitsuba::read_obj(bytes, /*flip_v=*/true);
   if (!mesh.ok()) {
     return;
   }

@@ -34,9 +34,13 @@ class Sender {
  public:
   explicit Sender(const std::string& folder) : folder_(folder), store_(*BlobStore::open(folder)) {}
 
-  /// Does the next step. `what` modulo 6 selects its kind: 0 the upload is interrupted, 1 the
-  /// coordinator restarts, 2 a byte of the stored part is damaged, 3 the sender ends the upload,
-  /// otherwise a chunk is sent. `number` selects lengths and places.
+  /// Does the next step. `number` selects lengths and places. `what` modulo 6 selects the kind of
+  /// the step:
+  /// - 0: The upload is interrupted.
+  /// - 1: The coordinator restarts.
+  /// - 2: A byte of the stored part is damaged.
+  /// - 3: The sender ends the upload.
+  /// - 4 and 5: The sender sends a chunk.
   void step(std::uint8_t what, std::uint32_t number) {
     switch (what % 6) {
       case 0:

@@ -119,6 +119,7 @@ class OnAFarm(unittest.TestCase):
         del sent[:]
         again = self.farm.submit(pergola, samples=2, width=16, on_progress=lambda done, total: sent.append(done))
         self.assertEqual(sent, [])
+        # Waits until both jobs have ended.
         self.assertEqual(len(list(first.progress(0.05))[-1:] + list(again.progress(0.05))[-1:]), 2)
         self.assertEqual((again.image().width, again.status().samples), (16, 2))
 

@@ -261,7 +261,7 @@ class Jobs(unittest.TestCase):
 
     def test_a_preview_has_the_rows_that_are_there(self):
         job = self.farm.submit("one", files={})
-        next(iter(job.progress(0)))
+        next(iter(job.progress(0)))  # now a quarter of the 48 rows is rendered: the upper 12
         whole, part = fake_farm.FakeFarm.picture(None, self.fake.jobs[1], 1), job.preview()
         again = bandsaw.image_from_pfm(whole)
         line = 3 * 64
@@ -279,6 +279,7 @@ class Jobs(unittest.TestCase):
 
     def test_stop_ends_the_progress(self):
         job = self.farm.submit("one", files={})
+        # The submission makes three requests, and each progress makes one. So `stop` is true after the second progress, before the job ends.
         self.assertEqual(len(list(job.progress(0, stop=lambda: len(self.fake.requests) > 4))), 2)
 
     def test_a_lost_coordinator_is_first_a_state_and_then_an_error(self):

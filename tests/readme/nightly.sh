@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Tests the table that deploy/nightly.sh writes: its counts, failures and skips, and the rows of earlier runs, which --continue keeps. A row is
-# that of a part, such as `default` or `arm64`. Scripts that only print the last lines of a test run stand in for the parts.
+# Tests the table that deploy/nightly.sh writes: its counts, failures and skips, and the rows of earlier runs, which --continue keeps. A run
+# consists of parts, such as `default` or `arm64`, and the table has a row for each part. Scripts that only print the last lines of a test run
+# stand in for the parts.
 # Usage: nightly.sh SOURCE-FOLDER
 set -euo pipefail
 source=$(cd "$1" && pwd)
