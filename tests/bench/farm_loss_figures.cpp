@@ -17,8 +17,8 @@ using test::Hosts;
 using test::Process;
 
 constexpr int kKills = 10;  // number of losses by SIGKILL
-// Number of losses by a freeze, and number by a pulled cable. The coordinator needs seconds to
-// detect each of them.
+// Number of losses by a freeze, and also number of losses by a pulled cable. The coordinator needs
+// seconds to detect such a loss.
 constexpr int kSilences = 3;
 
 /// Submits a job that does not end during the measurement.

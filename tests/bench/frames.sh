@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures what the frames of a sequence cost beyond their samples, on a farm of one local worker with one thread. Prints:
-# - a ratio: the time of all frames, from the start of `bandsaw submit` to its end, divided by the time that `bandsaw render`
-#   takes for the same number of samples in one image, without the reading of the scene;
+# - a ratio: the time of all frames, from the start of `bandsaw submit` to its end, divided by the time in which `bandsaw render`
+#   renders the same number of samples in one image after it has read the scene;
 # - the time until the first frame is written, the bytes that are sent for a frame, and the CPU time of each process.
 # Usage: tests/bench/frames.sh FOLDER-OF-PROGRAMS [FRAMES [SQUARES...]]
 #   SQUARES: the scene is a rippled plane of SQUARES x SQUARES squares (frames_scene.py); 200 and 1000 by default

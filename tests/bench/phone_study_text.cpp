@@ -114,8 +114,8 @@ std::string answers(const PhoneStudy& study) {
   }
   return absl::StrCat(
       "### The questions of the study\n\n",
-      compared(study, "Many objects: compared with one object, 24 take on one thread", "objects_1",
-               "objects_24",
+      compared(study, "Many objects: on one thread, compared with one object, 24 objects take",
+               "objects_1", "objects_24",
                absl::StrCat(rays_text(study, "objects_1", "objects_24"),
                             "; the study states 11.34 times (3,289 ms and 290 ms).")),
       absl::StrFormat("- Threads: all images take %.2f times as long on one thread as on %d.\n",
@@ -123,7 +123,7 @@ std::string answers(const PhoneStudy& study) {
       absl::StrFormat("- Memory in C++: the program used at most %.0f MB in all measurements.\n",
                       study.peak_mb),
       compared(study, "Smaller images: 500 x 500 pixels take", "size_125", "size_500",
-               " times as long as 125 x 125, which are a sixteenth of them."),
+               " times as long as 125 x 125 pixels, which are a sixteenth as many."),
       compared(study, "Fewer shadow rays: compared with no light, an image with one light takes",
                "lights_0", "lights_1", absl::StrCat(rays_text(study, "lights_0", "lights_1"), ".")),
       absl::StrFormat("- Precomputation: it takes at most %s ms, once for each scene.\n",

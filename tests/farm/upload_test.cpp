@@ -65,6 +65,8 @@ TEST_F(Upload, ResumesAlsoAfterARestartOfTheCoordinator) {
   const absl::Status put = connect()->put_blob(
       digest(), bytes_, kept, [&](std::uint64_t sent) { first = first.value_or(sent); });
   ASSERT_TRUE(put.ok()) << put;
+  // A chunk has 1 MiB. After the first chunk the client reports the kept bytes and this chunk as
+  // sent.
   EXPECT_EQ(first, kept + (1 << 20)) << "the upload must continue after the kept bytes";
   EXPECT_EQ(bytes_on_farm(), std::nullopt);
 }
