@@ -484,6 +484,15 @@ TEST_F(MitsubaScene, MediaHaveTheirCoefficients) {
   EXPECT_EQ(from.shape(0).material(), "");
 }
 
+TEST_F(MitsubaScene, GridsOfAbsorptionAreRefused) {
+  write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
+  EXPECT_THAT(error("<medium type=\"heterogeneous\" id=\"smoke\"><volume name=\"sigma_a\" "
+                    "type=\"gridvolume\"><string name=\"filename\" value=\"smoke.vol\"/></volume>"
+                    "</medium><shape type=\"sphere\"><bsdf type=\"null\"/>"
+                    "<ref name=\"interior\" id=\"smoke\"/></shape>"),
+              HasSubstr("sigma_a and sigma_s cannot be grids; write sigma_t and albedo instead"));
+}
+
 /// In Mitsuba, the outermost values of a grid continue to the faces of the grid.
 TEST_F(MitsubaScene, GridsAreClampedAtTheirFaces) {
   write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
