@@ -1,5 +1,5 @@
-// The constructor lists the primitives of casters, which are surfaces that cast caustics, by
-// material. sample() chooses a material, and a point of its primitives.
+// A caster is a surface that casts caustics. For each material, the constructor lists the
+// primitives that are casters. sample() chooses a material, and then a point of its primitives.
 
 #include "renderlib/integrate/casters.h"
 

@@ -27,10 +27,10 @@ class Casters {
   /// Returns true if surfaces of this material are casters; false for mixtures.
   bool casts(MaterialId id) const { return casting_[index_of(id)]; }
 
-  /// Returns a random point of a caster at this time. First a material is chosen, each with the
-  /// same probability, then a point of the surfaces of this material. `material` is a random number
-  /// in [0, 1). The other numbers and the result are those of SurfaceSampler::sample(). There MUST
-  /// be casters.
+  /// Returns a random point of a caster at this time. `material` chooses a material, each with the
+  /// same probability. Then `primitive` chooses a primitive of this material in proportion to its
+  /// area, and `u` and `v` choose a place on it. These numbers are all in [0, 1). There MUST be
+  /// casters. Returns std::nullopt if the point or its pdf is not finite.
   std::optional<SurfaceSample> sample(double material, double primitive, double u, double v,
                                       double time) const;
 
@@ -39,7 +39,7 @@ class Casters {
   Casters(const Scene& scene, std::size_t materials) : scene_(scene), casting_(materials) {}
 
   const Scene& scene_;
-  std::vector<bool> casting_;  ///< for each material
+  std::vector<bool> casting_;  ///< for each material, true if its surfaces are casters
   bool complete_ = true;
   std::vector<SurfaceSampler> materials_;  ///< the primitives of each material that casts
 };

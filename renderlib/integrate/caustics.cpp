@@ -36,8 +36,9 @@ bool receives_caustics(const Bsdf& bsdf) {
 }
 
 std::uint32_t PhotonMaps::number_of(std::uint64_t sample) {
-  // A unit is kMinSamplesOfMap consecutive samples. The units in [2^octave, 2^(octave + 1)) have
-  // maps of `root` units each. `first` is the number of the first of these maps.
+  // A unit is kMinSamplesOfMap consecutive samples. Unit 0 has map 0. The units in [2^octave,
+  // 2^(octave + 1)) have maps of `root` units each. `first` is the number of the first of these
+  // maps: 1 plus the number of maps of all lower octaves.
   const std::uint64_t unit = sample / kMinSamplesOfMap;
   if (unit == 0) {
     return 0;
@@ -66,6 +67,8 @@ Rgb photon_radiance(const PhotonMap& map, const SurfacePoint& point, const Bsdf&
   Rgb sum;
   const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf);
   if (diffuse != nullptr && diffuse->normal.shading == diffuse->normal.geometric) {
+    // Without a bent normal, a diffuse BSDF reflects light from all directions alike, so it is a
+    // factor of the sum.
     map.visit(point.position, normal, [&](const StoredPhoton& photon, float density) {
       sum += photon.chain <= longest ? photon.power * density : Rgb{};
     });

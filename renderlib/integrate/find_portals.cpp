@@ -20,7 +20,8 @@ constexpr std::uint64_t kPathsOfChunk = 128;
 /// Maximum number of scatterings of a path. Later scatterings would find the same openings.
 constexpr std::uint32_t kMaxScatterings = 6;
 
-/// Traces one path and appends the rays that leave its surfaces.
+/// Traces one path. Appends the rays that leave surfaces which scatter into a wide range of
+/// directions, and notes for each ray whether it escapes. Rays from mirrors and glass are left out.
 void add_rays(const PathContext& context, PathState path, std::vector<ScatteredRay>& to) {
   const Scene& scene = context.scene;
   std::optional<ScatteredRay> open;  // a ray of which it is not yet known whether it escapes

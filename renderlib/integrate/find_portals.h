@@ -14,8 +14,8 @@
 namespace bandsaw {
 
 /// Traces paths from the camera, and returns the portals that fit the rays scattered by surfaces.
-/// The result is a pure function of the scene and of the width and height of the image. Returns
-/// std::nullopt if stopped, otherwise adds the number of rays to `traced`.
+/// The result is a pure function of the scene and of the width and height of the image. If
+/// `preparation` is stopped, returns std::nullopt. Otherwise adds the number of rays to `traced`.
 std::optional<Portals> find_portals(const Scene& scene, const GuidingKey& key,
                                     const Preparation& preparation, std::uint64_t& traced);
 

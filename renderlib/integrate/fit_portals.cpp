@@ -19,8 +19,8 @@ namespace {
 
 /// Fewer escaping rays do not tell where an opening is.
 constexpr std::size_t kMinRays = 24;
-/// Of the rays towards a portal, at least the part kMinPrecision escapes. This part is also at
-/// least kMinLift times as large as the part of all rays that escapes.
+/// Of the rays towards a portal, at least the part kMinPrecision escapes. The part that escapes is
+/// also at least kMinLift times as large as it is for all rays.
 constexpr double kMinPrecision = 0.35;
 constexpr double kMinLift = 3;
 /// A portal has at least this part of the escaping rays.
@@ -46,13 +46,13 @@ constexpr double kMinCosine = 0.1;
 /// This part of the crossings may lie outside the rectangle on each of its four sides, because it
 /// may belong to other openings.
 constexpr double kTrimmed = 0.01;
-/// Crossings are divided where a gap is this part of their extent.
+/// Crossings are divided where a gap is larger than this part of their extent.
 constexpr double kGap = 0.15;
 /// Crossings beside the rectangle by up to this part of its size belong to the same opening.
 constexpr double kBeside = 0.05;
-/// A portal is larger than the rectangle of its crossings. On each side, the part kMargin of the
-/// size is added, and kMarginInRays times the mean distance between the crossings of neighbouring
-/// rays along that size.
+/// A portal is larger than the rectangle of its crossings. At both ends of an axis, two margins are
+/// added: the part kMargin of the size along this axis, and kMarginInRays times the mean distance
+/// between neighbouring crossings along this axis.
 constexpr double kMargin = 0.01;
 constexpr double kMarginInRays = 4;
 
@@ -113,6 +113,8 @@ std::vector<double> crossings(const Rays& rays, const Planes& planes, double off
   return out;
 }
 
+/// Returns the rectangle of the rays' crossings with the plane at `offset`. On each side, the part
+/// kTrimmed of the crossings is left outside.
 Rectangle rectangle_at(const Rays& rays, const Planes& planes, double offset) {
   std::vector<double> u = crossings(rays, planes, offset, planes.u);
   std::vector<double> v = crossings(rays, planes, offset, planes.v);

@@ -33,7 +33,8 @@ Vec2 seen_from_camera(const Camera& camera, const Vec3& normal) {
   return {(dot(normal, right) + 1) / 2, (dot(normal, up) + 1) / 2};
 }
 
-/// Returns the value of kGuideShape at the surface. `distance` is the length of the path up to it.
+/// Returns the shape of the surface: the two coordinates of its normal that seen_from_camera()
+/// returns, and `distance`, which is the length of the path up to the surface.
 Rgb shape(const Scene& scene, const SurfacePoint& point, const Vec3& direction, double distance) {
   Vec3 normal = bent_normal(scene.material(point.material).relief, scene.textures(), point);
   if (dot(point.geometric_normal, direction) > 0) {

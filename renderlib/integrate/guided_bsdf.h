@@ -18,8 +18,8 @@ namespace bandsaw {
 /// directions on one side.
 bool can_be_guided(const Bsdf& bsdf);
 
-/// Returns the cones that guide the BSDF at `point`, seen from direction `wo`. Without a field, and
-/// where the BSDF cannot be guided, there are none, and their share() is 0.
+/// Returns the cones that guide the BSDF at `point`, seen from direction `wo`. If there is no field
+/// or the BSDF cannot be guided, returns an object without cones, whose share() is 0.
 inline GuidingCones cones_at(const PathContext& context, const SurfacePoint& point,
                              const Bsdf& bsdf, const Vec3& wo) {
   const GuidingField* field = context.options.guiding;
@@ -39,14 +39,14 @@ struct GuidedSample {
   double scaling = 1;
 };
 
-/// Does what sample() below does, for cones whose share() is not 0.
+/// Implements the next function, sample(), for cones whose share() is not 0.
 std::optional<GuidedSample> sample_mixture(const Bsdf& bsdf, const GuidingCones& cones, double u,
                                            double v, double lobe);
 
-/// Samples a direction from the mixture. `u`, `v` and `lobe` are those of sample() in
-/// material/bsdf.h. Returns std::nullopt if that function does, or if a cone gives a direction from
-/// which the BSDF scatters no light. `lobe` first chooses between BSDF and cones, and is then
-/// stretched to [0, 1) again.
+/// Samples a direction from the mixture. `u`, `v` and `lobe` are random numbers in [0, 1). `lobe`
+/// first chooses between BSDF and cones, and is then stretched to [0, 1) again. Returns
+/// std::nullopt if the BSDF absorbs the light, or if a cone gives a direction from which the BSDF
+/// scatters no light.
 inline std::optional<GuidedSample> sample(const Bsdf& bsdf, const GuidingCones& cones, double u,
                                           double v, double lobe) {
   if (cones.share() > 0) {

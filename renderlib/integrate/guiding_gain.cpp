@@ -25,12 +25,12 @@ constexpr std::uint64_t kSamples = 8;
 /// noise of black pixels is not visible.
 constexpr double kDarkest = 1.0 / 16;
 
-/// Below this share of the variance, the cells of paths cost more than they gain (NOTES.md,
-/// "Whether it pays"). kMinShareOfMaps is the same limit for photon maps, and kMinShareOfPhotons
-/// for the cells of photons.
+/// If the cells of paths would remove less than this share of the variance, they cost more than
+/// they gain (NOTES.md, "Whether it pays"). kMinShareOfMaps is the same limit for photon maps, and
+/// kMinShareOfPhotons for the cells of photons.
 constexpr double kMinShareOfPaths = 0.15;
-/// Where the variance is above this, guiding pays: paths find light so rarely that the field, which
-/// was trained with few of them, cannot show it.
+/// If the variance is above this, the cells of paths pay, whatever the field predicts. So few
+/// paths of the training have then found light that the field cannot predict the gain.
 constexpr double kRareLight = 1.5;
 constexpr double kMinShareOfMaps = 0.08;
 constexpr double kMinShareOfPhotons = 0.2;
@@ -40,8 +40,9 @@ constexpr double kMinShareOfPhotons = 0.2;
 constexpr double kHard = 0.3;
 constexpr double kMinGainOfGathering = 1.7;
 
-/// The second moment of the light of photons is at least this many times the one that their cells
-/// hold: a cone is wider than the lamp that is seen in it.
+/// The cells of photons hold a second moment that is too small, because the cone of a cell spreads
+/// the light of a lamp over more directions than the lamp fills. The moment of the lamp's light is
+/// at least this many times as large.
 constexpr double kMomentOfLamp = 2;
 
 /// Sums over the samples of a pixel.

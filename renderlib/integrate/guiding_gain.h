@@ -14,8 +14,8 @@
 namespace bandsaw {
 
 /// The variance of one sample of a pixel's luminance, and two parts of it. Each is divided by the
-/// square of the pixel's mean and averaged over pixels. The mean is the measured one, or the one
-/// that the field predicts if that is higher.
+/// square of the pixel's mean and averaged over pixels. The mean is the largest of three numbers:
+/// the measured mean, the mean that the field predicts, and a sixteenth of the image's mean.
 ///
 /// The field consists of cells, which hold the directions from which light arrives at a place
 /// (guiding/guiding_cell.h): some are fitted to the light that paths found, others to photons.
@@ -27,8 +27,8 @@ struct GuidingGain {
   /// light only.
   double direct_variance = 0;
   double direct_rays = 0;
-  /// The next two are predicted by the field, so that rare light counts as well. Each may exceed
-  /// `variance`.
+  /// The field predicts `by_paths` and `by_photons`, so that rare light counts as well. Each may
+  /// exceed `variance`.
   double by_paths = 0;    ///< part that the cells of paths would remove
   double by_photons = 0;  ///< part of the caustics, which photon maps or cells of photons remove
 

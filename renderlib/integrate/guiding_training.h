@@ -5,8 +5,9 @@
 // field. The paths and photons of the training are divided among a fixed number of chunks, whose
 // records are joined in order, so that neither threads nor machines change a bit.
 //
-// Photons come first (training_photons.h). The field of their records guides the first round of
-// paths (training_paths.h). The field of all records up to then guides the second, larger round.
+// Photons come first (training_photons.h). A field is fitted to their records and guides the first
+// round of paths (training_paths.h). Then a field is fitted to the records of the photons and of
+// this round, and guides the second, larger round.
 
 #include <cstdint>
 #include <memory>
@@ -21,8 +22,8 @@ namespace bandsaw {
 /// Trains the field of the scene: with 3/4 n paths and, if there are casters (surfaces that cast
 /// caustics, casters.h), with 2 n photons, where n is the number of pixels of the image, clamped to
 /// [2^15, 2^18]. A record is made of each of the first eight vertices of a path, and of each photon
-/// that arrives at a surface whose directions can be guided. The records take at most 2 x 93 MB
-/// during the training.
+/// that arrives at a surface whose directions can be guided. Each record is held twice during the
+/// training. All records together take at most 2 x 93 MB.
 ///
 /// With key.only_if_it_pays, a small training decides first whether a field and photon maps pay. If
 /// a field does not pay, it stays empty. If `photon_maps` is true and photon maps pay, the paths of

@@ -1,9 +1,10 @@
 #pragma once
 
 // Photons of indirect light, for final gathering (Jensen 1996, "Global Illumination Using Photon
-// Maps", section 4). A path from the camera leaves a receiver (caustics.h) and arrives at another
-// receiver. There, the light that receivers scattered to that point is estimated from photons. The
-// path then ends at the next receiver that it meets.
+// Maps", section 4). A receiver is a surface that scatters light over wide angles (caustics.h). A
+// path from the camera leaves a receiver and arrives at another receiver. There, the light that
+// receivers scattered to that point is estimated from photons. The path then ends at the next
+// receiver that it meets.
 //
 // All light that a receiver scatters is thus divided into two parts. The first part arrives from
 // lamps without meeting another receiver, directly or over mirrors, glass and other surfaces. It is
@@ -11,10 +12,11 @@
 // other receivers. It is estimated from the photons.
 //
 // A photon starts at a random point of a receiver, in a random direction. Its power comes from the
-// radiance of the first part that the point scatters in this direction. A path that is traced as if
-// the camera were in this direction measures this radiance. So lamps, environments, portals and
-// caustics light the starting points exactly as they light the paths of the image. From there on
-// the photon is scattered as paths are, and it is stored at every receiver that it meets.
+// first part of the light that arrives at the point: from the radiance that the point scatters in
+// the direction of the photon. A path measures this radiance as if the camera were in this
+// direction. So lamps, environments, portals and caustics light the starting points exactly as they
+// light the paths of the image. From there on the photon is scattered as paths are, and it is
+// stored at every receiver that it meets.
 
 #include <cstdint>
 #include <vector>

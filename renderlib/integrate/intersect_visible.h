@@ -13,8 +13,8 @@
 
 namespace bandsaw {
 
-/// The glasses that contain a path on its current segment, and beyond the surface that it hits
-/// next.
+/// The glasses that contain the current segment of a path (`here`), and the glasses beyond the
+/// surface that the path hits next (`beyond`).
 struct NestedDielectrics {
   Interiors here;
   Interiors beyond;  ///< set if the hit surface belongs to a nested glass (material/interiors.h)

@@ -27,10 +27,10 @@ class LightDistanceSampler {
   LightDistanceSampler(const FreeFlight& flight, const Medium& medium)
       : flight_(flight), extinction_(mean_extinction(medium)) {}
 
-  /// Adds equiangular sampling towards `pivot`, a point on a light; the arguments are those of
-  /// `Equiangular`. All pivots have the same total weight in the mixture. Within the weight of a
-  /// pivot, the share of free-flight sampling is between 1/16 and 1/2 and grows with the optical
-  /// depth up to the pivot.
+  /// Adds equiangular sampling towards `pivot`, a point on a light. The segment starts at `origin`,
+  /// and has the unit direction `direction` and the length `length`. All pivots have the same total
+  /// weight in the mixture. Within the weight of a pivot, the share of free-flight sampling is
+  /// between 1/16 and 1/2 and grows with the optical depth up to the pivot.
   void add(const Vec3& origin, const Vec3& direction, double length, const Vec3& pivot) {
     if (pivots_ == kMaxPivots) {
       return;

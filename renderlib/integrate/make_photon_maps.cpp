@@ -53,8 +53,8 @@ constexpr std::uint64_t kMaxPrimitives = std::uint64_t{1} << 21;
 
 /// Returns the point to which the positions of photons are relative: the point that the camera
 /// shows in the direction of its view, or else the camera's position. Positions are floats, so they
-/// are precise near this point. Relative to the world's origin they would not be if the scene lies
-/// far from there.
+/// are precise near this point. If the scene lies far from the world's origin, positions relative
+/// to that origin would not be precise.
 Vec3 origin_of(const Scene& scene) {
   const View view = view_of(scene.camera());
   const Ray ahead{.origin = view.position,
@@ -79,8 +79,8 @@ PhotonChunk chunk_of(const PhotonMapKey& key, const Vec3& origin, std::uint64_t 
 /// multiply the area of the disks of map n = 0, 1, … by about (n + 1)^(alpha - 1), here with alpha
 /// = 2/3. So the factor of the area is (n + 1)^(-1/3), and the factor of the radius is the root of
 /// it, (n + 1)^(-1/6). `kind` is 0 for the map of caustics and 1 for the map of indirect light, so
-/// that PhotonMap divides space differently for two maps with one number. `max_halvings`: see
-/// kMaxHalvings.
+/// that PhotonMap divides space differently for the two maps of one number. `max_halvings` says how
+/// often the radius of a disk may be halved where the disk reaches an edge or a wall.
 PhotonMap map_of(const Scene& scene, std::vector<StoredPhoton> photons, const Vec3& origin,
                  const PhotonMapKey& key, std::uint64_t kind, int max_halvings,
                  const Preparation& preparation) {
@@ -127,7 +127,8 @@ bool add_caustics(const Scene& scene, const PhotonSources& sources, const Photon
     power_by_angle += chunk.power_by_angle;
   }
   maps.lamp_angle = power > 0 ? power_by_angle / power : 0;
-  maps.caustics = map_of(scene, joined(std::move(chunks), maps), origin, key, 0, 0, preparation);
+  maps.caustics = map_of(scene, joined(std::move(chunks), maps), origin, key, /*kind=*/0,
+                         /*max_halvings=*/0, preparation);
   preparation.advance();
   return !preparation.stopped();
 }
@@ -167,8 +168,8 @@ bool add_indirect(const Scene& scene, const PhotonSources& sources, const Photon
       })) {
     return false;
   }
-  maps.indirect =
-      map_of(scene, joined(std::move(chunks), maps), origin, key, 1, kMaxHalvings, preparation);
+  maps.indirect = map_of(scene, joined(std::move(chunks), maps), origin, key, /*kind=*/1,
+                         kMaxHalvings, preparation);
   double power = 0;
   double radii = 0;
   for (const StoredPhoton& photon : maps.indirect.photons()) {

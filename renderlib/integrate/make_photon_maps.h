@@ -14,10 +14,10 @@
 namespace bandsaw {
 
 /// Returns the number of photons of caustics that are started for each map of an image of this size
-/// in pixels. It is 4 for each pixel, clamped to [2^14, 2^18]. Within these limits, that is half
-/// the number of paths that share one of the first maps. The number of indirect photons is a
-/// quarter of the number for caustics, but at least 2^15. Fewer are enough, because paths see these
-/// photons from afar and average their noise.
+/// in pixels. It is 4 for each pixel, clamped to [2^14, 2^18]. Within these limits, twice as many
+/// paths share each of the first maps. The number of indirect photons is a quarter of the number
+/// for caustics, but at least 2^15. Fewer are enough, because paths see these photons from afar and
+/// average their noise.
 std::uint64_t photons_of_map(std::uint32_t width, std::uint32_t height);
 
 /// Makes the map of caustics if the sources have casters, and the map of indirect light if they

@@ -26,7 +26,8 @@ struct MediumSegment {
   const Medium* medium = nullptr;
   /// The same medium prepared for tracking if it varies in space; otherwise nullptr.
   const GridMedium* varying = nullptr;
-  std::uint32_t boundary = 0;  ///< if it varies: the boundary, as in Scene::to_medium()
+  /// If the medium varies in space: the instance that is the boundary (Scene::to_medium()).
+  std::uint32_t boundary = 0;
 };
 
 /// Returns the part of `ray` that lies in the segment, in the space of the medium. The result
@@ -55,7 +56,7 @@ class MediumTraversal {
     double t = 0;
     PrimitiveId shape;  ///< one id for all faces of a shape: the primitive is 0 for an instance
     MediumId medium{};
-    std::uint32_t boundary = 0;  ///< see Around::Region
+    std::uint32_t boundary = 0;  ///< instance of the boundary; 0 if the medium does not vary
     bool inwards = false;
     bool on_rim = false;  ///< on an edge or corner of a mesh's triangle
   };
@@ -66,7 +67,7 @@ class MediumTraversal {
     /// The unit of counting: a medium, or one boundary of a medium that varies in space.
     struct Region {
       MediumId medium{};
-      std::uint32_t boundary = 0;  ///< as in Scene::to_medium(); 0 if the medium does not vary
+      std::uint32_t boundary = 0;  ///< instance of the boundary; 0 if the medium does not vary
       friend bool operator==(const Region&, const Region&) = default;
     };
     /// Adds `shapes` (1 or -1) to the region's count; ignored if there are too many regions.
@@ -103,7 +104,9 @@ class MediumTraversal {
   /// Number of crossings that are stored: the first ones on the ray.
   static constexpr std::size_t kKept = 8;
 
+  /// Returns true if the hit boundary is an instance of a mesh.
   bool is_of_mesh(const Hit& hit) const;
+  /// Returns true if the medium varies in space.
   bool varies(MediumId medium) const;
   /// Returns the next boundary crossing; std::nullopt at the end.
   std::optional<Crossing> find_next(Search& search);
@@ -126,7 +129,7 @@ class MediumTraversal {
   std::size_t kept_size_ = 0;
   std::size_t taken_ = 0;  ///< number of stored crossings that take_crossing() has returned
   Search beyond_kept_;     ///< continues after the last stored crossing
-  bool all_kept_ = true;   ///< no crossing is left that is not stored
+  bool all_kept_ = true;   ///< false: crossings may be left that are not stored
 };
 
 /// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel; an

@@ -21,9 +21,9 @@
 //
 // - Light sampling alone: delta lights.
 // - BSDF sampling alone: emission that is hit by camera rays, after specular directions, behind a
-//   hidden boundary of nested glass, or beyond a surface that the path passed. The last of
-//   these has an exception: surfaces that sample lights on both of their sides
-//   (is_diffuse_behind).
+//   hidden boundary of nested glass (a boundary inside a glass of higher priority), or beyond a
+//   surface that the path passed. The exception to the last case is a surface that samples lights
+//   on both of its sides (is_diffuse_behind).
 
 #include <cmath>
 
@@ -51,7 +51,7 @@ struct PreviousVertex {
   Receiver receiver;
   double pdf = 0;
   /// True if light sampling could not have produced the next hit (camera rays, specular
-  /// directions): its MIS weight is 1.
+  /// directions). Then the MIS weight of the hit is 1.
   bool delta = true;
   /// At a vertex in a medium: the pdf of its distance in light sampling over that in scattering
   /// (free flight). 1 on surfaces, where both strategies use the same point.

@@ -358,8 +358,9 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   // sampling reaches some lights.
   if (context.samples_lights() && has_pdf(bsdf)) {
     const Sample4 numbers = context.numbers(group_light(depth));
-    CompetingStrategies competing = is_last ? CompetingStrategies{Technique::kLightsOnly, true}
-                                            : CompetingStrategies{options.technique, false};
+    CompetingStrategies competing =
+        is_last ? CompetingStrategies{Technique::kLightsOnly, /*reaches_distant_only=*/true}
+                : CompetingStrategies{options.technique, /*reaches_distant_only=*/false};
     competing.portals = portals;
     competing.without_surfaces =
         role == CausticRole::kCaster && is_left_to_photons(context, path.chain);

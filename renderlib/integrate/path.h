@@ -44,9 +44,9 @@ struct PathOptions {
   /// If not null, directions at surfaces are sampled from this field as well as from the BSDF
   /// (integrate/guided_bsdf.h), which changes no expected value. MUST outlive the paths.
   const GuidingField* guiding = nullptr;
-  /// If not null, caustics (integrate/caustics.h) and the indirect light beyond the first receiver
-  /// (integrate/indirect_photons.h) come from these photon maps where they are not empty. Then
-  /// `branches` MUST be 1. MUST outlive the paths.
+  /// If not null, two kinds of light come from these photon maps where they are not empty: caustics
+  /// (integrate/caustics.h), and indirect light beyond the first surface that scatters light over
+  /// wide angles (integrate/indirect_photons.h). Then `branches` MUST be 1. MUST outlive the paths.
   const PhotonMaps* maps = nullptr;
   /// If not null, the background is also sampled through these portals at surfaces, which changes
   /// no expected value. MUST outlive the paths.

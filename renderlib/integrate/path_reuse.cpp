@@ -1,6 +1,6 @@
-// Traces the path of each pixel of a group up to its second vertex, then connects every such vertex
-// with the first vertices of all pixels of the group, with balance-heuristic weights (path_reuse.h
-// has the formulas).
+// Traces the path of each pixel of a group. If the second vertex of a path is diffuse, the light
+// that leaves this vertex is shared: the vertex is connected with the first vertices of all pixels
+// of the group, with balance-heuristic weights (path_reuse.h has the formulas).
 
 #include "renderlib/integrate/path_reuse.h"
 
@@ -90,14 +90,14 @@ void trace_own_path(const PathContext& context, PathState& path, GuidingCones& c
 
 using PrimaryVertices = std::array<std::optional<PrimaryVertex>, kMaxReusePixels>;
 
-/// The connection of a primary vertex to a shared vertex: BSDF value and pdf by solid angle, and
-/// the factor to area measure. All numbers are zero if one vertex is behind the surface of the
-/// other vertex. They are also zero if the BSDF scatters no light from the shared vertex, even if
-/// its pdf is above 0. In this case the primary vertex never produces the shared vertex, because a
-/// path ends where its throughput is black.
+/// The connection of a primary vertex to a shared vertex. All numbers are zero if one vertex is
+/// behind the surface of the other vertex. They are also zero if the BSDF scatters no light from
+/// the shared vertex, even if the pdf of the direction is above 0. In this case a path of the
+/// primary vertex never reaches the shared vertex, because a path ends where its throughput is
+/// black.
 struct Connection {
-  BsdfValue scattered;
-  double solid_angle_per_area = 0;
+  BsdfValue scattered;              ///< at the primary vertex; the pdf is by solid angle
+  double solid_angle_per_area = 0;  ///< converts pdfs by solid angle to pdfs by area
 };
 
 Connection connect(const PrimaryVertex& primary, const SharedVertex& shared) {

@@ -5,13 +5,18 @@
 // 2002, "Accelerating Path Tracing by Re-Using Paths", EGWR).
 //
 // Let x_j be the first vertex of pixel j, y_i the second vertex of the path of pixel i, and L_i the
-// radiance arriving from y_i. Pixel i samples y with the area pdf p_i(y) = pdf(x_i to y) cos(y) V /
-// |y - x_i|^2, where V is the visibility of y from x_i. With the balance heuristic over the pdfs of
-// all pixels (Veach 1997, section 9.2.2), y_i contributes f_j(y_i) L_i / sum_k p_k(y_i) to pixel j;
-// f_j is p_j with the BSDF value of x_j (including its cosine) in place of the pdf. The expected
-// value of every pixel equals that of `path_radiance()`. L_i must not depend on the outgoing
-// direction: only diffuse vertices y are shared, and only the light that they scatter. All other
-// light stays with the pixel that sampled it.
+// radiance that leaves y_i. Pixel j samples a point y with this pdf by area:
+//
+//   p_j(y) = pdf_j(y) cos(y) V / |y - x_j|^2
+//
+// pdf_j(y) is the pdf, by solid angle, of the direction from x_j to y. cos(y) is the cosine between
+// this direction and the normal at y. V is the visibility of y from x_j. Let f_j(y) be p_j(y) with
+// the BSDF value at x_j, including its cosine, in place of pdf_j(y). With the balance heuristic
+// over the pdfs of all pixels (Veach 1997, section 9.2.2), y_i contributes f_j(y_i) L_i / sum_k
+// p_k(y_i) to pixel j. The expected value of every pixel equals that of `path_radiance()`.
+//
+// L_i must not depend on the outgoing direction. So only diffuse vertices are shared, and only the
+// light that they scatter. All other light stays with the pixel that sampled it.
 
 #include <cstddef>
 #include <cstdint>
@@ -30,8 +35,8 @@ struct ReusePixel {
   CameraRay camera_ray;  ///< camera ray of this sample
   /// Result: radiance arriving along `camera_ray`; set by `radiance_with_reuse()`.
   Rgb radiance = {};
-  /// Result: `radiance_with_reuse()` adds the counts of this pixel's path, and one ray for each
-  /// shadow ray that any pixel traces to the second vertex of this path.
+  /// Result: `radiance_with_reuse()` adds the counts of this pixel's path, and the number of shadow
+  /// rays from the first vertices of other pixels to the second vertex of this path.
   PathCounts counts = {};
 };
 

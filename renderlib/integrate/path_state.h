@@ -42,7 +42,7 @@ struct PathState {
   /// so that the path ends there.
   bool ends_at_receiver = false;
   double reach = 0;                ///< length of the path since the last receiver that scattered it
-  bool truncated = false;          ///< see PathCounts::truncated
+  bool truncated = false;          ///< `max_depth` forbade a further scattering
   NestedDielectrics nesting = {};  ///< glasses that contain the path
 };
 

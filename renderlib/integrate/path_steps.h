@@ -14,14 +14,14 @@
 namespace bandsaw {
 
 /// Returns the first visible surface along the path's ray; std::nullopt if the ray leaves the
-/// scene. `depth`, here and below: the number of the scattering that may happen at this surface,
-/// from 0.
+/// scene. In all functions of this file, `depth` is the number of the scattering that may happen at
+/// the surface, from 0.
 inline std::optional<SurfacePoint> next_surface(const PathContext& context, std::uint32_t depth,
                                                 PathState& path) {
   std::optional<SurfacePoint> hit = intersect_visible(
       context.scene, path.ray, context.sampler, context.sample, depth, path.nesting, context.rays);
-  // Shadow rays stop at hidden boundaries of nested glass, so light sampling does not cover this
-  // hit.
+  // The path skips hidden boundaries of nested glass, but shadow rays stop there. So light sampling
+  // does not cover a hit beyond a hidden boundary.
   path.previous.delta = path.previous.delta || path.nesting.skipped_hidden;
   return hit;
 }

@@ -14,6 +14,7 @@ namespace bandsaw {
 inline constexpr std::uint32_t kRouletteDepth = 3;
 
 /// A path always survives if its throughput, divided by PathState::compression, is at least this.
+/// The compression is the factor by which refraction and guiding scaled the throughput.
 inline constexpr double kRouletteThroughput = 0.25;
 
 /// Applies Russian roulette after scattering `depth` (counted from 0), with the random number

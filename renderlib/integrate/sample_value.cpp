@@ -22,9 +22,9 @@ Rgb as_color(const Vec3& n) {
   return {channel(n.x), channel(n.y), channel(n.z)};
 }
 
-/// Returns the visibility, in [0, 1], up to the occlusion distance along one direction on the
-/// viewer's side, which is sampled with a pdf proportional to the cosine. Adds the number of rays
-/// traced to `rays`.
+/// Samples one direction on the viewer's side with a pdf proportional to the cosine. Returns the
+/// visibility, in [0, 1], along this direction up to the occlusion distance. Adds the number of
+/// rays traced to `rays`.
 float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, double u, double v,
                std::uint64_t& rays) {
   const Vec3 normal = facing_normal(point, wo);

@@ -32,7 +32,7 @@ struct Segment {
   Sample4 numbers(std::uint32_t which) const {
     return context.numbers(group_medium(depth, number, which));
   }
-  NumberStream stream() const { return context.stream(group_medium(depth, number, 3)); }
+  NumberStream stream() const { return context.stream(group_medium(depth, number, /*which=*/3)); }
 };
 
 /// Returns the light-sampling estimate of the radiance that a collision at `position` scatters back

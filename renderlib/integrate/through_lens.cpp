@@ -1,5 +1,7 @@
-// Samples a light from the point in focus, finds where the line from the light through that point
-// crosses the lens, traces a shadow ray from there to the light, and adds the weighted estimate.
+// A small light far beyond the plane of focus is a disk in the image, which few camera rays of a
+// pixel hit. So a light is also sampled from the point in focus. The line from the light through
+// that point crosses the lens at the point from which a shadow ray to the light is traced. The
+// estimate is weighted against the camera ray by MIS.
 
 #include "renderlib/integrate/through_lens.h"
 
@@ -19,6 +21,7 @@ void sample_light_through_lens(const PathContext& context, const LensView& lens,
   if (!lights.any_for(focus)) {
     return;
   }
+  // With this vertex, a light that the camera ray hits gets its MIS weight against light sampling.
   path.previous = {.receiver = focus, .pdf = lens.pdf(path.ray.direction), .delta = false};
   // Number 0 of this group is the time of the ray.
   const Sample4 numbers = context.numbers(kGroupTime);
@@ -34,6 +37,8 @@ void sample_light_through_lens(const PathContext& context, const LensView& lens,
       .origin = *on_lens, .direction = light->target - *on_lens, .t_max = 1, .time = path.ray.time};
   const Rgb passing = transmittance(
       context.scene, shadow_ray, context.stream(group_shadow(0, ShadowUse::kLens)), context.rays);
+  // For rays through the point in focus, the pixel's value is the integral of the radiance times
+  // the pdf of a camera ray's direction.
   const double pdf = lens.pdf(light->direction);
   const double weight = power_heuristic(light->pdf, pdf);
   path.radiance += light->radiance * passing * static_cast<float>(weight * pdf / light->pdf);

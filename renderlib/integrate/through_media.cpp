@@ -106,8 +106,8 @@ Rgb sample_light(const Segment& segment, const LightDistanceSampler& distances, 
          static_cast<float>(phase_pdf * weight / pdf);
 }
 
-/// Scatters the path at `distance` into a sampled direction. `distance_pdf_ratio`:
-/// PreviousVertex::distance_pdf_ratio of the new vertex.
+/// Scatters the path at `distance` into a sampled direction. `distance_pdf_ratio` is the pdf of
+/// `distance` in light sampling over the pdf with which the path is scattered there.
 MediumEvent scatter(const Segment& segment, double distance, double distance_pdf_ratio,
                     PathState& path) {
   const Sample4 at = segment.context.numbers(group_bsdf(segment.depth));

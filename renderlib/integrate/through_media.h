@@ -3,9 +3,10 @@
 // Transport of a path through the media between two surfaces.
 //
 // In each segment of a homogeneous medium, light is sampled at one distance, and the path is
-// scattered at another distance or passes. The distance for light sampling comes from a mixture of
-// free-flight sampling (medium/free_flight.h) and equiangular sampling (medium/equiangular.h), see
-// light_distance_sampler.h. For media that vary in space see through_grid_medium.h.
+// scattered at another distance or passes. LightDistanceSampler samples the distance for light
+// sampling from a mixture of free-flight sampling (medium/free_flight.h) and equiangular sampling
+// (medium/equiangular.h). Media that vary in space are crossed by delta tracking
+// (through_grid_medium.h).
 //
 // Emission that the scattered path hits is weighted against light sampling by the power heuristic,
 // over the product of distance pdf and direction pdf.

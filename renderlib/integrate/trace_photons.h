@@ -34,8 +34,8 @@ struct TracedPhotons {
   double power_by_angle = 0;
 };
 
-/// Traces the photons. A photon starts at a random point of a caster with the light that light
-/// sampling at this point finds. Its path is a pure function of the scene, the seed, the number of
+/// Traces the photons. A photon starts at a random point of a caster, with the light of a lamp that
+/// is sampled from this point. Its path is a pure function of the scene, the seed, the number of
 /// the map and the number of the photon; its power is divided by PhotonChunk::photons. `casters`
 /// MUST be complete (Casters::complete).
 TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const PhotonChunk& chunk);
@@ -43,8 +43,8 @@ TracedPhotons trace_photons(const Scene& scene, const Casters& casters, const Ph
 /// Returns the photon as a map holds it. It arrived with the power `power` at the receiver `hit`,
 /// from direction `from`, after `chain` scatterings. A partly transparent receiver, or one in a
 /// mixture, is present with some probability, and paths look up photons only where it is present.
-/// So the map holds `power` divided by this probability. The
-/// photon's position is relative to `origin`.
+/// So the map holds `power` divided by this probability. The photon's position is relative to
+/// `origin`.
 StoredPhoton stored_photon(const Scene& scene, const Casters& casters, const SurfacePoint& hit,
                            const Vec3& from, std::uint32_t chain, Rgb power, const Vec3& origin);
 

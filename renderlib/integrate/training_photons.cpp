@@ -19,9 +19,10 @@
 namespace bandsaw {
 namespace {
 
+/// A photon that has left a caster.
 struct Photon {
   Ray ray;
-  double power = 0;
+  double power = 0;   ///< a luminance
   SurfacePoint from;  ///< where the ray starts
 };
 
@@ -69,7 +70,8 @@ std::optional<Photon> start(const Scene& scene, const Casters& casters, const Pi
 
 /// Follows the photon until it arrives at a surface whose directions can be guided, and adds a
 /// record for this arrival, if the photon was scattered fewer than `longest` times before.
-/// `photons` and `mapped` are those of training_photons().
+/// `photons` is the number of photons that share the power. If `mapped` is true, photon maps find
+/// the light that arrives at receivers of caustics, so arrivals there are not recorded.
 void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sample,
             std::uint32_t longest, double photons, bool mapped, Photon photon,
             TrainingRecords& out) {

@@ -64,8 +64,10 @@ absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Mater
     return absl::OkStatus();
   }
   return absl::InvalidArgumentError(absl::StrCat(
-      "lights: instances that emit light, loose shapes and lights without size are ", count,
-      " primitives in all, at most ", kMaxLights,
+      "lights: there are ", count,
+      " primitives of instances that emit light, shapes outside of instances and lights without "
+      "size; at most ",
+      kMaxLights,
       " are possible: use fewer instances that emit light, or fewer primitives in them"));
 }
 

@@ -2,7 +2,7 @@
 
 // Delta lights: directional, point and spot lights, as defined by glTF's KHR_lights_punctual, and
 // projectors. They illuminate surfaces and cast hard shadows, but no sampled direction ever hits
-// them, so they are invisible to the camera and in mirrors, and only light sampling finds them
+// them. So they are invisible to the camera and in mirrors, and only light sampling finds them
 // (light/lights.h). README.md of renderlib lists what a further kind of light needs.
 
 #include <cstddef>
@@ -49,14 +49,14 @@ inline constexpr double kMaxHalfImage = 1e9;
 struct SpotLight {
   enum class Falloff : std::uint8_t {
     kSquare,       ///< t^2, where t is the ramp that is linear in the cosine (glTF)
-    kSmooth,       ///< 3 t^2 - 2 t^3 of the same t
+    kSmooth,       ///< 3 t^2 - 2 t^3, with t as for kSquare
     kLinearAngle,  ///< linear in the angle
   };
   Vec3 position;
   Vec3 direction{0, 0, -1};  ///< unit, the cone's axis, the direction in which the light travels
   Rgb intensity{1, 1, 1};    ///< radiant intensity on the axis; >= 0, finite
   double cos_inner = 1;      ///< cosines of the angles to the axis; cos_inner >= cos_outer >= 0
-  double cos_outer = 0.70710678118654752440;  ///< by default of 45 degrees, as in glTF
+  double cos_outer = 0.70710678118654752440;  ///< by default that of 45 degrees, as in glTF
   Falloff falloff = Falloff::kSquare;
   /// An image that multiplies the intensity. Beyond the edges of its rectangle the texture is
   /// repeated or clamped, as its wrap mode says.

@@ -10,8 +10,8 @@
 
 namespace bandsaw {
 
-/// Samples a point of the ellipsoid; the contract is that of `sample()` in light/shape_light.h.
-/// `shape` MUST be a `ShapeView::Kind::kEllipsoid`.
+/// Samples a point of the ellipsoid, seen from `from`; u, v in [0, 1). The pdf of the result is by
+/// solid angle. `shape` MUST be a `ShapeView::Kind::kEllipsoid`.
 std::optional<ShapeSample> sample_ellipsoid(const ShapeView& shape, const Vec3& from, double u,
                                             double v);
 /// Returns the pdf with respect to area at `position`, a point on the ellipsoid.

@@ -89,9 +89,10 @@ inline Rgb emitted(const Material& material, absl::Span<const Texture> textures,
              : radiance * static_cast<float>(through_coat(*coated, textures, point, direction));
 }
 
-/// Returns the expected value of the radiance emitted by material `id`, for light sampling. The
-/// material may be a mixture, and its opacity is included. A hidden lamp (material/opacity.h)
-/// emits with opacity 1, but not towards the camera.
+/// Returns the radiance emitted by material `id`, for light sampling. If the material is a mixture
+/// or partly transparent, a random choice of each sample decides which part is there, or whether
+/// the surface is there. The result is the expected value over these choices. A hidden lamp
+/// (material/opacity.h) emits with opacity 1, but not towards the camera.
 inline Rgb emitted_if_present(absl::Span<const Material> materials, MaterialId id,
                               absl::Span<const Texture> textures, const SurfacePoint& point,
                               const Vec3& direction, bool to_camera) {

@@ -39,8 +39,8 @@ struct EnvironmentPlace {
   double y = 0;
 };
 
-/// Returns the position in the images of a unit direction in world space. `textures` are those of
-/// the scene, here and below.
+/// Returns the position in the images of a unit direction in world space. In all functions of this
+/// file, `textures` are those of the scene.
 EnvironmentPlace place_of(const Environment& environment, absl::Span<const Texture> textures,
                           const Vec3& unit_direction);
 /// Returns the unit direction, in world space, of a position in the images.

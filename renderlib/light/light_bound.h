@@ -17,6 +17,7 @@
 
 namespace bandsaw {
 
+/// Bounds of a light or of a group of lights. importance() is computed from them.
 struct LightBound {
   Ball ball;
   /// Radiant intensity in the brightest direction, averaged over the channels: the irradiance at

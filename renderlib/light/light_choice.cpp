@@ -1,6 +1,7 @@
 // All candidates are weighted by their importance, and one is chosen with a probability in
-// proportion to it. Candidates are lights, and the light tree as a whole. If the tree is chosen,
-// the random number is rescaled and chooses a light in it.
+// proportion to its importance. If there are few lights, the candidates are all lights. Otherwise
+// candidate 0 is the light tree as a whole, and the distant lights follow. If the tree is chosen,
+// the random number is rescaled and chooses a light in the tree.
 
 #include "renderlib/light/light_choice.h"
 

@@ -17,8 +17,8 @@ struct DistantBound {
   /// Unit vector to the light; std::nullopt for light from all directions.
   std::optional<Vec3> direction;
 };
-/// Returns an upper bound of the irradiance at the receiver; 0 if the receiver has a cone, because
-/// distant lights are not sampled within a cone.
+/// Returns an upper bound of the irradiance at the receiver; 0 if Receiver::within is set, because
+/// distant lights are not sampled through the camera's lens.
 double importance(const DistantBound& bound, const Receiver& receiver);
 /// Returns the irradiance times an upper bound of the length along which it is scattered.
 double importance(const DistantBound& bound, const ReceiverSegment& segment);

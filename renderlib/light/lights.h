@@ -121,8 +121,9 @@ class Lights {
   std::vector<DeltaLight> delta_;
   EnvironmentLight environment_;
   LightChoice choice_;
-  /// The light of primitive p of instance i is light_of_[first_of_instance_[i] + p]; kNoLight if
-  /// there is none.
+  /// The number of the light of primitive p of instance i is light_of_[first_of_instance_[i] + p],
+  /// or kNoLight if the primitive is not a light. first_of_instance_[i] is kNoLight if the instance
+  /// has no entries in light_of_.
   std::vector<std::uint32_t> first_of_instance_;
   std::vector<std::uint32_t> light_of_;
 };

@@ -48,6 +48,8 @@ Vec2 uniform_on(Kind kind, double u, double v) {
   return {far * (1 - v), far * v};
 }
 
+/// Samples a flat shape uniformly: by solid angle if it is a rectangle or triangle for which this
+/// is possible, otherwise by area.
 std::optional<ShapeSample> sample_flat(const ShapeView& shape, const Vec3& from, double u,
                                        double v) {
   const Vec3 normal = flat_normal(shape);

@@ -1,8 +1,8 @@
 #pragma once
 
-// Samples points on emissive shapes as seen from a receiver (light/lights.h): by solid angle where
-// a closed form exists (spheres from outside, rectangles, triangles that are not small), otherwise
-// over the area, uniformly except on ellipsoids.
+// Samples points on emissive shapes as seen from a receiver (light/lights.h). Spheres seen from
+// outside, rectangles, and triangles that are not small are sampled by solid angle, because a
+// closed form exists. Other shapes are sampled over their area, uniformly except on ellipsoids.
 
 #include <optional>
 

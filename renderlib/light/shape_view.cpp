@@ -16,8 +16,8 @@ namespace {
 
 using Kind = ShapeView::Kind;
 
-/// Three axes count as those of a sphere if the differences of their squared lengths and their dot
-/// products are at most this share of a squared length.
+/// Three axes count as those of a sphere if their squared lengths differ by at most this share, and
+/// if their dot products are at most this share of a squared length.
 constexpr double kRound = 0x1p-46;
 
 ShapeView triangle_view(const Vec3& a, const Vec3& b, const Vec3& c, bool mirrored) {

@@ -55,6 +55,7 @@ std::vector<std::string> split_path(const std::string& path) {
   return steps;
 }
 
+/// Parses one step of a path. A text that does not end with `]` has no entry.
 PathStep step_of(absl::string_view text) {
   const std::size_t bracket = text.find('[');
   if (bracket == absl::string_view::npos || text.back() != ']') {
@@ -112,8 +113,8 @@ Message* follow(Message& in, const PathStep& step, const FieldDescriptor& field)
                                                         : nullptr;
 }
 
-/// Returns the field to which the path of a track leads. Returns INVALID_ARGUMENT at `track` if
-/// there is no such field or if it cannot change over time.
+/// Returns the field to which the path `path` of a track leads. Returns INVALID_ARGUMENT, with the
+/// place of `track` in the file, if there is no such field or if the field cannot change over time.
 absl::StatusOr<Target> find_target(const Field& track, const std::string& path,
                                    scene::Scene& scene) {
   Target at{&scene, nullptr};
@@ -159,6 +160,9 @@ absl::StatusOr<Interpolation> interpolation_of(const Field& in, const scene::Tra
   }
 }
 
+/// Returns the curve through the keys of a track. Returns INVALID_ARGUMENT if there are no keys, if
+/// their times do not increase, if a value is not finite, or if the keys do not all have the same
+/// number of values.
 absl::StatusOr<Curve> read_curve(const Field& in, const scene::Track& track) {
   ASSIGN_OR_RETURN(const Interpolation interpolation, interpolation_of(in, track));
   if (track.key_size() == 0) {

@@ -23,9 +23,9 @@ namespace bandsaw {
 void add_cameras(const std::string& file, const Model& model, const Transform& at_open,
                  const Transform& at_close, SceneDraft& draft);
 
-/// Returns one name for each camera. It is the first of the camera's names, in the order above, by
-/// which only this camera is found. Leaves out cameras without such a name, and all further cameras
-/// if there are more than a package can list.
+/// Returns one name for each camera: the name of the node, the own name or "FILE/NODE". It is the
+/// first of these three by which only this camera is found. Leaves out cameras without such a name,
+/// and all further cameras if there are more than a package can list.
 std::vector<std::string> names_of(const std::vector<FoundCamera>& cameras);
 
 /// Returns the camera that the scene file names, with the lens and shutter of the scene file. The

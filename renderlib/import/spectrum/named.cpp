@@ -147,9 +147,9 @@ Sampled d65() {
 std::optional<Sampled> named(absl::string_view name) {
   if (absl::ConsumePrefix(&name, "metal-")) {
     if (absl::ConsumeSuffix(&name, "-eta")) {
-      return metal(name, true);
+      return metal(name, /*is_eta=*/true);
     }
-    return absl::ConsumeSuffix(&name, "-k") ? metal(name, false) : std::nullopt;
+    return absl::ConsumeSuffix(&name, "-k") ? metal(name, /*is_eta=*/false) : std::nullopt;
   }
   if (absl::ConsumePrefix(&name, "glass-")) {
     return glass(name);

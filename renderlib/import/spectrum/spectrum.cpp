@@ -97,7 +97,7 @@ absl::StatusOr<Sampled> parse_spd(absl::string_view text) {
       }
       numbers.push_back(number);
       if (numbers.size() > kMaxNumbers) {
-        return from_pairs(numbers);
+        return from_pairs(numbers);  // returns the error for too many numbers
       }
     }
   }

@@ -146,6 +146,7 @@ class Copy {
     return absl::OkStatus();
   }
 
+  /// Adds a tile. All of its bricks are equal, so `brick_` is filled only once.
   absl::Status add_tile(const openvdb::CoordBBox& tile, const Value& value) {
     for (std::uint32_t cell = 0; cell < kBrickCells; ++cell) {
       RETURN_IF_ERROR(put(cell, value, tile.min()));
@@ -180,7 +181,7 @@ absl::StatusOr<Transform> to_file_space(const openvdb::math::Transform& map,
   Transform to_world;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
-      // The library multiplies row vectors.
+      // The library multiplies a row vector by the matrix, so its matrix is transposed.
       to_world.m[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] =
           rows(column, row);
     }

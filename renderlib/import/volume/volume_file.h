@@ -33,7 +33,8 @@ bool is_volume_file(const std::string& name);
 absl::StatusOr<FileGrid> read_volume(const std::string& path, const std::string& grid,
                                      const std::string& otherwise);
 
-/// Does the same for the bytes of a *.vol file in memory.
+/// Reads a *.vol file that a converter made in memory. `bytes` is its content. `grid` must be
+/// empty. Errors are those of read_volume().
 absl::StatusOr<FileGrid> read_made_volume(const std::string& bytes, const std::string& grid);
 
 /// Reads the bytes of a *.vol file (vol_file.cpp says how they are laid out).
