@@ -64,7 +64,9 @@ TEST(HalfBlocks, FitsTheSpaceAndKeepsItsAspectRatio) {
 
 TEST(HalfBlocks, ACellShowsTheMeanLightWithTheGivenDisplay) {
   const Image image{2, 4, {kWhite, kBlack, kBlack, kWhite, kRed, kRed, kRed, kRed}};
-  // Half of the light is code 188 of sRGB (IEC 61966-2-1).
+  // The mean of two white and two black pixels is half of the light, which is code 188 of sRGB (IEC
+  // 61966-2-1). The light 2 is also shown as half of the light if the exposure is -2 stops. NaN is
+  // shown as black.
   EXPECT_THAT(half_blocks(image, {}, {1, 1}),
               ElementsAre("\x1b[38;2;188;188;188m\x1b[48;2;255;0;0m▀\x1b[0m"));
   const Image bright{1, 1, {Rgb{2, 2, 2}}};

@@ -69,6 +69,8 @@ TEST(ImageSettings, AnImageThatIsTooLargeIsAnError) {
   EXPECT_FALSE(image_settings(options, tall).ok());
 }
 
+// Part files, which have sums of samples and are no pictures, are known by the suffix .band in any
+// case.
 TEST(Output, TheDefaultIsTheScenesNameInThisFolder) {
   EXPECT_EQ(default_output("scenes/cornell.textproto", ".png"), "cornell.png");
   EXPECT_EQ(default_output("helmet.glb", ".png"), "helmet.png");

@@ -23,6 +23,7 @@ TEST(JoinAddresses, AGivenHostIsTheOnlyAddress) {
   EXPECT_THAT(join_addresses("farm.example", 1, kLocal), ElementsAre("farm.example:1"));
 }
 
+// The host 0.0.0.0 stands for all IPv4 addresses of this machine, and [::] for all its addresses.
 TEST(JoinAddresses, LanAddressesComeFirstAndLoopbackLast) {
   EXPECT_THAT(join_addresses("0.0.0.0", 7, kLocal),
               ElementsAre("192.168.1.5:7", "172.17.0.1:7", "127.0.0.1:7"));
@@ -42,6 +43,7 @@ TEST(JoinAddresses, AreAtMostEight) {
 TEST(JoinAddresses, WithoutInterfacesTheAddressIsLoopback) {
   EXPECT_THAT(join_addresses("0.0.0.0", 7, {}), ElementsAre("127.0.0.1:7"));
   EXPECT_THAT(join_addresses("[::]", 7, {}), ElementsAre("127.0.0.1:7"));
+  // The only address, ::1, is not an IPv4 address.
   EXPECT_THAT(join_addresses("0.0.0.0", 7, {kLocal[3]}), ElementsAre("127.0.0.1:7"));
 }
 

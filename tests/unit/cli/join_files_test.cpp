@@ -18,7 +18,7 @@ class JoinFilesTest : public testing::TestWithParam<link::Role> {
   std::string file() const { return join_file_of(folder_.path(), GetParam()); }
   /// Returns the join string with the secret that the test's farm has at the beginning.
   link::JoinString first() const {
-    return join_string(GetParam(), identity_, {"host:4780"}, false);
+    return join_string(GetParam(), identity_, {"host:4780"}, /*insecure=*/false);
   }
   /// Checks that the file has the join string of first(), but with the renewed secret.
   void expect_new_string(const absl::StatusOr<RenewedSecret>& renewed) const {
@@ -29,7 +29,7 @@ class JoinFilesTest : public testing::TestWithParam<link::Role> {
     ASSERT_TRUE(written.ok()) << written.status();
     EXPECT_NE(written->secret, first().secret);
     EXPECT_EQ(written->text(),
-              join_string(GetParam(), renewed->identity, {"host:4780"}, false).text());
+              join_string(GetParam(), renewed->identity, {"host:4780"}, /*insecure=*/false).text());
   }
 
   test::TempDir folder_;

@@ -1,6 +1,7 @@
-// A local render without a coordinator: the ranges of samples that it takes one after the other
-// until its stop rule holds, and its progress. The arguments of LocalPlan::next() are the number of
-// samples per pixel that are done, the estimated error (-1: unknown), and the seconds so far.
+// A local render without a coordinator: the passes (ranges of samples) that it takes one after the
+// other until its stop rule holds, and its progress. The arguments of LocalPlan::next() are the
+// number of samples per pixel that are done, the estimated error (-1: unknown), and the seconds so
+// far.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -77,7 +78,7 @@ TEST(LocalMeter, ReportsTheProgressOfARender) {
   JobSpec spec;
   spec.settings = {.width = 10, .height = 10, .max_depth = 1, .seed = 0};
   spec.stop = StopAtSamples{64};
-  LocalMeter meter(spec, {0, 5}, 2, {.steady_s = 100, .cpu_s = 7});
+  LocalMeter meter(spec, {0, 5}, /*threads=*/2, {.steady_s = 100, .cpu_s = 7});
   meter.reached(1600);
   meter.reached(800);  // lower than before, so it is ignored
   meter.passed(32, ErrorEstimate{.relative_rmse = 0.5}, {.steady_s = 101, .cpu_s = 9});
@@ -95,7 +96,7 @@ TEST(LocalMeter, ReportsTheProgressOfARender) {
   EXPECT_DOUBLE_EQ(progress.job.curve[0].elapsed_s, 1);
   EXPECT_DOUBLE_EQ(progress.job.curve[0].cpu_s, 2);
   EXPECT_EQ(progress.clean_error, -1);
-  meter.measured(32, 0.25);
+  meter.measured(32, 0.25);  // the error of the denoised image
   EXPECT_EQ(meter.progress({.steady_s = 102, .cpu_s = 11}).clean_error, 0.25);
   EXPECT_EQ(meter.progress({.steady_s = 102, .cpu_s = 11}).job.error, 0.5);
 }

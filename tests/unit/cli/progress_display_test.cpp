@@ -124,6 +124,7 @@ TEST(ProgressDisplay, JsonIsOneValidObjectALine) {
   Screen screen;
   const Console console = screen.console(true);
   ProgressDisplay display(console, {.quiet = false, .json = true});
+  // The first call shows nothing, so that a step that takes only a moment is never shown.
   display.preparing("sending the scene", 5, 20, 0);
   display.preparing("sending the scene", 10, 20, 1);
   display.update(displayed_progress(), 1);

@@ -71,15 +71,16 @@ TEST(Report, IsJsonWithAllFields) {
   EXPECT_EQ(at(json, "error", "relative_rmse_at_most").number_value(), 0.05);
   EXPECT_TRUE(at(json, "error", "doubtful").bool_value());
   EXPECT_EQ(json.fields().at("curve").list_value().values_size(), 2);
-  // At 64 samples the error is at most 5 %, which is 4 % and a margin of 1 %. This bound is
-  // extrapolated as samples^(-3/4), the steepest fall that is accepted. At 512 samples, which is
-  // three doublings later, the bound is 1.05 %. The first checkpoint with less than 1 % has 640
-  // samples.
+  // The error is at most 10 % at 32 samples, and at most 5 % (4 % and a margin of 1 %) at 64
+  // samples. Beyond 64 samples, the curve of this octave is repeated, each time lower by the factor
+  // 2^(-3/4), the steepest fall that is accepted. So the bound at 512 f samples (1 < f <= 2) is
+  // 10 % / f / 2^3. It is 1 % at 640 samples.
   EXPECT_NEAR(at(json, "time", "cpu_s_to_1_percent").number_value(), 4.0 * 640 / 64, 1e-9);
   EXPECT_EQ(at(json, "machines", "mrays_per_cpu_s").number_value(), 2);
   const auto& workers = at(json, "machines", "workers").list_value().values();
   EXPECT_EQ(workers[0].struct_value().fields().at("name").string_value(), "desk");
   EXPECT_TRUE(workers[1].struct_value().fields().at("name").has_null_value());
+  // Five samples are bad. Two of them are negative.
   EXPECT_EQ(at(json, "health", "not_finite_samples").number_value(), 3);
   EXPECT_EQ(at(json, "health", "negative_samples").number_value(), 2);
   EXPECT_EQ(at(json, "health", "truncated_paths").number_value(), 11);

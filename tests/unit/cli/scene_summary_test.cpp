@@ -28,6 +28,8 @@ SceneDescription scene() {
   return scene;
 }
 
+// A triangle and two instances of a mesh of two triangles are five triangles. The sphere and the
+// two triangles of the first instance emit light.
 TEST(SceneSummary, CountsTheParts) {
   const SceneSummary summary = summary_of(scene(), {}, 1234);
   EXPECT_EQ(summary.triangles, 5u);

@@ -1,5 +1,6 @@
 // `bandsaw stitch`, which combines part files (some rows or some samples of an image) into the
-// image. A band is given as {samples, rows}; both are half-open ranges.
+// image. A band is given as {samples, rows}, which are half-open ranges. StitchCoverage is made
+// with the number of rows of the image.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

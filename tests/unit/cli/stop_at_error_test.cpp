@@ -1,6 +1,6 @@
-// Jobs that run until the error that is estimated from their own film reaches the target. Their
-// samples are random numbers of known mean, so the true error is known. The true error must be at
-// most the target in 19 of 20 jobs.
+// A job estimates its error from its own film, and runs until the estimate reaches the target. The
+// samples of these jobs are random numbers of known mean, so the true error is known. The true
+// error must be at most the target in 19 of 20 jobs.
 
 #include <gtest/gtest.h>
 
@@ -111,8 +111,9 @@ double true_error(const Image& image) {
   return std::sqrt(squares);
 }
 
-/// Runs one job until it stops. `with_margin`: the job compares the upper bound of the error with
-/// the target, as jobs do; otherwise it compares the estimate itself.
+/// Runs one job until it stops. `adaptive`: half tiles take different numbers of samples, which are
+/// planned from the errors of the half tiles. `with_margin`: the job compares the upper bound of
+/// the error with the target, as jobs do; otherwise it compares the estimate itself.
 Stopped run(Errors errors, bool adaptive, bool with_margin, Random& random) {
   NoisyImage image(errors, random);
   LocalPlan plan(StopAtError{.relative_rmse = kTarget, .adaptive = adaptive}, kGrid);
@@ -121,7 +122,7 @@ Stopped run(Errors errors, bool adaptive, bool with_margin, Random& random) {
   std::uint64_t samples = 0;
   double taken = 0;
   double error = -1;
-  while (const auto pass = plan.next(samples, error, 1)) {
+  while (const auto pass = plan.next(samples, error, /*seconds=*/1)) {
     const TileSamples tiles = plan.tiles(*pass);
     EXPECT_TRUE(film.add(image.render(*pass, tiles), tiles).ok());
     samples = pass->last;

@@ -46,6 +46,7 @@ TEST(Text, PercentagesHaveTwoSignificantDigits) {
 
 TEST(Text, ControlCharactersAreReplaced) {
   EXPECT_EQ(printable("a\x1b[31mb\nc\x07"), "a?[31mb c?");
+  // U+009B begins a control sequence, as ESC and [ do.
   EXPECT_EQ(printable("\xC2\x9B"
                       "1m"),
             "?1m");

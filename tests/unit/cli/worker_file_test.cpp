@@ -94,7 +94,8 @@ TEST(WorkerProgram, IsRefusedIfItsVersionIsIncompatible) {
   EXPECT_THAT(error_of(worker_file(EM_AARCH64, mark)), HasSubstr("but this farm needs protocol "));
 }
 
-// The version is sent in an HTTP header, so it must be printable text.
+// The version is sent in an HTTP header, so it must be printable text. The 24 bytes of the mark
+// that hold the version must end with a zero.
 TEST(WorkerProgram, AVersionThatIsNoTextIsRefused) {
   for (const std::string& version :
        {std::string(), std::string("1\r\nX-Evil: 1"), std::string(24, '1')}) {

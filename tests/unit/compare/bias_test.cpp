@@ -59,7 +59,7 @@ TEST(Bias, OneBadBlockIsFound) {
   EXPECT_GT(test.worst_t, 5);
 }
 
-// The header states the rate of false alarms: one in a hundred images of independent noise.
+// bias.h states the rate of false alarms: one in a hundred images of independent noise.
 TEST(Bias, FalseAlarmsAreAsRareAsStated) {
   int alarms = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {

@@ -21,6 +21,8 @@ TEST(ErrorMetrics, EqualImagesAreIdentical) {
   EXPECT_EQ(metrics.psnr, std::numeric_limits<double>::infinity());
 }
 
+// The reference is 0.5. relMSE is the square of the difference divided by 0.5^2 + 0.01, and MAPE is
+// the difference divided by 0.5 + 0.01.
 TEST(ErrorMetrics, TheRmseOfAConstantDifferenceIsTheDifference) {
   const ErrorMetrics metrics = error_metrics(uniform(4, 4, 0.75F), uniform(4, 4, 0.5F));
   EXPECT_FALSE(metrics.identical);

@@ -74,7 +74,7 @@ TEST(Convert, ErrorPointsRoundTrip) {
   EXPECT_EQ(error_point_of(to_message(point)), point);
 }
 
-/// A job in which every field that a message has differs from its default.
+/// Returns a job that sets every field of its message, farm::JobStatus.
 JobView full_job() {
   JobView job;
   job.id = 1;

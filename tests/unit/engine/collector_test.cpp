@@ -85,6 +85,8 @@ TEST_F(CollectorTest, ForgetsFinalJobsByAge) {
       ElementsAre(1));
 }
 
+// If a final job has no folder, to_forget() makes one. The time of the folder then tells the age of
+// the job.
 TEST_F(CollectorTest, KeepsJobsWithoutFilesAsLongAsOthers) {
   const std::vector<KeptJob> jobs = {{1, true, {}, {}}};
   EXPECT_THAT(collector({}).to_forget(jobs, kNow), IsEmpty());
@@ -176,7 +178,7 @@ TEST_F(CollectorTest, KeepsRecentlySentOrRequestedBlobs) {
   const wire::Digest old = put("old", kNow - 2 * kDay);
   const wire::Digest young = put("young", kNow - kDay / 2);
   const wire::Digest asked = put("asked", kNow - 2 * kDay);
-  blobs_->touch(asked);
+  blobs_->touch(asked);  // sets the time of the blob's file to the real present, which is not kNow
   struct stat found {};
   ASSERT_EQ(
       stat((folder_.blobs() + "/" + asked.hex().substr(0, 2) + "/" + asked.hex()).c_str(), &found),

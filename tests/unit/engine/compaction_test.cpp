@@ -36,7 +36,7 @@ TEST(Compaction, AJournalAbove10000RecordsIsRewrittenToTheSameState) {
   const JobView before = farm.view(job);
   farm.stop();
   EXPECT_GT(longest, 9'900u) << "each change is a record";
-  EXPECT_LT(disk->size(), 200u);  // the snapshot, and the records since then
+  EXPECT_LT(disk->size(), 200u);  // the snapshot, and the records after it
   start();
   const JobView after = farm.view(job);
   EXPECT_EQ(after.priority, kChanges % 100);

@@ -46,7 +46,8 @@ class DamagedLog : public testing::TestWithParam<Damage> {
   /// Puts a worker into quarantine, as if it had returned wrong pixels.
   absl::Status quarantine(const std::string& worker) {
     Box<absl::Status> said;
-    farm_.engine().quarantine(worker, false, [&](absl::Status status) { said.put(status); });
+    farm_.engine().quarantine(worker, /*lift=*/false,
+                              [&](absl::Status status) { said.put(status); });
     return said.take();
   }
   /// Calls `what`, such as Engine::pause, for the job, and returns the status of the answer.
@@ -82,7 +83,7 @@ class DamagedLog : public testing::TestWithParam<Damage> {
   }
   /// Lets the running coordinator read the damaged log, and waits until it reports the damage.
   void find_damage(JobId job) {
-    // The film is built again from the log, without the bands of this worker.
+    // The film is built again from the log, without the bands of the worker "wrong".
     ASSERT_TRUE(quarantine("wrong").ok());
     std::string why;
     while (why.find("damaged on the coordinator's disk") == std::string::npos) {

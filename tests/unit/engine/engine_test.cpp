@@ -1,5 +1,6 @@
 // The whole engine with fake workers in threads: images have the bytes of a local render, and
-// invalid requests and bands are refused.
+// invalid requests and bands are refused. A job is rendered in passes. A pass renders a range of
+// samples in all rows of the image.
 
 #include "coordinator/engine/engine.h"
 
@@ -134,7 +135,8 @@ TEST_F(EngineTest, ANameWithControlCharactersOrBadUtf8IsRefused) {
 TEST_F(EngineTest, BandsOfABrowserThatHasNotJoinedAreRefused) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   const BandPixels top = rendered({.samples = {0, 8}, .rows = {0, 8}});
-  EXPECT_EQ(farm_.put(job, top, 0, true).status().code(), absl::StatusCode::kFailedPrecondition)
+  EXPECT_EQ(farm_.put(job, top, /*work=*/0, /*browser=*/true).status().code(),
+            absl::StatusCode::kFailedPrecondition)
       << "no browser has joined";
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kStored);
 }

@@ -138,7 +138,8 @@ void FakeWorker::render(const action::Lease& lease) {
   while (true) {
     const auto answer = std::make_shared<Box<absl::StatusOr<BandOutcome>>>();
     engine_->put_band(
-        lease.job, 0, name_ + std::string(32 - name_.size(), '0'), *pixels, 0.01, 0.01,
+        lease.job, /*work=*/0, name_ + std::string(32 - name_.size(), '0'), *pixels,
+        /*render_s=*/0.01, /*cpu_s=*/0.01,
         [answer](absl::StatusOr<BandOutcome> outcome) { answer->put(std::move(outcome)); });
     const absl::StatusOr<BandOutcome> outcome = answer->take();
     if (answered_) {

@@ -35,8 +35,8 @@ class FakeClock : public Clock {
   std::shared_ptr<FakeTime> time_;
 };
 
-/// The records of a MemoryJournal. The test holds them longer than the journal, as a disk keeps
-/// files over a restart. Thread-safe.
+/// The records of a MemoryJournal. They remain when the journal is destroyed, as files on a disk
+/// remain over a restart. Thread-safe.
 class JournalDisk {
  public:
   /// Appends and rewrites fail until `mend`.

@@ -1,7 +1,8 @@
 // The film's thread, which adds stored bands to the images of jobs and makes previews, error
 // estimates and results. A film can be built again from the band log, for example without the bands
 // of a worker that returned wrong pixels. Damage of the log is found only when a film is built
-// again.
+// again. A pass renders a range of samples in all rows. FilmThread::plan(job, samples) announces a
+// pass that ends at this number of samples.
 
 #include "coordinator/engine/film_thread.h"
 
@@ -251,7 +252,7 @@ TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
 }
 
 TEST_F(FilmThreadTest, TheResultOfAnAdaptiveJobHasTheNumberOfSamplesOfEachPixel) {
-  thread_.add_job(1, settings_, true);
+  thread_.add_job(1, settings_, /*adaptive=*/true);
   // The image is one tile. In the second pass, only the even half of the tile takes samples. These
   // are the pixels for which half_of() returns 0.
   TileSamples even_half(settings_.width, {0, 8});
@@ -274,7 +275,7 @@ TEST_F(FilmThreadTest, BandsRefusedByAFullDiskAreAddedLater) {
   IncomingBand second = logged({0, 16}, {4, 8});
   thread_.plan(1, 16);
   {
-    const test::FullDisk full(0);
+    const test::FullDisk full(/*bytes=*/0);
     EXPECT_EQ(thread_.add(1, std::move(first), {{0, 4}}).code(),
               absl::StatusCode::kResourceExhausted);
     EXPECT_FALSE(thread_.add(1, std::move(second), {{4, 8}}).ok());

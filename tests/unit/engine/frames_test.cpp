@@ -19,7 +19,7 @@ constexpr std::uint64_t kSamples = 48;
 std::vector<FrameView> frames_of(Engine& engine, JobId sequence) {
   using Frames = absl::StatusOr<std::vector<FrameView>>;
   const Frames frames =
-      blocking_call<Frames>([&](auto answer) { engine.frames(sequence, 0, answer); });
+      blocking_call<Frames>([&](auto answer) { engine.frames(sequence, /*after=*/0, answer); });
   EXPECT_TRUE(frames.ok()) << frames.status();
   return frames.value_or(std::vector<FrameView>());
 }
@@ -99,10 +99,11 @@ TEST(EngineFrames, TheErrorOfASceneWithMissingBlobsNamesTheFrame) {
   // A job that is not a sequence has no list of frames.
   const JobId single = farm.begin(StopAtSamples{1});
   using Frames = absl::StatusOr<std::vector<FrameView>>;
-  EXPECT_EQ(blocking_call<Frames>([&](auto answer) { farm.engine().frames(single, 0, answer); })
-                .status()
-                .code(),
-            absl::StatusCode::kFailedPrecondition);
+  EXPECT_EQ(
+      blocking_call<Frames>([&](auto answer) { farm.engine().frames(single, /*after=*/0, answer); })
+          .status()
+          .code(),
+      absl::StatusCode::kFailedPrecondition);
 }
 
 }  // namespace

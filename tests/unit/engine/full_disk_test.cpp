@@ -57,7 +57,7 @@ TEST_F(FullDiskTest, ABandThatDoesNotFitIsKeptByItsWorkerAndTheJobWaits) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
   {
-    const test::FullDisk full(0);
+    const test::FullDisk full(/*bytes=*/0);
     const absl::Status refused = farm_.put(job, rendered(7, 14)).status();
     EXPECT_EQ(refused.code(), absl::StatusCode::kResourceExhausted);
     EXPECT_THAT(wait_for(job, JobState::kPaused).reason, HasSubstr("File too large"));
@@ -69,7 +69,7 @@ TEST_F(FullDiskTest, ABandThatDoesNotFitIsKeptByItsWorkerAndTheJobWaits) {
 
 TEST_F(FullDiskTest, AWaitingJobIsFinishedOnceTheDiskHasSpace) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
-  auto full = std::make_unique<test::FullDisk>(0);
+  auto full = std::make_unique<test::FullDisk>(/*bytes=*/0);
   FakeWorker worker(farm_.scene(), "one");
   worker.join(farm_.engine());
   wait_for(job, JobState::kPaused);
@@ -79,7 +79,7 @@ TEST_F(FullDiskTest, AWaitingJobIsFinishedOnceTheDiskHasSpace) {
 
 TEST_F(FullDiskTest, AResultThatCannotBeWrittenIsWrittenLater) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
-  // A folder with the name of the file to which the result is written first.
+  // The result is first written to a file of this name. A folder of the same name prevents this.
   const std::string in_the_way =
       farm_.folder() + "/jobs/" + std::to_string(job) + "/result.incoming";
   ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
@@ -167,7 +167,7 @@ TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
     farm.wait_until(job, [](const JobView& view) { return view.fraction > 0.1; });
   }
   farm.stop();
-  auto full = std::make_unique<test::FullDisk>(0);
+  auto full = std::make_unique<test::FullDisk>(/*bytes=*/0);
   const absl::Status started = farm.start();
   ASSERT_TRUE(started.ok()) << started;
   EXPECT_EQ(farm.result(done)->image.pixels, farm.local(8).pixels);
@@ -189,7 +189,7 @@ TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
 }
 
 // The reserve is a file that occupies disk space. When the journal cannot be written, the file is
-// deleted, so that the journal has space; new jobs are still refused.
+// deleted, so that the journal has space. New jobs are still refused.
 TEST_F(FullDiskTest, TheReserveIsFreedForTheJournal) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 8});
   JobSpec another = farm_.spec(StopAtSamples{.samples = 8});

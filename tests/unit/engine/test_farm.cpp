@@ -108,7 +108,7 @@ absl::StatusOr<BandOutcome> TestFarm::put(JobId job, const BandPixels& pixels, s
                                           bool browser) {
   const auto box = std::make_shared<Box<absl::StatusOr<BandOutcome>>>();
   engine_->put_band(
-      job, work, "nobody", pixels, 0, 0,
+      job, work, "nobody", pixels, /*render_s=*/0, /*cpu_s=*/0,
       [box](absl::StatusOr<BandOutcome> outcome) { box->put(std::move(outcome)); }, browser);
   return box->take();
 }

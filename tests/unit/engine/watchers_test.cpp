@@ -52,7 +52,7 @@ TEST_F(WatchersTest, ThePresentStateIsDeliveredAtOnce) {
 
 TEST_F(WatchersTest, ChangesAreDeliveredAtMostTenTimesASecond) {
   watch();
-  pass(1000, true);
+  pass(1000, /*news=*/true);
   EXPECT_LE(told_.size(), 101u);
   EXPECT_GE(told_.size(), 80u);
   EXPECT_GE(told_.back()->samples_done, 980u);
@@ -60,16 +60,16 @@ TEST_F(WatchersTest, ChangesAreDeliveredAtMostTenTimesASecond) {
 
 TEST_F(WatchersTest, AnUnchangedStateIsDeliveredOnceASecond) {
   watch();
-  pass(1000, false);
+  pass(1000, /*news=*/false);
   EXPECT_GE(told_.size(), 11u);
   EXPECT_LE(told_.size(), 13u);
 }
 
 TEST_F(WatchersTest, TheFinalStateIsAlwaysDeliveredAndIsTheLast) {
   watch();
-  pass(3, true);
+  pass(3, /*news=*/true);
   view_.state = JobState::kDone;
-  pass(100, true);
+  pass(100, /*news=*/true);
   EXPECT_EQ(told_.back()->state, JobState::kDone);
   EXPECT_EQ(told_.size(), 2u);
 }
@@ -77,16 +77,16 @@ TEST_F(WatchersTest, TheFinalStateIsAlwaysDeliveredAndIsTheLast) {
 TEST_F(WatchersTest, AFinalStateIsNotDeliveredBeforeItIsDurable) {
   watch();
   view_.state = JobState::kDone;
-  pass(100, false, true);
+  pass(100, /*news=*/false, /*hold_final=*/true);
   EXPECT_EQ(told_.size(), 1u);
-  pass(100, false);
+  pass(100, /*news=*/false);
   EXPECT_EQ(told_.size(), 2u);
 }
 
 TEST_F(WatchersTest, WatchingAFinalJobEndsWithItsState) {
   view_.state = JobState::kCancelled;
   watch();
-  pass(200, true);
+  pass(200, /*news=*/true);
   EXPECT_EQ(told_.size(), 1u);
 }
 
@@ -94,7 +94,7 @@ TEST_F(WatchersTest, AJobThatIsForgottenEndsTheWatch) {
   watch();
   for (int i = 0; i < 50; ++i) {
     now_ += 0.01;
-    watchers_.update([](JobId) { return std::nullopt; }, false, now_);
+    watchers_.update([](JobId) { return std::nullopt; }, /*hold_final=*/false, now_);
   }
   ASSERT_EQ(told_.size(), 2u);
   EXPECT_EQ(told_[1].status().code(), absl::StatusCode::kNotFound);
@@ -103,10 +103,10 @@ TEST_F(WatchersTest, AJobThatIsForgottenEndsTheWatch) {
 TEST_F(WatchersTest, AWatcherThatReturnsFalseIsRemoved) {
   watch(2);
   watch();
-  pass(50, true);
+  pass(50, /*news=*/true);
   EXPECT_GE(told_.size(), 5u);
   const std::size_t before = told_.size();
-  pass(11, true);
+  pass(11, /*news=*/true);
   EXPECT_LE(told_.size() - before, 2u) << "only one watcher must be left";
 }
 

@@ -49,8 +49,8 @@ TEST(MadeFiles, EqualTheFilesOfTheRepository) {
     EXPECT_TRUE(kept(std::string("evening_") + kSides[i] + ".hdr") ==
                 text(encode_hdr(evening_sky_side(i, 48))));
   }
-  EXPECT_TRUE(kept("books/one_weekend.textproto") == many_spheres(false));
-  EXPECT_TRUE(kept("books/bouncing_spheres.textproto") == many_spheres(true));
+  EXPECT_TRUE(kept("books/one_weekend.textproto") == many_spheres(/*bouncing=*/false));
+  EXPECT_TRUE(kept("books/bouncing_spheres.textproto") == many_spheres(/*bouncing=*/true));
   EXPECT_TRUE(kept("books/next_week.textproto") == next_week_final());
 }
 
@@ -96,8 +96,8 @@ void expect_normals_out(const Obj& obj) {
 
 using Place = std::array<double, 3>;
 
-// Expects that every edge occurs once in each direction; edges are identified by the positions of
-// their ends.
+// Expects that every edge occurs once in each direction. Two edges are the same if the positions of
+// their ends are equal.
 void expect_closed(const Obj& obj) {
   std::map<std::pair<Place, Place>, int> edges;
   const auto place = [&](std::size_t i) {
@@ -124,8 +124,9 @@ TEST(Lathe, TurnsClosedMeshesWithNormalsOutwards) {
 }
 
 // A cone that is turned in n steps has n faces at its foot and n faces at its side. The edge of the
-// foot is sharp, so the foot's normals point down, and foot and side have separate points. Each has
-// two rings of n + 1 points. Here n is 8, so the first point of the side has the index 18.
+// foot is sharp, so the foot's normals point down, and foot and side have separate points. The foot
+// has two rings of n + 1 points, and the side has two more. Here n is 8, so the first point of the
+// side has the index 18.
 TEST(Lathe, KeepsSharpEdges) {
   const Obj cone = parse(lathe_obj(std::array<Vec2, 3>{{{0, 0}, {1, 0}, {0, 1}}}, 8));
   EXPECT_EQ(cone.faces.size(), 16u);

@@ -27,7 +27,9 @@ TEST(Closed, ACubeIsClosedAlsoWithSplitCorners) {
   EXPECT_EQ(open_edges(split), 0u);
 }
 
-// If corners at the same place move apart before the shutter closes, they leave a hole.
+// If corners at the same place move apart before the shutter closes, they leave a hole. Here one
+// triangle moves one of its corners away. Two edges of this triangle and two edges of its
+// neighbours are open.
 TEST(Closed, ADeformingMeshIsClosedIfItIsClosedAtShutterOpenAndClose) {
   Mesh cube = unit_cube();
   cube.positions_at_close = cube.positions;

@@ -111,6 +111,8 @@ TEST(Disk, IsMissedByRaysInItsPlaneAndRaysThatDoNotReachIt) {
   EXPECT_EQ(c.t, 2);
 }
 
+// The point is at 0.25 radii along the axis u and 0.5 radii along the axis v. The uv are
+// these two numbers, mapped from [-1, 1] to [0, 1].
 TEST(Disk, SurfacePointsLieInThePlaneWithTheirUv) {
   Geometry g;
   g.disks.push_back({{1, 2, 3}, {0, 1, 0}, 2, MaterialId{7}});

@@ -91,6 +91,7 @@ TEST(Frames, DecomposeIntoScaleRotationAndTranslation) {
         translation(pose->translate) * rotation(pose->rotate) * scaling(pose->scale);
     ASSERT_LE(difference(again, whole), 1e-13 * 100);
   }
+  // A transform that shears, and a singular one, cannot be decomposed.
   EXPECT_FALSE(decompose(rotation({0, 0, 1}, 45) * scaling({1, 2, 1}) * rotation({0, 0, 1}, 30)));
   EXPECT_FALSE(decompose(scaling({1, 0, 1})));
 }

@@ -17,7 +17,9 @@ namespace {
 
 constexpr Vec3 kUp{0, 0, 1};
 
-/// Returns a cell of three balls above a surface. Seen from the origin, two of the balls overlap.
+/// Returns a cell of three balls above a surface. Seen from the origin, two of the balls overlap. A
+/// ball has a centre, a radius and a weight, which is its share of the light. `share` is the
+/// probability that a direction is sampled towards the balls and not from the BSDF.
 GuidingCell three_balls() {
   GuidingCell cell;
   cell.count = 3;
@@ -93,8 +95,9 @@ TEST(GuidingCones, WithoutCellsGuidesNothing) {
   EXPECT_EQ(GuidingCones({}, {}, kUp).pdf(kUp), 0);
 }
 
-// Directions are sampled towards the photons' cell with the share of its irradiance in the
-// irradiance of both cells, but at least 1/8 and at most 1/2.
+// One cell is fitted to paths and one to photons. The probability of sampling towards the photons'
+// cell is its part of the irradiance of both cells, limited to [1/8, 1/2]. The paths' cell has the
+// share 0.5, so the probability of sampling towards it is half of the remaining probability.
 TEST(GuidingShares, TheShareOfPhotonsFollowsTheirLight) {
   GuidingCell paths = three_balls();
   GuidingCell photons = three_balls();
@@ -152,7 +155,8 @@ TEST(FitCell, FindsASmallSource) {
 }
 
 TEST(FitCell, ScalesPhotonsByTheirAreaAndAveragesPaths) {
-  // 200 photons of power 1 on a unit square; 200 paths that found an irradiance of 1.
+  // 200 photons of power 1 on a unit square make an irradiance of 200. 200 paths that each found an
+  // irradiance of 1 have the mean 1.
   EXPECT_NEAR(fit_cell(light_of_disk(GuidingRecord::Kind::kPhoton, 0.1, 200)).irradiance, 200, 10);
   EXPECT_NEAR(fit_cell(light_of_disk(GuidingRecord::Kind::kPath, 0.1, 200)).irradiance, 1, 1e-5);
 }

@@ -16,9 +16,9 @@ namespace {
 
 constexpr Vec3 kAbove{0, 0, 1};
 
-/// The arguments of PhotonMap are the photons, their origin, a factor for all radii, a seed, the
-/// pool, and `share_on_surface`. This function is the last argument. It states that the whole disk
-/// of each photon lies on the surface.
+/// Returns 1: the whole disk of the photon lies on the surface. PhotonMap takes this function as
+/// its last argument, `share_on_surface`. The arguments before are the photons, the origin of their
+/// positions, a factor for all radii, a seed and the pool.
 double whole(const StoredPhoton&) { return 1; }
 
 /// Returns photons of power 1 on the floor [0, 1]^2, ten times as dense where x < 1/4. So 10/13 of
@@ -45,7 +45,7 @@ double irradiance(const PhotonMap& map, const Vec3& position, const Vec3& normal
   return sum;
 }
 
-// All coordinates of the points are multiples of 2^-10, so moved points are exact.
+// All coordinates of the points are multiples of 2^-7, so their sums with `far` are exact.
 TEST(PhotonMap, IsTheSameFarFromTheOriginOfTheWorld) {
   Pool pool(1);
   const Vec3 far{0x1p40, -0x1p41, 3 * 0x1p38};
@@ -172,7 +172,8 @@ TEST(PhotonMap, IsTheSameForAnyNumberOfThreads) {
 
 // A map divides space into parts. The photons of a part have disks of one radius, so the radius
 // jumps at the border of two parts. An image would show lines if these borders were at the same
-// places in all maps. Here, a quarter of the floor has no photons.
+// places in all maps. Here, a quarter of the floor has no photons. Close to this quarter,
+// the radius at a point must differ for most seeds.
 TEST(PhotonMap, TheSeedDecidesWhereRadiiJump) {
   Pool pool(1);
   std::vector<StoredPhoton> photons = on_floor(4000);

@@ -49,11 +49,11 @@ std::map<std::string, ReadChannel> channels_of(const std::vector<std::byte>& fil
 
 const Image kImage{2, 1, {{1, 2, 3}, {4, 5, 6}}};
 /// "albedo" is a layer of colours, and "depth" is a layer of one number per pixel.
-const Layers kLayers = {{"albedo", {2, 1, {{0.25f, 0.5f, 0.75f}, {1, 0, 0}}}, false},
-                        {"depth", {2, 1, {gray(1e6f), gray(3)}}, true}};
+const Layers kLayers = {{"albedo", {2, 1, {{0.25f, 0.5f, 0.75f}, {1, 0, 0}}}, /*is_number=*/false},
+                        {"depth", {2, 1, {gray(1e6f), gray(3)}}, /*is_number=*/true}};
 
 TEST(ExrLayers, AreStoredBesideTheImageUnderTheirNames) {
-  const auto channels = channels_of(encode_exr(kImage, false, kLayers).value());
+  const auto channels = channels_of(encode_exr(kImage, /*half=*/false, kLayers).value());
   ASSERT_EQ(channels.size(), 7u);
   EXPECT_THAT(channels.at("R").values, ElementsAre(1, 4));
   EXPECT_THAT(channels.at("B").values, ElementsAre(3, 6));
@@ -63,7 +63,7 @@ TEST(ExrLayers, AreStoredBesideTheImageUnderTheirNames) {
 }
 
 TEST(ExrLayers, LayersOfNumbersStayFloatInAHalfFloatFile) {
-  const auto channels = channels_of(encode_exr(kImage, true, kLayers).value());
+  const auto channels = channels_of(encode_exr(kImage, /*half=*/true, kLayers).value());
   EXPECT_EQ(channels.at("R").type_in_file, TINYEXR_PIXELTYPE_HALF);
   EXPECT_EQ(channels.at("albedo.B").type_in_file, TINYEXR_PIXELTYPE_HALF);
   EXPECT_EQ(channels.at("depth.Z").type_in_file, TINYEXR_PIXELTYPE_FLOAT);
@@ -71,14 +71,15 @@ TEST(ExrLayers, LayersOfNumbersStayFloatInAHalfFloatFile) {
 }
 
 TEST(ExrLayers, LayersOfAnotherSizeAreRefused) {
-  const Layers wrong = {{"albedo", {1, 1, {gray(1)}}, false}};
-  EXPECT_EQ(encode_exr(kImage, false, wrong).status().code(), absl::StatusCode::kInvalidArgument);
+  const Layers wrong = {{"albedo", {1, 1, {gray(1)}}, /*is_number=*/false}};
+  EXPECT_EQ(encode_exr(kImage, /*half=*/false, wrong).status().code(),
+            absl::StatusCode::kInvalidArgument);
 }
 
 TEST(ExrLayers, LongNamesAreRefused) {
-  const Layers wrong = {{std::string(201, 'a'), kImage, false}};
+  const Layers wrong = {{std::string(201, 'a'), kImage, /*is_number=*/false}};
   EXPECT_EQ(
-      encode_exr(kImage, false, wrong).status(),
+      encode_exr(kImage, /*half=*/false, wrong).status(),
       absl::InvalidArgumentError("the name of a layer has 201 bytes, at most 200 are allowed"));
 }
 

@@ -89,6 +89,7 @@ TEST(WriteImage, P2_PpmHoldsRoundedSrgbCodesFromTheTopRowDown) {
 TEST(WriteImage, PngHasItsSignatureAndSize) {
   const std::string bytes = encoded(two_by_two(), ImageFormat::kPng);
   EXPECT_EQ(bytes.substr(0, 8), "\x89PNG\r\n\x1a\n");
+  // Width, height, 8 bits per channel, and the colour type 2, which is RGB.
   EXPECT_EQ(bytes.substr(16, 10), std::string("\0\0\0\2\0\0\0\2\x08\x02", 10));
   EXPECT_THAT(bytes, HasSubstr("IEND"));
 }

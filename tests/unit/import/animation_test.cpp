@@ -99,6 +99,7 @@ TEST(NodeMotion, APropertyWithoutACurveKeepsItsRestPose) {
   motion.scale = {2, 2, 2};
   motion.translation = Curve({0, 1}, {0, 0, 0, 10, 0, 0}, 3, Interpolation::kLinear);
   EXPECT_EQ(motion.at(0.5).point({1, 1, 1}), (Vec3{7, 2, 2}));
+  // The key at 1 is not inside the open interval (-1, 1).
   EXPECT_THAT(motion.times_between(-1, 1), ElementsAre(0));
   EXPECT_TRUE(motion.rests(1, 2));
 }

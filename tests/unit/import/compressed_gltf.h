@@ -1,7 +1,8 @@
 #pragma once
 
 // Makes glTF files with compressed meshes, for tests of their decoding. The encoders are those of
-// libdraco (KHR_draco_mesh_compression) and libmeshoptimizer (EXT_meshopt_compression).
+// libdraco (KHR_draco_mesh_compression) and libmeshoptimizer (EXT_meshopt_compression). The mesh is
+// a WavySquare, a square of triangles that is bent to a wave.
 
 #include <draco/compression/encode.h>
 #include <gtest/gtest.h>
@@ -14,8 +15,9 @@
 namespace bandsaw::test {
 
 /// Adds a buffer view that is compressed by meshopt: `stream` decodes to `count` elements of
-/// `stride` bytes. Its fallback, buffer 1, has no data, so a reader must decode. `mode` and
-/// `filter` are those that the extension defines. Returns the index of the view.
+/// `stride` bytes. The uncompressed data of the view would be in buffer 1, which has no data, so a
+/// reader must decode `stream`. `mode` and `filter` are those that the extension defines. Returns
+/// the index of the view.
 inline std::size_t add_view(GltfWriter& file, const std::string& stream, std::size_t count,
                             std::size_t stride, const char* mode, const char* filter = "NONE") {
   const std::size_t at = file.view(stream);
@@ -91,8 +93,8 @@ inline GltfWriter with_meshopt(const WavySquare& square, bool as_sequence, std::
 }
 
 /// Returns the square as a Draco mesh, whose attributes 0 to 2 are positions, normals and uvs.
-/// `bits`: size of a quantised number; 0: numbers are not quantised. `edgebreaker` selects that
-/// encoding instead of the sequential one.
+/// `bits`: size of a quantised number; 0: numbers are not quantised. `edgebreaker`: the encoding is
+/// Draco's edgebreaker, otherwise the sequential one.
 inline std::string draco_stream(const WavySquare& square, int bits, bool edgebreaker) {
   draco::Mesh mesh;
   mesh.set_num_points(static_cast<std::uint32_t>(square.vertices()));

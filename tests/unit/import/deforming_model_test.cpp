@@ -202,7 +202,7 @@ TEST_F(DeformingModel, TheCoverageOfAMorphTargetInLinearMotionIsALinearRamp) {
       Json::array({{{"POSITION", file.add<float>({0, 0, 0, 10, 0, 0, 10, 0, 0, 0, 0, 0}, 3)}}});
   animate(file, 0, "weights", {0, 1}, {0, 1}, 1);
   const std::vector<Moments> found = pixels(file, 0, 0, kWidth, 1);
-  // The integral of clamp(x, 0, 10) / 10 up to x.
+  // Returns the integral of clamp(s, 0, 10) / 10 over s from 0 to x.
   const auto integral = [](double x) { return x < 0 ? 0 : x < 10 ? x * x / 20 : x - 5; };
   for (int x = 0; x < kWidth; ++x) {
     const double expected = 1 - (integral(x + 1 - 5) - integral(x - 5));
@@ -230,8 +230,9 @@ TEST_F(DeformingModel, ASwingingBarCoversTheMeanOfItsArea) {
   const double expected = kArea * (2 + turn.cos) / 3;
   EXPECT_NEAR(sum, expected, 4 * std::sqrt(variance));
   EXPECT_LT(std::sqrt(variance), 5e-3 * expected);
-  // The expected value of a pixel is the share of the pairs of a point of the pixel and a time t
-  // for which the inverse of the map at t takes the point into the bar.
+  // At the time t, a point of a pixel is covered if the inverse of the map at t takes the point
+  // into the bar. The expected value of a pixel is the probability that a random point of the pixel
+  // is covered at a random time.
   constexpr int kParts = 48;
   for (int y = 0; y < 14; ++y) {
     for (int x = 0; x < 14; ++x) {

@@ -87,7 +87,7 @@ TYPED_TEST(Quantised, PositionsAndUvsAreTheirIntegers) {
     file.root["extensionsUsed"] = {"KHR_mesh_quantization"};
     file.root["extensionsRequired"] = {"KHR_mesh_quantization"};
     const Mesh read = this->mesh(file);
-    // The integer that stands for 1, and the number for which the least integer stands.
+    // `one` is the integer that means 1. `lowest` is the number that the least integer means.
     const float one = normalized ? static_cast<float>(most) : 1;
     const float lowest = normalized && least != 0 ? -1 : static_cast<float>(least);
     EXPECT_THAT(
@@ -231,6 +231,7 @@ INSTANTIATE_TEST_SUITE_P(
         Damage{REPLACE("/accessors/0/sparse", R"({"count": 1, "indices": {"bufferView": 0,
           "componentType": 5126}, "values": {"bufferView": 0}})"),
                "of its indices is 5126"},
+        // The index is read from the bytes of a position, the float 0.5.
         Damage{REPLACE("/accessors/0/sparse", R"({"count": 1, "indices": {"bufferView": 0,
           "componentType": 5125, "byteOffset": 12}, "values": {"bufferView": 0}})"),
                "accessors[0].sparse: replaces element 1056964608 of 9"},

@@ -299,8 +299,10 @@ TEST(Draco, AQuantisedMeshIsRenderedWithinItsBound) {
   const auto plain = seen(read(square.plain(), folder));
   const auto quantised = seen(read(with_draco(square, 14, true), folder));
   ASSERT_EQ(plain.size(), quantised.size());
-  // The layer shows 0.5 + 0.5 n. The normals are off by at most 4 / 2^14. The normals of
-  // neighbouring vertices differ by less than 1/12, and a hit may move by 1 / 2^14 of the square.
+  // The normals of vertices are off by at most 4 / 2^14. A hit may move by 1 / 2^14 of the square.
+  // The normals of neighbouring vertices, which are 1/12 apart, differ by less than 1/12, so this
+  // changes the normal n by less than 1 / 2^14. The layer shows 0.5 + 0.5 n, so it is off by less
+  // than 2.5 / 2^14.
   for (std::size_t i = 0; i < plain.size(); ++i) {
     EXPECT_NEAR(plain[i].r, quantised[i].r, 4.0 / (1 << 14)) << i;
     EXPECT_NEAR(plain[i].g, quantised[i].g, 4.0 / (1 << 14)) << i;

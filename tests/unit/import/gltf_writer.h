@@ -165,7 +165,7 @@ struct WavySquare {
   std::vector<std::uint32_t> indices;
 };
 
-/// Returns the values of an attribute of the scene's mesh in one list.
+/// Returns the numbers of all values of an attribute, such as the positions, in one list.
 template <class T, std::size_t n>
 std::vector<T> flat(const std::vector<std::array<T, n>>& values) {
   std::vector<T> out;

@@ -118,7 +118,7 @@ std::string box(const Window& window) {
 }
 
 /// Returns an EXR file of one channel of floats, without compression. `tiled`: the chunks are
-/// tiles, otherwise rows. `order`: 0 if they are stored from the top, 1 if from the bottom.
+/// tiles, otherwise rows. `order`: 0 if the file has the chunks from the top, 1 if from the bottom.
 /// `stored`, `shown`: the data window and the display window. `chunks`: the rows or tiles from the
 /// top, each with its coordinates and its size. `more`: further attributes.
 std::string exr(bool tiled, char order, const Window& stored, const Window& shown,
@@ -189,6 +189,8 @@ TEST(ImageFormats, ExrTilesMayBeStoredFromTheBottom) {
   }
 }
 
+// Texels of the display window that are outside of the data window are 0. Texels of the data window
+// that are outside of the display window are left out.
 TEST(ImageFormats, AnExrImageHasTheSizeOfItsDisplayWindow) {
   const std::vector<std::string> rows{word(-1) + floats({1, 2}), word(0) + floats({3, 4})};
   const Window stored{1, -1, 2, 0};

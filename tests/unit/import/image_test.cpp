@@ -224,6 +224,7 @@ TEST(DecodePicture, GivesBackAnHdrToHalfAUnitOfTheMantissa) {
   }
 }
 
+// Negative values and NaN become 0. Infinity becomes the largest value, which is 1.7e38.
 TEST(DecodePicture, HdrRoundsToTheNearestRepresentableValue) {
   const float inf = std::numeric_limits<float>::infinity();
   const Image image{4, 1, {{-1, std::nanf(""), 0}, {inf, 1, 0}, {255.9f, 0, 0}, {1, 0.5f, 0.25f}}};

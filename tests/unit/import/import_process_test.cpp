@@ -103,7 +103,7 @@ TEST(ImportSession, AFrameHasTheBytesOfAnImportInANewProcess) {
     const auto session = ImportSession::start(path, in, {});
     ASSERT_TRUE(session.ok()) << session.status();
     for (const std::int64_t frame : {3, 7, 7, 20}) {
-      auto package = (*session)->import(frame, nullptr);
+      auto package = (*session)->import(frame, /*stop=*/nullptr);
       ASSERT_TRUE(package.ok()) << package.status();
       const auto alone = import_in_process(path, limits(), {.frame = frame});
       ASSERT_TRUE(alone.ok()) << alone.status();
@@ -122,18 +122,18 @@ TEST(ImportSession, TellsWhyAFrameCannotBeImported) {
   const TempDir folder;
   const std::string path = moving_model(folder);
   const auto session = *ImportSession::start(path, limits(), {.animation = "run"});
-  EXPECT_THAT(std::string(session->import(1, nullptr).status().message()),
+  EXPECT_THAT(std::string(session->import(1, /*stop=*/nullptr).status().message()),
               HasSubstr("walk.gltf: has no animation \"run\""));
   const auto stopped = *ImportSession::start(path, limits(), {});
   const std::atomic<bool> stop{true};
   EXPECT_EQ(stopped->import(1, &stop).status().code(), absl::StatusCode::kCancelled);
   ImportLimits hurried = limits();
   hurried.seconds = 0;
-  EXPECT_EQ((*ImportSession::start(path, hurried, {}))->import(1, nullptr).status().code(),
+  EXPECT_EQ((*ImportSession::start(path, hurried, {}))->import(1, /*stop=*/nullptr).status().code(),
             absl::StatusCode::kDeadlineExceeded);
   ImportLimits broken = limits();
   broken.program = "/bin/true";  // ends without an answer
-  EXPECT_EQ((*ImportSession::start(path, broken, {}))->import(1, nullptr).status().code(),
+  EXPECT_EQ((*ImportSession::start(path, broken, {}))->import(1, /*stop=*/nullptr).status().code(),
             absl::StatusCode::kInternal);
   EXPECT_EQ(ImportSession::start("no.zip", limits(), {}).status().code(),
             absl::StatusCode::kNotFound);
@@ -262,8 +262,8 @@ TEST(ImportProcess, AFileThatNeedsTooMuchMemoryIsAnError) {
   const TempDir folder;
   ImportLimits in = limits();
   in.memory_bytes = 256ull << 20;
-  // 20000 x 20000 texels: 1.2 GB when decoded. 400 MB of the texels are in this file, which is
-  // sparse.
+  // The file has 20000 x 20000 grey texels, which are 400 MB. It is sparse, so it takes little disk
+  // space. The decoded texels take 1.2 GB.
   const std::string path = write_text(folder, "sky.pgm", "P5 20000 20000 255\n");
   std::filesystem::resize_file(path, 400'000'019);
   const auto picture = read_image_in_process(path, in);
@@ -334,13 +334,13 @@ TEST(ReadImageInProcess, GivesAPictureOrOneError) {
 
 TEST(RunChild, ReportsHowAChildEnded) {
   const auto run = [](const std::string& script) {
-    return run_child({"/bin/sh", "-c", script}, 20, nullptr).value();
+    return run_child({"/bin/sh", "-c", script}, /*seconds=*/20, /*stop=*/nullptr).value();
   };
   EXPECT_EQ(WEXITSTATUS(run("exit 3").wait_status), 3);
   EXPECT_EQ(run("echo said; echo thrown away >&2").output, "said\n");
   EXPECT_EQ(WTERMSIG(run("kill -SEGV $$").wait_status), SIGSEGV);
-  EXPECT_EQ(run("head -c 1000000 /dev/zero").output.size(), 65536u);
-  EXPECT_EQ(run_child({"/bin/sh", "-c", "exec sleep 1000"}, 0.05, nullptr)->end,
+  EXPECT_EQ(run("head -c 1000000 /dev/zero").output.size(), 65536u);  // the maximum
+  EXPECT_EQ(run_child({"/bin/sh", "-c", "exec sleep 1000"}, /*seconds=*/0.05, nullptr)->end,
             ChildOutcome::End::kTimedOut);
   EXPECT_FALSE(run_child({"/no/such/program"}, 1, nullptr).ok());
 }

@@ -71,7 +71,7 @@ light { spot { position: [0, 5, 0] direction: [3, 0, 0] intensity { rgb: [1, 1, 
   EXPECT_EQ(std::get<PointLight>(lights[1]).position, (Vec3{1, 2, 3}));
   const auto& spot = std::get<SpotLight>(lights[2]);
   EXPECT_EQ(spot.direction, (Vec3{0, -1, 0}));
-  EXPECT_EQ(spot.cos_inner, 1);
+  EXPECT_EQ(spot.cos_inner, 1);  // the default inner angle is 0, the default outer one 45 degrees
   EXPECT_NEAR(spot.cos_outer, 0.5, 1e-15);
   EXPECT_EQ(std::get<SpotLight>(lights[3]).direction, (Vec3{1, 0, 0}));
   EXPECT_NEAR(std::get<SpotLight>(lights[3]).cos_outer, std::sqrt(0.5), 1e-15);
@@ -310,6 +310,7 @@ camera { position: [0, 1, 5] look_at: [0, 0, 0] }
 model { file: "m.gltf" translate: [10, 0, 0] scale: 3 rotate { axis: [0, 1, 0] degrees: 90 } })"));
   ASSERT_TRUE(imported.ok()) << imported.status();
   const auto& bulb = std::get<PointLight>(imported->scene.lights.at(1));
+  // The bulb at (1, 2, 3) is scaled to (3, 6, 9), rotated to (9, 6, -3), and then moved.
   EXPECT_LE(length(bulb.position - Vec3{19, 6, -3}), 1e-9);
   EXPECT_EQ(bulb.intensity, (Rgb{40, 40, 40}));
   const auto& spot = std::get<SpotLight>(imported->scene.lights.at(2));

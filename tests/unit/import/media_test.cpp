@@ -88,6 +88,7 @@ TEST(MediaFile, ABoxWithAMaterialAndAnInteriorIsASurfaceAndABoundary) {
   EXPECT_EQ(imported->scene.media.boundaries.instances.size(), 1u);
 }
 
+// The triangles of the boundary are turned over, and those of the visible mesh are not.
 TEST(MediaFile, AMeshThatIsInsideOutIsInverted) {
   const auto imported = import_text(R"(model { file: "turned.obj" interior: "milk" })");
   ASSERT_TRUE(imported.ok()) << imported.status();

@@ -1,5 +1,6 @@
-// Mesh files of Mitsuba scenes: OBJ, PLY and *.serialized. If the last argument of a function that
-// reads them, `flip_v`, is true, v becomes 1 - v.
+// Mesh files of Mitsuba scenes: OBJ, PLY and *.serialized. The last argument of the functions that
+// read these files is `flip_v`: if it is true, v becomes 1 - v. The second argument of
+// read_serialized() is the number of the mesh in the file, from 0.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
