@@ -42,7 +42,7 @@ TEST(HalfBlocks, TheUpperPixelIsTheForegroundAndTheLowerOneTheBackground) {
                           "\x1b[38;2;255;0;0m\x1b[48;2;255;0;0m▀\x1b[0m"));
 }
 
-TEST(HalfBlocks, AnOddLastRowHasNoBackground) {
+TEST(HalfBlocks, TheLastOfAnOddNumberOfRowsHasNoBackground) {
   const Image image{1, 3, {kWhite, kWhite, kRed}};
   EXPECT_THAT(half_blocks(image, {}, {80, 24}),
               ElementsAre("\x1b[38;2;255;255;255m\x1b[48;2;255;255;255m▀\x1b[0m",

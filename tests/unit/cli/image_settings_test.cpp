@@ -71,7 +71,7 @@ TEST(ImageSettings, AnImageThatIsTooLargeIsAnError) {
 
 // Part files, which have sums of samples and are no pictures, are known by the suffix .band in any
 // case.
-TEST(Output, TheDefaultIsTheScenesNameInThisFolder) {
+TEST(Output, TheDefaultIsTheScenesNameInTheCurrentFolder) {
   EXPECT_EQ(default_output("scenes/cornell.textproto", ".png"), "cornell.png");
   EXPECT_EQ(default_output("helmet.glb", ".png"), "helmet.png");
   EXPECT_EQ(printable_list({"a.png", "b.pfm"}), "a.png, b.pfm");

@@ -24,7 +24,7 @@ TEST(JoinAddresses, AGivenHostIsTheOnlyAddress) {
 }
 
 // The host 0.0.0.0 stands for all IPv4 addresses of this machine, and [::] for all its addresses.
-TEST(JoinAddresses, LanAddressesComeFirstAndLoopbackLast) {
+TEST(JoinAddresses, RealInterfacesComeBeforeVirtualOnesAndLoopbackIsLast) {
   EXPECT_THAT(join_addresses("0.0.0.0", 7, kLocal),
               ElementsAre("192.168.1.5:7", "172.17.0.1:7", "127.0.0.1:7"));
   EXPECT_THAT(
@@ -32,7 +32,7 @@ TEST(JoinAddresses, LanAddressesComeFirstAndLoopbackLast) {
       ElementsAre("192.168.1.5:7", "[2001:db8::5]:7", "172.17.0.1:7", "127.0.0.1:7", "[::1]:7"));
 }
 
-TEST(JoinAddresses, AreAtMostEight) {
+TEST(JoinAddresses, AreAtMostEightAndTheLastIsLoopback) {
   std::vector<LocalAddress> many(20, kLocal[2]);
   many.push_back(kLocal[0]);
   const auto addresses = join_addresses("0.0.0.0", 7, many);

@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-TEST(Lists, JobsAreATableWithEvenColumns) {
+TEST(Lists, JobsAreATableWithAlignedColumns) {
   farm::JobStatus status;
   status.set_job(7);
   status.set_name("cornell");

@@ -102,7 +102,7 @@ TEST(ProgressDisplay, ATerminalIsRedrawnInPlaceAndLeftClean) {
             "\r\x1b[2A\x1b[J0 samples a pixel · 0 rays\nbox.png · 0.00 s · 0 workers\n");
 }
 
-TEST(ProgressDisplay, ColoursAreOnlyUsedWhereTheyAreWanted) {
+TEST(ProgressDisplay, TheHeaderIsBoldIfColoursAreWanted) {
   Screen screen;
   const Console console = screen.console(true, true);
   ProgressDisplay display(console, {});

@@ -32,7 +32,7 @@ Progress some_progress() {
   return progress;
 }
 
-TEST(ProgressText, HasTheSpecifiedFormat) {
+TEST(ProgressText, TheLinesShowErrorSamplesSpeedTimeAndWorkers) {
   EXPECT_EQ(header_line(some_progress()), "job 7 · cornell · 600×600 · until error ≤ 1 %");
   EXPECT_EQ(bar_line(some_progress(), 80),
             " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");

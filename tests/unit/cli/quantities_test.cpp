@@ -7,7 +7,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-TEST(Quantities, TimesHaveUnits) {
+TEST(Quantities, ATimeIsInSecondsUnlessItHasAUnit) {
   EXPECT_EQ(parse_seconds("--time", "5s").value(), 5);
   EXPECT_EQ(parse_seconds("--time", "90").value(), 90);
   EXPECT_EQ(parse_seconds("--time", "2m").value(), 120);

@@ -20,7 +20,7 @@ std::string error_of(const StitchCoverage& coverage) {
   return std::string(coverage.samples().status().message());
 }
 
-TEST(StitchCoverage, PartsThatCoverEachRowOnceMakeAnImageInAnyOrder) {
+TEST(StitchCoverage, PartsInAnyOrderMakeAnImageIfTheyHaveEachSampleOnce) {
   StitchCoverage coverage(10);
   ASSERT_TRUE(coverage.add("b", {{0, 64}, {4, 10}}).ok());
   ASSERT_TRUE(coverage.add("a", {{64, 72}, {0, 4}}).ok());

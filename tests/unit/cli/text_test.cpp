@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-TEST(Text, NumbersHaveTwoDigitsAndALetter) {
+TEST(Text, LargeNumbersHaveTwoDigitsAndASiPrefix) {
   EXPECT_EQ(si(0), "0");
   EXPECT_EQ(si(7), "7");
   EXPECT_EQ(si(950), "950");

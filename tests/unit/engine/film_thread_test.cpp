@@ -231,7 +231,7 @@ TEST_F(FilmThreadTest, AddsOnlyTheRowsThatAreNew) {
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
-TEST_F(FilmThreadTest, AnImageLeavesOutRowsWithLaterSamples) {
+TEST_F(FilmThreadTest, AnImageOf16SamplesLeavesOutLaterSamples) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(add({16, 32}, {2, 5}, {{3, 5}}).ok());

@@ -32,7 +32,7 @@ TEST(Mailbox, DoesTasksInOrderOnOneThread) {
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
 }
 
-TEST(Mailbox, AfterBatchAlsoRunsWithoutTasks) {
+TEST(Mailbox, CallsItsFunctionAlsoWithoutTasks) {
   std::atomic<int> runs{0};
   Box<int> box;
   Mailbox mailbox([&] { box.put(++runs); }, milliseconds(1));

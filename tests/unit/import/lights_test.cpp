@@ -56,7 +56,7 @@ class SceneLights : public ::testing::Test {
   TempDir folder_;
 };
 
-TEST_F(SceneLights, ReadsEveryKindOfLight) {
+TEST_F(SceneLights, ReadsDirectionalPointAndSpotLights) {
   const auto imported = read(R"(
 light { directional { direction: [0, -2, 0] irradiance { rgb: [1, 2, 3] } } }
 light { point { position: [1, 2, 3] intensity { rgb: [4, 5, 6] } } }
