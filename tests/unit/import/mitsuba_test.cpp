@@ -100,7 +100,8 @@ TEST_F(MitsubaScene, AMirroredSensorIsMirrored) {
   EXPECT_TRUE(converted->scene.camera().mirrored());
 }
 
-// In Mitsuba, a max_depth of -1 means no limit. It becomes the maximum, 1024.
+// Mitsuba counts the segments of a path, and this renderer counts the scatterings between the
+// segments. In Mitsuba, a max_depth of -1 means no limit. It becomes the maximum, 1024.
 TEST_F(MitsubaScene, MaxDepthIsOneLessThanInMitsuba) {
   const auto depth = [&](const std::string& value) {
     return scene("<integrator type=\"path\"><integer name=\"max_depth\" value=\"" + value +
@@ -117,6 +118,8 @@ TEST_F(MitsubaScene, MaxDepthIsOneLessThanInMitsuba) {
             1u);
 }
 
+// With free_passage, light that passes the pane does not count towards max_depth. The integrators
+// `volpath` and `volpathmis` do not count it, and `path` does.
 TEST_F(MitsubaScene, TheVolumetricPathTracerDoesNotCountThinPanes) {
   const auto is_free = [&](const std::string& integrator) {
     return scene("<integrator type=\"" + integrator + "\"/>" +
@@ -370,8 +373,8 @@ TEST_F(MitsubaScene, ACheckerboardBeginsAtTheTop) {
   const scene::CheckerTexture& flat = from.material(0).diffuse().texture().checker();
   EXPECT_THAT(flat.size(), ElementsAre(0.1, 0.1));
   EXPECT_NEAR(flat.even().color().rgb(0), 0.4, 1e-7);
-  // On the sphere, v starts at the opposite end of the ten rows. The first cell at that end has the
-  // second colour.
+  // On the sphere, v is reversed, so the rows of cells are counted from the other end. The number
+  // of rows, ten, is even, so the first row counted from that end starts with the second colour.
   EXPECT_NEAR(from.material(1).diffuse().texture().checker().even().color().rgb(0), 0.2, 1e-7);
 }
 

@@ -170,6 +170,8 @@ TEST(ColladaCameras, HaveTheVerticalAngleOfTheFile) {
   EXPECT_NEAR(degrees("<xfov>90</xfov><aspect_ratio>1.7320508075688772</aspect_ratio>"), 60, 1e-9);
 }
 
+// In COLLADA, ymag is half of the height and xmag is half of the width of the view. A unit is half
+// a metre, so the height in metres equals ymag, or xmag divided by the aspect ratio.
 TEST(ColladaCameras, MayBeOrthographic) {
   const auto height = [](const std::string& sizes) {
     const auto imported = import_collada("<orthographic>" + sizes + "</orthographic>");

@@ -41,6 +41,8 @@ class Obj : public ::testing::Test {
   TempDir folder_;
 };
 
+// A highlight of exponent Ns has the width of GGX with alpha^2 = 2 / (Ns + 2), and alpha is the
+// square of the roughness.
 TEST_F(Obj, AHighlightBecomesRoughness) {
   const MetallicRoughness m = layers("Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 98\nillum 2\n");
   EXPECT_NEAR(m.roughness.factor, std::pow(0.02, 0.25), 1e-6);

@@ -315,7 +315,8 @@ TEST_F(Gltf, ColoursOfThreeChannelsGiveNoWarningAboutAlpha) {
   EXPECT_THAT(read(file).info.warnings, IsEmpty());
 }
 
-// An extension that replaces data by bytes that cannot be read is refused if it is required.
+// A file is refused if it requires an extension whose images or vertices cannot be read. A file
+// that requires any other extension is imported.
 TEST_F(Gltf, UnreadableDataIsRefused) {
   GltfTriangle file;
   file.more = R"("extensionsRequired": ["KHR_texture_basisu"],)";

@@ -1,6 +1,6 @@
 // A textured model is seen from the front with one pixel per texel. A layer is the image of one
-// integrator. The albedo layer must equal the image to the 8-bit code, and the normal layer must
-// equal the normal map.
+// integrator. The albedo layer must have the colours of the model's texture, and the normal layer
+// must have the normals of the model's normal map.
 
 #include <gtest/gtest.h>
 
@@ -86,8 +86,8 @@ TEST_P(ModelLayers, AreTheImagesOfTheModel) {
     const auto along = [&](std::size_t c) {
       return 2 * static_cast<unsigned char>(bent[3 * i + c]) / 255.0 - 1;
     };
-    // The model is scaled by 1.4 along x. This must not change the normals of the map, because the
-    // uvs are not scaled.
+    // The model is scaled by 1.4 along x. The scaling turns neither the tangents nor the normal of
+    // the surface, so the normals of the map must stay the same.
     const Vec3 n = normalize({along(0), along(1), along(2)});
     EXPECT_NEAR(2 * normals.pixels[i].r - 1, n.x, 1e-5);
     EXPECT_NEAR(2 * normals.pixels[i].g - 1, n.y, 1e-5);

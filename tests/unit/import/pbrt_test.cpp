@@ -46,6 +46,7 @@ std::vector<std::string> warnings_of(const std::string& text) {
   return converted.ok() ? converted->warnings : std::vector<std::string>();
 }
 
+// The axes of pbrt's camera are left-handed, and the axes of our cameras are right-handed.
 TEST(Pbrt, CamerasAreMirroredUnlessTheTransformFlipsThem) {
   const auto scene = scene_of(
       "LookAt 1 2 -5  1 2 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
@@ -137,7 +138,8 @@ TEST(Pbrt, AProjectedImageStandsUpright) {
   const auto plain = projector("");
   EXPECT_THAT(plain.look_at(), ElementsAre(0, 0, 1));
   EXPECT_THAT(plain.up(), ElementsAre(0, 1, 0));
-  EXPECT_TRUE(plain.mirrored()) << "the right of the image is +x, but cross(z, y) is -x";
+  EXPECT_TRUE(plain.mirrored())
+      << "the right of the image is +x, but without a mirror it would be cross(z, y) = -x";
   EXPECT_FALSE(projector("Scale -1 1 1").mirrored());
   const auto turned = projector("Scale 1 -1 1");
   EXPECT_THAT(turned.up(), ElementsAre(0, -1, 0));
@@ -490,6 +492,8 @@ TEST(Pbrt, CountsAreCheckedBeforeMemoryIsAllocated) {
       HasSubstr("s.pbrt:3: \"a.ply\": is damaged: it says that it has 900000000 of \"vertex\""));
 }
 
+// Attributes that are nested too deeply, cyclic includes, and files outside of the scene's folder
+// are refused.
 TEST(Pbrt, HostileScenesAreStoppedByLimits) {
   std::string nested = "WorldBegin\n";
   for (int i = 0; i < 1'000'000; ++i) {
@@ -502,6 +506,7 @@ TEST(Pbrt, HostileScenesAreStoppedByLimits) {
   EXPECT_THAT(std::string(convert(dir, "Include \"b.pbrt\"").status().message()),
               HasSubstr("b.pbrt:2: \"s.pbrt\" includes itself"));
   EXPECT_THAT(error_of("Include \"../x.pbrt\""), HasSubstr("outside of the scene's folder"));
+  // The missing indices are reported before the number of levels is checked.
   EXPECT_THAT(error_of("WorldBegin\nShape \"loopsubdiv\" \"integer levels\" 100"),
               HasSubstr("s.pbrt:2: \"integer indices\" are missing"));
 }

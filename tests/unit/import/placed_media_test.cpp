@@ -132,6 +132,8 @@ group {
 instance { of: "pair"  key { time: 0 scale: 1 } key { time: 1 scale: [3, 3, 3] } }
 )");
   for (const double time : {0.0, 0.3, 1.0}) {
+    // In the coordinates of the group, the first ray is at z = time + 0.5. It passes the box, which
+    // moves along z, at all times. It passes the cube, which ends at z = 1, until the time 0.5.
     const double scale = 1 + 2 * time;
     const double z = (time + 0.5) * scale;
     EXPECT_NEAR(smoke_along(*scene, {-9, 0.5, z}, {1, 0, 0}, time), scale * (time > 0.5 ? 1 : 2),

@@ -108,7 +108,8 @@ shape { box { min: [0, 0, 0] max: [1, 1, 1] } material: "white" velocity: [1, 0,
 }
 
 // With a shutter of zero duration nothing moves. So a shape with a velocity becomes a shape without
-// motion, at its place at that time. C8 and X3 are ids of hard cases in tests/hard_cases/cases.txt.
+// motion, at the place where the shape is when the shutter opens. C8 and X3 are ids of hard cases
+// in tests/hard_cases/cases.txt.
 TEST(Placement, C8_WithAShutterOfZeroDurationNothingMoves) {
   const TempDir folder;
   const auto imported = import_scene(write_text(folder, "s.textproto", R"(

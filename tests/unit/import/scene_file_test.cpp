@@ -80,6 +80,8 @@ image { filter { gaussian { } } })");
   position: [250, 250, 0] rotate { axis: [0, 0, 1] degrees: 0 } orthographic { height: 500 } }
 image { filter { box { radius: 0 } } })");
   ASSERT_TRUE(study.ok()) << study.status();
+  // A pixel is one unit wide. Pixels are counted from the top left, and the view is centred at
+  // (250, 250).
   const RayGenerator rays(study->scene.camera, 500, 500);
   EXPECT_EQ(rays.ray(3.5, 7.5, 0, 0).origin, (Vec3{3.5, 492.5, 0}));
   EXPECT_EQ(rays.ray(3.5, 7.5, 0, 0).direction, (Vec3{0, 0, -1}));

@@ -113,6 +113,7 @@ TEST(SceneMaterial, ReadsTheKindsOfOtherRenderers) {
   EXPECT_TRUE(principled.metallic.map);
   EXPECT_EQ(principled.sheen.value, 0.25);
   EXPECT_EQ(principled.roughness.value, 0.5);
+  // In a scene file, diff_trans is twice the share of the diffuse light that is transmitted.
   EXPECT_EQ(
       material<ThinPrincipled>("thin_principled { diff_trans { value: 1.5 } }").diff_trans.value,
       0.75);

@@ -1,4 +1,4 @@
-// Textures in scene files: checkers, noise, images, and the error for each wrong one.
+// Textures in scene files: checkers, noise, images, and the errors for wrong fields.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -90,7 +90,7 @@ texture { name: "fire" ramp { texture { use: "veins" } stop { at: 0.5 color: [1,
 material { name: "a" diffuse { texture { use: "fire" } } }
 material { name: "b" diffuse { texture { mix { a { use: "fire" } b { color { } } amount { use: "veins" } } } } }
 )");
-  ASSERT_FALSE(imported.ok());  // The field `color` of a mixture is empty.
+  ASSERT_FALSE(imported.ok());  // the field `color` of the mixture's part b is empty
   const auto good = import_text(R"(
 texture { name: "veins" noise { kind: KIND_TURBULENCE } }
 texture { name: "fire" ramp { texture { use: "veins" } stop { at: 0.5 color: [1, 0, 0] } steps: true } }

@@ -324,9 +324,8 @@ instance { of: "g" scale: [2, 2, 2] }
   EXPECT_EQ(fire.grids.temperature_offset, 300);
   EXPECT_EQ(fire.grids.blackbody, BlackbodyScale::kPeak);
   EXPECT_EQ(media.grids[index_of(fire.grids.albedo->grid)].filter, VolumeGrid::Filter::kNearest);
-  // The boundaries are the sphere and four boxes. Each box has a frame, a coordinate system that is
-  // placed in the world. The medium of the box is in this frame, in which the scene file gives the
-  // box before its placement.
+  // The boundaries are the sphere and four boxes. Each box has a frame, the coordinate system of
+  // the box before the box is placed in the world. The medium of the box is in this frame too.
   const Geometry& boundaries = media.boundaries;
   EXPECT_EQ(boundaries.spheres.size(), 1u);
   ASSERT_EQ(boundaries.instances.size(), 4u);

@@ -54,7 +54,7 @@ std::vector<std::uint8_t> texels(const ImageTexture& image) {
 
 TEST(Webp, LosslessImagesKeepTheirTexels) {
   std::vector<std::string> warnings;
-  const auto image = decode_image(lossless(codes(3), false), warnings);
+  const auto image = decode_image(lossless(codes(3), /*has_alpha=*/false), warnings);
   ASSERT_TRUE(image.ok()) << image.status();
   EXPECT_EQ(image->width, 13u);
   EXPECT_EQ(image->height, 7u);
@@ -74,7 +74,7 @@ TEST(Webp, AlphaIsLeftOutOfTheColourAndReadSeparately) {
     rgb.insert(rgb.end(), {rgba[i], rgba[i + 1], rgba[i + 2]});
     alpha.push_back(rgba[i + 3]);
   }
-  const std::string bytes = lossless(rgba, true);
+  const std::string bytes = lossless(rgba, /*has_alpha=*/true);
   std::vector<std::string> warnings;
   const auto image = decode_image(bytes, warnings);
   ASSERT_TRUE(image.ok()) << image.status();
@@ -109,13 +109,13 @@ TEST(Webp, LossyImagesAreNearTheirTexels) {
 }
 
 TEST(Webp, DamagedAndAnimatedImagesAreErrors) {
-  const std::string whole = lossless(codes(3), false);
+  const std::string whole = lossless(codes(3), /*has_alpha=*/false);
   std::vector<std::string> warnings;
   for (std::size_t size = 12; size < whole.size() - 1; ++size) {
     const auto cut = decode_image(whole.substr(0, size), warnings);
     EXPECT_EQ(cut.status().code(), absl::StatusCode::kInvalidArgument) << size;
   }
-  // An extended header (VP8X) that says it is an animation of 1 x 1 pixels.
+  // The extended header (VP8X) says that the file is an animation of 1 x 1 pixels.
   std::string animated("RIFF\x16\0\0\0WEBPVP8X\x0a\0\0\0\x02\0\0\0\0\0\0\0\0\0", 30);
   EXPECT_THAT(std::string(decode_image(animated, warnings).status().message()),
               HasSubstr("is an animated WebP image"));
@@ -125,7 +125,7 @@ TEST(Webp, DamagedAndAnimatedImagesAreErrors) {
 // a file, a part of the buffer, or a data URI.
 TEST(Webp, TexturesOfGltfFilesMayBeWebp) {
   const TempDir folder;
-  const std::string webp = lossless(codes(3), false);
+  const std::string webp = lossless(codes(3), /*has_alpha=*/false);
   write_text(folder, "w.webp", webp);
   GltfWriter file;
   file.attributes() = {{"POSITION", file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)},

@@ -75,10 +75,12 @@ TEST(Zip, NamesThatEscapeAreRefused) {
 
 TEST(Zip, DamageIsAnError) {
   EXPECT_THAT(error_of("PK"), HasSubstr("no directory"));
-  EXPECT_THAT(error_of(archive("a", 0, 0xfffffff0)), HasSubstr("truncated"));
-  EXPECT_THAT(error_of(archive("a", 0, 5, 2)), HasSubstr("two files"));
+  EXPECT_THAT(error_of(archive("a", /*attributes=*/0, /*claimed=*/0xfffffff0)),
+              HasSubstr("truncated"));
+  EXPECT_THAT(error_of(archive("a", /*attributes=*/0, /*claimed=*/5, /*entries=*/2)),
+              HasSubstr("two files"));
   std::string changed = archive("a");
-  changed[32] ^= 1;
+  changed[32] ^= 1;  // the e of "hello"
   EXPECT_THAT(error_of(changed), HasSubstr("checksum"));
   const std::string whole = archive("abc");
   for (std::size_t length = 0; length < whole.size(); ++length) {

@@ -50,7 +50,8 @@ TEST(Branches, EachHasTheRadianceOfAnUnsplitPath) {
                 sum * (1 / static_cast<float>(branches)));
     }
   }
-  // The first ray is shared by all branches.
+  // All branches of a sample share its first ray. So two branches save one ray, and four branches
+  // save three.
   EXPECT_EQ(whole.rays, parts.rays - 100 * (1 + 3));
 }
 

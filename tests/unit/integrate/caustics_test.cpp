@@ -48,9 +48,9 @@ struct Expected {
   double radiance;
 };
 
-/// Expects the mean over maps, each with its own seed, of the radiance that arrives from each point
-/// after at most two scatterings. The mean must be within 4 standard errors, plus 2 % for bias, of
-/// the expected radiance.
+/// Estimates the radiance that arrives at `eye` from each point after at most two scatterings, with
+/// 48 maps that have different seeds. Expects that the mean of the estimates is the expected
+/// radiance within 4 standard errors plus 2 % for bias.
 void expect_radiance(const Scene& scene, const Vec3& eye, const std::vector<Expected>& expected) {
   const Casters casters(scene);
   Pool pool(2);
@@ -200,7 +200,8 @@ void expect_no_power_is_lost_at_edges(const Vec3& offset) {
   // arrive at the floor.
   const double expected = 0.96 * 10 * kPi * 4 * kPi * 0.02 * 0.02 / 6;
   EXPECT_NEAR(sum, expected, 0.05 * expected);
-  // The map has divided the power of each photon by its share on the surface.
+  // share_on_surface() is the share of a photon's disk that lies on surfaces. The map has divided
+  // the power of each photon by this share.
   double raw = 0;
   double lost = 0;
   for (const StoredPhoton& photon : map->caustics.photons()) {
@@ -418,7 +419,7 @@ TEST(Caustics, MapsOfOtherSeedsAndNumbersDiffer) {
 TEST(Caustics, ComeFromMapsForSmallLampsOnly) {
   Pool pool(1);
   const auto come_from_maps = [&](const Scene& scene) {
-    const auto trained = train_guiding(scene, {16, 16, 8}, {pool, kGoOn}, true);
+    const auto trained = train_guiding(scene, {16, 16, 8}, {pool, kGoOn}, /*photon_maps=*/true);
     return trained->sources != nullptr && !trained->sources->casters.empty();
   };
   EXPECT_TRUE(come_from_maps(*lamp_in_glass(1.5, 0.05).build()));

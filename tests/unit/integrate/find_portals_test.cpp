@@ -61,15 +61,17 @@ std::vector<ScatteredRay> rays_of_room(const std::vector<Portal>& windows, const
   return rays;
 }
 
-/// A window of 1.2 x 1 in the wall x = 0, one of 2 x 1 in the wall z = 8, and one beside the first.
+/// Three windows of the room. kLeft has 1.2 x 1 units and is in the wall x = 0. kBack has 2 x 1
+/// units and is in the wall z = 8. kBeside has 1 x 1 units and is in the same wall as kLeft.
 constexpr Portal kLeft = {{0, 1, 2}, {0, 1, 0}, {0, 0, 1.2}};
 constexpr Portal kBack = {{2, 1, 8}, {2, 0, 0}, {0, 1, 0}};
 constexpr Portal kBeside = {{0, 1, 5}, {0, 1, 0}, {0, 0, 1}};
 
 double area(const Portal& portal) { return length(portal.u) * length(portal.v); }
 
-/// Returns true if the portal covers the window except for a hundredth of its size, is at most a
-/// quarter larger, and is within 0.02 of the window's plane.
+/// Returns true if the portal covers the window, up to a hundredth of the portal's width and
+/// height. The area of the portal must be at most a quarter larger than that of the window, and the
+/// corners of the window must be within 0.02 of the portal's plane.
 bool covers(const Portal& portal, const Portal& window) {
   bool inside = area(portal) < 1.25 * area(window);
   for (const Vec3& corner : {window.corner, window.corner + window.u, window.corner + window.v,

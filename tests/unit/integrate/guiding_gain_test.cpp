@@ -79,6 +79,8 @@ TEST(GuidingGain, IsZeroWhereNothingIsNoisy) {
   EXPECT_EQ(gain.variance, 0);
   EXPECT_EQ(gain.by_paths, 0);
   EXPECT_FALSE(gain.paths_pay() || gain.maps_pay() || gain.photons_pay());
+  // share_of() returns the share of a part in the sum of this part and the variance. The variance
+  // is 0.
   EXPECT_EQ(gain.share_of(0), 0);
   EXPECT_EQ(gain.share_of(1), 1);
 }
@@ -132,13 +134,16 @@ TEST(GuidingGain, DirectLightHasNoNoiseWhereItDoesNotArrive) {
 TEST(GuidingGain, NoIndirectPhotonsAreTracedWhereDirectLightHasTheNoise) {
   Pool pool(2);
   const auto rays_of = [&](const Scene& scene) {
-    return train_guiding(scene, {kWidth, kHeight, kDepth, true}, {pool, kGoOn}, true)->rays;
+    return train_guiding(scene, {kWidth, kHeight, kDepth, /*only_if_it_pays=*/true}, {pool, kGoOn},
+                         /*photon_maps=*/true)
+        ->rays;
   };
   EXPECT_LT(rays_of(*wall_behind_bars()), 1u << 17);
   EXPECT_GT(rays_of(*room_lit_by_its_ceiling()), 1u << 17);
 }
 
 // Light sampling finds the light of a lamp under the ceiling, but not the light of a lamp in glass.
+// So `path` guides its paths only in the scene with the lamp in glass.
 TEST(GuidingGain, DecidesWhetherTheIntegratorPathIsGuided) {
   const auto easy = test::cornell_box().build();
   EXPECT_EQ(pixels_of(*easy, Integrator::kPath).sums,
@@ -154,15 +159,17 @@ TEST(GuidingGain, AStoppedPilotReturnsNothing) {
   Pool pool(2);
   const std::atomic<bool> stop = true;
   const auto scene = test::cornell_box().build();
-  EXPECT_EQ(train_guiding(*scene, {kWidth, kHeight, kDepth, true}, {pool, stop}, true), nullptr);
+  EXPECT_EQ(train_guiding(*scene, {kWidth, kHeight, kDepth, /*only_if_it_pays=*/true}, {pool, stop},
+                          /*photon_maps=*/true),
+            nullptr);
 }
 
 TEST(GuidingGain, ThePilotReportsItsProgress) {
   Pool pool(2);
   std::atomic<int> steps = 0;
   const auto scene = test::cornell_box().build();
-  const auto trained =
-      train_guiding(*scene, {kWidth, kHeight, kDepth, true}, {pool, kGoOn, [&] { ++steps; }}, true);
+  const auto trained = train_guiding(*scene, {kWidth, kHeight, kDepth, /*only_if_it_pays=*/true},
+                                     {pool, kGoOn, [&] { ++steps; }}, /*photon_maps=*/true);
   EXPECT_EQ(trained->field.cells(), 0u);
   EXPECT_GT(trained->rays, 0u);
   EXPECT_GE(steps, 64);

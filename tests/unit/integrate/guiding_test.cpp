@@ -64,7 +64,8 @@ TEST(Guiding, MeetsTheClosedFormOfALampInGlassThatDoesNotRefract) {
   SceneMaker maker = lamp_in_glass(1.00001, 0.2, 0.5f);
   const auto scene = maker.build();
   const auto guiding = trained(*scene);
-  const test::Moments with = moments_of(*scene, kToCorner, &guiding->field, 60'000, 2);
+  const test::Moments with =
+      moments_of(*scene, kToCorner, &guiding->field, 60'000, /*max_depth=*/2);
   // The camera ray meets the wall x = 2. The two scatterings are at the wall and at the glass, so
   // there is no indirect light.
   const Vec3 at = kToCorner.origin + kToCorner.direction * (2 / kToCorner.direction.x);
@@ -89,7 +90,7 @@ TEST(Guiding, KeepsTheRadianceOfAFurnace) {
   const std::atomic<bool> stop = false;
   const auto guiding = train_guiding(*scene, {64, 64, 64}, {pool, stop});
   const Ray ray{.origin = {-1.5, 0, 0}, .direction = normalize(Vec3{1, 1.5, 0.2})};
-  const test::Moments with = moments_of(*scene, ray, &guiding->field, 20'000, 64);
+  const test::Moments with = moments_of(*scene, ray, &guiding->field, 20'000, /*max_depth=*/64);
   EXPECT_LE(std::abs(with.z(2)), 4) << with.mean();
 }
 

@@ -147,7 +147,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-// This test makes ten comparisons.
+// In each of the ten cases, paths with maps must have the same mean as paths without maps.
 TEST(IndirectPhotons, ChangeNoMean) {
   for (const Case& tested : cases()) {
     SCOPED_TRACE(tested.name);
@@ -196,6 +196,7 @@ TEST(IndirectPhotons, HaveEqualPower) {
   ASSERT_GT(traced.photons.size(), 300u);
   for (const StoredPhoton& photon : traced.photons) {
     EXPECT_NEAR(luminance(photon.power), sum / 500, 1e-4 * sum / 500);
+    // `chain` is the number of scatterings between the light and the photon's surface.
     EXPECT_GE(photon.chain, 1u);
     EXPECT_LT(photon.chain, 8u);
   }
@@ -269,7 +270,8 @@ TEST(IndirectPhotons, AreUsedWhereTheyPay) {
   Pool pool(2);
   const auto are_used = [&](const SceneMaker& maker) {
     const auto scene = maker.build();
-    const auto trained = train_guiding(*scene, {64, 48, 16, true}, {pool, kGoOn}, true);
+    const auto trained = train_guiding(*scene, {64, 48, 16, /*only_if_it_pays=*/true},
+                                       {pool, kGoOn}, /*photon_maps=*/true);
     return trained->sources != nullptr && trained->sources->surfaces;
   };
   EXPECT_TRUE(are_used(uplit_room()));

@@ -277,8 +277,8 @@ TEST(NestedGlass, EmissionBehindAHiddenBoundaryCounts) {
 }
 
 // Milk is in a tumbler of glass (priority 2), and water (priority 1) overlaps the tumbler's wall.
-// All are without loss, under a white sky. A path that scatters before the hidden boundary of the
-// water has not passed it.
+// All are without loss, under a sky of radiance 1, so the radiance must be 1. A path that scatters
+// before the hidden boundary of the water has not passed this boundary.
 TEST(NestedGlass, ScatteringBeforeAHiddenBoundaryIsStillInTheGlass) {
   SceneMaker maker = white_sky();
   maker.sphere({0, 0, 0}, 1, maker.material(Dielectric{1.5, 0, 2}));

@@ -153,6 +153,8 @@ TEST(MediumTraversal, AClearMediumDisplacesOthers) {
   test::fill_sphere(maker, {0, 0, 0}, 1, air);
   const auto scene = maker.build();
   std::uint64_t rays = 0;
+  // The direction has the length 2, so the ray is 6 units long. It is inside the clear
+  // ball for 2 units.
   const Ray ray{.origin = {-3, 0, 0}, .direction = {2, 0, 0}, .t_max = 3};
   EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, NumberStream(0), rays).g, std::exp(-4.0f));
 }

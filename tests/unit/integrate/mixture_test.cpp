@@ -100,8 +100,8 @@ TEST(Sheet, LightFromBehindIsFoundByAllTechniques) {
   maker.sphere({0.5, 0, -2}, 0.3, maker.lamp(40));
   maker.sphere({-1, 0.5, 3}, 0.3, maker.lamp(20));
   expect_techniques_agree(maker, kAhead, 0.1);
-  // The sheet transmits half of the light of a small lamp. With the irradiance E, its radiance is
-  // E / (2 pi).
+  // The sheet transmits half of the light of a small lamp. If the lamp gives the sheet the
+  // irradiance E, the radiance of the sheet is E / (2 pi).
   SceneMaker behind = with_sky(0);
   const MaterialId paper = behind.material(DiffuseTransmission{TextureId{0}, TextureId{0}});
   behind.quad({-kFar, -kFar, 0}, {2 * kFar, 0, 0}, {0, 2 * kFar, 0}, paper);

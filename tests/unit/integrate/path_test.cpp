@@ -96,9 +96,9 @@ TEST(Path, AFreePassageDoesNotCountTowardsTheDepth) {
   constexpr double kIndex = 1.00001;  // so close to 1 that a pane reflects nothing in float
   const ThinDielectric counted{kIndex, {0, 0, 0}, gray(0.5f)};
   const ThinDielectric free{kIndex, {0, 0, 0}, gray(0.5f), true};
-  expect_always(*behind_panes(2, counted), kAhead, 2, 1e-6, 2);
-  expect_always(*behind_panes(2, counted), kAhead, 0, 0, 1);
-  expect_always(*behind_panes(2, free), kAhead, 2, 1e-6, 1);
+  expect_always(*behind_panes(2, counted), kAhead, 2, 1e-6, /*max_depth=*/2);
+  expect_always(*behind_panes(2, counted), kAhead, 0, 0, /*max_depth=*/1);
+  expect_always(*behind_panes(2, free), kAhead, 2, 1e-6, /*max_depth=*/1);
   // After the last scattering that counts, a pane passes light, but reflects none.
   SceneMaker mirrored;
   mirrored.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, mirrored.metal(1, 0));
@@ -106,7 +106,8 @@ TEST(Path, AFreePassageDoesNotCountTowardsTheDepth) {
   mirrored.scene.materials.emplace_back(free);
   mirrored.quad({-1, -1, 3}, {2, 0, 0}, {0, 2, 0}, pane);
   mirrored.quad({-1, -1, 6}, {2, 0, 0}, {0, 2, 0}, mirrored.lamp(8));
-  expect_always(*mirrored.build(), kAhead, 2, 1e-6, 1);
+  expect_always(*mirrored.build(), kAhead, 2, 1e-6, /*max_depth=*/1);
+  // At most 1000 passages of a path are free.
   const ThinDielectric clear{kIndex, {0, 0, 0}, gray(1), true};
   EXPECT_NEAR(trace(*behind_panes(900, clear), kAhead, 0, {.max_depth = 1}).g, 8, 1e-5);
   EXPECT_EQ(trace(*behind_panes(1100, clear), kAhead, 0, {.max_depth = 1}).g, 0)

@@ -62,6 +62,7 @@ TEST(SampleValue, GuidesAreThoseOfTheFirstSurfaceThatIsNoMirror) {
   SceneMaker maker;
   wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
   EXPECT_EQ(value(maker, kGuideAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
+  // The blue channel of kGuideShape is the length of the path to the surface.
   EXPECT_EQ(value(maker, kGuideShape, kAhead).b, 7);
   // A mirror that faces the camera shows the wall behind it.
   SceneMaker mirror;

@@ -1,5 +1,5 @@
 // Photons that a caster (a surface that casts caustics) scatters must carry the same light as paths
-// that are scattered there. The tests integrate the scattered light over pairs of directions: one
+// that the caster scatters. The tests integrate the scattered light over pairs of directions: one
 // from which light comes, and one to which light goes. The integral over all pairs must be the same
 // for photons and for paths, and so must the integrals over three parts of the pairs.
 

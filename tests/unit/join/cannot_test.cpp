@@ -178,6 +178,7 @@ TEST_F(JoinCannotTest, SendBandsThatAreDamagedOrTooLong) {
   EXPECT_EQ(join_post("/join/band", whole.substr(0, whole.size() - 8))->status, 400);
   EXPECT_EQ(join_post("/join/band", whole + "more")->status, 400);
   EXPECT_EQ(join_post("/join/band", "")->status, 400);
+  // The body begins with the length of the band's header, in four bytes.
   EXPECT_EQ(join_post("/join/band", "\xff\xff\xff\xff" + whole)->status, 400);
   EXPECT_EQ(join_post("/join/band", std::string("\x04\0\0\0", 4) + "\xff\xff\xff\xff")->status,
             400);
@@ -218,7 +219,7 @@ TEST_F(JoinCannotTest, GoOnAfterTheLinkIsRevoked) {
   EXPECT_EQ(join_post("/join/band", "")->status, 401);
   EXPECT_EQ(refused({.secret = secret_}), 401);
   socket.read_to_end();
-  EXPECT_EQ(socket.close_code(), 4401);
+  EXPECT_EQ(socket.close_code(), 4401);  // bandsaw's own code: the link has ended or was revoked
   EXPECT_THAT(socket.close_reason(), HasSubstr("revoked"));
   wait_until([&] { return workers().empty(); });
 }

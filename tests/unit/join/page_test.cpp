@@ -68,7 +68,7 @@ TEST_F(JoinPageTest, TheRendererIsFetchedOnceAndThenRevalidated) {
   ASSERT_TRUE(unchanged);
   EXPECT_EQ(unchanged->status, 304);
   EXPECT_EQ(unchanged->body, "");
-  options_.browser_program.tag = "4567";
+  options_.browser_program.tag = "4567";  // the tag of a changed renderer
   start_dashboard();
   EXPECT_EQ(get("/join/bandsaw.wasm")->status, 200);
 }

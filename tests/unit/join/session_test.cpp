@@ -113,7 +113,7 @@ TEST_F(JoinSessionTest, AViolationEndsTheSessionWithTheReason) {
     EXPECT_THAT(socket.close_reason(), HasSubstr(reason));
   }
   test::SocketClient text = open();
-  text.send_bytes("hello", false);
+  text.send_bytes("hello", /*binary=*/false);
   text.read_to_end();
   EXPECT_EQ(text.close_code(), 1008);
   test::SocketClient twice = open();

@@ -14,7 +14,7 @@
 namespace bandsaw::test {
 
 /// The handshake of a client. The secret is sent as one of the WebSocket's protocols, because a
-/// page cannot set other headers.
+/// page can set no other header of a WebSocket handshake.
 struct SocketOffer {
   std::string secret;  ///< secret of the link for browsers
   std::string protocol = "bandsaw.1";

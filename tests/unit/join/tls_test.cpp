@@ -1,6 +1,6 @@
 // A browser's session over TLS with the farm's certificate. The same rules hold as without TLS
-// (session_test.cpp). The number of sessions is limited, so each session has a place. In whatever
-// way a connection breaks, its session must end and free its place.
+// (session_test.cpp). The number of sessions is limited, and each session takes one place. In
+// whatever way the connection of a session breaks, the session must end and free its place.
 
 #include <gmock/gmock.h>
 

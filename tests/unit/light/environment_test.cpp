@@ -32,7 +32,7 @@ struct Sky {
   Environment environment = {};
 };
 
-/// `texel(x, y)`: the radiance of a texel.
+/// Returns a sky of one equirectangular image. `texel(x, y)`: the radiance of a texel.
 Sky equirectangular(const std::string& name, std::uint32_t width, std::uint32_t height,
                     absl::FunctionRef<float(std::uint32_t, std::uint32_t)> texel) {
   Sky sky{.name = name, .textures = {float_image(width, height, texel)}};
@@ -40,7 +40,8 @@ Sky equirectangular(const std::string& name, std::uint32_t width, std::uint32_t 
   return sky;
 }
 
-/// `texel(image, x, y)`: the radiance of a texel of one of the six images.
+/// Returns a sky of six square images, one for each side of a cube. `texel(image, x, y)`: the
+/// radiance of a texel.
 Sky cube(const std::string& name, std::uint32_t side,
          absl::FunctionRef<float(std::uint32_t, std::uint32_t, std::uint32_t)> texel) {
   Sky sky{.name = name, .textures = {}};
@@ -160,7 +161,7 @@ TEST(EnvironmentLight, DirectionsFollowThePdf) {
     SCOPED_TRACE(sky.name);
     test::expect_samples_match_density(
         [&](double u, double v) { return light.sample(u, v).direction; },
-        [&](const Vec3& d) { return light.pdf(d); }, 5, all.size());
+        [&](const Vec3& d) { return light.pdf(d); }, /*seed=*/5, /*tests=*/all.size());
   }
 }
 

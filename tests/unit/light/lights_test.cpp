@@ -235,6 +235,8 @@ TEST(Lights, L1T4_SurfacesWithoutAreaOrPowerAreNoLights) {
   maker.sphere({0, 9, 0}, 1, maker.lamp(1));
   const auto scene = maker.build();
   EXPECT_EQ(scene->lights().size(), 1u);
+  // A primitive is identified by the numbers of its instance and of its shape. There is no
+  // instance 7.
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {0, 0}), 0);
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {0, 1}), 1);
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {7, 1}), 0);

@@ -1,5 +1,10 @@
 // A join string is the line of text with which a machine or a user connects to a farm. Join strings
 // are written and read back, and error messages do not repeat the secret in a join string.
+//
+// The parts of a join string are the format version, the role (w: worker, f: farm user), the
+// addresses, the dashboard after a +, the digest of the certificate, and the secret:
+//
+//   bsw1-f-192.168.1.5:7878,10.0.0.5:7878+8787-<43 characters>-<22 characters>
 
 #include "proto/link/join.h"
 
