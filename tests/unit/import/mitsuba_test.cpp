@@ -364,7 +364,7 @@ TEST_F(MitsubaScene, ElementsWithoutACounterpartAreNamedOnce) {
               ElementsAre(HasSubstr("s.xml:3: \"no.obj\" is missing")));
 }
 
-TEST_F(MitsubaScene, ACheckerboardBeginsAtTheTop) {
+TEST_F(MitsubaScene, ColoursOfACheckerboardAreExchangedWhereVIsReversed) {
   const std::string checker =
       "<bsdf type=\"diffuse\"><texture type=\"checkerboard\" name=\"reflectance\">"
       "<transform name=\"to_uv\"><scale value=\"5\"/></transform></texture></bsdf>";

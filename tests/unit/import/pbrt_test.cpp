@@ -494,7 +494,7 @@ TEST(Pbrt, CountsAreCheckedBeforeMemoryIsAllocated) {
 
 // Attributes that are nested too deeply, cyclic includes, and files outside of the scene's folder
 // are refused.
-TEST(Pbrt, HostileScenesAreStoppedByLimits) {
+TEST(Pbrt, HostileScenesAreRefused) {
   std::string nested = "WorldBegin\n";
   for (int i = 0; i < 1'000'000; ++i) {
     nested += "AttributeBegin\n";

@@ -152,7 +152,7 @@ shape { sphere { radius: 1 } material: "white" }
   EXPECT_FALSE(scene->features().media);
 }
 
-TEST(PlacedMedia, APlacementThatIsTooFlatIsRefused) {
+TEST(PlacedMedia, APlacementThatIsTooSmallIsRefused) {
   EXPECT_THAT(std::string(import_text(kOpenFor1 + R"(
 group { name: "box"  shape { box { min: [0, 0, 0] max: [1, 1, 1] } interior: "smoke" } }
 group { name: "small"  instance { of: "box"  scale: 1e-200 } }
