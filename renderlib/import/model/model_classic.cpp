@@ -90,8 +90,8 @@ Classic read_numbers(MaterialReader& reader) {
   return from;
 }
 
-// Returns the GGX alpha with the same width as a highlight (n.h)^exponent (Walter et al. 2007,
-// section 5.1).
+// Returns the roughness, the square root of the GGX alpha, whose highlight is as wide as
+// (n.h)^exponent (Walter et al. 2007, section 5.1).
 double roughness_of(double exponent) { return std::sqrt(std::sqrt(2 / (exponent + 2))); }
 
 // Sets the metallic share, the roughness and the index of refraction. A black material with a
