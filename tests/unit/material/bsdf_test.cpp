@@ -79,16 +79,16 @@ void expect_samples_follow_density(const Bsdf& bsdf, const Vec3& axis, double re
   }
   EXPECT_LT(inside, 1 + 2e-3) << name;
   expected.back() = kSamples * std::max(0.0, 1 - inside);
-  // This function is called 14 times. With other seeds, one of the 14 calls would fail by chance in
-  // one of a hundred runs.
+  // The tests call this function 14 times. The level of each call is so strict that, for 99 of 100
+  // seeds, none of the 14 calls fails by chance.
   EXPECT_GT(test::chi_squared(counts, expected).p_value, test::sidak(0.01, 14)) << name;
 }
 
 TEST(Bsdf, DiffuseSamplesFollowTheirDensity) {
   for (const Vec3& wo : {Vec3{0, 0, 1}, Vec3{1, 0, 0.01}, Vec3{0.3, -0.5, -0.7}}) {
     const Vec3 axis{0, 0, wo.z};
-    expect_samples_follow_density(bsdf(Diffuse{}, wo), axis, 1, "flat");
-    expect_samples_follow_density(bsdf(Diffuse{}, wo, {0.4, 0.2, 1}), axis, 1, "bumped");
+    expect_samples_follow_density(bsdf(Diffuse{}, wo), axis, /*reach=*/1, "flat");
+    expect_samples_follow_density(bsdf(Diffuse{}, wo, {0.4, 0.2, 1}), axis, /*reach=*/1, "bumped");
   }
 }
 
@@ -163,6 +163,8 @@ TEST(Bsdf, MirrorsAndGlassLoseNothingUnderAnyShadingNormal) {
   }
 }
 
+// Glass reflects the light if the last random number of sample() is below the Fresnel share, and
+// refracts it otherwise.
 TEST(Bsdf, GlassReflectsTheFresnelShare) {
   const Vec3 wo{std::sqrt(0.75), 0, 0.5};
   const double share = 0.0891867128;  // fresnel(0.5, 1.5)

@@ -17,6 +17,9 @@ TEST(Fresnel, HasTheValuesOfTheTables) {
   EXPECT_EQ(fresnel(0, 1.5), 1);
 }
 
+// The second argument of fresnel() is the relative index of refraction, which is below 1 for light
+// from the denser side. The means are weighted by the cosine. Let s be the mean from the thinner
+// side, r the mean from the denser side, and n the index above 1. Then 1 - r = (1 - s) / n^2.
 TEST(Fresnel, HasTheKnownMeansOverTheHemisphereFromBothSides) {
   const auto mean = [](double eta) {
     constexpr int kSteps = 400000;

@@ -121,9 +121,9 @@ ImageTexture waves(double scale) {
 }
 
 // A repetition of the map is one unit long on each of the quads, so all quads have the same relief.
-// The slope jumps in the middles of texels, so none of the points lies there. Heights are rounded
-// to float, which changes the slope by about 2^-11 of the height. The tolerance is ten times this
-// error for the height of 0.005.
+// The slope jumps in the middles of texels, so no tested point is such a middle. Heights are
+// rounded to float, which changes the slope by about 2^-11 of the height. The tolerance is ten
+// times this error for the height of 0.005.
 TEST(HeightMap, GivesTheSameReliefHoweverOftenItRepeats) {
   for (const double x : {0.3, 0.54, 0.78}) {
     const std::vector<Texture> once{waves(1)};
@@ -170,7 +170,8 @@ TEST(HeightMap, FollowsAShortRamp) {
 }
 
 /// Expects that `mapped` equals `there` at u = 0.5 and `next` at u = 1.5, for directions on all
-/// sides.
+/// sides. The texture kChecker is a half at u = 0.5 and a quarter at u = 1.5. It multiplies the
+/// number of the material, or, of an index of refraction, the part above 1.
 void expect_same(const Material& mapped, const Material& there, const Material& next) {
   Random random(3);
   for (int i = 0; i < 2000; ++i) {

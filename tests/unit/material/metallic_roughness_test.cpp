@@ -88,7 +88,7 @@ TEST(MetallicRoughness, SamplesFollowTheirDensity) {
               const auto drawn = sample(b, u, v, lobes.uniform());
               return drawn ? drawn->wi : Vec3{};
             },
-            [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 64);  // seed; number of calls
+            [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, /*seed=*/17, /*tests=*/64);
       }
     }
   }
@@ -247,6 +247,8 @@ TEST(RoughGlass, M6RoughGlassOfIndexOneIsInvisible) {
   test::report_hard_case("M6", "rough glass: transmitted direction within 1e-14");
 }
 
+// A texel t stands for the normal 2 t - 1. So (0.5, 0.5, 1) is the normal (0, 0, 1), (1, 0.5, 0.5)
+// is (1, 0, 0), and (0.5, 0.75, 0.933) is (0, 0.5, 0.866).
 TEST(ShadingNormal, AFlatTexelChangesNothingAndATiltedOneTiltsAlongTheUvs) {
   const SurfacePoint p = point({0, 0, 1});
   EXPECT_NEAR(length(mapped_normal(p, {0.5f, 0.5f, 1}, 1) - Vec3{0, 0, 1}), 0, 1e-7);
@@ -267,7 +269,7 @@ TEST(ShadingNormal, ATransformedMapTiltsAlongItsOwnAxes) {
   const auto normal = [&](const std::array<double, 6>& m) {
     return mapped_normal(p, tilted, 1, UvTransform{m});
   };
-  // Texture coordinates (s, t) = (v, -u): s grows where v does.
+  // The map's coordinates are (s, t) = (v, 1 - u), so s grows where v grows.
   EXPECT_GT(normal({0, 1, 0, -1, 0, 1}).y, 0.99);
   EXPECT_LT(normal({-1, 0, 1, 0, 1, 0}).x, -0.99);
   EXPECT_GT(normal({5, 0, 0, 0, 3, 0}).x, 0.99) << "a scaled map must tilt the same way";

@@ -136,7 +136,7 @@ TEST(Surfaces, SamplesFollowTheirDensity) {
             const auto drawn = sample(b, u, v, lobes.uniform());
             return drawn && !drawn->delta ? drawn->wi : Vec3{};
           },
-          [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, 17, 51);  // seed; number of calls
+          [&](const Vec3& wi) { return evaluate(b, wi).pdf; }, /*seed=*/17, /*tests=*/51);
     }
   }
 }
@@ -178,8 +178,9 @@ test::Moments albedo_of(const Bsdf& b, int samples) {
 /// Returns a direction whose cosine to the normal is mu.
 Vec3 along(double mu) { return {std::sqrt(1 - mu * mu), 0, mu}; }
 
-// Mitsuba's principled definition adds its layers up, so its bound is not 1. The bounds 1.35 and
-// 2.5 are the largest values for these base colours, at grazing angles.
+// Mitsuba's principled definition adds its layers up, so a principled material may scatter more
+// light than it receives. With these base colours and at grazing angles, "layered" scatters up to
+// 2.5 times as much light as it receives. The others scatter up to 1.35 times as much.
 TEST(Surfaces, ReflectNoMoreThanTheyReceive) {
   for (const Named& named : all_materials()) {
     for (const double mu : {1.0, 0.7, 0.3, 0.05, -0.4, -0.05}) {
@@ -363,7 +364,8 @@ TEST(PlasticCoat, ApproachesASmoothCoatAsAlphaGoesToZero) {
   const PlasticCoat smooth({}, 1.5);
   const PlasticCoat satin(rough(2e-3, 2e-3), 1.5);
   EXPECT_NEAR(smooth.at(0).internal_reflectance(), 0.5963, 2e-4) << "d'Eon and Irving 2011";
-  // Mitsuba takes the mean over 64 cosines. The error of this mean is part of the definition.
+  // A rough coat takes the mean over 64 cosines, as Mitsuba does. The tolerance allows for the
+  // error of this mean.
   EXPECT_NEAR(satin.at(2e-3).internal_reflectance(), 0.5963, 1e-2);
   for (const int node : {63, 40, 20}) {
     const double mu = node / 63.0;

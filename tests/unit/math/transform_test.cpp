@@ -75,6 +75,8 @@ TEST(Transform, InvertsAtAnyScale) {
   }
 }
 
+// A transform also counts as singular if an element is not finite, or if the condition number of
+// its matrix is above 1e12.
 TEST(Transform, HasNoInverseWhenSingular) {
   EXPECT_FALSE(inverse(scaling({1, 0, 1})));
   EXPECT_FALSE(inverse(scaling({1, 1e-13, 1})));

@@ -65,6 +65,7 @@ void expect_density(const std::function<double(double, double)>& sample,
     cell *= (kSamples - beyond) / total;
   }
   const test::ChiSquared result = test::chi_squared(counts, expected);
+  // The tests call this function at most 16 times.
   EXPECT_GT(result.p_value, test::sidak(0.01, 16)) << result.statistic << " " << result.degrees;
 }
 
@@ -173,7 +174,7 @@ TEST(Equiangular, DistancesFollowThePdf) {
   }
 }
 
-/// The light is on the ray itself, at the start of the ray, or far away.
+/// Distances and pdfs are finite if the light is on the ray, at its start, or far away.
 TEST(Equiangular, V8_IsFiniteForALightOnTheRay) {
   const Vec3 direction{0, 0, 1};
   for (const double length : {1e-3, 1.0, kInfinity}) {

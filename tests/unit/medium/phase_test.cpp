@@ -55,7 +55,8 @@ TEST(Phase, V4_IsAccurateNearIsotropic) {
     for (int i = 0; i < 2000; ++i) {
       const double u = random.uniform();
       const double cosine = sample_phase(g, up, u, 0.1).z;
-      // The distribution of the cosine, by Legendre polynomials up to g^2.
+      // The cumulative distribution of the cosine must be u. It is computed here by a series of
+      // Legendre polynomials up to g^2.
       const double c = cosine;
       const double series = 0.5 * (1 + c) + (0.75 * g + 1.25 * g * g * c) * (c * c - 1);
       EXPECT_NEAR(series, u, 2 * std::abs(g * g * g) + 1e-14) << g;

@@ -291,6 +291,8 @@ TEST(Tracking, EndsInVeryDenseMedia) {
   EXPECT_EQ(t, Rgb{});  // Russian roulette ended the ray
 }
 
+// A region is a part of space with a lower and an upper bound of the density. A RegionWalk divides
+// a ray, here up to the distance 3, into spans that lie in one region each.
 TEST(RegionWalk, SpansFollowEachOtherAndBoundTheDensityAtTheirPoints) {
   std::vector<VolumeGrid> grids = {test::grid_of(
       {20, 17, 40}, {-1, 2, 3}, {4, 5, 9}, [](std::uint32_t x, std::uint32_t y, std::uint32_t z) {

@@ -36,7 +36,8 @@ package::Manifest sample_manifest() {
   return manifest;
 }
 
-/// Returns the error of a changed package; no blob may be requested.
+/// Returns the error of a package whose manifest was changed by `change`. Expects that no blob is
+/// requested.
 std::string error_after(const std::function<void(package::Manifest&)>& change) {
   package::Manifest manifest = sample_manifest();
   change(manifest);
@@ -63,6 +64,8 @@ TEST(Counts, MeshesLargerThanABvhHoldsAreRefusedUnread) {
               StartsWith("scene package: boundaries.mesh[0]: has 536870912 triangles"));
 }
 
+// Loose shapes are those that are not part of a mesh. In a BVH, a quad takes two items, and any
+// other shape takes one. A blob has 24 bytes for each corner or centre.
 TEST(Counts, MoreLooseShapesThanABvhHoldsAreRefusedUnread) {
   constexpr std::uint64_t kQuads = std::uint64_t{1} << 28;
   EXPECT_THAT(error_after([](package::Manifest& m) {

@@ -48,7 +48,7 @@ TEST(Package, SharesThePartsThatAreInUse) {
   const int all = source.reads;
   const auto other = decode_package(second, source, &parts);
   ASSERT_TRUE(other.ok()) << other.status();
-  EXPECT_LT(source.reads, 2 * all - 3);
+  EXPECT_LT(source.reads, 2 * all - 3);  // more than three blobs are not read a second time
   EXPECT_EQ(other->geometry.meshes.shared(0), kept->geometry.meshes.shared(0));
   EXPECT_EQ(other->geometry.meshes[1].positions, scene.geometry.meshes[1].positions);
   EXPECT_EQ(std::get<ImageTexture>(other->textures[2]).texels.data(),

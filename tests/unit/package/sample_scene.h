@@ -28,8 +28,8 @@ inline ImageTexture sample_image(ImageTexture::Format format) {
   return image;
 }
 
-/// Adds a shutter, a disk, groups, moving frames, and an instance of a group that moves with a
-/// frame.
+/// Adds a shutter, a disk, groups of shapes, frames (coordinate systems that may move), and an
+/// instance. The instance places a group in a frame.
 inline void add_motion(SceneDescription& scene) {
   std::get<PerspectiveCamera>(scene.camera).shutter = {-0.5, 1.0 / 3};
   Geometry& geometry = scene.geometry;

@@ -34,7 +34,7 @@ std::vector<HalfTileErrors> errors(const TileGrid& grid,
   std::vector<HalfTileErrors> tiles;
   for (std::uint32_t row = 0; row < grid.rows(); ++row) {
     for (std::uint32_t column = 0; column < grid.columns(); ++column) {
-      const TileError error{64, variance(column), variance(column)};
+      const TileError error{/*pixels=*/64, variance(column), /*relative=*/variance(column)};
       tiles.insert(tiles.end(), 2, {error, error});
     }
   }
@@ -123,8 +123,8 @@ struct Rendered {
   bool planned = false;  ///< some half tiles take more samples than others
 };
 
-/// Renders an image adaptively with samples drawn by `pixel`. `naive`: each half tile is planned by
-/// its own samples instead of those of the other half of its tile.
+/// Renders an image adaptively with samples drawn by `pixel`. If `naive` is true, each half tile is
+/// planned by its own samples. If not, it is planned by the samples of the other half of its tile.
 Rendered render_pixel(const Pixel& pixel, std::uint64_t seed, bool naive) {
   Random random(seed);
   Film film = *Film::create(kThin.width, kThin.height, "", Film::Grain::kHalfTiles);
@@ -202,15 +202,15 @@ TEST(AdaptivePlan, A5_RareLightIsNotBiased) {
 }
 
 // If each half tile were planned by its own samples, the mean would be too small, and the test
-// above would fail.
+// A5_RareLightIsNotBiased would fail.
 TEST(AdaptivePlan, A5_PlanningByOwnSamplesIsBiased) {
-  const Result result = renders(bernoulli(0.0002), kRuns, true);
+  const Result result = renders(bernoulli(0.0002), kRuns, /*naive=*/true);
   EXPECT_LT(result.mean.z(1), -4);
   EXPECT_LT(result.mean.mean(), 0.98);
 }
 
 TEST(AdaptivePlan, A4_AConstantSceneIsExact) {
-  const Rendered rendered = render_pixel([](Random&) { return 1.0; }, 1, false);
+  const Rendered rendered = render_pixel([](Random&) { return 1.0; }, /*seed=*/1, /*naive=*/false);
   test::at_most("A4", "error of the mean", std::abs(rendered.mean - 1), 1e-12);
   EXPECT_FALSE(rendered.planned);
 }

@@ -1,5 +1,5 @@
-// Files of band records (the sums of the pixels of a band, with what was rendered and the CPU
-// time): they read back as written, and every damage is detected.
+// Files of band records. A record has the sums of the pixels of a band, the settings with which the
+// band was rendered, and the CPU time. Records read back as written, and every damage is detected.
 
 #include "renderlib/render/band_file.h"
 

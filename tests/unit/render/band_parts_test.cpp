@@ -1,6 +1,6 @@
 // Division of a band (a range of samples by a range of rows) into parts that need one photon map
-// each. A map is made for a range of samples (PhotonMaps::number_of). Each of the first four maps
-// has one block of 8 samples, and later maps have more blocks.
+// each. Consecutive samples share a map. PhotonMaps::number_of() returns the number of the map of a
+// sample. Each of the first four maps has one block of 8 samples, and later maps have more blocks.
 
 #include "renderlib/render/band_parts.h"
 
@@ -20,7 +20,7 @@ TEST(BandParts, AWholeBandNeedsTheMapsOfItsSamples) {
   const BandPart part{{{16 * kSamplesOfMap, 32 * kSamplesOfMap}, {0, 16}}, {}};
   // Ten maps precede: four of kSamplesOfMap samples and six of twice as many.
   EXPECT_EQ(maps_of(part), (Maps{10, 11, 12, 13}));
-  const auto [left, right] = halves_of(part, 32);
+  const auto [left, right] = halves_of(part, /*width=*/32);
   EXPECT_EQ(maps_of(left), (Maps{10, 11}));
   EXPECT_EQ(maps_of(right), (Maps{12, 13}));
   // The last block may be truncated.

@@ -12,8 +12,8 @@ namespace bandsaw {
 namespace {
 
 /// Returns true if the range of samples is a node of the summation tree by the definition. A node
-/// has a level and an index: with 2^level blocks of 8 samples, it begins at the block index *
-/// 2^level. Its last block may be truncated.
+/// of level l and index i has 2^l blocks of 8 samples. Its first block has the number i * 2^l. Its
+/// last block may be truncated.
 bool is_node_by_definition(std::uint64_t first, std::uint64_t last) {
   for (std::uint64_t blocks = 1; blocks <= 64; blocks *= 2) {
     for (std::uint64_t index = 0; index < 64; ++index) {
@@ -120,6 +120,8 @@ TEST(Band, CountersKeepTheFirstBadSampleInAnyOrderOfAdding) {
                             [](const Counters& a, const Counters& b) { return a.rays < b.rays; }));
 }
 
+// Dropped primitives and training rays are counts of the scene, not of a band, so they are not
+// added up. Techniques are flags, which are combined.
 TEST(Band, CountersAddUpExceptThoseOfTheScene) {
   Counters sum = {
       .bad_samples = 2, .negative_samples = 1, .truncated_paths = 7, .dropped_primitives = 3};

@@ -32,6 +32,7 @@ class Pixels {
   ErrorSums sums_;
 };
 
+// relative_mse is the mean of error^2 / (value^2 + 0.01).
 TEST(ErrorEstimate, IsHalfTheDifferenceBetweenTheHalves) {
   Pixels pixels;
   pixels.add(2, 0.1);
@@ -85,6 +86,7 @@ TEST(ErrorEstimate, ADominantPixelMakesTheEstimateDoubtful) {
   EXPECT_TRUE(uneven.estimate().doubtful());
 }
 
+// Each pixel's error is divided by the pixel's value plus a hundredth of the mean, here 1.01.
 TEST(ErrorEstimate, PercentilesAreOfThePixelsOwnErrors) {
   Pixels pixels;
   for (int i = 0; i < 1001; ++i) {

@@ -148,6 +148,8 @@ TEST(Film, TheErrorIsKnownWhenEachRowHasTwoEqualHalves) {
   EXPECT_FALSE(whole.error()) << "a single node must give no error estimate";
 }
 
+// The first part of an image is the mean of about half of its samples. `share` is the number of a
+// pixel's samples in the first part, divided by the number of all samples of the pixel.
 TEST(Film, TheFirstPartIsAboutHalfOfTheSamples) {
   const std::vector<SampleRange> nodes = {{0, 32}, {32, 64}, {64, 96}, {96, 112}};
   Film film = make_film(2, 1);

@@ -55,6 +55,8 @@ BandPixels pixels_of(const Band& band, const TileGrid& grid, const TileSamples& 
   return pixels;
 }
 
+// The bands of all passes are added in random order. Each pixel has its own number of samples. Its
+// value must be the sum of the maximal nodes of this number, divided by this number.
 TEST(Film, HalfTilesHaveTheTreeOfTheirOwnSamplesInAnyOrder) {
   const TileGrid grid{19, 18};
   Random random(3);

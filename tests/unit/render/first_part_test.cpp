@@ -24,6 +24,8 @@ Film film_of(std::uint64_t samples) {
   return *std::move(film);
 }
 
+// first_part_shares() computes the shares from the number of samples alone. They must equal the
+// shares of Film::first_part(), which adds up nodes of samples.
 TEST(FirstPart, SharesAreThoseOfTheFilm) {
   for (std::uint64_t samples = 1; samples <= 200; ++samples) {
     const auto part = film_of(samples).first_part();

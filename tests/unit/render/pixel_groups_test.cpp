@@ -72,9 +72,9 @@ TEST(PixelGroups, HalvesHaveEightPixelsInEachRowOfATile) {
   }
 }
 
-// At any distance, at most 5.1 % of the pairs of pixels are in one group (the bound allows for the
-// edge of the image). The errors of two pixels in one group have a correlation of up to 0.95, so
-// the correlation at any distance is at most 5 % on average.
+// For any offset between two pixels, at most 5.1 % of the pairs of pixels are in one group. The
+// tested bound of 5.25 % allows for the edge of the image. The errors of two pixels in one group
+// have a correlation of up to 0.95, so the correlation at any offset is at most 5 % on average.
 TEST(PixelGroups, PixelsAtEveryDistanceRarelyShareAGroup) {
   constexpr int kSide = 256;
   const std::vector<int> groups = groups_of({kSide, kSide});

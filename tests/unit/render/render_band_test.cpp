@@ -243,7 +243,8 @@ TEST(RenderBand, ProgressCountsEachRowOnce) {
     seen.insert(rows);
   };
   ASSERT_TRUE(render_band(*rendered, kSettings, {{0, 16}, {2, 9}}, pool, kGoOn, done).ok());
-  seen.erase(0);  // reported while the guiding pilot renders, before the first row
+  // 0 rows are reported during the pilot, a small training that decides whether guiding pays.
+  seen.erase(0);
   EXPECT_EQ(seen, (std::multiset<std::uint32_t>{1, 2, 3, 4, 5, 6, 7}));
 }
 
@@ -293,8 +294,8 @@ TEST(RenderBand, A3_OverflowingSamplesAreCountedAndDiscarded) {
 }
 
 TEST(RenderBand, A3_APixelIsTheMeanOfItsFiniteSamples) {
-  // As in the test above, but a quarter of the samples hits a small emitter of radiance 1 in front
-  // of the camera.
+  // Samples overflow as in the test above, except that a quarter of all samples hits a small
+  // emitter of radiance 1 in front of the camera. So the mean of the finite samples is 1.
   test::SceneMaker maker;
   maker.camera({0, 0, 0}, {0, 0, 1}, 20);
   maker.background({3e38f, 3e38f, 3e38f}, {3e38f, 3e38f, 3e38f});

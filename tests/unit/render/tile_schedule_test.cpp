@@ -52,7 +52,7 @@ TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
         ASSERT_EQ(more.first, taken[i]);
         taken[i] = more.last;
         EXPECT_EQ(taken[i] % (std::bit_floor(taken[i]) / 4), 0u)
-            << "the samples must end at a quarter of the way between two powers of two";
+            << "the number of samples must be 1, 1.25, 1.5 or 1.75 times a power of two";
       }
       (plan.levels[i] == '4' ? noisy : quiet).add(static_cast<double>(taken[i]));
     }

@@ -44,6 +44,7 @@ class BrowserLinkTest : public FarmTest {
     status_ = people()->BrowserLink(context(link::Role::kFarm).get(), request, &reply);
     return reply;
   }
+  /// Returns true if browsers can join by this URL now.
   bool holds(const std::string& url) { return access_->holds(url.substr(url.find('#') + 1)); }
 
   double now_ = 1'700'000'000;  ///< seconds since 1970, by the clock of the link
@@ -94,10 +95,11 @@ TEST_F(BrowserLinkTest, IsKeptOverARestart) {
 
 TEST_F(BrowserLinkTest, IsRevoked) {
   const std::string url = ask().url();
-  EXPECT_EQ(ask(0, true).url(), "");
+  EXPECT_EQ(ask(/*seconds=*/0, /*revoke=*/true).url(), "");
   EXPECT_TRUE(status_.ok()) << status_.error_message();
   EXPECT_FALSE(holds(url));
-  EXPECT_EQ(ask(0, true).url(), "") << "a second revocation gives the same answer";
+  EXPECT_EQ(ask(/*seconds=*/0, /*revoke=*/true).url(), "")
+      << "a second revocation gives the same answer";
   start();
   EXPECT_FALSE(holds(url)) << "a revoked link must stay invalid after a restart";
   EXPECT_NE(ask().url(), url);
@@ -110,7 +112,7 @@ TEST_F(BrowserLinkTest, RefusesInvalidAndForbiddenRequests) {
   EXPECT_EQ(status_.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   ask(std::nan(""));
   EXPECT_EQ(status_.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  ask(10, true);
+  ask(/*seconds=*/10, /*revoke=*/true);
   EXPECT_EQ(status_.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   access_->set_address("");
   ask();

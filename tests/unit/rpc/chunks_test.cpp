@@ -300,6 +300,7 @@ TEST_F(ChunksTest, ABandThatDiffersFromItsHeaderIsRefused) {
   }
 }
 
+// The server either ends the call with an error or answers that the band is unwanted.
 TEST_F(ChunksTest, ABandOfAnUnknownJobIsNotStored) {
   const PutBands put = put_bands({band_chunk()});
   EXPECT_TRUE(!put.status.ok() ||

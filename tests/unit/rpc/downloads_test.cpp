@@ -1,5 +1,5 @@
-// Concurrent downloads of images and scenes. The memory of images that are being sent is limited by
-// a budget, engine_->images(); and downloads of scenes do not wait for threads that images occupy.
+// Concurrent downloads of images and scenes. A budget, engine_->images(), limits the memory of
+// images that are being sent. Downloads of scenes do not wait for threads that images occupy.
 
 #include <gmock/gmock.h>
 
@@ -88,6 +88,7 @@ TEST_F(DownloadsTest, ACancelledDownloadFreesTheMemory) {
   wait_until_left(all);
 }
 
+// A preview is refused if only 1,000 bytes of the budget are free, whether the job is done or runs.
 TEST_F(DownloadsTest, APreviewCountsWithItsActualSize) {
   const std::uint64_t done = finish_job(kSide);
   const std::uint64_t running = submit_job(kSide);

@@ -1,5 +1,6 @@
 // The limit on wrong secrets, here 2 a minute: failures are counted by address and minute. The
-// second argument of `add` is the time in seconds.
+// second argument of `add` is the time in seconds. The verdict is kFirst for the first failure of a
+// minute, kMore for further failures up to the limit, and kTooMany beyond the limit.
 
 #include "coordinator/rpc/failures.h"
 
@@ -23,6 +24,8 @@ TEST(Failures, AreCountedByAddressAndMinute) {
       << "a minute after the first failure, the count must begin again";
 }
 
+// The counts of at most 10,000 addresses are kept. When they are cleared, a new address must still
+// be counted from its first failure.
 TEST(Failures, TakeBoundedMemoryForAnyNumberOfAddresses) {
   Failures failures(2);
   for (int i = 0; i < 30'000; ++i) {

@@ -13,8 +13,8 @@ constexpr std::chrono::milliseconds kLong{60'000};  // a call that takes longer 
 
 }  // namespace
 
-// The engine hardly waits for the workers of an earlier run, and lets no second machine render a
-// band again (no audits).
+// The engine waits only 0.1 s for the workers of an earlier run. It makes no audits, in which a
+// second machine renders a band again.
 FarmTest::FarmTest() : identity_(*link::load_or_make_identity(folder_ / "identity")) {
   auto engine =
       Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1, .audit_share = 0});
@@ -143,8 +143,10 @@ void FarmTest::put_rows(std::uint64_t job, std::uint32_t side, std::uint32_t fir
                           .sums = std::vector<double>(std::size_t{side} * (last - first) * 3, 4.0),
                           .counters = {}};
   using Put = absl::StatusOr<BandOutcome>;
-  const Put put = blocking_call<Put>(
-      [&](auto answer) { engine_->put_band(job, 0, std::string(32, 'a'), pixels, 0, 0, answer); });
+  const Put put = blocking_call<Put>([&](auto answer) {
+    engine_->put_band(job, /*work=*/0, std::string(32, 'a'), pixels, /*render_s=*/0,
+                      /*cpu_s=*/0, answer);
+  });
   ASSERT_TRUE(put.ok()) << put.status();
   EXPECT_EQ(*put, BandOutcome::kStored);
 }

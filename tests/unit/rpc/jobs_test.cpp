@@ -84,7 +84,7 @@ TEST_F(JobsTest, APauseMayBeRepeatedAndEnded) {
 
 TEST_F(JobsTest, APriorityIsSetAtTheBeginningAndLater) {
   const std::uint64_t job = submit(-7);
-  ASSERT_TRUE(resume(job).ok());
+  ASSERT_TRUE(resume(job).ok());  // only to get the status of the job
   EXPECT_EQ(job_.priority(), -7);
   ASSERT_TRUE(set_priority(job, 1000).ok());
   EXPECT_EQ(job_.priority(), 1000);

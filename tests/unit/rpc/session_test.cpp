@@ -31,8 +31,8 @@ farm::FromWorker hello() {
 
 class StreamTest : public FarmTest {
  protected:
-  /// Opens a session, sends these messages, and reads until the stream ends. `hang_up`: the worker
-  /// ends the stream; if false, the coordinator MUST end it.
+  /// Opens a session, sends these messages, and reads until the stream ends. If `hang_up` is true,
+  /// the worker ends the stream. If not, the coordinator MUST end it.
   grpc::Status say(const std::vector<farm::FromWorker>& messages,
                    std::vector<farm::ToWorker>* answers = nullptr, bool hang_up = true) {
     const auto call = context(link::Role::kWorker);
@@ -228,6 +228,8 @@ TEST_F(StreamTest, WatchEndsWithTheFinalState) {
   EXPECT_EQ(state.state(), farm::JOB_STATE_CANCELLED);
 }
 
+// Half of the watches are cancelled before they have read a state. The test passes if no
+// cancellation crashes or blocks the server.
 TEST_F(StreamTest, AWatcherMayCancelAtAnyTime) {
   const wire::Digest manifest = put_cornell_box();
   farm::SubmitReply job;

@@ -73,8 +73,8 @@ TEST(SphericalRectangle, ComputesSmallSolidAngles) {
     const double truth = 4 * std::asin(h * h / (h * h + 1));
     EXPECT_NEAR(rectangle->solid_angle() / truth, 1, 1e-11) << h;
   }
-  // The expected solid angle of a rectangle off to the side is computed from distance and cosine,
-  // because the difference of rectangles with a corner below the point would be too inexact.
+  // The expected solid angle of a small rectangle off to the side is its area times the cosine,
+  // divided by the squared distance 10. An exact formula would subtract nearly equal numbers.
   const double h = 1e-4;
   const auto aside =
       SphericalRectangle::seen_from({0, 0, 0}, {3 - h, -h, 1}, {2 * h, 0, 0}, {0, 2 * h, 0});

@@ -37,8 +37,8 @@ TEST(Warp, DiskIsUniform) {
   EXPECT_GT(test::chi_squared(counts, std::vector<double>(64, 100000.0 / 64)).p_value, 0.01);
 }
 
-// sample_disk is the concentric map (Shirley and Chiu 1997), which maps squares around the middle
-// to circles.
+// sample_cone(1, v, 1) is a point on the rim of a hemisphere, at v turns. sample_disk is the
+// concentric map (Shirley and Chiu 1997), which maps squares around the middle to circles.
 TEST(Warp, PointsMatchExactAngles) {
   test::Random random(8);
   for (int i = 0; i < 100000; ++i) {

@@ -1,5 +1,5 @@
-// Limits on the numbers of primitives and lights in a scene, and the errors of scenes beyond them.
-// The BVHs and the numbers that identify lights have these capacities.
+// Limits on the numbers of primitives and lights in a scene, and the errors of scenes beyond these
+// limits. The limits are the largest numbers that the BVHs and the ids of lights can hold.
 
 #include "renderlib/scene/check_counts.h"
 
@@ -34,7 +34,8 @@ TEST(Counts, LimitMeshes) {
             "several meshes");
 }
 
-// A quad takes two items of the BVH. Every other shape, and every instance, takes one.
+// Loose shapes are those that are not part of a mesh. A quad takes two items of the BVH. Every
+// other shape, and every instance, takes one.
 TEST(Counts, LimitLooseShapes) {
   constexpr std::uint64_t kHalf = kMaxTreeItems / 2;
   EXPECT_TRUE(check_shape_counts("shapes", {.quads = kHalf, .disks = 1}).ok());

@@ -50,11 +50,11 @@ SceneMaker scene_of_all() {
 
 /// Options with which the scene is built and rendered. All of them must give the same pixels.
 struct BuildOptions {
-  SceneFeatures forced = {};
+  SceneFeatures forced = {};  ///< features to enable even if the scene does not use them
   Traversal traversal = Traversal::kBvh;
   const Kernel* kernel = nullptr;  ///< nullptr: the fastest
-  EarlierScenes earlier = {};
-  std::uint32_t rows = 12;  ///< of each band; a divisor of 12
+  EarlierScenes earlier = {};      ///< scenes whose BVHs are used again for the same meshes
+  std::uint32_t rows = 12;         ///< of each band; a divisor of 12
 };
 
 std::shared_ptr<const Scene> built(const SceneDescription& scene,

@@ -1,5 +1,5 @@
-// Scenes with many instances and with motion, and their cost. An id such as C8 in a test's name is
-// that of a case in tests/hard_cases/cases.txt.
+// Scenes with motion, and the memory that a scene with many instances takes. An id such as C8 in a
+// test's name is that of a case in tests/hard_cases/cases.txt.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -217,6 +217,8 @@ TEST(Scene, SharesMeshesWithEarlierScenes) {
   EXPECT_EQ(hit.t, 8) << "the instance must be where the second scene places it";
 }
 
+// SceneFeatures has a flag for each feature that costs time where it is enabled, such as lights,
+// motion and media.
 TEST(Scene, HasTheFeaturesThatItUses) {
   SceneMaker empty;
   EXPECT_EQ(empty.build()->features(), SceneFeatures{});

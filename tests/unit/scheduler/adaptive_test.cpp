@@ -1,7 +1,7 @@
 // Adaptive jobs give more samples to noisy parts of the image. The first samples of a job are the
-// pilot, which has the same number of samples for every pixel. The errors of the pilot decide how
-// many samples each half tile gets (half of the pixels of a square of 16 x 16). This plan is
-// journalled, and every later pass follows it.
+// pilot, which has the same number of samples for every pixel. A half tile is half of the pixels of
+// a square of 16 x 16. The errors of the pilot decide how many samples each half tile gets. This
+// plan is journalled, and every later pass follows it.
 
 #include <cmath>
 
@@ -24,8 +24,8 @@ std::vector<HalfTileErrors> uneven() {
   return tiles;
 }
 
-/// A job with the error target 1 %, which one worker renders to its end. The film measures the
-/// error 0.2 / sqrt(samples), and these errors of the half tiles.
+/// A job with the error target 1 %, which one worker renders to its end. After each pass, the test
+/// reports the error 0.2 / sqrt(samples) for the image and the errors `tiles` for the half tiles.
 struct Adaptive {
   FarmDriver farm;
   JobId job = 0;
@@ -89,7 +89,7 @@ TEST(Adaptive, ARestartHasTheSamePlanFromJournalAndSnapshot) {
 }
 
 TEST(Adaptive, PlansNoTilesForUniformJobs) {
-  const Adaptive run(false);
+  const Adaptive run(/*adaptive=*/false);
   EXPECT_TRUE(run.farm.all_records<record::TilesPlanned>().empty());
   EXPECT_EQ(run.farm.job(run.job).samples_per_pixel, run.looks.back());
 }
@@ -102,7 +102,7 @@ TEST(Adaptive, UniformNoiseRendersAsAUniformJob) {
     EXPECT_TRUE(lease.tiles.whole());
   }
   EXPECT_EQ(run.farm.job(run.job).samples_per_pixel, run.looks.back());
-  EXPECT_EQ(run.looks, Adaptive(false).looks);
+  EXPECT_EQ(run.looks, Adaptive(/*adaptive=*/false).looks);
 }
 
 }  // namespace

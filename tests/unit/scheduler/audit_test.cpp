@@ -1,6 +1,7 @@
 // Audits. A second machine renders some of the bands again, and the scheduler compares the results.
 // These tests cover the selection of bands and machines, and disputes. In a dispute, machines have
-// returned different pixels of a row.
+// returned different pixels of a row. A machine that is found to be wrong is quarantined, and its
+// stored rows are retracted: they count as not rendered.
 
 #include "coordinator/scheduler/model/audit.h"
 #include "coordinator/scheduler/api/worker_process.h"
@@ -9,7 +10,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// All bands are audited.
+/// All bands are audited. The options slow() give each band one row or a few.
 SchedulerOptions audited() {
   SchedulerOptions options = slow();
   options.audit_share = 1;
@@ -82,7 +83,8 @@ TEST(Audit, SelectsTheGivenShareOfBandsIndependentlyForEachJob) {
     EXPECT_FALSE(is_audited(spec, band, 0));
     EXPECT_TRUE(is_audited(spec, band, 1));
   }
-  // Four standard deviations: sqrt(20,000 x 0.05 x 0.95) is 31, sqrt(20,000 x 0.05^2) is 7.
+  // The tolerances are four standard deviations. The standard deviation of `count` is
+  // sqrt(20,000 x 0.05 x 0.95) = 31, and that of `both` is sqrt(20,000 x 0.05^2) = 7.
   EXPECT_NEAR(count, 1'000, 4 * 31);
   EXPECT_NEAR(both, 50, 4 * 7) << "the selections of two jobs are independent";
 }
@@ -131,7 +133,7 @@ TEST(Audit, AMachineDoesNotConfirmItself) {
 }
 
 TEST(Audit, AThirdMachineDecidesAndWrongRowsAreRenderedAgain) {
-  AuditFarm farm = two_results(7, 0, true);
+  AuditFarm farm = two_results(7, 0, /*third=*/true);
   const Step step = farm.result(farm.lease(3, true), "c");
   EXPECT_EQ(farm.state_of("worker-a"), "quarantined");
   EXPECT_EQ(farm.state_of("worker-b"), "rendering");
@@ -149,7 +151,7 @@ TEST(Audit, AThirdMachineDecidesAndWrongRowsAreRenderedAgain) {
 }
 
 TEST(Audit, AWrongAuditorIsQuarantinedAndTheRowsStay) {
-  AuditFarm farm = two_results(0, 7, true);
+  AuditFarm farm = two_results(0, 7, /*third=*/true);
   const Step step = farm.result(farm.lease(3, true), "c");
   EXPECT_EQ(farm.state_of("worker-b"), "quarantined");
   EXPECT_TRUE(in<action::Retract>(step).empty());
@@ -238,7 +240,7 @@ TEST(Audit, ADisputeIsStillOpenAfterARestart) {
 }
 
 TEST(Audit, ADecidedDisputeIsNotOpenedAfterARestart) {
-  AuditFarm by_third = two_results(0, 7, true);
+  AuditFarm by_third = two_results(0, 7, /*third=*/true);
   by_third.result(by_third.lease(3, true), "c");
   EXPECT_EQ(by_third.all_records<record::RowDisputed>().size(), 1u);
   EXPECT_EQ(by_third.job(1).state, JobState::kFinishing);

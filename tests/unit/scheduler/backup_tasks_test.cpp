@@ -114,6 +114,8 @@ TEST(BackupTasks, ALeaseThatIsNotBegunIsStolen) {
   EXPECT_FALSE(in<action::LogReassignment>(step)[0].begun);
 }
 
+// fitting() returns how many of the rows, from the first on, cost at most the given amount
+// together. It returns at least 1.
 TEST(CostMap, LearnsTheCostOfRows) {
   CostMap cost(200);
   EXPECT_EQ(cost.of_all(), 200);

@@ -374,6 +374,8 @@ TEST(Browser, AThirdBrowserDecidesIfTwoDisagreeWithoutANativeWorker) {
   EXPECT_EQ(farm.all_records<record::WorkerQuarantined>()[0].process, worker_process_id("t"));
 }
 
+// The rows that a browser stored are on disk. The coordinator must still know after a restart that
+// a browser rendered them.
 TEST(Browser, ItsBandsOnDiskAreStillAuditedAsThoseOfABrowserAfterARestart) {
   for (const bool compacted : {false, true}) {
     BrowserFarm farm;
@@ -527,6 +529,8 @@ TEST(Browser, FailuresOfAnyNumberOfBrowsersDoNotFailAJob) {
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
 }
 
+// A band at which many native workers are lost fails the job. A browser may be closed at any time,
+// so the loss of a browser does not count.
 TEST(Browser, LossesOfAnyNumberOfBrowsersDoNotBlameABand) {
   BrowserFarm farm;
   const JobId job = farm.submit(one_row());

@@ -1,6 +1,7 @@
-// Coverage knows the owner of each sample of each row of one pass: the id of a lease (here mostly
-// 7), kStored or kFree. A row of a band is wanted if none of the band's samples is stored in it.
-// Random operations are compared with plain bookkeeping.
+// A pass is a range of samples of the whole image. For each row of a pass, Coverage knows the owner
+// of every sample: the id of a lease (here mostly 7), kStored or kFree. A row of a band is wanted
+// if none of the band's samples is stored in the row. Random operations are compared with plain
+// bookkeeping.
 
 #include "coordinator/scheduler/model/coverage.h"
 
