@@ -79,7 +79,7 @@ TEST(BrickBuilder, KeepsEveryNumber) {
 
 // All bricks of the grid are equal, so only one brick is stored. Multiples of 0.25 are exact as
 // halves, and multiples of 0.1 are not.
-TEST(BrickBuilder, StoresEqualBricksOnceAndHalvesWhereTheyAreExact) {
+TEST(BrickBuilder, StoresEqualBricksOnceAndUsesHalvesIfTheyAreExact) {
   const auto layers = [](float step) {
     return test::grid_of({64, 64, 64}, {}, {1, 1, 1},
                          [step](std::uint32_t, std::uint32_t, std::uint32_t z) {

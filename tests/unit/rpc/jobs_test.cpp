@@ -82,7 +82,7 @@ TEST_F(JobsTest, APauseMayBeRepeatedAndEnded) {
   }
 }
 
-TEST_F(JobsTest, APriorityIsSetAtTheBeginningAndLater) {
+TEST_F(JobsTest, APriorityIsSetBySubmissionAndMayBeChanged) {
   const std::uint64_t job = submit(-7);
   ASSERT_TRUE(resume(job).ok());  // only to get the status of the job
   EXPECT_EQ(job_.priority(), -7);

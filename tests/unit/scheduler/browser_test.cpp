@@ -376,7 +376,7 @@ TEST(Browser, AThirdBrowserDecidesIfTwoDisagreeWithoutANativeWorker) {
 
 // The rows that a browser stored are on disk. The coordinator must still know after a restart that
 // a browser rendered them.
-TEST(Browser, ItsBandsOnDiskAreStillAuditedAsThoseOfABrowserAfterARestart) {
+TEST(Browser, ItsStoredBandsAreStillAuditedAfterARestart) {
   for (const bool compacted : {false, true}) {
     BrowserFarm farm;
     farm.submit(one_row());
@@ -531,7 +531,7 @@ TEST(Browser, FailuresOfAnyNumberOfBrowsersDoNotFailAJob) {
 
 // A band at which many native workers are lost fails the job. A browser may be closed at any time,
 // so the loss of a browser does not count.
-TEST(Browser, LossesOfAnyNumberOfBrowsersDoNotBlameABand) {
+TEST(Browser, DisconnectionsOfAnyNumberOfBrowsersDoNotFailAJob) {
   BrowserFarm farm;
   const JobId job = farm.submit(one_row());
   for (SessionId session = 1; session <= 60; ++session) {
