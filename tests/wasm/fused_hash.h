@@ -1,7 +1,8 @@
 #pragma once
 
-// Hash of results of renderlib/math/fused.h (a b + c, rounded once). It must be equal in the native
-// program and in WebAssembly, which has no instruction for it and emulates it.
+// Hash of results of fused operations (a b + c, rounded once; renderlib/math/fused.h). The hash
+// must be equal in the native program and in WebAssembly. WebAssembly has no instruction for fused
+// operations, so they are emulated there.
 
 #include <bit>
 #include <cmath>
@@ -27,6 +28,7 @@ inline std::uint64_t fused_hash() {
     const double a = any();
     const double b = any();
     add(fused(a, b, any()));
+    // Returns a number of random sign with an absolute value in [1, 512).
     const auto near_one = [&] {
       const std::uint64_t fraction = bits() >> 12 & ~std::uint64_t{0} << bits() % 53;
       const double x = std::bit_cast<double>(fraction | std::uint64_t{1023} << 52);

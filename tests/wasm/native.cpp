@@ -1,5 +1,5 @@
-// Prints the canary and the hash of fused operations (fused_hash.h). bandsaw_test.wasm must compute
-// the same values.
+// Prints the canary (the hash of a small image that every program renders) and the hash of fused
+// operations (fused_hash.h). bandsaw_test.wasm must compute the same values.
 
 #include <cstdio>
 

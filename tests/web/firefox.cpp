@@ -42,7 +42,7 @@ int port_in(const std::string& profile) {
     if (std::ifstream(profile + "/MarionetteActivePort") >> port) {
       return port;
     }
-    // Firefox writes the file without any other sign, so it must be polled.
+    // Only the file shows that Firefox has written it, so the file must be polled.
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   return 0;

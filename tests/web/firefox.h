@@ -1,7 +1,8 @@
 #pragma once
 
-// Firefox without a window. It is driven by its own protocol, Marionette, because Debian has no
-// geckodriver. A message of Marionette is its length and then JSON, over TCP.
+// Firefox without a window. Tests drive it by Firefox's protocol Marionette, because Debian has no
+// geckodriver, the program that would translate WebDriver into Marionette. A message of Marionette
+// is its length and then JSON, over TCP.
 
 #include <google/protobuf/struct.pb.h>
 

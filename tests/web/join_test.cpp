@@ -329,8 +329,8 @@ TYPED_TEST(PulledCableTest, AJobContinuesWithoutATabThatReturnsForTheNextJob) {
   this->expect_same_bytes(client, next);
 }
 
-/// Returns the WebAssembly module with another limit of its memory, which is `pages` pages of 64
-/// KiB. The encoding of the new number has as many bytes as that of the old number.
+/// Returns the WebAssembly module with its memory limited to `pages` pages of 64 KiB. The number of
+/// the old limit is replaced by the new number, which is encoded in as many bytes.
 std::string with_memory(std::string module, std::uint32_t pages) {
   std::size_t at = 8;
   const auto number = [&] {  // LEB128

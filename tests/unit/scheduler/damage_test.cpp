@@ -39,7 +39,7 @@ TEST(Damage, ADamagedBandIsFreeAgainAndCountedOnce) {
   ASSERT_EQ(farm.all_records<record::BandLost>().size(), 1u);
   farm.stored(again[0], "a");
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
-  EXPECT_EQ(farm.all<action::WriteResult>().size(), 2u) << "the image is requested again";
+  EXPECT_EQ(farm.all<action::WriteResult>().size(), 2u) << "the image must be requested again";
   EXPECT_EQ(farm.job(job).samples_done, 8u * 8);
   EXPECT_EQ(farm.job(job).counters.rays, rays);
 }
@@ -58,8 +58,8 @@ TEST(Damage, ReportsOfBandsThatWereNotStoredChangeNothing) {
   EXPECT_TRUE(farm.all_records<record::BandLost>().empty());
 }
 
-/// Lets worker a store the only band and worker b audit it with the same result. Returns the lease
-/// of a.
+/// Lets worker "a" store the only band, and lets worker "b" audit it with the same result. Returns
+/// the lease of worker "a".
 action::Lease store_and_audit(FarmDriver& farm) {
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");
@@ -91,7 +91,7 @@ TEST(Damage, ARestartNotesAuditedBandsMissingFromTheLog) {
   for (const Record& record : farm.records) {
     next.scheduler.replay(record);
   }
-  // The band log has 100 bytes that belong to no whole band.
+  // The audited band is not replayed: the band log has only 100 bytes, which form no whole band.
   next.scheduler.replay_damage(lease.job, 100);
   next.take(next.scheduler.replayed(next.now));
   ASSERT_EQ(next.all_records<record::BandLost>().size(), 1u);

@@ -8,8 +8,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Runs a job to its end, without checks of the invariants after each step, which would be slow.
-/// Returns the number of bands. `seconds`: set to the wall time in which they were handled.
+/// Runs a job to its end and returns the number of its bands. The invariants are not checked after
+/// each step, because this would be slow. Sets `seconds` to the wall time in which the scheduler
+/// handled the bands.
 std::size_t bands_of(std::size_t workers, std::uint32_t height, double& seconds) {
   Scheduler scheduler(slow());
   scheduler.step(input::Submit{test_job("r1", StopAtSamples{64}, 256, height)}, 0);

@@ -36,13 +36,14 @@ std::vector<double> speeds(double seconds, bool equal) {
 /// efficiency is the lowest, and the last phase is the longest. Each other figure is the maximum
 /// over the seeds.
 ///
-/// Of 20 seeds, the worst one does not count, because with random render times it is random which
-/// bands come last. In the farm with noisy times, the last phase is longer than 2 % of the time at
-/// 6 of 300 seeds. With audits (a second worker renders a band again, and the results are compared)
-/// this happens at 8 of 300 seeds. Without probe bands (a few rows that are rendered first,
-/// dispatch/probes.h) it would happen at 7 seeds without audits, and at 11 seeds with audits. If a
-/// change made the last phase too long at 10 % of all seeds, the test would fail six times of ten.
-/// If the worst of five seeds counted, the test would then fail only four times of ten.
+/// Of 20 seeds, the worst one does not count. The render times are random, so a slow band comes
+/// last at some seeds, and the last phase is long there. In the farm with noisy times, the last
+/// phase is longer than 2 % of the job's time at 6 of 300 seeds. With audits (a second worker
+/// renders a band again, and the results are compared) it is longer at 8 of 300 seeds. If there
+/// were no probe bands (a few rows that are rendered first, dispatch/probes.h), it would be longer
+/// at 7 seeds, and with audits at 11 seeds. If a change made the last phase too long at one seed of
+/// ten, the test with 20 seeds would fail six times of ten. A test in which the worst of five seeds
+/// counts would fail only four times of ten.
 BenchResult measure(const char* name, BenchFarm farm, std::size_t seeds = 20) {
   BenchResult worst;
   std::vector<double> efficiencies;

@@ -112,10 +112,11 @@ TEST(ErrorCurve, PredictsNothingWithoutAKnownError) {
 
 using Measured = std::vector<std::pair<std::uint64_t, double>>;  ///< samples, error
 
-/// Simulates a job with this target that measures these errors at its checkpoints, and predicts at
-/// each of them how many samples the job takes in total. Returns the predicted number divided by
-/// the actual one, for each checkpoint after a quarter of the work. The job's first checkpoint is
-/// left out, because one point does not tell how fast the error falls.
+/// Simulates a job with this target that measures these errors at its checkpoints (the numbers of
+/// samples at which the error is compared with the target). At each checkpoint, predicts how many
+/// samples the job takes in total. Returns the predicted number divided by the actual number, for
+/// each checkpoint after a quarter of the work. The job's first checkpoint is left out, because one
+/// point does not tell how fast the error falls.
 std::vector<double> prediction_ratios(const Measured& measured, double target) {
   ErrorCurve curve;
   std::vector<std::pair<std::uint64_t, double>> predictions;
@@ -144,7 +145,7 @@ TEST(ErrorCurve, PredictsTheEndOfAPowerLawAfterAQuarterOfTheWork) {
   for (const double p : {0.5, 0.55, 0.6, 0.65}) {
     for (const double target : {0.2, 0.05, 0.01}) {
       Measured measured;
-      for (std::uint64_t n = next_checkpoint(0, -1, target, kMaxSamples);;) {
+      for (std::uint64_t n = next_checkpoint(0, /*error=*/-1, target, kMaxSamples);;) {
         measured.emplace_back(n, 2 * std::pow(n, -p));
         if (measured.back().second <= target) {
           break;
@@ -193,7 +194,7 @@ double error_at(const Measured& measured, std::uint64_t samples) {
 /// errors that were measured for a scene.
 Measured checkpoints_of(const Measured& scene, double target) {
   Measured seen;
-  std::uint64_t n = next_checkpoint(0, -1, target, kMaxSamples);
+  std::uint64_t n = next_checkpoint(0, /*error=*/-1, target, kMaxSamples);
   do {
     seen.emplace_back(n, error_at(scene, n));
     n = next_checkpoint(n, seen.back().second, target, kMaxSamples);
@@ -201,10 +202,10 @@ Measured checkpoints_of(const Measured& scene, double target) {
   return seen;
 }
 
-// A job ends at a checkpoint, and checkpoints are an eighth to a quarter apart, so predictions are
-// not exact. Nine tenths of all predictions after a quarter of the work are right within 15 %, and
-// the mean error of all predictions is 6 %. The bounds are slightly wider. The targets are 2.5 % to
-// 6 %.
+// A job ends at a checkpoint, and each checkpoint has an eighth to a quarter more samples than the
+// checkpoint before. So predictions are not exact. Nine tenths of all predictions after a quarter
+// of the work are right within 15 %, and the mean error of all predictions is 6 %. The bounds are
+// slightly wider. The targets are 2.5 % to 6 %.
 TEST(ErrorCurve, PredictsTheEndOfMeasuredCurvesAfterAQuarter) {
   constexpr int kTargets = 40;
   int all = 0;

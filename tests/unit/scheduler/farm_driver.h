@@ -45,8 +45,8 @@ inline JobSpec test_job(std::string request, const StopRule& stop, std::uint32_t
   return spec;
 }
 
-/// Returns the row digest that a correct worker would send. It is any function of samples and row;
-/// a worker that sends another number counts as wrong.
+/// Returns the row digest that a correct worker would send: an arbitrary function of the samples
+/// and the row. A worker that sends another number counts as wrong.
 inline std::uint64_t honest_digest(const SampleRange& samples, std::uint32_t row) {
   return samples.first * 1'000'003 + samples.last * 7'919 + row + 1;
 }

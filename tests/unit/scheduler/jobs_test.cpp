@@ -1,4 +1,5 @@
-// Jobs from submission to their end.
+// Jobs from submission to their end. A job is rendered in passes. A pass is a range of samples that
+// is rendered for the whole image.
 
 #include "coordinator/scheduler/model/job.h"
 

@@ -58,7 +58,7 @@ TEST(Liveness, AJumpOfTheClockDisconnectsNobody) {
 }
 
 // A lease is revoked after 30 s without progress. A worker that prepares the scene reports a number
-// that grows; its change from 0 to 17 is progress.
+// that grows. In this test it grows from 0 to 17, which counts as progress.
 TEST(Liveness, RevokesALeaseWithoutProgress) {
   FarmDriver farm;
   farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
@@ -232,7 +232,7 @@ TEST(CrashAttribution, SixCrashesOnANewFarmFailTheJobAndNameTheBand) {
   const std::string names = "abcdef";
   for (SessionId session = 1; session <= 6; ++session) {
     EXPECT_EQ(farm.job(job).state, JobState::kRunning)
-        << "the first crash only makes the band suspect";
+        << "fewer than six crashes must not fail the job";
     lose_one(farm, session, names.substr(session - 1, 1));
   }
   EXPECT_EQ(farm.job(job).state, JobState::kFailed);
@@ -326,8 +326,8 @@ TEST(CrashAttribution, FindsOneDeadlyRowOfALongBand) {
   EXPECT_NE(farm.job(job).reason.find(rows), std::string::npos) << farm.job(job).reason;
 }
 
-// A worker that crashes at the first pixel of a band still holds the lease of the band before it,
-// which is finished and not stored.
+// If a worker crashes at the first pixel of its second band, its first band may be finished but not
+// stored yet. Then the worker holds the leases of both bands, and both are suspect.
 TEST(CrashAttribution, TheSecondLeaseIsSuspectToo) {
   FarmDriver farm(slow());
   const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 2));
@@ -406,9 +406,9 @@ TEST(CrashAttribution, CrashesOfTheOnlyMachineFailTheJob) {
 // is at least `least`. `own` crashes were at this band and are left out of the rate.
 TEST(CrashRate, RequiresMoreCrashesIfMoreWorkersAreLost) {
   CrashRate calm;
-  EXPECT_EQ(calm.required(3, 0), 5u) << "the prior of a new farm";
+  EXPECT_EQ(calm.required(3, 0), 5u) << "a new farm must require five crashes";
   calm.add_crash();
-  EXPECT_EQ(calm.required(3, 1), 5u) << "the band's own loss says nothing of the farm";
+  EXPECT_EQ(calm.required(3, 1), 5u) << "the crash at this band must not count";
   EXPECT_GT(calm.required(3, 0), 5u);
   for (int i = 0; i < 100; ++i) {
     calm.add_band();
@@ -425,7 +425,7 @@ TEST(CrashRate, RequiresMoreCrashesIfMoreWorkersAreLost) {
   for (int i = 0; i < 100'000; ++i) {
     storm.add_band();
   }
-  EXPECT_EQ(storm.required(3, 0), 3u) << "old events lose weight";
+  EXPECT_EQ(storm.required(3, 0), 3u) << "old events must lose weight";
 }
 
 TEST(CrashAttribution, RandomKillsDoNotFailAJobThatAdvances) {

@@ -20,6 +20,7 @@ TEST(Passes, AreNodesThatFollowEachOtherToTheLastSample) {
   // Every number of samples below 300, and some of the larger ones.
   for (std::uint64_t samples = 1; samples < 3000; samples += samples < 300 ? 1 : 37) {
     std::uint64_t end = 0;
+    // A pass of more than one block has at most a quarter of the job's blocks.
     for (const SampleRange& pass : passes_between(0, samples)) {
       EXPECT_EQ(pass.first, end);
       EXPECT_TRUE(is_node(pass)) << pass.first << " " << pass.last;
@@ -38,25 +39,26 @@ TEST(Passes, BeginSmallAndDouble) {
 
 TEST(Passes, TheLargestJobHasFewPasses) { EXPECT_LE(passes_between(0, kMaxSamples).size(), 64u); }
 
+// `fits` is the number of samples that are expected to fit into the remaining time.
 TEST(Passes, EachPassOfATimedJobIsANodeOfAtMostAQuarterOfTheSamples) {
   std::uint64_t end = 0;
   for (int i = 0; i < 40; ++i) {
-    const SampleRange pass = next_timed_pass(end, 1e12, kMaxSamples);
+    const SampleRange pass = next_timed_pass(end, /*fits=*/1e12, kMaxSamples);
     EXPECT_EQ(pass.first, end);
     EXPECT_TRUE(is_node(pass));
     EXPECT_TRUE(end < 32 || pass.samples() * 4 <= end);
     end = pass.last;
   }
-  EXPECT_EQ(next_timed_pass(1024, 100, kMaxSamples), (SampleRange{1024, 1088}));
-  EXPECT_EQ(next_timed_pass(1024, 0, kMaxSamples), (SampleRange{1024, 1032}));
-  EXPECT_EQ(next_timed_pass(64, 1000, 70), (SampleRange{64, 70}));
+  EXPECT_EQ(next_timed_pass(1024, /*fits=*/100, kMaxSamples), (SampleRange{1024, 1088}));
+  EXPECT_EQ(next_timed_pass(1024, /*fits=*/0, kMaxSamples), (SampleRange{1024, 1032}));
+  EXPECT_EQ(next_timed_pass(64, /*fits=*/1000, 70), (SampleRange{64, 70}));
 }
 
 TEST(Checkpoints, AreFewAndTheLastIsAtMostAQuarterTooFar) {
   for (const double power : {0.5, 0.75, 1.0}) {
     for (const double target : {0.1, 0.01, 0.003}) {
       const auto error = [&](std::uint64_t n) { return std::pow(static_cast<double>(n), -power); };
-      std::uint64_t samples = next_checkpoint(0, -1, target, kMaxSamples);
+      std::uint64_t samples = next_checkpoint(0, /*error=*/-1, target, kMaxSamples);
       int checkpoints = 1;
       while (error(samples) > target) {
         const std::uint64_t next = next_checkpoint(samples, error(samples), target, kMaxSamples);
@@ -73,10 +75,10 @@ TEST(Checkpoints, AreFewAndTheLastIsAtMostAQuarterTooFar) {
 }
 
 TEST(Checkpoints, ContinueWithoutAnErrorAndStayBelowTheMaximum) {
-  EXPECT_EQ(next_checkpoint(0, -1, 0.01, kMaxSamples), 32u);
-  EXPECT_EQ(next_checkpoint(32, std::nan(""), 0.01, kMaxSamples), 64u);
-  EXPECT_EQ(next_checkpoint(32, 1, 1e-300, 100), 100u);
-  EXPECT_EQ(next_checkpoint(0, -1, 0.01, 5), 5u);
+  EXPECT_EQ(next_checkpoint(0, /*error=*/-1, 0.01, kMaxSamples), 32u);
+  EXPECT_EQ(next_checkpoint(32, /*error=*/std::nan(""), 0.01, kMaxSamples), 64u);
+  EXPECT_EQ(next_checkpoint(32, /*error=*/1, 1e-300, 100), 100u);
+  EXPECT_EQ(next_checkpoint(0, /*error=*/-1, 0.01, 5), 5u);
 }
 
 /// Returns the data from which size_band computes a band for a worker. The worker renders 100 rows
@@ -120,7 +122,8 @@ TEST(BandSizes, ShrinkTowardTheEndDownToAMinimum) {
   Sizing s = sizing();
   s.free.rows.first = 7;
   s.work_left = 80'000;
-  EXPECT_EQ(size_band(s).rows.count(), 25u);  // half of its share of the 100 rows that are left
+  // 100 rows are left. The worker's share is 50 rows, and the band gets half of them.
+  EXPECT_EQ(size_band(s).rows.count(), 25u);
   s.free.rows.first = 4;
   s.work_left = 800;
   EXPECT_EQ(size_band(s).rows.count(), 12u);  // an eighth of the target time
@@ -182,7 +185,7 @@ TEST(RecentRate, ForgetsAllAmountsWhenItIsStarted) {
 }
 
 TEST(SchedulerClock, NeverGoesBackAndLimitsTheTimeoutStepOfOneInput) {
-  SchedulerClock clock(1);
+  SchedulerClock clock(/*max_timeout_step=*/1);
   clock.advance(50);
   clock.advance(50.5);
   EXPECT_EQ(clock.wall(), 50.5);

@@ -26,6 +26,8 @@ struct AllLost {
     farm.actions.clear();
   }
 
+  /// Returns the entry of a lease in the Hello of the worker that holds it. "one" is the epoch, the
+  /// coordinator's only run.
   WorkerHello::Held held(std::size_t lease, bool finished) const {
     return {job, leases.at(lease).band, leases.at(lease).lease, "one", finished};
   }
@@ -38,7 +40,7 @@ TEST(ReconnectBarrier, TheFirstReconnectedWorkerGetsNothingAnotherHasRendered) {
   all.farm.hello(3, "a", 1);
   EXPECT_TRUE(all.farm.all<action::Lease>().empty());
   EXPECT_NE(all.farm.job(all.job).reason.find("waits for 1 workers"), std::string::npos);
-  const Step step = all.farm.hello(4, "b", 1, {all.held(1, true)});
+  const Step step = all.farm.hello(4, "b", 1, {all.held(1, /*finished=*/true)});
   const auto given = in<action::Lease>(step);
   ASSERT_EQ(given.size(), 2u) << "b gets its own lease again, and a gets new rows";
   EXPECT_EQ(given[0].lease, all.leases[1].lease);

@@ -114,7 +114,7 @@ TEST(Pause, DoesNotCountAsTimeOfTheJob) {
   farm.send(input::Pause{job});
   farm.pass_time(20, {1});
   EXPECT_EQ(farm.job(job).elapsed_s, 4);
-  EXPECT_LT(farm.job(job).remaining_s, 0) << "unknown";
+  EXPECT_LT(farm.job(job).remaining_s, 0) << "the remaining time must be unknown in a pause";
   FarmDriver next;
   for (const Record& record : farm.records) {
     next.scheduler.replay(record);
@@ -127,6 +127,7 @@ TEST(Pause, DoesNotCountAsTimeOfTheJob) {
   EXPECT_EQ(farm.job(job).remaining_s, 3);
 }
 
+// A pause revokes the lease only after a second. Here the job is resumed after half a second.
 TEST(Pause, TheTimeOfTheJobGoesOnAfterAPauseThatALeaseOutlasts) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtTime{10, kMaxSamples}));

@@ -48,7 +48,7 @@ FarmDriver restarted(const FarmDriver& farm, const std::vector<input::BandStored
   for (const input::BandStored& band : bands) {
     next.scheduler.replay(band);
   }
-  next.now = 5;  // another clock
+  next.now = 5;  // the new process has another clock
   next.take(next.scheduler.replayed(next.now));
   return next;
 }
@@ -285,13 +285,15 @@ TEST(Restart, RevokesAHeldLeaseOfAnotherJobWithTheSameId) {
   EXPECT_TRUE(in<action::Revoke>(taken).empty());
 }
 
+// Worker "a" holds two leases: one of a band that is on disk already, and one of an unknown job 9.
 TEST(Restart, RevokesAHeldLeaseThatIsNotWanted) {
   const Before before;
   FarmDriver next = before.restart();
   next.take(next.scheduler.replayed(next.now));
-  const Step step = next.hello(
-      7, "a", 1,
-      {{1, before.leases[0].band, before.leases[0].lease, "one", true}, {9, {}, 5, "one", false}});
+  const Step step =
+      next.hello(7, "a", 1,
+                 {{1, before.leases[0].band, before.leases[0].lease, "one", /*finished=*/true},
+                  {9, {}, 5, "one", /*finished=*/false}});
   ASSERT_EQ(in<action::Revoke>(step).size(), 1u);
   EXPECT_EQ(in<action::Revoke>(step)[0].leases.size(), 2u);
 }

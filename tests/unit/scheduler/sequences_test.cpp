@@ -221,7 +221,8 @@ TEST(Sequences, TheRemainingTimeOfARetryCountsOnlyItsFrames) {
   ASSERT_EQ(farm.in_state(id, FrameState::kDone).size(), 19u);
   ASSERT_TRUE(farm.send(input::RetryFrames{id, {}}).status.ok());
   farm.pass_time(1, {1});
-  EXPECT_LT(farm.job(id).remaining_s, 0) << "unknown until half of the frame is rendered";
+  EXPECT_LT(farm.job(id).remaining_s, 0)
+      << "the frames that were done before must not count, so the time is unknown";
 }
 
 TEST(Sequences, TheRemainingTimeIsUnknownInAPauseAndTheSameAfterIt) {
@@ -335,7 +336,8 @@ TEST(Sequences, PausedSequencesDoNotHoldUpOthers) {
 }
 
 // At most 500 frame jobs are made for all sequences. With 39 workers, each of the six sequences has
-// 4 + 2 x 39 of them, 492 in all. The next worker would need 12 more, and eight are left.
+// 4 + 2 x 39 of them, 492 in all. The next worker would need 12 more, and eight are left. They go
+// to four sequences: the one with the highest priority, and the three oldest of the others.
 TEST(Sequences, TheHighestPriorityGetsTheLastFrameJobs) {
   FrameFarm farm;
   SequenceSpec spec = test_sequence("1-200");
@@ -354,7 +356,7 @@ TEST(Sequences, TheHighestPriorityGetsTheLastFrameJobs) {
   spec.request_id = "one more";
   const JobId more = farm.submit_frames(spec);
   EXPECT_EQ(farm.in_state(more, FrameState::kRendering).size(), 4u)
-      << "each sequence has at least four";
+      << "each sequence must have at least four frame jobs";
 }
 
 TEST(Sequences, FramesWaitForTheirScenes) {

@@ -31,12 +31,14 @@ struct BenchFarm {
 };
 
 struct BenchResult {
-  double seconds = 0;     ///< first lease to last result
-  double efficiency = 0;  ///< work of the job over the work that the workers could do in `seconds`
-  double tail = 0;        ///< last phase: share of `seconds` in which some worker was idle
+  double seconds = 0;  ///< first lease to last result
+  /// Work of the job, divided by the work that the workers could do in `seconds`.
+  double efficiency = 0;
+  double tail = 0;  ///< last phase: share of `seconds` in which some worker was idle
   std::uint64_t bands = 0;
-  std::uint64_t wasted = 0;   ///< bands that were rendered, in whole or in part, for nothing
-  double predicted_left = 0;  ///< predicted over true remaining time, after a quarter of `seconds`
+  std::uint64_t wasted = 0;  ///< bands that were rendered, in whole or in part, for nothing
+  /// After a quarter of `seconds`: the predicted remaining time, divided by the true one.
+  double predicted_left = 0;
   /// Says which invariant was broken, or that the job did not end; empty: neither.
   std::string broken;
 };

@@ -30,7 +30,7 @@ void SimCoordinator::start() {
   ++epoch_number_;
   SchedulerOptions options = test_options();
   options.epoch = epoch();
-  // The timeout is short, so that bands that hang are revoked while things still fail (kStorm).
+  // The timeout is short, so that bands that hang are revoked before the simulated failures end.
   options.progress_timeout_s = 8;
   options.audit_share = audit_share;
   options.browser_audit_share = browser_audit_share;
@@ -47,7 +47,7 @@ void SimCoordinator::start() {
     disk.stored = {};
     for (const input::BandStored& band : disk.bands) {
       const auto rows = scheduler_->wanted(id, band.band);
-      // A band on disk names the process that rendered it by its id, not by its instance.
+      // A record on disk has the id of the process that rendered the band, not the instance.
       input::BandStored found = band;
       found.process = worker_process_id(found.instance);
       found.instance.clear();

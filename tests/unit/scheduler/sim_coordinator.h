@@ -66,7 +66,8 @@ class SimCoordinator {
   std::uint64_t damages = 0;               ///< damaged logs that a film found
   std::map<JobId, std::uint64_t> results;  ///< samples per pixel of each finished image
   double time_skew = 0;  ///< seconds that the scheduler's clock is ahead of the virtual time
-  // Options of the scheduler (SchedulerOptions), from the next start on.
+  // Options of the scheduler (SchedulerOptions), which are used at the next start(). To audit a
+  // band, a second worker renders it again, and the results are compared.
   double audit_share = 0;
   double browser_audit_share = 0.1;
   Browsers browsers = Browsers::kAlso;

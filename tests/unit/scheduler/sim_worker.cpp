@@ -132,7 +132,8 @@ void SimWorker::receive(const Action& action) {
   } else if (std::holds_alternative<action::Close>(action)) {
     disconnected(chance_.between(0.1, 1));
   } else if (std::holds_alternative<action::Refuse>(action)) {
-    // Quarantined: a person checks the machine and restarts the worker.
+    // The worker is quarantined. After 5 s, a person has checked the machine and restarts the
+    // worker.
     disconnected(1e9);
     running_ = false;
     agenda_.in(5, [this] {
@@ -159,7 +160,8 @@ void SimWorker::take(const action::Lease& lease) {
       4 * coordinator_.package_bytes(lease.job) > nature_.memory_bytes) {
     coordinator_.fail(absl::StrCat("job ", lease.job, " is too large for ", name_));
   }
-  held_.push_back({lease, epoch_, false, {}, 0, -1, -1, false});
+  held_.push_back({lease, epoch_, /*finished=*/false, /*digests=*/{}, /*render_s=*/0,
+                   /*begun_at=*/-1, /*prepared_at=*/-1, /*hangs=*/false});
   render();
 }
 

@@ -20,7 +20,7 @@ struct Nature {
   std::uint32_t max_bands = 2;  ///< leases that it holds at once, at most
   std::uint32_t number = 0;     ///< distinguishes the processes of workers of the same name
   double fails = 0;             ///< share of its bands that it cannot render
-  double hangs = 0;             ///< share of its bands that it renders until they are revoked
+  double hangs = 0;             ///< share of its bands that it never finishes; they are revoked
   double lies = 0;              ///< share of its rows that have wrong pixels
   /// Share of the results that are lost or arrive twice, and of the acknowledgements that are lost.
   double loses = 0.05;
@@ -51,7 +51,7 @@ class SimWorker {
   void cut_cable();
   /// Announces that it finishes its leases and takes no more.
   void drain();
-  /// From now on, it makes no errors and loses no messages.
+  /// Ends all random failures of the worker: wrong, failed and hanging bands, and lost messages.
   void calm_down() { nature_.fails = nature_.hangs = nature_.lies = nature_.loses = 0; }
   bool running() const { return running_; }
 
@@ -116,7 +116,7 @@ class SimWorker {
   std::string name_;
   Nature nature_;
   bool running_ = false;
-  std::uint64_t process_ = 0;  ///< counts its processes
+  std::uint64_t process_ = 0;  ///< number of processes started so far
   double frozen_until_ = 0;
   std::shared_ptr<Stream> stream_;
   std::string epoch_;

@@ -229,7 +229,7 @@ class Simulation : SimulatedFarm {
     }
   }
 
-  /// Ends the storm: from now on nothing fails, and every job has to end.
+  /// Ends the storm: no new failure happens, and every job has to end.
   void calm_down() {
     // These jobs may have been paused by `one_thing_happens`, and a crash may have lost the Resume.
     for (JobId job = 1; job <= 3; ++job) {
@@ -505,7 +505,7 @@ TEST(Simulation, AHealthyJobEndsAtSeedsWithManyLostWorkers) {
 }
 
 // At seed 23577 the coordinator crashes between the records of two passes that were planned in one
-// step.
+// step. The job must still end with as many samples as on a farm without failures.
 TEST(Simulation, AnErrorTargetStopsAtTheSampleThatWasPlannedBeforeACrash) {
   const Outcome calm = Simulation(23'577, {.chaos = false, .failures = false, .cancels = false})
                            .run(job_with_error_target(23'577));

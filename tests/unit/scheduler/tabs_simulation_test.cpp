@@ -218,6 +218,8 @@ TEST(TabSimulation, TabsAloneRenderTheRightBytes) {
   });
 }
 
+// With Browsers::kOnly, only tabs render. Native workers render all bands again and compare them,
+// so no image may have a wrong row.
 TEST(TabSimulation, NativeWorkersThatOnlyCompareFindTabsThatLie) {
   for_seeds(92'001, 10, [&](std::uint64_t seed) {
     const TabOutcome one = TabSimulation(seed, {.liars = true, .browsers = Browsers::kOnly}).run();

@@ -39,7 +39,7 @@ class BlobStoreTest : public testing::Test {
 
   /// Returns a text that is long enough that half of it is kept as a partial upload.
   static std::string long_text(char fill) { return std::string(2 * PartialBlobs::kMinBytes, fill); }
-  /// Uploads the first half of a blob, and then gives the upload up.
+  /// Uploads the first half of a blob, and then abandons the upload.
   static void leave_half(BlobStore& store, const std::string& text) {
     absl::StatusOr<BlobStore::Writer> writer = store.write(wire::sha256(text), text.size());
     ASSERT_TRUE(writer.ok()) << writer.status();

@@ -75,7 +75,7 @@ TEST(RecordText, RecordsWithoutTheNewestFieldsAreRead) {
       EXPECT_EQ(summary->counters.techniques, 0u);
     }
   }
-  EXPECT_GT(fields, 5);  // there were such fields to remove
+  EXPECT_GT(fields, 5) << "the sample records must have such fields";
 }
 
 TEST(RecordText, NamesOfOlderVersionsAreRead) {

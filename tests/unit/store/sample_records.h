@@ -1,7 +1,7 @@
 #pragma once
 
-// Sample data for tests of the journal: at least one record of every kind. Their values are
-// difficult to write as text, such as control characters and the limits of number types.
+// Sample data for tests of the journal: at least one record of every kind. The records have
+// values that are difficult to write as text: control characters, and the limits of number types.
 
 #include <limits>
 #include <vector>

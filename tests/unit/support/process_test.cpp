@@ -1,4 +1,5 @@
-// The environment variables of child processes of tests.
+// A test gives environment variables to a child process as entries "NAME=value". The child process
+// inherits all other variables from the test.
 
 #include "tests/support/process.h"
 

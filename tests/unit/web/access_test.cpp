@@ -82,7 +82,7 @@ TEST_F(AccessTest, AWrongSecretAndTheWorkersSecretDoNotLogIn) {
 }
 
 TEST_F(AccessTest, ManyWrongSecretsAreLimited) {
-  Access access(identity_, false, "127.0.0.1");
+  Access access(identity_, /*secure=*/false, "127.0.0.1");
   HttpRequest request;
   request.remote_address = "10.0.0.7";
   HttpReply reply;
@@ -118,7 +118,7 @@ TEST_F(AccessTest, AForeignNameForThisMachineIsRefused) {
 }
 
 TEST_F(AccessTest, TheNameThatTheDashboardListensOnIsAccepted) {
-  Access access(identity_, true, "desk.example.org");
+  Access access(identity_, /*secure=*/true, "desk.example.org");
   HttpRequest request;
   request.method = "GET";
   request.path = "/";
@@ -167,9 +167,9 @@ TEST_F(AccessTest, ANewSecretClosesConnections) {
   close(client);
 }
 
-// Each half-open connection occupies a thread of the server until its deadline. The server has 32
-// threads; 40 such connections would occupy all of them if the number of connections of one
-// address were not limited.
+// A half-open connection occupies a thread of the server until the deadline of the connection. The
+// server has 32 threads. 40 such connections would occupy all threads if the number of connections
+// of one address were not limited.
 TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   std::vector<int> sockets;
   sockaddr_in address{};

@@ -49,6 +49,7 @@ TEST_F(RoutesTest, TheWorkersProgramIsHandedOutWithVersionAndDigest) {
   EXPECT_EQ(got->header("Repr-Digest"), "sha-256=:" + absl::Base64Escape(raw) + ":");
 }
 
+// An architecture has two names, such as "aarch64" and "arm64". Both lead to its program.
 TEST_F(RoutesTest, EachArchitectureHasItsProgram) {
   headers_.clear();
   const std::string own(machine_name(kThisMachine));
@@ -97,7 +98,7 @@ TEST_F(RoutesTest, ADroppedSceneBecomesAJob) {
   const auto page = message<web::JobPage>(get("/api/jobs/1"));
   EXPECT_EQ(page.job().status().name(), "my_box");
   EXPECT_EQ(page.job().status().settings().width(), 48u);
-  EXPECT_EQ(page.job().status().settings().height(), 32u);  // 600 x 400, scaled
+  EXPECT_EQ(page.job().status().settings().height(), 32u);  // the scene, 600 x 400, scaled
   EXPECT_EQ(page.job().status().stop().samples(), 32u);
   EXPECT_EQ(page.why_size(), 1);
   EXPECT_EQ(message<web::Overview>(get("/api/farm")).job_size(), 1);
@@ -184,11 +185,11 @@ TEST_F(RoutesTest, AnImageForWhichNoMemoryIsLeftIsRefused) {
 TEST_F(RoutesTest, ADoneJobDoesNotShowAnOlderPicture) {
   const std::uint64_t job = submit_box();
   const std::string path = absl::StrCat("/api/jobs/", job, "/preview.png?side=");
-  put(job, 24, 16, 0, 0.1);
+  put(job, 24, 16, /*first=*/0, /*value=*/0.1);
   const auto early = get(path + "64");
   ASSERT_TRUE(early);
   ASSERT_EQ(early->status, 200);
-  finish(job, 24, 16, 64, 8);
+  finish(job, 24, 16, /*samples=*/64, /*first=*/8);
   {
     const std::int64_t left = engine_->images().left();
     const auto others = engine_->images().take(static_cast<std::uint64_t>(left));

@@ -27,8 +27,8 @@ absl::Status put(Engine& engine, const wire::Digest& digest, absl::Span<const st
   return status.ok() ? (*writer)->commit() : status;
 }
 
-/// Stores a package with the Cornell box on the farm, named after the scene file `path`.
-/// INVALID_ARGUMENT: the file contains "broken".
+/// Stores a package of the Cornell box on the farm. The package has the name of the scene file
+/// `path`. INVALID_ARGUMENT: the file contains "broken".
 absl::StatusOr<SceneOnFarm> bring_box(Engine& engine, const std::string& path) {
   std::ifstream file(path);
   std::stringstream text;
@@ -122,8 +122,10 @@ void WebTest::put(std::uint64_t job, std::uint32_t width, std::uint32_t height, 
                           .sums = std::vector<double>(std::size_t{width} * height * 3, 8 * value),
                           .counters = {}};
   using Put = absl::StatusOr<BandOutcome>;
-  const Put outcome = blocking_call<Put>(
-      [&](auto answer) { engine_->put_band(job, 0, std::string(32, 'a'), pixels, 0, 0, answer); });
+  const Put outcome = blocking_call<Put>([&](auto answer) {
+    engine_->put_band(job, /*work=*/0, std::string(32, 'a'), pixels, /*render_s=*/0,
+                      /*cpu_s=*/0, answer);
+  });
   ASSERT_TRUE(outcome.ok()) << outcome.status();
 }
 

@@ -38,7 +38,7 @@ class WebTest : public ::testing::Test {
   /// Submits a job of 24 x 16 pixels, which no worker renders; returns its id. log_in() MUST have
   /// been called.
   std::uint64_t submit_box();
-  /// Uploads a band of 8 samples of a job, from `first` on, with all rows. Each pixel's value is
+  /// Uploads a band of a job: the samples [first, first + 8) of all rows. Each pixel's value is
   /// `value`.
   void put(std::uint64_t job, std::uint32_t width, std::uint32_t height, std::uint64_t first,
            double value);

@@ -134,7 +134,8 @@ TEST_F(ExecutorTest, RendersTheSamePixelsAsRenderBand) {
   }
 }
 
-// The process has used CPU time before the band, at least for its start.
+// The process has used CPU time before it renders the band, at least for the start of the process.
+// The cost of the band must not contain this time.
 TEST_F(ExecutorTest, CountsTheCpuTimeOfRenderingOnly) {
   start();
   executor_->add(task(1, 0, 1));

@@ -27,7 +27,7 @@ class LoadPackageTest : public ::testing::Test {
     }
   }
 
-  /// Sends a blob from `offset` on. If the transfer is interrupted, it sends half of these bytes.
+  /// Sends the bytes of a blob from `offset` on. An interrupted transfer sends half of these bytes.
   absl::Status transfer(const wire::Digest& digest, std::uint64_t offset, const TakeBytes& take) {
     const auto found = farm_.all().find(digest);
     if (found == farm_.all().end()) {

@@ -1,8 +1,10 @@
-// LogQueue: the lines of a worker's log that wait to be sent to the coordinator. At most 500 wait.
-// arrived() says that the coordinator has all lines that were taken. again() puts lines that were
-// taken back into the queue, at most the last 50. After a lost connection (again(false)) these are
-// the lines taken since arrived(). If the coordinator has restarted (again(true)), these are all
-// lines.
+// LogQueue: the lines of a worker's log that wait to be sent to the coordinator. At most 500 lines
+// wait. take() removes lines from the queue, to send them. arrived() says that the coordinator has
+// received all lines that were taken. again() is called when the worker has connected again. It
+// inserts taken lines into the queue again, because the coordinator may lack them. If the
+// coordinator has not restarted, it may lack the lines taken since the last call of arrived(). If
+// the coordinator has restarted, it may lack all lines. At most the last 50 taken lines are
+// inserted again.
 
 #include "worker/log_queue.h"
 
@@ -41,7 +43,7 @@ TEST(LogQueue, ReturnsTheLastLinesAgainBeforeNewOnes) {
   EXPECT_EQ(log.queue->take(60).size(), 60u);
   log.queue->arrived();
   log.logger.info("new");
-  log.queue->again(true);
+  log.queue->again(/*restarted=*/true);
   const std::vector<std::string> again = log.queue->take(100);
   ASSERT_EQ(again.size(), 51u);
   EXPECT_EQ(again.front(), "info 10\n");
@@ -57,13 +59,13 @@ TEST(LogQueue, ReturnsAgainLinesThatMayNotHaveArrived) {
   log.queue->arrived();
   EXPECT_EQ(log.queue->take(2).size(), 2u);
   log.logger.info("new");
-  log.queue->again(false);
+  log.queue->again(/*restarted=*/false);
   EXPECT_THAT(log.queue->take(9), ElementsAre("info two\n", "info three\n", "info new\n"));
   log.queue->arrived();
-  log.queue->again(false);
+  log.queue->again(/*restarted=*/false);
   EXPECT_THAT(log.queue->take(9), IsEmpty());
-  log.queue->again(true);
-  EXPECT_EQ(log.queue->take(9).size(), 4u) << "a coordinator that restarted has lost all lines";
+  log.queue->again(/*restarted=*/true);
+  EXPECT_EQ(log.queue->take(9).size(), 4u) << "a coordinator that restarted must get all lines";
 }
 
 TEST(LogQueue, CountsLinesThatItCannotReturnAgain) {
@@ -72,9 +74,9 @@ TEST(LogQueue, CountsLinesThatItCannotReturnAgain) {
     log.logger.info("{}", i);
   }
   EXPECT_EQ(log.queue->take(60).size(), 60u);
-  log.queue->again(false);
+  log.queue->again(/*restarted=*/false);
   EXPECT_THAT(log.queue->take(2), ElementsAre(HasSubstr("10 lines"), "info 10\n"));
-  log.queue->again(false);
+  log.queue->again(/*restarted=*/false);
   EXPECT_THAT(log.queue->take(3), ElementsAre(HasSubstr("10 lines"), "info 10\n", "info 11\n"));
 }
 

@@ -14,6 +14,7 @@
 namespace bandsaw::worker {
 namespace {
 
+// lease(id, first_row) assigns two rows of a job to the worker, and revoke(id) cancels the lease.
 using test::lease;
 using test::revoke;
 using ::testing::ElementsAre;
@@ -113,7 +114,7 @@ TEST(Session, ATaskHasTheSamplesOfItsHalfTiles) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   farm::ToWorker message = lease(10, 2);
-  TileSamples tiles(8, {2, 4});
+  TileSamples tiles(/*width=*/8, /*rows=*/{2, 4});
   tiles.set(1, {64, 128});
   for (const std::uint32_t number : tiles.numbers()) {
     message.mutable_lease()->add_tile_samples(number);
@@ -179,8 +180,8 @@ TEST(Session, ListsHeldBandsAfterAReconnect) {
   EXPECT_EQ(hello.held(0).work(), hello.held(1).work()) << "both bands belong to one job";
 }
 
-// The coordinator was restarted with a new data folder. There, another job has the same id and the
-// same rows.
+// The coordinator was restarted with a new data folder. In the new folder, another job has the
+// same id, and a band of the same rows. The worker must stop the old band and start the new one.
 TEST(Session, ABandOfAnotherJobWithTheSameIdIsDifferent) {
   Session session(worker_info());
   session.receive(welcome("e1"));

@@ -37,7 +37,7 @@ class UploaderTest : public ::testing::Test {
   void start() {
     uploader_ = std::make_unique<Uploader>(
         [this](const FinishedBand& b) { return put(b); },
-        [this](TaskId task, const Outcome& outcome) { settled(task, outcome); }, 1);
+        [this](TaskId task, const Outcome& outcome) { settled(task, outcome); }, /*seed=*/1);
   }
   void wait_for_settled(std::size_t count) {
     MutexLock lock(mutex_);
