@@ -100,7 +100,7 @@ TEST(Damage, ARestartNotesAuditedBandsMissingFromTheLog) {
   EXPECT_NE(next.scheduler.why(lease.job, next.now).back().find("100 bytes"), std::string::npos);
 }
 
-TEST(Damage, TheAuditOfALostBandEnds) {
+TEST(Damage, TheAuditOfALostBandIsRevoked) {
   FarmDriver farm(with_audits());
   const JobId job = farm.submit(test_job("r1", StopAtSamples{8}, 8, 1));
   farm.hello(1, "a");

@@ -40,7 +40,7 @@ TEST(Passes, BeginSmallAndDouble) {
 TEST(Passes, TheLargestJobHasFewPasses) { EXPECT_LE(passes_between(0, kMaxSamples).size(), 64u); }
 
 // `fits` is the number of samples that are expected to fit into the remaining time.
-TEST(Passes, EachPassOfATimedJobIsANodeOfAtMostAQuarterOfTheSamples) {
+TEST(Passes, EachPassOfATimedJobIsANodeOfAtMostAQuarterOfTheSamplesBefore) {
   std::uint64_t end = 0;
   for (int i = 0; i < 40; ++i) {
     const SampleRange pass = next_timed_pass(end, /*fits=*/1e12, kMaxSamples);

@@ -34,7 +34,7 @@ TEST(RecordText, AJobKeepsEveryField) {
   EXPECT_EQ(std::get<record::JobAdded>(*back).spec.package_bytes, spec.package_bytes);
 }
 
-TEST(RecordText, AJobWithoutAnIntegratorUsesPath) {
+TEST(RecordText, AJobWithoutAnIntegratorUsesThePathIntegrator) {
   JobSpec spec = sample_spec(StopAtSamples{4});
   RecordText text = to_text(record::JobAdded{.job = 5, .spec = spec});
   const std::size_t at = text.fields.find("integrator ");
