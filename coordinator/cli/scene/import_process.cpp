@@ -291,6 +291,19 @@ ImportedPackage::~ImportedPackage() = default;
 ImportedPackage::ImportedPackage(ImportedPackage&&) noexcept = default;
 ImportedPackage& ImportedPackage::operator=(ImportedPackage&&) noexcept = default;
 
+double import_timeout_s(const std::string& path, double seconds) {
+  constexpr double kBytesPerSecond = 4e6;
+  double bytes = 0;
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(fs::path(path).parent_path(), error), end;
+       entry != end; entry.increment(error)) {
+    const bool is_file = entry->is_regular_file(error);
+    const std::uintmax_t size = is_file ? entry->file_size(error) : 0;
+    bytes += error ? 0 : static_cast<double>(size);
+  }
+  return seconds + bytes / kBytesPerSecond;
+}
+
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits,
                                                   const SceneChoices& choices) {

@@ -81,6 +81,11 @@ struct SceneFiles {
   std::shared_ptr<const ScratchFolder> folder;  ///< removes that folder when it is destroyed
 };
 
+/// Returns a time limit in seconds for the import of the scene file `path`: `seconds`, and one
+/// second more for each 4 MB of files in the folder of `path` and below, because a large scene
+/// takes long.
+double import_timeout_s(const std::string& path, double seconds);
+
 /// Imports a scene file, a scene of pbrt or Mitsuba, or a model; blocks until done. The message of
 /// an error names the file and, for a scene file, line and column. INVALID_ARGUMENT, NOT_FOUND,
 /// PERMISSION_DENIED: there is a problem with the file, or with one that it references.

@@ -27,7 +27,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Time limit of an import. It is shorter than for a command, because a user waits in a browser.
+/// Time limit of the import of a small scene. It is shorter than for a command, because a user
+/// waits in a browser.
 constexpr double kImportTimeout_s = 120;
 constexpr std::size_t kPieceBytes = 16 << 20;  ///< a blob is written in pieces of this size
 
@@ -48,7 +49,7 @@ ImportScene import_and_store(Engine& engine) {
   return [&engine](const std::string& path, const std::string& inside,
                    const std::atomic<bool>& stop) -> absl::StatusOr<SceneOnFarm> {
     ImportLimits limits;
-    limits.seconds = kImportTimeout_s;
+    limits.seconds = import_timeout_s(path, kImportTimeout_s);
     limits.stop = &stop;
     ASSIGN_OR_RETURN(ImportedPackage package, import_in_process(path, limits, {.inside = inside}));
     ASSIGN_OR_RETURN(const std::vector<BlobRef> blobs, package_blobs(package.manifest()));

@@ -54,6 +54,17 @@ TEST(ImportProcess, GivesTheSameBytesAsTheLibrary) {
   EXPECT_TRUE(decode_package(imported->manifest(), imported->blobs()).ok());
 }
 
+TEST(ImportProcess, TheTimeLimitGrowsWithTheFilesOfTheScene) {
+  const TempDir folder;
+  const std::string scene = write_text(folder, "scene.json", std::string(1000, ' '));
+  EXPECT_NEAR(import_timeout_s(scene, 120), 120, 0.001);
+  std::filesystem::create_directory(folder / "meshes");
+  write_text(folder, "meshes/large.glb", "");
+  std::filesystem::resize_file(folder / "meshes/large.glb", 2'000'000'000);  // a hole in the file
+  EXPECT_NEAR(import_timeout_s(scene, 120), 620, 0.001);
+  EXPECT_EQ(import_timeout_s(folder / "missing/scene.json", 120), 120);
+}
+
 TEST(ImportProcess, LeavesNothingBehind) {
   const TempDir scratch;
   ImportLimits in = limits();
