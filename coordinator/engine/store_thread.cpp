@@ -94,6 +94,7 @@ absl::Status StoreThread::open_log(JobId id, OpenJob& job) {
   return absl::OkStatus();
 }
 
+// Compares nothing itself: computes the digests of the band's rows and sends them to the scheduler.
 void StoreThread::compare(IncomingBand incoming) {
   std::vector<std::uint64_t> digests = row_digests(incoming.pixels);
   scheduler_.band_stored(std::move(incoming), std::move(digests));
@@ -175,6 +176,8 @@ absl::StatusOr<StoredResult> StoreThread::read_result(JobId id, FinishedPart par
   return result;
 }
 
+// Settles the bands of the job's log and closes the log, which was found damaged. The job's next
+// band opens the log again (open_log).
 void StoreThread::reopen(JobId id) {
   if (const auto job = jobs_.find(id); job != jobs_.end() && job->second.log) {
     settle(job->second);

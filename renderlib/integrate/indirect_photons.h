@@ -1,22 +1,22 @@
 #pragma once
 
 // Photons of indirect light, for final gathering (Jensen 1996, "Global Illumination Using Photon
-// Maps", section 4). A receiver is a surface that scatters light over wide angles (caustics.h). A
-// path from the camera leaves a receiver and arrives at another receiver. There, the light that
-// receivers scattered to that point is estimated from photons. The path then ends at the next
-// receiver that it meets.
+// Maps", section 4). A receiver is a surface that scatters light over wide angles (caustics.h). Let
+// a path from the camera meet three receivers A, B and C, in this order. At B, photons give an
+// estimate of the light that arrives at B from other receivers. Beyond B, the path collects only
+// light that arrives at B without meeting another receiver. So the path ends at C.
 //
 // All light that a receiver scatters is thus divided into two parts. The first part arrives from
 // lamps without meeting another receiver, directly or over mirrors, glass and other surfaces. It is
 // found by paths, and its caustics come from their own photon map. The second part arrives from
 // other receivers. It is estimated from the photons.
 //
-// A photon starts at a random point of a receiver, in a random direction. Its power comes from the
-// first part of the light that arrives at the point: from the radiance that the point scatters in
-// the direction of the photon. A path measures this radiance as if the camera were in this
-// direction. So lamps, environments, portals and caustics light the starting points exactly as they
-// light the paths of the image. From there on the photon is scattered as paths are, and it is
-// stored at every receiver that it meets.
+// A photon starts at a random point of a receiver, in a random direction. The power of the photon
+// is computed from the radiance that the point scatters in the direction of the photon. Only the
+// first part of the light at the point is counted in this radiance. A path measures the radiance as
+// if the camera were in the direction of the photon. So lamps, environments, portals and caustics
+// light the starting points exactly as they light the paths of the image. From there on the photon
+// is scattered as paths are, and it is stored at every receiver that it meets.
 
 #include <cstdint>
 #include <vector>

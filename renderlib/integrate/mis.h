@@ -56,8 +56,8 @@ struct PreviousVertex {
   /// At a vertex in a medium: the pdf of its distance in light sampling over that in scattering
   /// (free flight). 1 on surfaces, where both strategies use the same point.
   double distance_pdf_ratio = 1;
-  /// True if the background was also sampled through the portals, and the path left on the side for
-  /// which it was sampled.
+  /// True if two conditions hold. The background was also sampled through the portals at this
+  /// vertex, for the directions on one side of the surface. The path left the vertex on this side.
   bool portals = false;
 };
 

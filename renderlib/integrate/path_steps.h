@@ -27,10 +27,12 @@ inline std::optional<SurfacePoint> next_surface(const PathContext& context, std:
 }
 
 /// Adds the emission of the surface at `point`, which the path's ray hits. The emission is
-/// multiplied by its MIS weight and by the transmittance of all media on the ray. It is added
-/// before a random number decides whether a medium scatters the path first. The reason is that a
-/// lamp is usually brighter than the medium in front of it, and the transmittance needs no extra
-/// path.
+/// multiplied by its MIS weight and by the transmittance of all media on the ray.
+///
+/// trace_path() calls this function before a random number decides whether a medium on the ray
+/// scatters the path. So the emission of a lamp is added even if the path is then scattered in
+/// front of the lamp. The calls have this order because a lamp is usually brighter than the medium
+/// in front of it. No extra path is traced to compute the transmittance.
 void add_emission(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                   PathState& path);
 

@@ -17,10 +17,12 @@ struct DistantBound {
   /// Unit vector to the light; std::nullopt for light from all directions.
   std::optional<Vec3> direction;
 };
-/// Returns an upper bound of the irradiance at the receiver; 0 if Receiver::within is set, because
-/// distant lights are not sampled through the camera's lens.
+/// Returns an upper bound of the irradiance from the light at the receiver. Returns 0 if
+/// Receiver::within is set. Then the receiver is the point on which the camera's lens is focused,
+/// and no distant lights are sampled for this point.
 double importance(const DistantBound& bound, const Receiver& receiver);
-/// Returns the irradiance times an upper bound of the length along which it is scattered.
+/// A ReceiverSegment is a piece of a ray in a medium. Returns the irradiance of the bound times a
+/// length: the length of the segment, or 1 / ReceiverSegment::extinction if that is shorter.
 double importance(const DistantBound& bound, const ReceiverSegment& segment);
 
 /// Up to kMaxIndividualLights lights are evaluated individually at every point. If there are more,

@@ -8,14 +8,16 @@
 //   collision would scatter, and p the light that would pass, each summed over the channels. The
 //   probability of scattering is s / (s + p), as in free_flight.h (Kutz, Habel, Li and Novak 2017,
 //   "Spectral and Decomposition Tracking for Rendering Heterogeneous Volumes", section 4.1,
-//   history-aware). Absorption only lowers the weights. So the sum of the channels is the same for
-//   either outcome and never grows.
+//   history-aware). Absorption only lowers the weights. So the sum of the three weights after the
+//   collision is the same whether the light is scattered or passes. This sum is never larger than
+//   the sum before the collision.
 // - Transmittance is estimated by residual ratio tracking (Novak, Selle and Jarosz 2014, "Residual
 //   Ratio Tracking for Estimating Attenuation in Participating Media", section 4.2). The control
 //   variate is the least density of each region. So in regions of constant density the estimate is
 //   exact.
-// - Emission is collected at tentative collisions. In a region where the medium emits, there are on
-//   average at least two tentative collisions along the side of the region.
+// - Emission is collected at tentative collisions. Inside the block, a region is a cube. Where the
+//   medium emits in a region, a part of the ray as long as the side of a cube has on average at
+//   least two tentative collisions.
 //
 // Flights whose weight is low end by Russian roulette, and so do flights of very many collisions.
 

@@ -65,8 +65,9 @@ class Film {
   /// are for these rows only.
   Snapshot snapshot(std::uint32_t row_step = 1) const;
 
-  /// Returns the error of the samples that a snapshot shows. Returns std::nullopt until the samples
-  /// of every pixel begin with two nodes (halves) of equal size.
+  /// Returns an estimate of the error of the samples that a snapshot shows. The estimate needs the
+  /// first two nodes of each pixel, [0, n) and [n, 2n), separately. Returns std::nullopt until all
+  /// pixels have both nodes.
   std::optional<ErrorEstimate> error() const;
 
   /// One of two independent parts of the samples that a snapshot shows. The part contains about

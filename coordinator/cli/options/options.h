@@ -297,6 +297,9 @@ struct CompareOptions {
   Verbosity verbosity;
 };
 
+/// Options of `bandsaw study`. This command measures the error of images against their cost, with
+/// and without each technique of the renderer that can be disabled. The error of an image is
+/// measured against a reference image, which is rendered with `reference` samples per pixel.
 struct StudyOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> outputs = {"study.csv", "study.svg"};
@@ -307,7 +310,9 @@ struct StudyOptions {
   std::uint32_t width = 96;        ///< pixels; the height keeps the scene's aspect ratio
   int threads = 0;                 ///< 0: one for each CPU
   bool every_object = false;       ///< also measure without a BVH: rays test every object
-  bool denoise = false;            ///< measure clean images instead of the techniques
+  /// Measure denoised images and the same images as rendered, instead of images with and without
+  /// each technique.
+  bool denoise = false;
   Verbosity verbosity;
 };
 

@@ -2,8 +2,8 @@
 
 // Handles sequences (jobs of many frames): makes the jobs of their frames when workers are about to
 // need them, tries failed frames again, and ends sequences. Also handles the requests of users
-// about sequences. A request that cannot be granted sets the status of the step, which is its
-// answer.
+// about sequences. If a request cannot be granted, its function sets the status of the step to an
+// error. This status is the answer to the request.
 
 #include <cstddef>
 #include <string>
@@ -53,11 +53,22 @@ class Sequences {
   void resume_after_restart();
 
  private:
+  /// Does for one sequence what the other advance() does for all. `open_frames` is the number of
+  /// frame jobs that are not final, in all sequences that are not paused. Adds the number of frame
+  /// jobs that this function makes to `open_frames`.
   void advance(Sequence& sequence, std::size_t& open_frames);
+  /// Sets the state of the sequence to `state`, which is final, and cancels its open frame jobs.
+  /// Also forgets these jobs if `state` is kCancelled. `reason`: why the sequence ends.
   void end(Sequence& sequence, JobState state, const std::string& reason);
+  /// Sets the state of a frame to waiting and forgets the frame's job, so that advance() makes a
+  /// new job for the frame. `failures`: number of the frame's jobs that count as failed. `reason`:
+  /// why the last of them failed.
   void wait_again(Sequence& sequence, FrameNumber number, std::uint32_t failures,
                   const std::string& reason);
+  /// Removes the job, if it exists, and its files.
   void forget_job(JobId id);
+  /// Returns the sequence. Returns nullptr, and sets the status of the step to an error, if there
+  /// is no such sequence or the sequence was cancelled.
   Sequence* find_active(JobId id);
 
   Context& context_;

@@ -1,6 +1,7 @@
-// When a worker is lost, the bands (ranges of rows and samples) that it may have been rendering
-// become suspicions of their jobs. A suspect band is retried in pieces; a further loss at a piece
-// is conclusive, and enough conclusive losses fail the job.
+// A band is a range of rows and samples. When a worker is lost, worker_lost() adds each band that
+// the worker may have been rendering to the suspicions of the band's job. A suspect band is
+// rendered again in pieces. If a worker that holds only one such piece is lost, this loss is
+// conclusive. Enough conclusive losses at a band fail the job.
 
 #include "coordinator/scheduler/liveness/crash_attribution.h"
 
@@ -31,6 +32,8 @@ void CrashRate::add(double& count) {
   }
 }
 
+// `own` is the number of losses at this band that add_crash() counted. They are subtracted, because
+// the rate must be that of losses for reasons other than this band.
 std::size_t CrashRate::required(std::size_t min_crashes, std::size_t own) const {
   const double crashes = std::max(0.0, crashes_ - static_cast<double>(own)) + kPriorCrashes;
   const double share = crashes / (crashes + bands_ + kPriorBands);

@@ -33,8 +33,8 @@ class CrashRate {
   /// Returns how many workers must be lost at one band before the band is blamed. Each of them must
   /// have held nothing else. The number is the smallest for which the probability that all of them
   /// were lost for other reasons is at most kMistake. It is at least `min_crashes`, and at most
-  /// kMaxRequired unless `min_crashes` is larger. `own`: number of counted crashes at this very
-  /// band, which are left out of the rate.
+  /// kMaxRequired unless `min_crashes` is larger. `own`: number of losses at this band that
+  /// add_crash() counted. The rate is computed without these losses.
   std::size_t required(std::size_t min_crashes, std::size_t own) const;
 
  private:

@@ -307,7 +307,8 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
     offset = 3 if flat else 2
     sign = -1 if flat else 1
     message["window"] = [(corner + sign * projection[axis][offset]) / projection[axis][axis] for corner, axis in zip(corners, axes)]
-    # The unit of `window` is half of the height that the following field would show without a window. With these values the unit is 1.
+    # The unit of `window` is half of the height of the view that `orthographic` or `vertical_fov` describes. For a perspective camera, the height is
+    # measured at distance 1. With a height of 2, or an angle of 90 degrees, the unit is 1.
     if flat:
         message["orthographic"] = {"height": 2.0}
     else:

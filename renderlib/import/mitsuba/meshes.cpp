@@ -146,10 +146,14 @@ absl::StatusOr<MeshFile> Meshes::file_of(const MeshRequest& request) {
   // Mitsuba computes the normals itself for a mesh with face normals and for a mesh without
   // normals. A placement that mirrors turns these computed normals to the other side.
   const bool turned = request.turned != (request.mirrored && (faceted || !has_normals));
-  // The relation of the mesh's uvs to Mitsuba's if Bandsaw's importer reads the file unchanged.
+  // Describes the uvs that Bandsaw's importer reads from the unchanged file. Their v is Mitsuba's v
+  // (kSame) or 1 - Mitsuba's v (kFlipped).
   const UvFrame natural =
       request.type == "obj" && request.flip_v ? UvFrame::kFlipped : UvFrame::kSame;
-  // True if Bandsaw's importer reads the same normals, sides and uvs from the file as Mitsuba.
+  // True if the file is used unchanged: Bandsaw's importer reads the same normals and sides from
+  // the file as Mitsuba, and the uvs that `natural` describes. A file is always made if `handed` is
+  // set (u, v and the normal must be right-handed) or if `closed` is set (a medium is inside of the
+  // mesh, so the file must have a single mesh).
   const bool as_it_is = request.type != "serialized" && has_normals != faceted && !turned &&
                         !request.handed && !request.closed && request.attributes.empty() &&
                         (request.type == "obj" || !request.flip_v) && is_oriented(mesh->mesh);

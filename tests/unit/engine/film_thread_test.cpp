@@ -211,7 +211,7 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsMadeOnTheNextRequest) {
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
-TEST_F(FilmThreadTest, LoggedBandsAreReadWhenTheFilmHasRoom) {
+TEST_F(FilmThreadTest, RetryReadsTheRowsOfAddLaterFromTheLog) {
   thread_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   thread_.add_later(1, logged({0, 16}, {4, 8}), {{4, 8}});
@@ -329,7 +329,7 @@ TEST_F(FilmThreadTest, APreviewShowsPresentRowsAndTheirWorkers) {
   EXPECT_TRUE(absl::IsNotFound(thread_.preview(1, 1).status()));
 }
 
-TEST_F(FilmThreadTest, AttributionIsSentWithTheImageAndReadFromItsFileLater) {
+TEST_F(FilmThreadTest, AfterADropTheAttributionIsReadFromTheFileBesideTheImage) {
   IncomingBand incoming = logged({0, 16}, {0, 8});
   incoming.worker = "anna";
   ASSERT_TRUE(thread_.add(1, std::move(incoming), {{0, 8}}).ok());

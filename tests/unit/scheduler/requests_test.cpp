@@ -9,7 +9,8 @@ JobId submit(FarmDriver& farm, const std::string& request, std::int32_t priority
   return farm.send(input::Submit{test_job(request, StopAtSamples{64}, 64, 64), priority}).job;
 }
 
-/// Lets worker a return the newest lease. Returns the job of the lease that it gets next.
+/// Sends the scheduler the finished pixels of the newest lease, in the name of worker "a". Returns
+/// the job of the next lease that the scheduler grants.
 JobId next_leased(FarmDriver& farm) {
   const action::Lease last = farm.all<action::Lease>().back();
   farm.stored(last, "a");
@@ -128,7 +129,7 @@ TEST(Pause, DoesNotCountAsTimeOfTheJob) {
 }
 
 // A pause revokes the lease only after a second. Here the job is resumed after half a second.
-TEST(Pause, TheTimeOfTheJobGoesOnAfterAPauseThatALeaseOutlasts) {
+TEST(Pause, APauseDuringWhichTheLeaseIsKeptDoesNotCountAsTimeOfTheJob) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtTime{10, kMaxSamples}));
   farm.hello(1, "a", 1);
