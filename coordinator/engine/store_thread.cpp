@@ -156,8 +156,8 @@ absl::StatusOr<StoredResult> StoreThread::read_result(JobId id, FinishedPart par
     absl::StatusOr<StoredResult> samples = coordinator::read_result(folder_.samples(id));
     return absl::IsNotFound(samples.status())
                ? absl::NotFoundError(
-                     absl::StrCat("there are no samples of each pixel of job ", id,
-                                  ": it was not adaptive, or was rendered by an earlier version"))
+                     absl::StrCat("the number of samples of each pixel is not stored for job ", id,
+                                  ": the job was not adaptive, or an earlier version rendered it"))
                : std::move(samples);
   }
   if (part == FinishedPart::kFirst) {

@@ -56,8 +56,9 @@ absl::Status validate_shutter(const Shutter& shutter) {
     }
   }
   if (!(shutter.open <= shutter.close)) {
-    return invalid("shutter_close", absl::StrCat("must not be before shutter_open, ", shutter.open,
-                                                 ", is ", shutter.close));
+    return invalid("shutter_close",
+                   absl::StrCat("must not be before ", shutter.open,
+                                ", the value of shutter_open; it is ", shutter.close));
   }
   return absl::OkStatus();
 }

@@ -39,8 +39,8 @@ struct CheckParts {
   /// Checks a reference to another texture.
   absl::Status part(absl::string_view field, TextureId id) const {
     if (index_of(id) >= index) {
-      return invalid(field, absl::StrCat("must be below ", index, " (a texture before this), is ",
-                                         index_of(id)));
+      return invalid(field, absl::StrCat("must be below ", index,
+                                         ", the index of this texture; it is ", index_of(id)));
     }
     cost += costs[index_of(id)];
     return absl::OkStatus();
@@ -85,16 +85,17 @@ struct CheckParts {
 
   absl::Status operator()(const RampTexture& t) const {
     if (t.stops.empty() || t.stops.size() > kMaxRampStops) {
-      return invalid("ramp.stop",
-                     absl::StrCat("must be 1 to ", kMaxRampStops, " stops, are ", t.stops.size()));
+      return invalid("ramp.stop", absl::StrCat("must have 1 to ", kMaxRampStops, " stops; it has ",
+                                               t.stops.size()));
     }
     for (std::size_t i = 0; i < t.stops.size(); ++i) {
       const std::string field = absl::StrCat("ramp.stop[", i, "]");
       RETURN_IF_ERROR(check_finite(field + ".at", t.stops[i].at));
       RETURN_IF_ERROR(check_color(field + ".color", t.stops[i].color));
       if (i > 0 && !(t.stops[i].at > t.stops[i - 1].at)) {
-        return invalid(field + ".at", absl::StrCat("must be above the stop before it, ",
-                                                   t.stops[i - 1].at, ", is ", t.stops[i].at));
+        return invalid(field + ".at",
+                       absl::StrCat("must be above ", t.stops[i - 1].at,
+                                    ", the position of the stop before; it is ", t.stops[i].at));
       }
     }
     return t.over == RampTexture::Over::kTexture ? part("ramp.texture", t.texture)
@@ -120,8 +121,8 @@ absl::Status check_parts(absl::Span<const Texture> textures, std::size_t index,
   std::uint64_t own = 1;
   RETURN_IF_ERROR(std::visit(CheckParts{index, cost, own}, textures[index]));
   if (own > kMaxTextureParts) {
-    return absl::InvalidArgumentError(absl::StrCat("is made of too many textures: a look-up takes ",
-                                                   own, ", at most ", kMaxTextureParts));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "look-up: must evaluate at most ", kMaxTextureParts, " textures; it evaluates ", own));
   }
   cost.push_back(own);
   return absl::OkStatus();

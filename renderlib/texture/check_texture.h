@@ -17,10 +17,10 @@ inline constexpr std::uint32_t kMaxTextureSide = 65536;
 inline constexpr std::size_t kMaxRampStops = 256;
 inline constexpr std::uint32_t kMaxOctaves = 16;
 
-/// Returns INVALID_ARGUMENT, e.g. "checker.even: must be below 3 (a texture before this), is 4", in
-/// three cases: textures[index] refers to a texture that does not precede it, one of its numbers is
-/// out of range, or one lookup of it would evaluate more than kMaxTextureParts textures. The values
-/// of constants and texels are not checked.
+/// Returns INVALID_ARGUMENT, e.g. "checker.even: must be below 3, the index of this texture; it is
+/// 4", in three cases: textures[index] refers to a texture that does not precede it, one of its
+/// numbers is out of range, or one lookup of it would evaluate more than kMaxTextureParts textures.
+/// The values of constants and texels are not checked.
 ///
 /// cost[i] is the number of textures that one lookup of textures[i] evaluates. `cost` MUST have
 /// an entry for each i < index. On success the cost of textures[index] is appended.

@@ -163,8 +163,8 @@ absl::StatusOr<Json> PlainMeshes::attributes(const Json& from, const Stream& str
       ASSIGN_OR_RETURN(added, floats(name, accessor, stream, absl::StrCat(place, ".", name)));
     }
     if (vertices.value_or(added.count) != added.count) {
-      return damaged(place, absl::StrCat("has ", added.count, " values of ", name,
-                                         " and another number of others: ", *vertices));
+      return damaged(place, absl::StrCat("has ", added.count, " values of ", name, ", but ",
+                                         *vertices, " values of another attribute"));
     }
     vertices = added.count;
     to[name] = added.accessor;

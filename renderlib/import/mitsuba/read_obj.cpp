@@ -87,7 +87,8 @@ class ObjReader {
     const auto size = static_cast<std::int64_t>(count);
     const std::int64_t from_zero = index < 0 ? size + index : index - 1;
     if (from_zero < 0 || from_zero >= size) {
-      return absl::InvalidArgumentError(absl::StrCat("index ", index, " of ", count));
+      return absl::InvalidArgumentError(
+          absl::StrCat("index ", index, " is out of range: the number of entries is ", count));
     }
     return static_cast<std::uint32_t>(from_zero);
   }

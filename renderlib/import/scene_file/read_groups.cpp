@@ -109,7 +109,7 @@ absl::StatusOr<std::vector<Transform>> read_copies(const Field& in, const scene:
   std::vector<Transform> copies;
   if (from.has_grid()) {
     if (from.at_size() > 0) {
-      return in.error("grid", "stands instead of at: write one or the other");
+      return in.error("grid", "write grid or at, not both");
     }
     ASSIGN_OR_RETURN(const Grid grid, read_grid(in.child("grid"), from.grid()));
     const std::uint64_t count = grid.count[0] * grid.count[1] * grid.count[2];

@@ -36,8 +36,7 @@ absl::StatusOr<Rgb> read_rates(const Field& in, const std::string& name, bool gi
 
 absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from, SceneDraft& draft) {
   if (from.has_albedo() && (from.has_absorption() || from.has_scattering())) {
-    return in.error("albedo",
-                    "stands instead of absorption and scattering: write one or the other");
+    return in.error("albedo", "write albedo, or absorption and scattering, not both");
   }
   const double density = from.has_density() ? from.density() : 1;
   RETURN_IF_ERROR(check_range(in, "density", density, 0, 1e12));

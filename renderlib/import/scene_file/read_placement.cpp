@@ -156,8 +156,8 @@ absl::StatusOr<WrittenKey> read_key(const Field& in, const scene::Key& from,
   key.time = from.time();
   RETURN_IF_ERROR(check_range(in, "time", key.time, -kMaxTime, kMaxTime));
   if (!earlier.empty() && !(key.time > earlier.back().time)) {
-    return in.error("time", absl::StrCat("must be after that of the key before, ",
-                                         earlier.back().time, ", is ", key.time));
+    return in.error("time", absl::StrCat("must be after ", earlier.back().time,
+                                         ", the time of the key before; it is ", key.time));
   }
   ASSIGN_OR_RETURN(key.pose, read_written(in, from));
   if (!earlier.empty() && !same_sign(key.pose.scale, earlier.back().pose.scale)) {
@@ -186,8 +186,7 @@ absl::StatusOr<std::vector<Key>> read_any_keys(const Field& in, const Message& f
   }
   if (!keys.empty() &&
       (!from.translate().empty() || !from.scale().empty() || from.rotate_size() > 0)) {
-    return in.error("key", "stands instead of translate, scale and rotate: write one or the other",
-                    0);
+    return in.error("key", "write key, or translate, scale and rotate, not both", 0);
   }
   return keys;
 }

@@ -218,12 +218,12 @@ MaybeId read_ramp(const Field& in, const scene::RampTexture& from, float most, S
     ASSIGN_OR_RETURN(const RampTexture::Stop read, read_stop(stop, from.stop(i), most));
     if (i > 0 && !(read.at > to.stops.back().at)) {
       return stop.error("at", absl::StrCat("must be above ", to.stops.back().at,
-                                           ", the position of the stop before it"));
+                                           ", the position of the stop before; it is ", read.at));
     }
     to.stops.push_back(read);
   }
   if (to.stops.empty() || to.stops.size() > 256) {
-    return in.error("stop", absl::StrCat("must be 1 to 256 stops, are ", to.stops.size()));
+    return in.error("stop", absl::StrCat("must have 1 to 256 stops; it has ", to.stops.size()));
   }
   if (from.has_texture()) {
     ASSIGN_OR_RETURN(to.texture,

@@ -95,7 +95,7 @@ absl::StatusOr<Environment> read_cube_map(const Field& in, const scene::CubeMap&
 /// position of `view` MUST be set. An unrotated camera looks along -z, and y is up.
 absl::StatusOr<View> read_turned(const Field& in, const scene::Camera& from, View view) {
   if (!from.look_at().empty() || !from.up().empty()) {
-    return in.error("rotate", "stands instead of look_at and up: write one or the other");
+    return in.error("rotate", "write rotate, or look_at and up, not both");
   }
   ASSIGN_OR_RETURN(const Transform turn, read_rotation(in, from.rotate()));
   // The distance of the point look_at is at least the largest coordinate of the position. So the
@@ -215,8 +215,9 @@ absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from
   RETURN_IF_ERROR(check_range(in, "shutter_open", shutter.open, -kMaxTime, kMaxTime));
   RETURN_IF_ERROR(check_range(in, "shutter_close", shutter.close, -kMaxTime, kMaxTime));
   if (shutter.close < shutter.open) {
-    return in.error("shutter_close", absl::StrCat("must not be before shutter_open, ", shutter.open,
-                                                  ", is ", shutter.close));
+    return in.error("shutter_close",
+                    absl::StrCat("must not be before ", shutter.open,
+                                 ", the value of shutter_open; it is ", shutter.close));
   }
   return at_frame;
 }

@@ -149,9 +149,8 @@ absl::StatusOr<MediumGrids> read_grids(const Field& in, const scene::Medium& fro
   }
   if (from.has_albedo_grid()) {
     if (from.has_albedo() || from.has_absorption() || from.has_scattering()) {
-      return in.error(
-          "albedo_grid",
-          "stands instead of albedo, absorption and scattering: write one or the other");
+      return in.error("albedo_grid",
+                      "write albedo_grid, or albedo, absorption and scattering, not both");
     }
     ASSIGN_OR_RETURN(grids.albedo,
                      read_use(in.child("albedo_grid"), from.albedo_grid(), "albedo", draft));

@@ -176,8 +176,8 @@ absl::StatusOr<Curve> read_curve(const Field& in, const scene::Track& track) {
     const Field at = in.child("key", i);
     RETURN_IF_ERROR(check_range(at, "time", key.time(), -kMaxTime, kMaxTime));
     if (!times.empty() && !(key.time() > times.back())) {
-      return at.error("time", absl::StrCat("must be after that of the key before, ", times.back(),
-                                           ", is ", key.time()));
+      return at.error("time", absl::StrCat("must be after ", times.back(),
+                                           ", the time of the key before; it is ", key.time()));
     }
     if (key.value_size() != width || width == 0) {
       return at.error(

@@ -134,8 +134,8 @@ absl::StatusOr<MovingCamera> use_camera(const Field& root, const scene::Scene& f
   if (!written.position().empty() || !written.look_at().empty() || !written.up().empty() ||
       written.rotate_size() > 0 || written.has_vertical_fov() || written.has_orthographic()) {
     return in.error("use",
-                    "stands instead of position, look_at, up, rotate, vertical_fov and "
-                    "orthographic: write one or the other");
+                    "write use, or position, look_at, up, rotate, vertical_fov and orthographic, "
+                    "not both");
   }
   auto found = find_camera(written.use(), draft);
   if (!found.ok()) {

@@ -93,7 +93,8 @@ absl::StatusOr<FileGrid> read_vol(absl::Span<const std::byte> bytes) {
     return absl::InvalidArgumentError("is no *.vol file, or its header is damaged");
   }
   if (const int version = static_cast<int>(bytes[3]); version != 3) {
-    return absl::InvalidArgumentError(absl::StrCat("is of version ", version, ", read is 3"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("has version ", version, "; only version 3 can be read"));
   }
   const Header header = read_header(bytes.data());
   if (const absl::Status good = check_header(header); !good.ok()) {

@@ -210,7 +210,7 @@ TEST(Camera, C8_RaysHaveTimesFromOpeningToClosing) {
   EXPECT_EQ(RayGenerator(c, 8, 8).ray(1, 2, 0, 0, 0.7).time, 3);
   c.shutter = {3, 2};
   EXPECT_EQ(std::string(validate(Camera(c)).message()),
-            "camera.shutter_close: must not be before shutter_open, 3, is 2");
+            "camera.shutter_close: must not be before 3, the value of shutter_open; it is 2");
   c.shutter = {std::nan(""), 2};
   EXPECT_THAT(std::string(validate(Camera(c)).message()), StartsWith("camera.shutter_open"));
   test::report_hard_case(

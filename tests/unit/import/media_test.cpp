@@ -125,7 +125,7 @@ TEST(MediaFile, ErrorsNameTheField) {
               HasSubstr("medium[2].albedo.rgb[2]: must lie in [0, 1], is 2"));
   EXPECT_THAT(
       message_of(R"(medium { name: "a" albedo { rgb: [1, 1, 1] } scattering { rgb: [1, 1, 1] } })"),
-      HasSubstr("medium[2].albedo: stands instead of absorption and scattering"));
+      HasSubstr("medium[2].albedo: write albedo, or absorption and scattering, not both"));
   EXPECT_THAT(message_of(R"(medium { name: "a" absorption { rgb: [2, 2, 2] } density: 1e12 })"),
               HasSubstr("medium[2].absorption: must be at most"));
   EXPECT_THAT(message_of(R"(medium { name: "a" emission { rgb: [0, 1, 0] } } fog: "a")"),

@@ -43,8 +43,10 @@ TEST(MitsubaObj, SharesCornersAndSplitsPolygons) {
 TEST(MitsubaObj, NamesTheLineOfAnError) {
   EXPECT_EQ(message(read_obj("v 0 0\n", true)), "line 1: needs 3 numbers");
   EXPECT_THAT(message(read_obj("v 0 0 nan\n", true)), HasSubstr("is not a finite number"));
-  EXPECT_EQ(message(read_obj("v 0 0 0\nf 1 2 1\n", true)), "line 2: index 2 of 1");
-  EXPECT_EQ(message(read_obj("v 0 0 0\nf 1 0 1\n", true)), "line 2: index 0 of 1");
+  EXPECT_EQ(message(read_obj("v 0 0 0\nf 1 2 1\n", true)),
+            "line 2: index 2 is out of range: the number of entries is 1");
+  EXPECT_EQ(message(read_obj("v 0 0 0\nf 1 0 1\n", true)),
+            "line 2: index 0 is out of range: the number of entries is 1");
   EXPECT_EQ(message(read_obj("v 0 0 0\n", true)), "has no faces");
 }
 

@@ -173,14 +173,15 @@ TEST(Placement, ErrorsNameThePlaceAndTheRemedy) {
   // X3: placements without an inverse are refused.
   EXPECT_THAT(message("instance { of: \"pair\" scale: [1, 1e-20, 1] }"),
               HasSubstr("instance[0].scale: flattens"));
-  EXPECT_THAT(message("instance { of: \"pair\" key { time: 1 } key { time: 1 } }"),
-              HasSubstr("instance[0].key[1].time: must be after that of the key before, 1, is 1"));
+  EXPECT_THAT(
+      message("instance { of: \"pair\" key { time: 1 } key { time: 1 } }"),
+      HasSubstr("instance[0].key[1].time: must be after 1, the time of the key before; it is 1"));
   EXPECT_THAT(message("instance { of: \"pair\" key { time: 1 } key { time: 2 scale: -1 } }"),
               HasSubstr("instance[0].key[1].scale: must keep its signs"));
   EXPECT_THAT(message("instance { of: \"pair\" scale: 2 key { time: 1 } }"),
-              HasSubstr("instance[0].key[0]: stands instead of translate, scale and rotate"));
+              HasSubstr("instance[0].key[0]: write key, or translate, scale and rotate, not both"));
   EXPECT_THAT(message("instance { of: \"pair\" at { } grid { count: [1, 1, 1] step: [1, 1, 1] } }"),
-              HasSubstr("instance[0].grid: stands instead of at"));
+              HasSubstr("instance[0].grid: write grid or at, not both"));
   EXPECT_THAT(message("instance { of: \"pair\" grid { count: [1000, 1000, 1] step: [1, 1, 1] } }"),
               HasSubstr("grid.count: makes more than 500000 copies"));
   EXPECT_THAT(message("instance { of: \"pair\" grid { count: [1, 0, 1] step: [1, 1, 1] } }"),
@@ -196,8 +197,9 @@ TEST(Placement, C8_AShutterThatClosesBeforeItOpensIsRefused) {
   const auto imported = import_scene(write_text(
       folder, "s.textproto",
       "camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 2 shutter_close: 1 }"));
-  EXPECT_THAT(std::string(imported.status().message()),
-              HasSubstr("camera.shutter_close: must not be before shutter_open, 2, is 1"));
+  EXPECT_THAT(
+      std::string(imported.status().message()),
+      HasSubstr("camera.shutter_close: must not be before 2, the value of shutter_open; it is 1"));
 }
 
 /// A glTF file with a triangle and two cameras. "front" has a vertical field of view of 45 degrees
@@ -269,7 +271,7 @@ TEST(ModelCamera, ErrorsListTheExistingCameras) {
                 "\"plan\""));
   EXPECT_THAT(message("camera { use: \"back\" }"), HasSubstr("the scene's models bring none"));
   EXPECT_THAT(message("camera { use: \"front\" vertical_fov: 3 } model { file: \"m.gltf\" }"),
-              HasSubstr("camera.use: stands instead of position"));
+              HasSubstr("camera.use: write use, or position,"));
   EXPECT_THAT(message("camera { use: \"plan\" aperture: 3 } model { file: \"m.gltf\" }"),
               HasSubstr("camera.aperture: is of a perspective camera"));
 }

@@ -280,7 +280,7 @@ TEST(SceneFile, ErrorsNameTheFieldOfLensFilterOrRotation) {
   EXPECT_THAT(message("look_at: [0, 0, -1] vertical_fov: 3 orthographic { height: 1 }"),
               HasSubstr("camera.vertical_fov: is of a perspective camera"));
   EXPECT_THAT(message("look_at: [0, 0, -1] rotate { axis: [0, 1, 0] }"),
-              HasSubstr("camera.rotate: stands instead of look_at"));
+              HasSubstr("camera.rotate: write rotate, or look_at and up, not both"));
   EXPECT_THAT(message("rotate { degrees: 3 }"), HasSubstr("camera.rotate[0].axis: is required"));
   EXPECT_THAT(message("rotate { axis: [0, 1, 0] } aperture: 1"),
               HasSubstr("camera.focus_distance: is required"));

@@ -134,10 +134,11 @@ TEST(SceneTexture, ErrorsNamePlaceAndField) {
   EXPECT_THAT(message("ramp { stop { at: 0 color: [0, 0, 0] } }"),
               HasSubstr("ramp: is over nothing: write texture or coordinate"));
   EXPECT_THAT(message("ramp { coordinate: COORDINATE_U }"),
-              HasSubstr("ramp.stop: must be 1 to 256 stops, are 0"));
-  EXPECT_THAT(message("ramp { coordinate: COORDINATE_U stop { at: 1 color: [0, 0, 0] }"
-                      " stop { at: 1 color: [0, 0, 0] } }"),
-              HasSubstr("ramp.stop[1].at: must be above 1"));
+              HasSubstr("ramp.stop: must have 1 to 256 stops; it has 0"));
+  EXPECT_THAT(
+      message("ramp { coordinate: COORDINATE_U stop { at: 1 color: [0, 0, 0] }"
+              " stop { at: 1 color: [0, 0, 0] } }"),
+      HasSubstr("ramp.stop[1].at: must be above 1, the position of the stop before; it is 1"));
   EXPECT_THAT(message("mix { a { color { rgb: [0, 0, 0] } } }"), HasSubstr("mix.b: is required"));
   EXPECT_THAT(message("product { a { color { rgb: [2, 2, 2] } } b { color { rgb: [1, 1, 1] } } }"),
               HasSubstr("product: a reflectance must lie in [0, 1], it reaches 2"));

@@ -140,7 +140,7 @@ TEST_F(Sequence, AWrongTrackIsAnErrorThatNamesItsPlace) {
   EXPECT_THAT(with("field: \"camera.vertical_fov\" key { time: 0 value: [1, 2] }"),
               HasSubstr("must be one number"));
   EXPECT_THAT(with("field: \"camera.position\" key { time: 1 value: 1 } key { time: 1 value: 1 }"),
-              HasSubstr("must be after that of the key before, 1"));
+              HasSubstr("must be after 1, the time of the key before; it is 1"));
   EXPECT_THAT(with(key), HasSubstr("field: is required"));
 }
 

@@ -113,7 +113,8 @@ TEST(VolFile, DamageIsOneClearError) {
   EXPECT_THAT(error_of(""), HasSubstr("is no *.vol file"));
   EXPECT_THAT(error_of(good.substr(0, 60)),
               HasSubstr("claims 3 x 2 x 1 cells of 1 channels, and has 3 numbers: it is cut off"));
-  EXPECT_THAT(error_of("VOL\2" + good.substr(4)), HasSubstr("is of version 2, read is 3"));
+  EXPECT_THAT(error_of("VOL\2" + good.substr(4)),
+              HasSubstr("has version 2; only version 3 can be read"));
   EXPECT_THAT(error_of(Vol{.encoding = 4}.bytes()), HasSubstr("has encoding 4"));
   EXPECT_THAT(error_of(Vol{.channels = 2}.bytes()), HasSubstr("has 2 channels"));
   EXPECT_THAT(error_of(Vol{.channels = -1}.bytes()), HasSubstr("has -1 channels"));
@@ -372,7 +373,7 @@ TEST(SceneVolumes, ErrorsNameTheField) {
               HasSubstr("density_grid: must be at most 1e+12 per scene unit"));
   EXPECT_THAT(message_of("medium { name: \"a\" albedo { rgb: [1, 1, 1] } albedo_grid { file: "
                          "\"a.vol\" } }"),
-              HasSubstr("medium[0].albedo_grid: stands instead of albedo"));
+              HasSubstr("medium[0].albedo_grid: write albedo_grid, or albedo,"));
   EXPECT_THAT(message_of("medium { name: \"a\" temperature_scale: 2 }"),
               HasSubstr("medium[0].temperature_scale: needs a temperature_grid"));
   EXPECT_THAT(message_of("medium { name: \"a\" density_grid { file: \"a.vol\" } scattering { rgb: "

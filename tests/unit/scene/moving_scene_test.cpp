@@ -136,10 +136,11 @@ TEST(MovingScene, InvalidMotionIsRefusedWithTheField) {
                 s.geometry.frames[0].placement = scaling({1, 0, 1});
               }),
               HasSubstr("frames[0].placement: must have an inverse"));
-  EXPECT_THAT(message_after_moving([](auto& s) {
-                std::get<PerspectiveCamera>(s.camera).shutter = {1, 0};
-              }),
-              HasSubstr("camera.shutter_close: must not be before shutter_open"));
+  EXPECT_THAT(
+      message_after_moving([](auto& s) {
+        std::get<PerspectiveCamera>(s.camera).shutter = {1, 0};
+      }),
+      HasSubstr("camera.shutter_close: must not be before 1, the value of shutter_open; it is 0"));
 }
 
 /// Returns the maximum memory of this process so far, in bytes.

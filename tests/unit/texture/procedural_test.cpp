@@ -351,9 +351,9 @@ std::string fault(const Textures& textures) {
 
 TEST(CheckParts, RefusesCyclesAndInvalidNumbers) {
   EXPECT_EQ(fault({CheckerTexture{}}),
-            "checker.even: must be below 0 (a texture before this), is 0");
+            "checker.even: must be below 0, the index of this texture; it is 0");
   EXPECT_EQ(fault({ConstantTexture{}, MixTexture{id(0), id(0), id(1)}}),
-            "mix.amount: must be below 1 (a texture before this), is 1");
+            "mix.amount: must be below 1, the index of this texture; it is 1");
   EXPECT_EQ(fault({ConstantTexture{}, CheckerTexture{.size = {1, 0, 1}}}),
             "checker.size: must be finite and > 0, is 0");
   EXPECT_EQ(fault({NoiseTexture{.octaves = 17}}), "noise.octaves: must lie in [1, 16], is 17");
@@ -361,9 +361,10 @@ TEST(CheckParts, RefusesCyclesAndInvalidNumbers) {
             "noise.scale: must be finite, is inf");
   RampTexture ramp;
   ramp.over = RampTexture::Over::kU;
-  EXPECT_EQ(fault({ramp}), "ramp.stop: must be 1 to 256 stops, are 0");
+  EXPECT_EQ(fault({ramp}), "ramp.stop: must have 1 to 256 stops; it has 0");
   ramp.stops = {{1, {}}, {1, {}}};
-  EXPECT_EQ(fault({ramp}), "ramp.stop[1].at: must be above the stop before it, 1, is 1");
+  EXPECT_EQ(fault({ramp}),
+            "ramp.stop[1].at: must be above 1, the position of the stop before; it is 1");
 }
 
 TEST(CheckParts, RefusesALookUpThatTakesTooLong) {
@@ -373,7 +374,7 @@ TEST(CheckParts, RefusesALookUpThatTakesTooLong) {
   }
   EXPECT_EQ(fault(textures), "");
   textures.push_back(ProductTexture{id(7), id(7)});
-  EXPECT_EQ(fault(textures), "is made of too many textures: a look-up takes 511, at most 256");
+  EXPECT_EQ(fault(textures), "look-up: must evaluate at most 256 textures; it evaluates 511");
 }
 
 }  // namespace
