@@ -221,6 +221,20 @@ class AddOn(unittest.TestCase):
         self.assertTrue(has_pass)
         self.assertLess(abs(noisy[::-1, :, 0] - np.arange(96) / 96).max(), 1e-6)
 
+    def test_the_sample_count_is_a_pass(self):
+        self.scene.bandsaw.pass_samples = True
+        engine = sys.modules["bandsaw_blender.engine"].BandsawEngine
+        given, counts = engine.set_pixels, []
+
+        def noting(this, result, name, pixels):
+            if name == "Debug Sample Count":
+                counts.append((result.layers[0].passes.get(name) is not None, pixels.shape, float(pixels.min()), float(pixels.max())))
+            given(this, result, name, pixels)
+
+        with mock.patch.object(engine, "set_pixels", noting):
+            self.render()
+        self.assertEqual(counts, [(True, (64, 96, 1), 64, 64)])  # the fake farm takes 64 samples
+
     def test_a_picture_that_cannot_be_denoised_stays_as_it_was_rendered(self):
         self.scene.bandsaw.denoise = True
         self.fake.clean_failure = "a guide has failed"

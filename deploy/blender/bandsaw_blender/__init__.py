@@ -52,6 +52,8 @@ class BandsawSettings(bpy.types.PropertyGroup):
     denoise: bpy.props.BoolProperty(
         name="Denoise", default=True,
         description="Remove the noise of the finished image. The image as rendered is kept in the pass Noisy Image, and the estimated errors of both images are reported")
+    pass_samples: bpy.props.BoolProperty(
+        name="Sample Count Pass", description="Add the pass Debug Sample Count: the number of samples of each pixel, which is the same for all pixels")
 
 
 class BANDSAW_PT_sampling(bpy.types.Panel):
@@ -71,6 +73,7 @@ class BANDSAW_PT_sampling(bpy.types.Panel):
         layout.prop(settings, "stop")
         layout.prop(settings, "samples" if settings.stop == "SAMPLES" else "error")
         layout.prop(settings, "denoise")
+        layout.prop(settings, "pass_samples")
         layout.prop(context.scene.render, "film_transparent")
         layout.prop(context.scene.render, "use_motion_blur")
         layout.prop(context.scene.render, "motion_blur_shutter")

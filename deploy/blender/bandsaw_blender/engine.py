@@ -14,6 +14,7 @@ from . import bandsaw, scene as scenes
 # the farm renders for it (bandsaw.Job.layer).
 PASSES = (("use_pass_z", "Depth", 1, "Z", "VALUE", "depth"), ("use_pass_normal", "Normal", 3, "XYZ", "VECTOR", "normals"),
           ("use_pass_diffuse_color", "DiffCol", 3, "RGB", "COLOR", "albedo"))
+SAMPLES = "Debug Sample Count"  # the pass with the number of samples of each pixel; named as that of Cycles
 NOISY = "Noisy Image"  # the pass that keeps the image as rendered if the image is denoised; Cycles has a pass of the same name
 PATIENCE = 60.0  # seconds for which the engine tries to reach a lost coordinator
 
@@ -62,6 +63,8 @@ class BandsawEngine(bpy.types.RenderEngine):
         self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
         if scene.bandsaw.denoise:
             self.register_pass(scene, renderlayer, NOISY, 4, "RGBA", "COLOR")
+        if scene.bandsaw.pass_samples:
+            self.register_pass(scene, renderlayer, SAMPLES, 1, "X", "VALUE")
         for setting, name, channels, letters, kind, _ in PASSES:
             if getattr(renderlayer, setting, False):
                 self.register_pass(scene, renderlayer, name, channels, letters, kind)
@@ -149,6 +152,8 @@ class BandsawEngine(bpy.types.RenderEngine):
             self.set_pixels(result, "Combined", image)
             if depsgraph.scene.bandsaw.denoise:
                 self.denoise(job, result, image)
+            if depsgraph.scene.bandsaw.pass_samples:
+                self.set_pixels(result, SAMPLES, np.full(image.shape[:2] + (1,), progress.samples, dtype=np.float32))
             self.add_passes(depsgraph, job, result, made.scene["camera"])
             self.update_result(result)
             done = True
