@@ -141,25 +141,23 @@ absl::Status mix(const MaterialSource& from, Surface& to) {
   if (names.size() != 2) {
     return error_at(from.place(), "a mix needs \"string materials\" with two names");
   }
+  for (const std::string& name : names) {
+    if (!from.builder.materials.contains(name)) {
+      return error_at(from.place(), absl::StrCat("no material is called \"", name, "\""));
+    }
+  }
   ASSIGN_OR_RETURN(auto amount, float_texture(from.parameters, "amount", from.builder));
   scene::MixMaterial& out = *to.material.mutable_mix();
   std::string parts[2];
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto part = from.builder.materials.find(names[i]);
-    if (part == from.builder.materials.end()) {
-      return error_at(from.place(), absl::StrCat("no material is called \"", names[i], "\""));
-    }
-    const Surface& surface = *part->second;
+    const Surface& surface = *from.builder.materials.find(names[i])->second;
     if (surface.is_null || surface.material.has_mix()) {
       from.builder.warn(
           from.place(),
           absl::StrCat("\"", names[i], "\" cannot be mixed; the other material is shown alone"));
-      const auto other = from.builder.materials.find(names[1 - i]);
-      if (other != from.builder.materials.end()) {
-        const std::string label = to.label;
-        to = *other->second;
-        to.label = label;
-      }
+      const std::string label = to.label;
+      to = *from.builder.materials.find(names[1 - i])->second;
+      to.label = label;
       return absl::OkStatus();
     }
     to.transmits = to.transmits || surface.transmits;

@@ -511,6 +511,15 @@ TEST(Pbrt, HostileScenesAreRefused) {
               HasSubstr("s.pbrt:2: \"integer indices\" are missing"));
 }
 
+TEST(Pbrt, AMixOfAnUnknownMaterialIsAnError) {
+  for (const char* names : {"\"a\" \"b\"", "\"b\" \"a\""}) {
+    EXPECT_THAT(error_of(std::string("WorldBegin\nMakeNamedMaterial \"a\" \"string type\" "
+                                     "\"interface\"\nMaterial \"mix\" \"string materials\" [") +
+                         names + "]\nShape \"sphere\""),
+                HasSubstr("no material is called \"b\""));
+  }
+}
+
 TEST(Pbrt, MediaFillClosedShapes) {
   const auto scene = scene_of(
       "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
