@@ -12,6 +12,7 @@
 namespace bandsaw::test {
 namespace {
 
+constexpr char kUplight[] = BANDSAW_GALLERY "/hard_light/uplight.textproto";
 constexpr char kSpheres[] = BANDSAW_GALLERY "/spheres.textproto";
 
 class StudyCommand : public testing::Test {
@@ -28,15 +29,15 @@ class StudyCommand : public testing::Test {
 
 TEST_F(StudyCommand, WritesTableFiguresAndPlot) {
   const Finished done = run(
-      study({kCornell, kSpheres, "--width", "12", "--samples", "16", "--seeds", "2", "--quiet"}));
+      study({kUplight, kSpheres, "--width", "12", "--samples", "16", "--seeds", "2", "--quiet"}));
   ASSERT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(done.out.rfind("| scene | technique |", 0), 0u) << done.out;
   EXPECT_NE(done.out.find("| spheres | independent numbers | 16 |"), std::string::npos);
   const std::string csv = file_bytes(folder_ / "s.csv");
   // There is one header. Each of the two scenes has three rows (1, 4 and 16 samples) for each of
   // four methods and for adaptive sampling. It also has four rows of a method that stops each pixel
-  // at a tolerance of its error. The Cornell box uses photon maps of indirect light, so it has
-  // three more rows without photon maps.
+  // at a tolerance of its error. The room with the uplight uses photon maps of indirect light, so
+  // it has three more rows without photon maps.
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 2 * (5 * 3 + 4) + 3);
   EXPECT_EQ(file_bytes(folder_ / "s.svg").rfind("<svg ", 0), 0u);
 }
