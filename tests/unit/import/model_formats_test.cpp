@@ -426,7 +426,7 @@ TEST(Fbx, AQuadraticDecayThatStartsAtZeroIsNotBlack) {
 )");
   ASSERT_TRUE(imported.ok()) << imported.status();
   EXPECT_EQ(std::get<PointLight>(imported->scene.lights.at(0)).intensity, (Rgb{4, 4, 4}));
-  EXPECT_THAT(imported->info.warnings, Contains(HasSubstr("the light \"lamp\" falls off")));
+  EXPECT_THAT(imported->info.warnings, Contains(HasSubstr("the light \"lamp\" gets a falloff")));
 }
 
 }  // namespace

@@ -269,7 +269,8 @@ TEST(Environment, InvalidEnvironmentsAreRefusedWithTheNameOfTheField) {
   sky = good;
   sky.environment.strength = 1e30f;
   sky.textures[0] = float_image(1, 1, [](auto, auto) { return 1e30f; });
-  EXPECT_NE(message(sky).find("images[0]: must be finite"), std::string::npos);
+  EXPECT_NE(message(sky).find("images[0]: its largest value times the strength must be finite"),
+            std::string::npos);
   sky = cube("cube", 4, [](auto, auto, auto) { return 1.0f; });
   sky.textures[2] = float_image(4, 3, [](auto, auto) { return 1.0f; });
   EXPECT_EQ(message(sky),

@@ -154,7 +154,7 @@ TEST(TileSamples, SumsOfPixelsWithoutSamplesMustBeZero) {
   ASSERT_NE(left_out, pixels.sums.end());
   *left_out = 1e-300;
   EXPECT_THAT(std::string(check_left_out(pixels, given.tiles).message()),
-              HasSubstr("its tile takes none"));
+              HasSubstr("its half tile takes none"));
 }
 
 TEST(TileSamples, CountersMustFitTheSamplesTaken) {

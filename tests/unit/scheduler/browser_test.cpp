@@ -495,7 +495,7 @@ TEST(Browser, GetsNoBandsThatWouldNotBeAudited) {
     }
   }
   EXPECT_EQ(stored, Job::kMaxAudits / 2);
-  EXPECT_TRUE(contains(farm.why(1, 0).back(), "native workers have to compare"));
+  EXPECT_TRUE(contains(farm.why(1, 0).back(), "native workers must first compare"));
   input::BandStored compared;
   compared.job = 1;
   compared.band = audit.band;
