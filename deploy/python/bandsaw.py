@@ -548,7 +548,7 @@ class Job:
     def clean(self, on_state=None, interval=0.3, patience=60.0, stop=None):
         """Returns the finished image without its noise (denoised), an Image. The farm renders the guides that the denoiser needs (images of the
         albedo and the shape of the surfaces), then the coordinator filters; image() still returns the image as rendered. `on_state`: a function
-        of the state of clean_state(), called about every `interval` seconds. `stop`: a function that is called often; None is returned
+        of the state of clean_state(), called about every `interval` seconds; the state of its last call has the errors. `stop`: a function that is called often; None is returned
         soon after it returns True. While the coordinator cannot be reached, this tries again for `patience` seconds, then raises NoFarm. Raises
         Refused if the job is not done, or if its image cannot be cleaned or is too large; BandsawError if the cleaning fails."""
         loss = _Loss(patience)
@@ -558,12 +558,12 @@ class Job:
                 if state["state"] == "none":  # not requested, or the coordinator does not keep it any more
                     self.farm.request_json("POST", self._path("/clean"))
                 loss.over()
+                if on_state is not None:
+                    on_state(state)
                 if state["state"] == "ready":
                     return image_from_pfm(self.farm.request("GET", self._path("/clean.pfm"), timeout=120))
                 if state["state"] == "failed":
                     raise BandsawError(f"the image of job {self.number} was not denoised: {state['reason']}")
-                if on_state is not None:
-                    on_state(state)
             except NoFarm:
                 if loss.is_too_long():
                     raise

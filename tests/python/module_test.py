@@ -308,7 +308,7 @@ class Jobs(unittest.TestCase):
         list(job.progress(0))
         seen = []
         image = job.clean(seen.append, interval=0)
-        self.assertEqual([(state["state"], state["fraction"]) for state in seen], [("none", 0), ("guides", 0.5), ("filtering", 1)])
+        self.assertEqual([(state["state"], state["fraction"]) for state in seen], [("none", 0), ("guides", 0.5), ("filtering", 1), ("ready", 1)])
         self.assertEqual(image.mean(), (0.75, 0.5, 0.25))
         self.assertEqual(self.fake.requests.count(("POST", "/api/jobs/1/clean")), 1)
         self.assertEqual(job.clean_state(), {"state": "ready", "fraction": 1, "reason": "", "error_raw": 0.05, "error_clean": 0.02, "bias_share": 0.25})

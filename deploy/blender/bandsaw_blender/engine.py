@@ -166,18 +166,20 @@ class BandsawEngine(bpy.types.RenderEngine):
         self.set_pixels(result, NOISY, image)
         self.update_result(result)
 
+        last = {}
+
         def on_state(state):
+            last.update(state)
             self.update_stats("", f"Denoising: {100 * state['fraction']:.0f} % of the guides" if state["state"] == "guides" else "Denoising")
 
         try:
             clean = job.clean(on_state, patience=PATIENCE, stop=self.test_break)
             self.stop_if_asked()
-            errors = job.clean_state()
         except bandsaw.BandsawError as error:
             self.tell_warnings([f"the image is not denoised: {error}"])
             return
         self.set_pixels(result, "Combined", with_alpha(clean.array()))
-        self.report({"INFO"}, f"Bandsaw: the estimated error is {100 * errors['error_raw']:.2g} % as rendered, {100 * errors['error_clean']:.2g} % denoised")
+        self.report({"INFO"}, f"Bandsaw: the estimated error is {100 * last['error_raw']:.2g} % as rendered, {100 * last['error_clean']:.2g} % denoised")
 
     def show_progress(self, progress):
         self.update_progress(progress.fraction)
