@@ -54,16 +54,6 @@ Rgb rgb_of(const std::vector<double>& numbers) {
   return {channel(0), channel(1), channel(2)};
 }
 
-absl::Status add_sample(Spectrum& spectrum, double nanometres, double value) {
-  if (!spectrum.samples.empty() && nanometres <= spectrum.samples.back().nanometres) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("the wavelengths of a spectrum must increase: ", nanometres, " follows ",
-                     spectrum.samples.back().nanometres));
-  }
-  spectrum.samples.push_back({nanometres, value});
-  return absl::OkStatus();
-}
-
 /// Returns the spectrum, or INVALID_ARGUMENT if it has fewer than two samples.
 absl::StatusOr<Spectrum> with_enough_samples(Spectrum spectrum) {
   if (spectrum.samples.size() < 2) {
@@ -73,6 +63,16 @@ absl::StatusOr<Spectrum> with_enough_samples(Spectrum spectrum) {
 }
 
 }  // namespace
+
+absl::Status add_sample(Spectrum& spectrum, double nanometres, double value) {
+  if (!spectrum.samples.empty() && nanometres <= spectrum.samples.back().nanometres) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the wavelengths of a spectrum must increase: ", nanometres, " follows ",
+                     spectrum.samples.back().nanometres));
+  }
+  spectrum.samples.push_back({nanometres, value});
+  return absl::OkStatus();
+}
 
 std::vector<std::string> parts_of(absl::string_view text) {
   return absl::StrSplit(text, absl::ByAnyChar(", \t\r\n"), absl::SkipEmpty());

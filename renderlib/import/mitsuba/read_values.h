@@ -24,6 +24,9 @@ absl::StatusOr<Vec3> read_three(absl::string_view text);
 absl::StatusOr<Rgb> read_rgb(absl::string_view text);
 /// Reads a colour in sRGB: one or three numbers, or "#rrggbb". Returns it as linear RGB.
 absl::StatusOr<Rgb> read_srgb(absl::string_view text);
+/// Adds a sample to a spectrum. INVALID_ARGUMENT: its wavelength in nanometres is not above that of
+/// the sample before.
+absl::Status add_sample(Spectrum& spectrum, double nanometres, double value);
 /// Reads a number, or "wavelength:value" pairs with increasing wavelengths in nanometres.
 absl::StatusOr<Spectrum> read_spectrum(absl::string_view text);
 /// Reads a spectrum file. Each line has a wavelength in nanometres and a value; the wavelengths

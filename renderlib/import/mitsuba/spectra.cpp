@@ -137,12 +137,9 @@ absl::StatusOr<Spectrum> sampled_spectrum(const Parameters& from) {
     for (std::size_t i = 0; i < at.size(); ++i) {
       ASSIGN_OR_RETURN(const double nanometres, read_number(at[i]));
       ASSIGN_OR_RETURN(const double value, read_number(numbers[i]));
-      if (i > 0 && !(nanometres > spectrum.samples.back().nanometres)) {
-        return error_at(from.place(),
-                        absl::StrCat("the wavelengths of a spectrum must increase: ", nanometres,
-                                     " follows ", spectrum.samples.back().nanometres));
+      if (const absl::Status added = add_sample(spectrum, nanometres, value); !added.ok()) {
+        return at_place(from.place(), added);
       }
-      spectrum.samples.push_back({nanometres, value});
     }
     return spectrum;
   }
