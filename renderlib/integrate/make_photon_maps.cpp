@@ -147,18 +147,19 @@ bool add_indirect(const Scene& scene, const PhotonSources& sources, const Photon
     return false;
   }
   std::vector<PhotonOrigin> origins;
+  for (PhotonOrigins& chunk : found) {
+    maps.rays += chunk.rays;
+    origins.insert(origins.end(), chunk.items.begin(), chunk.items.end());
+    chunk.items = {};
+  }
   std::vector<double> luminance_up_to;
   double sum = 0;
   double squares = 0;
-  for (const PhotonOrigins& chunk : found) {
-    maps.rays += chunk.rays;
-    for (const PhotonOrigin& start : chunk.items) {
-      const double power = luminance(start.power);
-      origins.push_back(start);
-      sum += power;
-      squares += power * power;
-      luminance_up_to.push_back(sum);
-    }
+  for (const PhotonOrigin& start : origins) {
+    const double power = luminance(start.power);
+    sum += power;
+    squares += power * power;
+    luminance_up_to.push_back(sum);
   }
   maps.effective_origins = squares > 0 ? sum * sum / squares : 0;
   std::vector<TracedPhotons> chunks(kChunks);

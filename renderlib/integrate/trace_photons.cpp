@@ -146,10 +146,11 @@ void follow(const Scene& scene, const Casters& casters, const Numbers& numbers, 
 /// opaque stands between it and the photon. Close means at most a quarter of the radius below the
 /// disk's plane: lower surfaces do not get the photon's light (density_at() in
 /// guiding/photon_map.h).
-bool is_on_surface(const Scene& scene, const StoredPhoton& photon, const Vec3& origin,
+/// `centre`: the centre of the disk in the world.
+bool is_on_surface(const Scene& scene, const StoredPhoton& photon, const Vec3& centre,
                    const Vec3& to) {
   const Vec3 lift = vec3(photon.normal) * (photon.radius / 8.0);
-  const Vec3 start = origin + vec3(photon.position) + lift;
+  const Vec3 start = centre + lift;
   const double time = middle_of(shutter_of(scene.camera()));
   const Ray along{.origin = start, .direction = to + lift - start, .t_max = 1, .time = time};
   const Ray down{.origin = to + lift, .direction = lift * -3, .t_max = 1, .time = time};
@@ -203,15 +204,16 @@ double share_on_surface(const Scene& scene, const StoredPhoton& photon, const Ve
   // the disk is left.
   constexpr int kFewest = kAllOver / 4;
   constexpr double kGoldenTurn = 0.381966011250105;  // the golden angle, as a part of a turn
+  const Vec3 centre = origin + vec3(photon.position);
   const Basis basis = orthonormal_basis(vec3(photon.normal));
   // The points of each disk are turned by another angle, so that they miss no edge of a scene whose
   // edges are parallel to its axes.
   const double first_turn = random_number_of(photon);
   const auto is_there = [&](double turn, double distance) {
     const SinCos angle = sincos_turns(turn + first_turn);
-    return is_on_surface(scene, photon, origin,
-                         origin + vec3(photon.position) + basis.x * (distance * angle.cos) +
-                             basis.y * (distance * angle.sin));
+    return is_on_surface(
+        scene, photon, centre,
+        centre + basis.x * (distance * angle.cos) + basis.y * (distance * angle.sin));
   };
   int found = 0;
   for (int i = 0; i < kAtRim; ++i) {
