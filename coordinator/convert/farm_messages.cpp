@@ -283,7 +283,7 @@ JobView job_view_of(const farm::JobStatus& message) {
   job.id = message.job();
   job.spec.name = message.name();
   job.spec.settings = settings_of(message.settings());
-  // Of an invalid stop rule, only the number of samples is kept.
+  // An invalid stop rule is replaced by its number of samples.
   job.spec.stop = stop_rule_of(message.stop()).value_or(StopAtSamples{message.stop().samples()});
   if (const auto digest = wire::digest_from_raw(message.manifest_sha256()); digest.ok()) {
     job.spec.manifest = digest->hex();

@@ -19,8 +19,8 @@ namespace {
 
 /// Fewer escaping rays do not tell where an opening is.
 constexpr std::size_t kMinRays = 24;
-/// Of the rays towards a portal, at least the part kMinPrecision escapes. The part that escapes is
-/// also at least kMinLift times as large as it is for all rays.
+/// At least the part kMinPrecision of the rays towards a portal escapes. This part is also at least
+/// kMinLift times as large as the part of all rays that escapes.
 constexpr double kMinPrecision = 0.35;
 constexpr double kMinLift = 3;
 /// A portal has at least this part of the escaping rays.

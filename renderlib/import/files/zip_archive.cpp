@@ -239,7 +239,7 @@ absl::StatusOr<ZipArchive> ZipArchive::open(absl::string_view bytes) {
 
 absl::StatusOr<std::string> ZipArchive::read(const Entry& entry) const {
   Reader in(bytes_, entry.header_at);
-  // Of the local header, only the lengths of the name and of the extra field are used. They may
+  // Only the lengths of the name and of the extra field are used of the local header. They may
   // differ from the lengths in the directory.
   const bool has_header = in.u32() == kLocalHeader;
   in.text(kLocalHeaderBytes - 4 - 2 - 2);

@@ -177,7 +177,7 @@ TEST(AccelExact, HitsOfRaysThatStartOnAPrimitiveEqualBruteForce) {
 }
 
 // The mesh has every triangle twice, in random order, and the scene has two instances of this mesh.
-// Of the triangles at the same distance, a ray hits the one with the lowest id.
+// If a ray meets several triangles at the same distance, it hits the one with the lowest id.
 TEST(AccelExact, T7_TiesGoToTheLowestIdInAnyOrder) {
   test::Random random(11);
   const Mesh mesh = test::icosphere(2);

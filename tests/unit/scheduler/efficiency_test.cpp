@@ -36,7 +36,7 @@ std::vector<double> speeds(double seconds, bool equal) {
 /// efficiency is the lowest, and the last phase is the longest. Each other figure is the maximum
 /// over the seeds.
 ///
-/// Of 20 seeds, the worst one does not count. The render times are random, so a slow band comes
+/// The worst one of 20 seeds does not count. The render times are random, so a slow band comes
 /// last at some seeds, and the last phase is long there. In the farm with noisy times, the last
 /// phase is longer than 2 % of the job's time at 6 of 300 seeds. With audits (a second worker
 /// renders a band again, and the results are compared) it is longer at 8 of 300 seeds. If there
