@@ -18,7 +18,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Returns 0, or the errno of the write that failed.
+// Writes the text to the file descriptor `fd`. Returns 0, or the errno of the write that failed.
 int write_all(int fd, absl::string_view text) {
   while (!text.empty()) {
     const ssize_t n = ::write(fd, text.data(), text.size());
@@ -30,6 +30,7 @@ int write_all(int fd, absl::string_view text) {
   return 0;
 }
 
+// Returns true if the environment variable is set and not empty.
 bool environment_has(const char* name) {
   const char* value = std::getenv(name);
   return value != nullptr && *value != '\0';
@@ -52,8 +53,8 @@ Console Console::standard() {
   const auto error = std::make_shared<std::atomic<int>>(0);
   const auto out = [error, tty](absl::string_view text) {
     const int failed = write_all(STDOUT_FILENO, text);
-    // Not recorded are EPIPE (the reader of a pipe has ended) and every error of a terminal (EIO:
-    // the terminal was closed).
+    // EPIPE is not recorded: the reader of a pipe has ended. Errors of a terminal are not recorded
+    // either, for example EIO: the terminal was closed.
     int none = 0;
     if (failed != 0 && failed != EPIPE && !tty) {
       error->compare_exchange_strong(none, failed);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Commands write all text through a Console: to standard output, or to standard error. It also
-// knows whether standard output is a terminal, and the terminal's size and colours.
+// Commands write all text through a Console: to standard output, or to standard error. A Console
+// also knows whether standard output is a terminal, and the terminal's size and colours.
 
 #include <atomic>
 #include <functional>

@@ -25,7 +25,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Writes all bytes to the socket. MSG_NOSIGNAL: no SIGPIPE ends this process if the child is gone.
+// Writes all bytes to the socket. MSG_NOSIGNAL: if the child has ended, send() returns an error,
+// and no SIGPIPE ends this process.
 void send_all(int stream, const std::string& bytes) {
   std::size_t sent = 0;
   while (sent < bytes.size()) {

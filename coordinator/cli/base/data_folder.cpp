@@ -18,9 +18,9 @@ absl::StatusOr<std::string> default_data_folder() {
       "neither XDG_DATA_HOME nor HOME is set; name the folder with --data DIR");
 }
 
-// The files with the join strings (addresses of the farm and a secret) of workers and of users.
+// The files `join` and `farm` have the join strings of workers and of users. A join string has the
+// addresses of the farm and a secret.
 std::string worker_join_file(const std::string& data_folder) { return data_folder + "/join"; }
-
 std::string farm_join_file(const std::string& data_folder) { return data_folder + "/farm"; }
 std::string dashboard_file(const std::string& data_folder) { return data_folder + "/dashboard"; }
 

@@ -19,8 +19,8 @@ unsigned byte_at(absl::string_view text, std::size_t i) {
   return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
 }
 
-// Returns the number of bytes of the UTF-8 sequence that begins at i, or 0 if the bytes there are
-// no valid sequence. The ranges of bytes are those of RFC 3629, section 4.
+// Returns the number of bytes of the UTF-8 sequence that begins at `i`, or 0 if no valid sequence
+// begins at `i`. The ranges of bytes are those of RFC 3629, section 4.
 std::size_t sequence_at(absl::string_view text, std::size_t i) {
   const unsigned a = byte_at(text, i);
   const unsigned b = byte_at(text, i + 1);

@@ -28,8 +28,8 @@ class PipedChild {
   /// Writes all bytes to the child's standard input; blocks while the child does not read. ABORTED:
   /// the child has closed its input; the message is the last line of its standard error.
   absl::Status write(absl::Span<const std::byte> bytes);
-  /// Closes the child's input and waits for its end. ABORTED: it did not exit with 0; the message
-  /// is the last line of its standard error.
+  /// Closes the child's input and waits until the child has ended. ABORTED: the child did not exit
+  /// with 0; the message is the last line of its standard error.
   absl::Status finish();
 
  private:
@@ -38,8 +38,8 @@ class PipedChild {
   std::string last_error_line() const;
 
   pid_t pid_ = -1;
-  int input_ = -1;   ///< write end of the pipe to its standard input
-  int errors_ = -1;  ///< file in memory with its standard error
+  int input_ = -1;   ///< write end of the pipe to the child's standard input
+  int errors_ = -1;  ///< file in memory with the child's standard error
 };
 
 }  // namespace bandsaw::coordinator

@@ -14,7 +14,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Makes `from` the child's stream `to`. If `from` is -1, opens `file` with `flags` instead.
+/// Adds an action for the child: its file descriptor `to` becomes a copy of `from`. If `from` is
+/// -1, the child opens `file` with `flags` as `to` instead.
 void add_stream(posix_spawn_file_actions_t& actions, int from, int to, const char* file,
                 int flags) {
   if (from >= 0) {

@@ -22,8 +22,8 @@ struct SpawnStreams {
 
 /// Starts `arguments[0]` (a path, or a name on PATH) with posix_spawn, without a shell, and returns
 /// its process id. The child has no blocked signals and the default dispositions of SIGINT, SIGTERM
-/// and SIGPIPE, whatever this process does with them, so Ctrl-C in a terminal ends it at once.
-/// Returns the system's error if it could not be started.
+/// and SIGPIPE, whatever this process does with them, so Ctrl-C in a terminal ends the child
+/// at once. Returns the system's error if the program could not be started.
 absl::StatusOr<pid_t> spawn(const std::vector<std::string>& arguments, const SpawnStreams& streams);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
-// Formats numbers, times and lists for users. Bounds such as 0.995, 9.95 and 999.5 stand for 1, 10
-// and 1000, because a value at the bound is rounded to this power of ten: 9.95 with one decimal
-// would be "10.0".
+// Formats numbers, times and lists for users. A number just below a power of ten is rounded up to
+// the power: 9.95 with one decimal would be "10.0". Therefore the code compares numbers with 0.995,
+// 9.95, 99.95 and 999.5 instead of 1, 10, 100 and 1000.
 
 #include "coordinator/cli/base/text.h"
 

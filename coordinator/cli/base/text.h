@@ -36,7 +36,7 @@ std::string stop_text(const StopRule& stop);
 /// ends and tabs become spaces.
 std::string printable(absl::string_view text);
 
-/// Joins names, each safe for a terminal: "cornell.png, cornell.pfm".
+/// Joins names with commas and makes them safe for a terminal: "cornell.png, cornell.pfm".
 std::string printable_list(const std::vector<std::string>& names);
 
 /// Returns the text as one word of a shell's command line. It is quoted if it contains characters
