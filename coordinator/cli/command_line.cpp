@@ -19,8 +19,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Each of these functions adds the options of a command, or of several commands with the same
-// options.
+// Each of the functions from add_list() to add_retry() adds the options of one command, or of
+// several commands that have the same options.
 
 void add_list(CLI::App& app, RawOptions& raw) {
   add_farm(app, raw);

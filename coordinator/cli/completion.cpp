@@ -40,6 +40,7 @@ complete -o default -F _bandsaw bandsaw
 // expected.
 constexpr char kNoFiles[] = "compopt +o default 2>/dev/null || true; return";
 
+/// Returns the names of the option, long and short, with their dashes.
 std::vector<std::string> names_of(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_lnames()) {
@@ -78,7 +79,7 @@ std::map<std::string, std::string> after_options(const CLI::App& app) {
   return cases;
 }
 
-/// Returns the words that positional arguments accept.
+/// Returns the words that the positional arguments of the command accept.
 std::vector<std::string> arguments_of(const CLI::App& command) {
   std::vector<std::string> words;
   for (const CLI::Option* option : command.get_options()) {
@@ -89,8 +90,9 @@ std::vector<std::string> arguments_of(const CLI::App& command) {
   return words;
 }
 
-/// Returns a case of the script that offers `words`. `pattern` is compared with the number of the
-/// word at the cursor, the command and the beginning of that word: "1:*" or "*:submit:-*".
+/// Returns a case of the script that offers `words`. `pattern` is compared with a text of the form
+/// NUMBER:COMMAND:WORD. WORD is the word at the cursor as far as it is typed, NUMBER its position.
+/// Examples of patterns: "1:*" and "*:submit:-*".
 std::string when(const std::string& pattern, const std::vector<std::string>& words) {
   return absl::StrCat("        ", pattern, ") words='", absl::StrJoin(words, " "), "' ;;\n");
 }

@@ -22,6 +22,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns the request to the farm that submits the job `spec`. `manifest`: digest of the manifest
+/// of the job's scene.
 farm::SubmitRequest request_of(const JobSpec& spec, const std::string& manifest,
                                std::int32_t priority) {
   farm::SubmitRequest request;
@@ -121,8 +123,8 @@ absl::Status start_guides(FarmClient& client, const Progress& last) {
   const std::int32_t priority = std::min(job.priority + 1, kMaxPriority);
   RETURN_IF_ERROR(submit(client, jobs.albedo, priority).status());
   RETURN_IF_ERROR(submit(client, jobs.shape, priority).status());
-  // An image of at most one block of samples has no first part. The job `half` renders half of its
-  // samples again instead.
+  // An image of at most one block of samples has no first part. For such an image, the job `half`
+  // renders half of the samples again.
   return jobs.half ? submit(client, *jobs.half, priority).status() : absl::OkStatus();
 }
 

@@ -64,11 +64,11 @@ class FarmClient {
 
   /// Starts a sequence (a job of many frames), whose scenes add_frame() names one by one.
   absl::StatusOr<JobId> submit_sequence(const farm::SubmitSequenceRequest& request);
-  /// Gives a frame its scene, whose blobs were uploaded. FAILED_PRECONDITION: the farm lacks a
-  /// blob.
+  /// Gives a frame its scene, whose blobs were uploaded. `manifest`: digest of the manifest, the
+  /// blob that names the other blobs of the scene. FAILED_PRECONDITION: the farm lacks a blob.
   absl::Status add_frame(JobId sequence, FrameNumber frame, const wire::Digest& manifest);
-  /// Renders failed frames again; an empty list: all that failed. Returns the sequence's state
-  /// after that.
+  /// Renders failed frames again. If `frames` is empty, renders all failed frames again. Returns
+  /// the sequence's state after this change.
   absl::StatusOr<Progress> retry_frames(JobId sequence, const std::vector<FrameNumber>& frames);
   struct Frames {
     std::string epoch;  ///< names the run of the coordinator, from its start to its end
@@ -152,8 +152,8 @@ class FarmClient {
   /// Makes the call `open` and checks the image. DATA_LOSS: its digest or its size is wrong.
   absl::StatusOr<FarmImage> receive(JobId job, const OpenImage& open);
 
-  /// Calls `body` with a new context for each attempt, at most kTries times, while the farm does
-  /// not answer within `deadline`.
+  /// Calls `body`, with a new context for each attempt, until the farm answers within `deadline`.
+  /// Makes at most kTries attempts.
   /// If the call starts a job, stop() does not cancel an attempt. It ends the pauses between
   /// attempts, and no further attempt is made. If stop() is called after an attempt whose outcome
   /// is unknown, the message of CANCELLED says where the user finds the job.

@@ -18,7 +18,8 @@ namespace bandsaw::coordinator {
 absl::StatusOr<std::unique_ptr<FarmClient>> connect_to_farm(const FarmOption& option);
 
 /// Returns kDone for OK; kNoFarm for UNAVAILABLE and DEADLINE_EXCEEDED; kWrong for
-/// INVALID_ARGUMENT, UNAUTHENTICATED and PERMISSION_DENIED, such as a wrong join string;
+/// INVALID_ARGUMENT, UNAUTHENTICATED and PERMISSION_DENIED, such as a wrong join string (the
+/// addresses of the farm and a secret);
 /// kInterrupted for CANCELLED; kFailed for all others.
 ExitCode exit_code_of(const absl::Status& status);
 

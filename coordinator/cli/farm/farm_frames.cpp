@@ -1,4 +1,5 @@
-// FarmClient's calls about sequences (jobs of many frames) and their frames, and job().
+// FarmClient's calls about sequences (jobs of many frames) and their frames. Also has
+// FarmClient::job(), which fetches the state of any job.
 
 #include <optional>
 

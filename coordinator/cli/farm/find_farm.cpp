@@ -52,9 +52,10 @@ absl::StatusOr<link::JoinString> find_farm(const FarmOption& option) {
                         absl::StrCat(source.name, ": ", join.status().message()));
   }
   if (join->role != link::Role::kFarm) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        source.name,
-        ": this is the join string of workers; users need the one in the coordinator's DATA/farm"));
+    return absl::InvalidArgumentError(absl::StrCat(source.name,
+                                                   ": this is the join string of workers; users "
+                                                   "need the join string in the file `farm` of the "
+                                                   "coordinator's data folder"));
   }
   return join;
 }

@@ -166,9 +166,9 @@ absl::Status FrameFetcher::fetch_rest() {
   return client_->stopped() ? absl::CancelledError("interrupted") : status;
 }
 
-/// Adds the frames that the video does not have yet, and ends the video. A frame that was done
-/// before a frame with a smaller number could not be added then, because a video needs its frames
-/// in order. So the frame is fetched and cleaned a second time here.
+/// Adds the frames that the video does not have yet, and ends the video. While a frame was missing,
+/// frames with larger numbers could not be added, because a video needs its frames in order. So
+/// they are fetched and cleaned a second time here.
 absl::Status FrameFetcher::feed_video() {
   while (in_video_ < numbers_.size()) {
     const FrameNumber number = numbers_[in_video_];

@@ -28,8 +28,8 @@ class FrameFetcher {
   FrameFetcher(const FarmClient& client, const WatchOptions& wanted, ProgressDisplay& display,
                const Console& console);
 
-  /// Fetches the frames that were done since the last call, if a file is made of them, and reports
-  /// frames that failed. UNAVAILABLE: the farm cannot be reached; the next call fetches what is
+  /// Reports frames that failed. If files are made of the images, fetches the frames that were done
+  /// since the last call. UNAVAILABLE: the farm cannot be reached; the next call fetches what is
   /// left. Other errors: a file could not be written, or an image could not be fetched or cleaned.
   absl::Status update();
   /// Fetches all frames that are done and not yet fetched. If the farm cannot be reached, waits for

@@ -22,7 +22,8 @@ absl::Status try_to_send(FarmClient& client, JobId sequence, FrameNumber frame,
   const wire::Digest manifest = wire::sha256(package.manifest());
   absl::Status status = client.add_frame(sequence, frame, manifest);
   if (absl::IsFailedPrecondition(status)) {
-    // A blob is missing: the farm may have removed it after it was sent, because no job used it.
+    // A part of the package is missing: the farm may have removed it after it was sent, because no
+    // job used it.
     RETURN_IF_ERROR(upload(client, package, display));
     status = client.add_frame(sequence, frame, manifest);
   }

@@ -20,7 +20,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Sends those blobs of the package that the farm lacks, then gives the frame its scene. Waits up
+/// Sends those parts of the package that the farm lacks, then gives the frame its scene. Waits up
 /// to a minute for a farm that cannot be reached. CANCELLED: client.stop() was called. ABORTED: the
 /// farm refused the scene, and the sequence is over (cancelled by a user, for example). Returns
 /// other errors of the farm and of the package.

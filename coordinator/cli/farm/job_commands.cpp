@@ -14,14 +14,14 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Prints the job's actual state, which may differ from the requested one: a job that is over
+/// cannot be cancelled.
 void print_state(const Progress& progress, Verbosity verbosity, const Console& console) {
   const JobView& job = progress.job;
   if (verbosity.json) {
     console.line(jobs_json({progress}).front());
     return;
   }
-  // This is the actual state, which may differ from the requested one: a job that is over cannot be
-  // cancelled.
   console.line(absl::StrCat("job ", job.id, " is ", state_name(job.state), ", priority ",
                             job.priority, job.reason.empty() ? "" : ": ", printable(job.reason)));
 }

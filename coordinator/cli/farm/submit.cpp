@@ -43,7 +43,8 @@ absl::StatusOr<Image> render_on_farm(FarmClient& client, ImportedPackage& packag
   ASSIGN_OR_RETURN(const JobId job, send(client, package, request, display));
   ASSIGN_OR_RETURN(const Progress last, follow_job(client, job, display));
   if (last.job.state != JobState::kDone) {
-    return absl::AbortedError(absl::StrCat("a layer's job ", job, " ", state_name(last.job.state),
+    return absl::AbortedError(absl::StrCat("job ", job, ", which renders a layer, ",
+                                           state_name(last.job.state),
                                            last.job.reason.empty() ? "" : ": ", last.job.reason));
   }
   ASSIGN_OR_RETURN(FarmImage result, client.result(job));
@@ -62,6 +63,7 @@ WatchOptions watch_options(const SubmitOptions& options, std::vector<std::string
           .after = options.after};
 }
 
+/// Prints the number of a job that is submitted with --detach.
 void say_detached(JobId job, Verbosity verbosity, const Console& console) {
   if (verbosity.json) {
     console.line(JsonObject().text("event", "submitted").whole("job", job).str());

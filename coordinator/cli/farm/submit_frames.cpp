@@ -125,11 +125,10 @@ void say_started(JobId job, Verbosity verbosity, const Console& console) {
   }
 }
 
-/// Prints why the scenes of `frames` were not sent; returns the exit code. Also names the frames
-/// and the command that sends them, unless the job is over (ABORTED). `status` is an error of the
-/// import or of the farm. The exit code is import_exit_code(status), unless that is kWrong.
-/// import_exit_code() returns kWrong for all codes that it does not know, also for those of the
-/// farm. Then the exit code is exit_code_of(status).
+/// Prints why the scenes of `frames` were not sent. Unless the job is over (ABORTED), also names
+/// the frames and the command that sends them. `status` is an error of the import or of the farm.
+/// Returns import_exit_code(status). If that is kWrong, `status` may be an error of the farm, which
+/// import_exit_code() does not know; then returns exit_code_of(status).
 ExitCode not_sent(const absl::Status& status, JobId job, const std::vector<FrameNumber>& frames,
                   const Console& console) {
   const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)

@@ -9,7 +9,7 @@ namespace bandsaw::coordinator {
 
 /// Starts a sequence, or continues one (--continue), sends the scenes of its frames and fetches
 /// their images. `watch`: what is made of the frames, in files whose names have a place for the
-/// number of a frame ("walk.####.png"); its `job` is ignored.
+/// number of a frame ("walk.####.png"); `watch.job` is ignored.
 ExitCode submit_frames(FarmClient& client, const SubmitOptions& options, WatchOptions watch,
                        Process& process);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Uploads a scene package (a manifest and the blobs that it names) to the farm, and submits jobs. A
-// blob that the farm already has is not sent.
+// Uploads a scene package to the farm, and submits jobs. A package has a manifest and the blobs
+// (parts of the scene) that the manifest names. A blob that the farm already has is not sent.
 
 #include "absl/status/status.h"
 #include "coordinator/cli/farm/farm_client.h"

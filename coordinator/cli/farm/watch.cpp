@@ -14,6 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Watches a sequence, which is a job of many frames with the settings of `spec`.
 ExitCode watch_sequence(const WatchOptions& options, const JobSpec& spec, FarmClient& client,
                         Process& process) {
   if (!options.tev.empty() || options.verbosity.preview) {
@@ -32,6 +33,7 @@ ExitCode watch_sequence(const WatchOptions& options, const JobSpec& spec, FarmCl
   return watch_frames(client, options, process).code;
 }
 
+/// Watches a job that renders a single image.
 ExitCode watch_image(const WatchOptions& options, FarmClient& client, Process& process) {
   if (!options.after.video.empty() || !options.after.contact_sheet.empty()) {
     return process.console.fail(ExitCode::kWrong,

@@ -164,8 +164,8 @@ bool is_file_name(const std::string& farm) {
 
 /// Returns the images that are written for the job: `result`, the additional layers that `beside`
 /// makes and, with --denoise, the clean image. `beside` may be empty. The farm renders the layers
-/// and the images that the denoiser needs. `views` (the terminal or a viewer) show the image as
-/// rendered first, and the clean image after it.
+/// and the images that the denoiser needs. `views` (the terminal or a viewer) first show the image
+/// as rendered, then the clean image.
 absl::StatusOr<JobPictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
                                         const Wanted& wanted, ImageViews& views,
                                         ProgressDisplay& display, const BesideImage& beside) {

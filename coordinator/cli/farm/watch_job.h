@@ -58,7 +58,7 @@ absl::Status write_pictures(const JobPictures& pictures, const Wanted& wanted);
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display,
                                     const std::function<void(const Progress&)>& on_status = {});
 
-/// Returns additional layers for an image that has `samples` samples per pixel.
+/// A function that makes the additional layers for an image of `samples` samples per pixel.
 using BesideImage =
     std::function<absl::StatusOr<Layers>(std::uint64_t samples, ProgressDisplay& display)>;
 
