@@ -56,8 +56,9 @@ Image normals_of(const Image& shape) {
   return normals;
 }
 
-/// Filters the image by OpenImageDenoise. Also filters the image of each of the two parts of its
-/// samples, because the error of the clean image is estimated from them.
+/// Filters the image by OpenImageDenoise. The samples of the image are divided into two parts. The
+/// mean of each part is filtered too, because the error of the clean image is estimated from the
+/// results.
 absl::StatusOr<Denoised> clean_by_oidn(const DenoiseInput& input, Pool& pool) {
   ASSIGN_OR_RETURN(const Oidn oidn, Oidn::load());
   const Image normals = normals_of(input.shape);

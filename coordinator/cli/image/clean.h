@@ -44,8 +44,9 @@ using JobRenderer =
 JobRenderer one_by_one(LayerRenderer render);
 
 /// Renders the guides, and `input.first` if it is missing, by `render`. Then removes the noise: by
-/// OpenImageDenoise for kOidn, otherwise by renderlib/denoise. FAILED_PRECONDITION: the image
-/// cannot be cleaned (check_cleanable). Other errors: those of `render` and of Oidn.
+/// OpenImageDenoise for kOidn, otherwise by renderlib/denoise with `kernel` (the renderer's code
+/// for one instruction set). FAILED_PRECONDITION: the image cannot be cleaned (check_cleanable).
+/// Other errors: those of `render` and of Oidn.
 absl::StatusOr<Denoised> make_clean(ToClean input, const JobRenderer& render, Denoiser denoiser,
                                     const Kernel& kernel, Pool& pool);
 
@@ -55,8 +56,8 @@ Report::Clean clean_report(const Denoised& clean, Denoiser denoiser,
                            const std::vector<std::string>& outputs);
 
 /// Checks, before an image is rendered, whether its noise can be removed. Returns OK for kNone.
-/// FAILED_PRECONDITION: as check_cleanable (scheduler/api/clean_jobs.h). UNAVAILABLE:
-/// OpenImageDenoise is wanted and not installed.
+/// FAILED_PRECONDITION: the image cannot be cleaned (check_cleanable in
+/// scheduler/api/clean_jobs.h). UNAVAILABLE: OpenImageDenoise is wanted and not installed.
 absl::Status check_denoise(Denoiser denoiser, const RenderSettings& settings, const StopRule& stop);
 
 /// Returns the files that get the image as rendered: picture.raw.png beside the output picture.png,

@@ -1,5 +1,6 @@
-// The number of columns is chosen so that the sheet has about the shape of a screen. Each frame is
-// reduced to a cell of the sheet; its number is drawn below it in digits of 3 x 5 dots.
+// Draws a contact sheet, one picture of all frames of a sequence. The number of columns is chosen
+// so that the sheet has about the shape of a screen. Each frame is reduced to a cell of the sheet.
+// The frame's number is drawn below the cell in digits of 3 x 5 dots.
 
 #include "coordinator/cli/image/contact_sheet.h"
 

@@ -16,7 +16,7 @@
 
 namespace bandsaw::coordinator {
 
-/// More samples than this do not visibly improve a layer.
+/// Maximum number of samples per pixel of a layer. More samples do not visibly improve a layer.
 inline constexpr std::uint64_t kMaxLayerSamples = 64;
 
 /// A function that renders the scene with these settings and this number of samples per pixel, on

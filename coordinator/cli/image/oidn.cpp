@@ -102,8 +102,7 @@ absl::StatusOr<Oidn> Oidn::load(const std::string& file) {
   if (!library->find_all()) {
     return absl::UnavailableError(
         "the library OpenImageDenoise lacks functions of its versions 1 and 2; install one of "
-        "them, "
-        "or use --denoise, which needs no library");
+        "these versions, or use --denoise, which needs no library");
   }
   return Oidn(std::move(library));
 }

@@ -16,6 +16,7 @@ namespace bandsaw::coordinator {
 
 absl::Status check_outputs_writable(const std::vector<std::string>& outputs) {
   for (const std::string& output : outputs) {
+    // A part of an image (.band) is no picture, so check_writable() does not know its suffix.
     RETURN_IF_ERROR(is_part_name(output) ? check_can_be_written(output) : check_writable(output));
   }
   return absl::OkStatus();

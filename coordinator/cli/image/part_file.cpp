@@ -38,7 +38,8 @@ struct Beginning {
 static_assert(sizeof(Beginning) == 32, "the header has no padding");
 
 /// Returns the display settings in the header and sets `offset` to the end of the header. If there
-/// is no header, returns the defaults and leaves `offset` unchanged. DATA_LOSS: it is damaged.
+/// is no header, returns the defaults and leaves `offset` unchanged. DATA_LOSS: the header is
+/// damaged.
 absl::StatusOr<Display> display_of(absl::Span<const std::byte> bytes, std::uint64_t& offset) {
   Beginning from;
   if (bytes.size() < sizeof from || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {

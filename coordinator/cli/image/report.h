@@ -1,7 +1,7 @@
 #pragma once
 
-// The report of an image is a JSON file beside it, which states its error, its cost and its inputs.
-// coordinator/README.md documents the fields and their units.
+// The report of an image is a JSON file beside the image. The report states the image's error, cost
+// and inputs. coordinator/README.md documents the fields and their units.
 
 #include <cstdint>
 #include <optional>

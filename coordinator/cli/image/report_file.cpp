@@ -33,7 +33,7 @@ bool is_report(const std::string& path) {
          begins == kReportBegins;
 }
 
-/// Returns true if a report may be written there: no file exists, or it is a report.
+/// Returns true if a report may be written to the path: no file exists, or the file is a report.
 bool is_free(const std::string& path) { return !is_there(path) || is_report(path); }
 
 /// Makes the error for a file that exists and is no report.

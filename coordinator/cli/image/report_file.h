@@ -11,11 +11,12 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the files for the report of these images: none for --report none; the file that --report
-/// names; or by default a file beside each image. That file has the image's name with .json, or
-/// with .report.json if the .json file exists and is not a report (it may be a scene). A name
-/// appears once. INVALID_ARGUMENT: a file exists and is not a report. Other errors: the folder does
-/// not exist or is not writable.
+/// Returns the files for the report of the images `outputs`. `given` is the option --report. If it
+/// is "none", there is no file. If it names a file, there is only that file. By default, there is a
+/// file beside each image. That file has the image's name with .json, or with .report.json if the
+/// .json file exists and is not a report (it may be a scene). A name appears once.
+/// INVALID_ARGUMENT: a file exists and is not a report. Other errors: the folder does not exist or
+/// is not writable.
 absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& given,
                                                       const std::vector<std::string>& outputs);
 

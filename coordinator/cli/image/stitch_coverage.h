@@ -1,7 +1,7 @@
 #pragma once
 
-// Determines for `bandsaw stitch` which rows and samples of an image its parts have, and which are
-// missing or are in two parts.
+// Determines which rows and samples of an image are in none of its parts, or in two parts. The
+// command `bandsaw stitch` uses it.
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// Starts ffmpeg with the first frame, and writes each frame as a PPM picture (8-bit RGB) to its
+// Starts ffmpeg at the first frame, and writes each frame as a PPM picture (8-bit RGB) to ffmpeg's
 // standard input. The video has a temporary name until it is complete.
 
 #include "coordinator/cli/image/video.h"

@@ -32,7 +32,7 @@ class Video {
   /// Appends a frame, as bright as in an 8-bit image file: `display` is applied. The first frame
   /// starts ffmpeg. All frames MUST have the same size. ABORTED: ffmpeg failed.
   absl::Status add(const Image& image, const Display& display);
-  /// Ends the video, syncs its temporary file and renames that to the name of the video.
+  /// Ends the video, syncs its temporary file and gives the file its final name, `path`.
   /// FAILED_PRECONDITION: there is no frame. ABORTED: ffmpeg failed. Other errors: those of
   /// name_file (renderlib/base/atomic_file.h).
   absl::Status finish();
