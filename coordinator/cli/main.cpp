@@ -1,5 +1,5 @@
-// The program `bandsaw`: parses the arguments, hides secrets among them from other users of the
-// machine, and runs the command. Each command has a function run() (cli/options/commands.h).
+// The program `bandsaw`: parses the arguments, hides the secrets in the arguments from other users
+// of the machine, and runs the command. Each command has a function run() (cli/options/commands.h).
 
 #include <new>
 #include <string>

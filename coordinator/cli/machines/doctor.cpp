@@ -17,6 +17,7 @@ namespace {
 std::vector<Check> all_checks(const DoctorOptions& options, const std::string& folder) {
   std::vector<Check> checks = {check_data_folder(folder), check_memory(), check_import_program(),
                                check_worker_programs()};
+  // The join string: a line with the addresses of a farm and a secret.
   const auto join = doctor_join(options.farm, folder);
   FarmChecks of_farm;
   std::vector<std::string> own;

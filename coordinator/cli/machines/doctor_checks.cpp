@@ -24,9 +24,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kMinFreeBytes = 1ull << 30;  // enough for some passes of a large image
-constexpr std::uint64_t kMinMemory = 1ull << 30;     // enough for a moderate scene and its BVHs
-constexpr double kMaxClockDifference_s = 60;         // beyond it, logs cannot be compared
+// Enough for some passes (ranges of samples) of a large image.
+constexpr std::uint64_t kMinFreeBytes = 1ull << 30;
+constexpr std::uint64_t kMinMemory = 1ull << 30;  // enough for a moderate scene and its BVHs
+constexpr double kMaxClockDifference_s = 60;      // beyond it, logs cannot be compared
 constexpr double kDay_s = 24 * 60 * 60;
 
 Check problem(std::string name, std::string found) {
@@ -143,7 +144,7 @@ Check certificate_check(double from, double until, double now) {
         "certificate",
         absl::StrCat(
             now < from ? "not valid yet" : "not valid any more",
-            ": check this machine's clock; if it is right, move the file identity "
+            ": check this machine's clock; if it is right, move the file `identity` "
             "out of the coordinator's data folder, restart the coordinator, and join again"));
   }
   return {"certificate", true,

@@ -50,8 +50,8 @@ Check check_port(const std::string& listen, const std::string& answered,
 
 /// Returns the join string (a line with the addresses of a farm and a secret) of users or of
 /// workers. It is taken from the option, from the variables BANDSAW_FARM and BANDSAW_JOIN, or from
-/// the data folder `folder`, in this order. NOT_FOUND: none of them has one. Other errors: the text
-/// is no join string, or its file cannot be read.
+/// the data folder `folder`, in this order. NOT_FOUND: none of these places has a join string.
+/// Other errors: the text is no join string, or its file cannot be read.
 absl::StatusOr<link::JoinString> doctor_join(const FarmOption& option, const std::string& folder);
 /// Checks the connection, the certificate, the secret, versions, clocks and the coordinator's disk.
 /// If the farm cannot be reached, the result is a single check that has failed.

@@ -1,4 +1,5 @@
-// The checks of `bandsaw doctor` that need a connection to a farm.
+// The checks of `bandsaw doctor` that need a connection to a farm, and the search for the join
+// string (a line with the addresses of the farm and a secret).
 
 #include <chrono>
 #include <cstdlib>
@@ -22,10 +23,13 @@ double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+/// Returns the result of a check that failed. `cure`: the remedy, which is appended to the message
+/// of `status`; may be empty.
 Check failed(const std::string& name, const absl::Status& status, const std::string& cure) {
   return {.name = name, .ok = false, .found = absl::StrCat(status.message(), cure)};
 }
 
+/// Checks the dates of the certificate that the farm at `address` (HOST:PORT) uses.
 Check check_certificate(const std::string& address) {
   const auto pem = link::fetch_certificate_pem(address, kFarmTimeout);
   if (!pem.ok()) {

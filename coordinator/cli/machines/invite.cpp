@@ -33,8 +33,8 @@ namespace {
 class Invitation {
  public:
   /// Reads the installed programs of workers, one for each architecture. `join`: the workers' join
-  /// string, which each worker gets. If none of the programs can be sent, returns the error of the
-  /// program for this machine's own architecture.
+  /// string (the addresses of the farm and a secret), which each worker gets. If none of the
+  /// programs can be sent, returns the error of the program for this machine's own architecture.
   static absl::StatusOr<Invitation> create(const std::string& join);
 
   /// Installs and starts a worker on `host`, in at most `seconds`; ends soon after `stop` is set.
@@ -192,7 +192,8 @@ ExitCode run(const InviteOptions& options, Process& process) {
 }
 
 ExitCode run(const DismissOptions& options, Process& process) {
-  // The connection and the shell need time in addition to the drain.
+  // The connection and the shell need time in addition to the drain, in which a worker finishes the
+  // rows that it is rendering.
   constexpr double kExtra_s = 30;
   const auto script =
       RemoteScript::create(dismiss_script(static_cast<int>(std::ceil(options.drain_s))));

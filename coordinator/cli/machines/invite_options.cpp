@@ -16,8 +16,8 @@ void add_hosts(CLI::App& app, RawOptions& raw) {
 absl::StatusOr<std::vector<std::string>> checked_hosts(const RawOptions& raw,
                                                        const std::string& command) {
   if (raw.hosts.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(command, ": no host is named, as in: bandsaw ", command, " anna@desk laptop"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        command, ": no host is named; for example: bandsaw ", command, " anna@desk laptop"));
   }
   for (const std::string& host : raw.hosts) {
     if (host.empty() || host.front() == '-') {

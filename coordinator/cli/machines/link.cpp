@@ -32,8 +32,8 @@ absl::Status show(const farm::BrowserLinkReply& link, const Console& console) {
       ", browsers that open this link render for this farm; bandsaw link --revoke ends the link"));
   if (is_for_this_machine_only(link.url())) {
     console.complain(
-        "this link works on the coordinator's machine only; for others: bandsaw serve --web "
-        "0.0.0.0:8787");
+        "this link works on the coordinator's machine only; for other machines, start the "
+        "coordinator with: bandsaw serve --web 0.0.0.0:8787");
   }
   return absl::OkStatus();
 }

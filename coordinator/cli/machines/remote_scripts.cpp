@@ -89,7 +89,7 @@ chmod 700 "$new"
 said=$("$new" --version 2>&1) || {
   status=$?
   rm -f "$new"
-  # The shell itself says 126 and 127: the kernel does not run the file, or there is no such loader.
+  # The shell returns 126 or 127 if the kernel does not run the file or the loader is missing.
   case $status in 126 | 127) said="$said (it needs a 64-bit system with glibc)" ;; esac
   result failed "the worker does not run there: $said"
 }
@@ -152,7 +152,8 @@ running || result failed "the worker ended: $(tail -n 1 "$dir/log")"
 result failed "it runs, but has not reached the farm yet: $(tail -n 1 "$dir/log")"
 )sh";
 
-// Needs the variable drain. Ends the worker and removes all that kInvite has made.
+// Needs the variable drain: the seconds in which the worker may finish its bands (the rows that it
+// is rendering). Ends the worker and removes all that kInvite has made.
 constexpr char kDismiss[] = R"sh(
 [ -d "$dir" ] || [ -f "$unit" ] || result ok "there was none"
 is_ours || result failed "$shared"

@@ -18,11 +18,11 @@ inline constexpr char kRemoteResult[] = "bandsaw-result: ";
 /// the words of `uname`: "Linux x86_64".
 std::string machine_script();
 
-/// Returns a script that reads a line with the join string and then the worker's program from
-/// standard input. `size` is the number of bytes of the program, `program` their SHA-256, which the
-/// script checks. It installs the program into ~/.local/share/bandsaw-worker, replacing an earlier
-/// installation, and starts it: by systemd --user if that is available to the user, otherwise as a
-/// process.
+/// Returns a script that reads a line with the join string (the addresses of the farm and a secret)
+/// and then the worker's program from standard input. `size`: number of bytes of the program.
+/// `program`: SHA-256 of these bytes, which the script checks. The script installs the program into
+/// ~/.local/share/bandsaw-worker, replacing an earlier installation, and starts it: by systemd
+/// --user if that is available to the user, otherwise as a process.
 std::string invite_script(std::uint64_t size, const wire::Digest& program);
 
 /// Returns a script that lets the worker finish its bands (the rows that it is rendering) for at

@@ -12,8 +12,9 @@
 namespace bandsaw::coordinator {
 
 /// Returns the path of the program for `machine`. If that is the architecture of this machine, the
-/// program lies beside the running one; otherwise it is ../lib/bandsaw/bandsaw-worker-MACHINE
-/// relative to that folder. Build folders have the same layout as installed programs.
+/// program lies in the folder of the running program. Otherwise it is
+/// ../lib/bandsaw/bandsaw-worker-MACHINE relative to that folder. Build folders have the same
+/// layout as installed programs.
 std::string worker_program_path(Machine machine);
 
 /// Checks that `bytes`, the contents of a whole file, are a worker's program for `machine`. The
