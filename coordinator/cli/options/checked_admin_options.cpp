@@ -18,7 +18,7 @@ absl::StatusOr<Command> checked_logs(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   if (!raw.worker) {
     return absl::InvalidArgumentError(
-        "logs: the worker's name is missing; bandsaw workers lists them");
+        "logs: the worker's name is missing; bandsaw workers lists the names");
   }
   options.worker = *raw.worker;
   return options;
@@ -31,7 +31,7 @@ absl::StatusOr<Command> checked_quarantine(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   if (!raw.worker || raw.worker->empty()) {
     return absl::InvalidArgumentError(
-        "quarantine: the worker's name is missing; bandsaw workers lists them");
+        "quarantine: the worker's name is missing; bandsaw workers lists the names");
   }
   options.worker = *raw.worker;
   return options;
@@ -101,7 +101,7 @@ absl::StatusOr<Command> checked_secret(const RawOptions& raw) {
     return absl::InvalidArgumentError(absl::StrCat("secret: the action must be rotate, ", kUse));
   }
   if (!raw.role || (*raw.role != "worker" && *raw.role != "farm")) {
-    return wrong_choice("secret rotate: whose", "role", raw.role.value_or(""));
+    return wrong_choice("secret rotate: the role", "role", raw.role.value_or(""));
   }
   options.role = *raw.role == "worker" ? link::Role::kWorker : link::Role::kFarm;
   return options;

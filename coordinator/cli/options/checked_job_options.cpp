@@ -9,8 +9,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Checks the options that all these commands have: the job's number, the farm and the form of the
-/// output. Returns the command's `Options` with these fields set. `command`: its name, for errors.
+/// Checks the options that all commands of this file have: the job's number, the farm and the form
+/// of the output. Returns the command's `Options` with these fields set. `command`: the command's
+/// name, for errors.
 template <class Options>
 absl::StatusOr<Options> checked(const RawOptions& raw, const std::string& command) {
   Options options;

@@ -1,6 +1,6 @@
 // Each checked_X() converts the options of command X from the texts that the user typed
-// (RawOptions) to plain values, or returns the first error as INVALID_ARGUMENT. The functions
-// before them check options that several commands have.
+// (RawOptions) to plain values, or returns the first error as INVALID_ARGUMENT. The other
+// functions check options that several commands have, or groups of options.
 
 #include "coordinator/cli/options/checked_options.h"
 
@@ -144,6 +144,8 @@ void number_files(const SceneChoices& choices, std::vector<std::string>& outputs
   report.file = name_of_frame(report.file, *choices.frame);
 }
 
+/// Returns the options that determine the image: the scene's choices, the stop rule, size and
+/// others.
 absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
   ImageOptions image;
   ASSIGN_OR_RETURN(image.choices, checked_choices(raw));
@@ -163,6 +165,7 @@ absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
   return image;
 }
 
+/// Returns the values of --exposure, --tone and --half.
 absl::StatusOr<DisplayOptions> checked_display(const RawOptions& raw) {
   DisplayOptions display;
   display.half = raw.half;
@@ -278,7 +281,8 @@ absl::Status check_frame_places(const std::vector<std::string>& outputs) {
 
 absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command) {
   if (!raw.job) {
-    return wrong(absl::StrCat(command, ": the job's number is missing; bandsaw jobs lists them"));
+    return wrong(
+        absl::StrCat(command, ": the job's number is missing; bandsaw jobs lists the numbers"));
   }
   return parse_whole("job", *raw.job, 1, std::numeric_limits<JobId>::max());
 }

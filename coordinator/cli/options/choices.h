@@ -1,7 +1,7 @@
 #pragma once
 
-// Some options accept one of a few words, such as --tone. These functions return the words, for
-// error messages, help and shell completion, and check a word that the user typed.
+// Some options, such as --tone, accept one of a few words. The functions of this file return the
+// words, for error messages, help and shell completion, and check a word that the user typed.
 
 #include <optional>
 #include <string>

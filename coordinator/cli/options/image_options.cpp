@@ -125,9 +125,9 @@ void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
 
 void add_denoise(CLI::App& app, RawOptions& raw) {
   app.add_flag("--denoise{regression}", raw.denoise,
-               "Remove the noise; FILE.raw.png and the layer raw of EXR files hold the image as "
-               "rendered, the report states the error of both. --denoise=oidn: by the library "
-               "OpenImageDenoise, if it is installed");
+               "Remove the noise. FILE.raw.png, or the layer raw of an EXR file, has the image as "
+               "rendered. The report states the errors of the clean and of the rendered image. "
+               "--denoise=oidn uses the library OpenImageDenoise, if it is installed");
 }
 
 void add_layers(CLI::App& app, RawOptions& raw) {
@@ -260,8 +260,9 @@ void add_stitch(CLI::App& app, RawOptions& raw) {
 void add_compare(CLI::App& app, RawOptions& raw) {
   app.add_option("image", raw.image, "The image whose errors are measured (PNG, PPM, PFM, …)");
   app.add_option("reference", raw.reference, "The image that it is compared with");
-  app.add_option("-o,--output", raw.outputs,
-                 "File for a picture of the differences (FLIP), black for none, white for the most")
+  app.add_option(
+         "-o,--output", raw.outputs,
+         "File for a picture of the differences (FLIP); black: no difference, white: the largest")
       ->allow_extra_args(false)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

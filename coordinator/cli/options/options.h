@@ -220,8 +220,8 @@ struct RotateOptions {
 
 /// The link by which browsers join as workers.
 struct LinkOptions {
-  /// The link ends after this time from now; std::nullopt: its end is not changed, and a new link
-  /// ends after 8 hours.
+  /// Time from now to the end of the link. std::nullopt: the end of a present link is not changed,
+  /// and a new link ends after 8 hours.
   std::optional<double> seconds;
   bool revoke = false;  ///< end the link now and disconnect its browsers
   FarmOption farm;
@@ -253,8 +253,8 @@ struct WhyOptions {
 
 struct RenderOptions {
   std::string scene;
-  std::vector<std::string>
-      outputs;  ///< empty: the scene's name as PNG, or as .band when rows are given
+  /// Empty: the scene's name as PNG, or as .band when rows are given.
+  std::vector<std::string> outputs;
   ImageOptions image;
   DisplayOptions display;
   ReportOption report;
