@@ -11,8 +11,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A picture for the terminal is reduced to at most this many pixels a side, because few terminals
-/// show more.
+/// Maximum number of pixels of each side of a picture for the terminal. Few terminals show more.
 constexpr std::uint32_t kTerminalSide = 256;
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 
-// Redraws a few lines at the bottom of a terminal in place, for ProgressDisplay. It writes nothing
-// itself: the functions return the bytes to write.
+// Redraws a few lines at the bottom of a terminal in place, for ProgressDisplay. A Painter writes
+// nothing itself: its functions return the bytes to write.
 
 #include <string>
 #include <vector>

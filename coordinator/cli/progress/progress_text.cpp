@@ -35,6 +35,7 @@ std::string bar(double fraction, std::size_t width) {
 
 std::string rate(double per_second) { return si(per_second) + "/s"; }
 
+// Returns the number with a noun: "1 frame", "2 frames".
 std::string count(std::size_t n, const std::string& what) {
   return absl::StrCat(n, " ", what, n == 1 ? "" : "s");
 }
@@ -68,6 +69,7 @@ std::vector<std::string> measures(const Progress& progress) {
   return out;
 }
 
+// Returns the line of one worker. The worker's name is cut or padded to `name_columns` columns.
 std::string worker_line(const JobWorkerView& worker, std::size_t name_columns) {
   const std::string threads = count(worker.threads, "thread") + (worker.threads == 1 ? " " : "");
   const bool has_rows = worker.rows.first < worker.rows.last;
@@ -131,6 +133,7 @@ std::vector<std::string> worker_lines(const Progress& progress, std::size_t most
     name_columns = std::clamp(columns(printable(worker.name)), name_columns, kMaxName);
   }
   for (std::size_t i = 0; i < workers.size() && lines.size() < most; ++i) {
+    // The last line is needed for the number of workers that are omitted.
     const bool is_full = lines.size() + 1 == most && i + 1 < workers.size();
     lines.push_back(is_full ? absl::StrCat("   … and ", workers.size() - i, " more workers")
                             : worker_line(workers[i], name_columns));

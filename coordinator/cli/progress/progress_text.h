@@ -50,7 +50,7 @@ std::string doubt_line(const Progress& progress);
 /// Returns a warning about samples that were negative, infinite or NaN; empty if there are none.
 std::string bad_samples_line(const Progress& progress);
 
-/// Returns doubt_line() and bad_samples_line(), without those that are empty.
+/// Returns bad_samples_line() and doubt_line(), in this order. A text that is empty is left out.
 std::vector<std::string> warning_lines(const Progress& progress);
 
 /// Returns what is missing in the image: "0.2 % of the paths were cut off at depth 32 · 3

@@ -1,8 +1,8 @@
 #pragma once
 
-// Makes previews without noise of an image that is being rendered, for `render --denoise
-// --preview`. They are reduced in size, and the denoiser's guides (images of the albedo and the
-// shape of the surfaces) have few samples, so that a preview takes little time.
+// Makes denoised previews of an image that is being rendered, for `render --denoise --preview`. The
+// previews are reduced in size, and the denoiser's guides (images of the albedo and the shape of
+// the surfaces) have few samples, so that a preview takes little time.
 
 #include <atomic>
 #include <cstdint>

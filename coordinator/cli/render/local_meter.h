@@ -30,16 +30,17 @@ class LocalMeter {
   /// Reports that samples [0, samples) of each pixel are done. `error`: std::nullopt if unknown.
   void passed(std::uint64_t samples, const std::optional<ErrorEstimate>& error, Clocks now)
       EXCLUDES(mutex_);
-  /// Reports the relative RMSE of the clean image, which only --denoise makes by removing the
-  /// noise. With --denoise, the stop rule compares this error with the target. Without --denoise,
-  /// the stop rule compares the error that passed() was given.
+  /// Reports the relative RMSE of the clean image, that is the image without noise that --denoise
+  /// makes. `samples`: samples per pixel so far. With --denoise, the stop rule compares this error
+  /// with the target. Without --denoise, the stop rule compares the error that passed() was given.
   void measured(std::uint64_t samples, double error) EXCLUDES(mutex_);
   /// Adds the counters (rays, bad samples, …) of rows that are done.
   void add(const Counters& counters) EXCLUDES(mutex_);
 
   /// Returns how many seconds the render has taken when the steady clock shows `steady_s`.
   double seconds(double steady_s) const { return steady_s - start_.steady_s; }
-  /// Returns the state of the render, which is never done: its fraction is below 1.
+  /// Returns the state of the render. Progress::job.fraction stays below 1 even if all samples are
+  /// done.
   Progress progress(Clocks now) const EXCLUDES(mutex_);
 
  private:
