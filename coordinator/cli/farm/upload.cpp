@@ -24,8 +24,8 @@ class Meter {
   void sent(std::uint64_t of_this_blob) {
     display_.preparing("sending the scene", before_ + of_this_blob, all_, steady_seconds());
   }
-  // `blob`: the size of the blob that was in progress.
-  void finished(std::uint64_t blob) { before_ += blob; }
+  // `size`: the size of the blob that was in progress, in bytes.
+  void finished(std::uint64_t size) { before_ += size; }
 
  private:
   ProgressDisplay& display_;
