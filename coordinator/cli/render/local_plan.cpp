@@ -1,8 +1,8 @@
-// next() plans all passes up to the next checkpoint (a number of samples per pixel) at once, and
-// checks the stop rule when the passes are done. An adaptive render first renders until its error
-// has fallen to a limit that is larger than its target. Then wants_tiles() is true, and plan() is
-// called once. plan() sets how many samples each half tile takes. A half tile has half of the
-// pixels of a square of 16 x 16.
+// LocalPlan chooses the passes of a render on this machine. next() plans all passes up to the next
+// checkpoint (a number of samples per pixel) at once, and checks the stop rule when the passes are
+// done. An adaptive render first renders until its error has fallen to a limit that is larger than
+// its target. Then wants_tiles() is true, and plan() is called once. plan() sets how many samples
+// each half tile takes. A half tile has half of the pixels of a square of 16 x 16.
 
 #include "coordinator/cli/render/local_plan.h"
 

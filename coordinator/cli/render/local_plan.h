@@ -13,9 +13,10 @@
 
 namespace bandsaw::coordinator {
 
-/// In an adaptive render the plan also has the number of samples of each half tile (half of the
-/// pixels of a square of 16 x 16). For each pass, the caller calls next() and tiles(), and renders
-/// the pass. Then it calls plan() if wants_tiles() returns true.
+/// The plan of one render. In an adaptive render, parts of the image with more noise take more
+/// samples, and the plan also says how many samples each half tile takes. A half tile has half of
+/// the pixels of a square of 16 x 16. For each pass, the caller calls next() and tiles(), and
+/// renders the pass. Then it calls plan() if wants_tiles() returns true.
 class LocalPlan {
  public:
   /// `grid`: the size of the image; only adaptive stop rules need it.

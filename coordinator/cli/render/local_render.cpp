@@ -18,8 +18,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Renders a pass of some rows, and calls `take` with each band. `done` counts the samples that are
-// rendered in all pixels; the samples of this pass are added to it.
+// Renders the samples `pass` of the rows `rows` in bands, and calls `take` with each band. `tiles`:
+// how many samples each half tile takes; empty: all pixels take all samples. A half tile has half
+// of the pixels of a square of 16 x 16. `done`: the number of samples rendered so far, summed over
+// all pixels; the samples of this pass are added to `done`.
 absl::Status render_pass(const LocalJob& job, const SampleRange& pass, const RowRange& rows,
                          const TileSamples& tiles, std::uint64_t& done,
                          absl::FunctionRef<absl::Status(BandPixels)> take) {

@@ -15,7 +15,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Returns the current clocks of this process.
+/// Returns the present time and the CPU time of this process.
 LocalMeter::Clocks clocks();
 
 /// A scene, its settings, and the threads that render it. The references MUST outlive the render.
@@ -42,12 +42,12 @@ absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop);
 /// Renders samples [0, samples) of some rows. The samples of a pixel are added in a binary tree,
 /// whose nodes are ranges of samples. The samples are divided into the largest nodes (maximal_nodes
 /// in renderlib/render/band.h). The first node is divided into its two halves, because the error
-/// estimate needs them. Returns bands for each of these ranges of samples, with as many rows as a
-/// band may have. Errors: as render_whole().
+/// estimate needs them. Returns the bands of all these ranges of samples. Each band has as many
+/// rows as kBandPixels pixels allow. Errors: as render_whole().
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
                                                     std::uint64_t samples);
 
-/// Makes the picture of these rows from the bands of render_part().
+/// Makes the picture of the rows `rows` from the bands that render_part() returned for them.
 absl::StatusOr<Image> image_of_part(const std::vector<BandPixels>& bands,
                                     const RenderSettings& settings, const RowRange& rows);
 

@@ -290,7 +290,7 @@ ExitCode run(const RenderOptions& options, Process& process) {
   if (options.rows && options.rows->last > settings->height) {
     return console.fail(ExitCode::kWrong,
                         absl::StrCat("--rows: must end at or before ", settings->height,
-                                     ", the image's height, is ", options.rows->last));
+                                     " (the image's height), is ", options.rows->last));
   }
   JobSpec spec;
   spec.name = decoded->info.name;

@@ -53,7 +53,8 @@ absl::Status write_addon(const std::string& path) {
   return absl::InternalError("this program does not contain the add-on for Blender");
 }
 
-/// Returns the last line of Blender's output that has the word "Error", otherwise its last line.
+/// Returns the last line of Blender's output that has the word "Error". If no line has it, returns
+/// the last line.
 std::string last_error_line(const std::string& output) {
   const std::vector<std::string> lines = absl::StrSplit(output, '\n', absl::SkipWhitespace());
   const auto error = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {
@@ -75,9 +76,10 @@ absl::StatusOr<std::unique_ptr<BlendScene>> empty_scene(const std::string& path)
 }
 
 /// Returns the command that runs the add-on on the file: without a window (-b), without the user's
-/// settings, and without the scripts in the file (-Y). `last` is the last argument of the add-on,
-/// which is the number of a frame. If it is "-", Blender reads the numbers of frames from its
-/// standard input. If it is empty, the frame is the one that is saved in the file.
+/// settings, and without the scripts in the file (-Y). `last` is the last argument of the add-on:
+/// the number of a frame, or "-" if the add-on shall read the numbers of frames from standard
+/// input. If `last` is empty, the add-on gets no such argument, and writes the frame that is saved
+/// in the file.
 std::vector<std::string> blender_command(const std::string& path, const BlendScene& to,
                                          const std::string& last) {
   std::error_code error;

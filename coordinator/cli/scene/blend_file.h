@@ -41,9 +41,10 @@ class BlendScene {
 
 /// Runs Blender on the file at `path` and returns the scene at a frame. `frame`: the number of the
 /// frame; std::nullopt: the frame that is saved in the file. Scripts in the file are not run.
-/// Unlike the importer, Blender runs with all rights of the user. NOT_FOUND: there is no such file.
-/// INVALID_ARGUMENT: Blender cannot read or render the file. FAILED_PRECONDITION: Blender is not
-/// installed. CANCELLED: `stop` was set. DEADLINE_EXCEEDED: Blender took more than ten minutes.
+/// Blender runs with all rights of the user, unlike the importer, a confined process that reads the
+/// scene files. NOT_FOUND: there is no such file. INVALID_ARGUMENT: Blender cannot read or render
+/// the file. FAILED_PRECONDITION: Blender is not installed. CANCELLED: `stop` was set.
+/// DEADLINE_EXCEEDED: Blender took more than ten minutes.
 absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(
     const std::string& path, const std::atomic<bool>& stop,
     std::optional<std::int64_t> frame = std::nullopt);

@@ -65,8 +65,8 @@ absl::StatusOr<std::vector<Output>> outputs_of(const SceneFiles& files, const st
   return outputs;
 }
 
-/// Writes the file, unless it is there with the same bytes. ALREADY_EXISTS: it is there with other
-/// bytes, and `force` is false.
+/// Writes the file, unless a file with the same bytes is at the target already. ALREADY_EXISTS: a
+/// file with other bytes is at the target, and `force` is false.
 absl::Status write_output(const Output& output, bool force) {
   ASSIGN_OR_RETURN(const std::string bytes, read_whole_file(output.from, kMaxFileBytes));
   if (file_exists(output.to)) {

@@ -1,5 +1,6 @@
 // Runs bandsaw-import as a child with a temporary folder for its output, and reads that output: a
-// package, a converted scene or a picture. A zip file is unpacked first, by the same program.
+// package (a scene as a manifest and arrays), a converted scene or a picture. A zip file is
+// unpacked first, by the same program.
 
 #include "coordinator/cli/scene/import_process.h"
 
@@ -165,8 +166,8 @@ std::vector<std::string> outermost(std::vector<std::string> names) {
   return names;
 }
 
-// Parses a list of files that the importer has written (renderlib/import/main.cpp). Each line has a
-// name after the word "made" (the importer has written the file) or "found" (the importer has not
+// Parses `list`, which the importer has written (renderlib/import/main.cpp). Each line has a name
+// after the word "made" (the importer has written the file) or "found" (the importer has not
 // written the file). The names are checked, because a foreign file may have taken control of the
 // importer.
 absl::StatusOr<std::vector<ListedFile>> read_file_list(const std::string& list) {
@@ -333,7 +334,8 @@ absl::StatusOr<std::unique_ptr<ImportSession>> ImportSession::start(const std::s
   // omits `fps` and `shutter` if no frame is set.
   choices.frame = 0;
   // This process limits the time of each frame. The importer limits its total CPU time, but does
-  // not know how many frames will come. So its limit is larger than any sequence can need.
+  // not know how many frames will come. So the limit of its CPU time is larger than any sequence
+  // can need.
   constexpr std::uint64_t kCpuSeconds = 100'000'000;
   ASSIGN_OR_RETURN(auto importer,
                    Coprocess::start(importer_arguments(program, "frames", scene, folder->path(),

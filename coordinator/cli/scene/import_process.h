@@ -64,9 +64,9 @@ absl::StatusOr<std::string> import_program(const ImportLimits& limits = {});
 struct ListedFile {
   /// Path relative to the folder of the scene file or of the zip file's contents; has no "..".
   std::string name;
-  /// The number is the name of the file in the folder to which the importer has written it. For a
-  /// converted scene, this folder is SceneFiles::folder_path. kOld: the importer has not written
-  /// the file, because the file is in the folder of the scene that was converted.
+  /// The importer has written the file to its output folder, with this number as the file name. For
+  /// a converted scene, the output folder is SceneFiles::folder_path. kOld: the importer has not
+  /// written the file, because the file is in the folder of the scene that was converted.
   int number = kOld;
   static constexpr int kOld = -1;
 };
@@ -105,8 +105,8 @@ absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
 /// files of the scene only once.
 class ImportSession {
  public:
-  /// Starts the process. `choices.frame` and limits.stop are ignored, except that limits.stop ends
-  /// the unpacking of a zip file. Errors as import_in_process.
+  /// Starts the process. `choices.frame` is ignored. limits.stop only ends the unpacking of a zip
+  /// file. Errors as import_in_process.
   static absl::StatusOr<std::unique_ptr<ImportSession>> start(const std::string& scene_path,
                                                               const ImportLimits& limits,
                                                               SceneChoices choices);

@@ -1,5 +1,6 @@
-// Every scene is imported by the confined importer (import_process.h). Before that, Blender
-// converts a .blend file to a scene file (blend_file.h).
+// Imports the scenes that users name. The importer, a process with limited rights, reads every
+// scene (import_process.h). Before that, Blender converts a .blend file to a scene file
+// (blend_file.h).
 
 #include "coordinator/cli/scene/import_scene_file.h"
 

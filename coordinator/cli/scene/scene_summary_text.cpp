@@ -42,7 +42,7 @@ std::vector<std::string> summary_text(const SceneSummary& summary) {
                                  ", paths of at most ", info.max_depth, " surfaces")),
       line("camera", summary.camera),
       line("cameras", info.model_cameras.empty()
-                          ? "none in a model file"
+                          ? "none in the models of this scene"
                           : absl::StrCat(printable(absl::StrJoin(info.model_cameras, ", ")),
                                          " (--camera NAME)")),
       line("shapes", absl::StrCat(text(summary.shapes), "; ", summary.triangles,

@@ -1,7 +1,7 @@
 // join_addresses() returns the addresses for a join string (the line by which a worker or a command
-// finds and joins the farm). If the coordinator listens on all addresses, these are the addresses
-// of this machine. Real interfaces come first, virtual ones second and loopback last. In each of
-// these groups IPv4 comes before IPv6.
+// finds and joins the farm). If the coordinator listens on all addresses, the result is the
+// addresses of this machine. Real interfaces come first, virtual ones second and loopback last. In
+// each of these groups IPv4 comes before IPv6.
 
 #include "coordinator/cli/serve/join_addresses.h"
 

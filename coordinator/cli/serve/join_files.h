@@ -28,13 +28,13 @@ link::JoinString join_string(link::Role role, const link::Identity& identity,
 absl::Status write_join_file(const std::string& data_folder, const link::JoinString& join);
 
 /// Renews the secret of a role in the identity (the file with the farm's certificate and secrets).
-/// Then writes the role's join string with the new secret to the file of this role. `present`: the
-/// join string of the running coordinator. The secret in `present` may be an old one, and is not
-/// used. std::nullopt: no coordinator runs, and the string in the file is used. If this file is
-/// missing or damaged, the addresses are unknown. Then no string is written,
-/// RenewedSecret::join_file is empty, and the next `serve` writes the file. Errors: those of
-/// link::renew_secret. If only the join string could not be written, RenewedSecret::written has the
-/// error.
+/// Then writes the role's join string with the new secret to the file of this role. `present` is
+/// the join string of the running coordinator. The secret in `present` may be an old one, and is
+/// not used. If no coordinator runs, `present` is std::nullopt, and the join string in the file is
+/// used. If this file is missing or damaged, the addresses are unknown. Then no join string is
+/// written, RenewedSecret::join_file is empty, and the next `serve` writes the file. Errors: those
+/// of link::renew_secret. If only the join string could not be written, RenewedSecret::written has
+/// the error.
 absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role,
                                             std::optional<link::JoinString> present);
 

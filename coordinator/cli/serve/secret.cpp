@@ -52,7 +52,8 @@ absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role ro
   return renewed.join_file;
 }
 
-/// Renews the secret, by the coordinator if one is running. Returns the path as rotate_here().
+/// Asks the running coordinator to renew the secret. If none is running, calls rotate_here().
+/// Returns the path of the file with the new join string; empty: no join string was written.
 /// INVALID_ARGUMENT: the folder is no data folder. Other errors: those of the files and of the
 /// farm.
 absl::StatusOr<std::string> rotate(const std::string& folder, link::Role role) {

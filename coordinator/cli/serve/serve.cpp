@@ -32,8 +32,8 @@ namespace {
 /// start() has failed.
 struct JoinStrings {
   Mutex mutex;
-  /// These strings keep the secrets that were valid at the start. When a secret is renewed, it is
-  /// replaced only in the file of the join string.
+  /// These strings keep the secrets that were valid at the start. A renewal of a secret does not
+  /// change these strings.
   std::map<link::Role, link::JoinString> by_role GUARDED_BY(mutex);
 };
 
@@ -184,7 +184,8 @@ ExitCode run(const ServeOptions& options, Process& process) {
   if (!url.empty()) {
     process.console.line(
         absl::StrCat("dashboard: to log in, open the link in ", dashboard_file(serving->folder)));
-    process.console.line("phones and other browsers join by the link of:  bandsaw link");
+    process.console.line(
+        "phones and other browsers join by the link that this command prints:  bandsaw link");
   }
   if (options.insecure) {
     process.console.complain(

@@ -136,7 +136,7 @@ absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, En
   if (!dashboard.ok()) {
     return absl::FailedPreconditionError(
         absl::StrCat("--web: ", dashboard.status().message(),
-                     "; its port is taken, or the address is none of this machine"));
+                     "; its port is taken, or this machine does not have the address"));
   }
   return dashboard;
 }

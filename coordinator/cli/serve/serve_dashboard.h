@@ -22,8 +22,8 @@ struct ServedDashboard {
   std::string url;                       ///< its address for users, without a secret
   WorkerDigests workers;                 ///< the workers' programs that it hands out
 
-  /// Writes the file with the link that logs a user in. Its mode is 0600 if the umask is 077, as
-  /// `serve` sets it. Without a dashboard, removes the file.
+  /// Writes the file with the link that logs a user in. If the umask is 077, as `serve` sets it,
+  /// the file has mode 0600. Without a dashboard, removes the file.
   absl::Status write_link(const std::string& data_folder, const link::Identity& identity) const;
 
   /// Returns the dashboard's address as the users' join string has it (proto/link/join.h):
