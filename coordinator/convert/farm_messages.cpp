@@ -128,7 +128,7 @@ farm::StopRule to_message(const StopRule& stop) {
 absl::StatusOr<StopRule> stop_rule_of(const farm::StopRule& message) {
   const int given = (message.samples() != 0) + (message.error() != 0) + (message.time_s() != 0);
   if (given != 1) {
-    return invalid("stop", "exactly one of samples, error, time_s must be given, are ", given);
+    return invalid("stop", "exactly one of samples, error, time_s must be given, not ", given);
   }
   if (message.adaptive() && message.error() == 0) {
     return invalid("stop.adaptive", "only with error");

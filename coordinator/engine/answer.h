@@ -1,7 +1,7 @@
 #pragma once
 
-// Answer: a callback that is called exactly once. If nobody has called it, its destructor calls it
-// with UNAVAILABLE, so that no caller waits for a coordinator that has stopped.
+// Answer: a callback that is called exactly once. If nobody has called the callback, the destructor
+// of Answer calls it with UNAVAILABLE, so that no caller waits for a coordinator that has stopped.
 
 #include <functional>
 #include <utility>

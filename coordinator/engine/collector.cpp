@@ -60,11 +60,11 @@ std::set<wire::Digest> Collector::known_blobs_of(const KeptJob& job) {
   return blobs_of(job).value_or(std::set<wire::Digest>());
 }
 
-/// Returns the time at which a final job ended, and the size of its files. For a sequence, both
-/// include its frames. It is possible that neither the job nor its frames have a folder, for
-/// example after a sequence was cancelled before a frame was done. Such a job counts as ended at
-/// `now` (seconds since 1970), and an empty folder is made for it. Later collections take the time
-/// from this folder.
+/// Returns the time at which a final job ended, and the size of its files. For a sequence (a job of
+/// many frames), the frames are included in the time and in the size. It is possible that neither
+/// the job nor its frames have a folder, for example after a sequence was cancelled before a frame
+/// was done. Such a job counts as ended at `now` (seconds since 1970), and an empty folder is made
+/// for it. Later collections take the time from this folder.
 Collector::Final Collector::final_job(const KeptJob& kept, double now) const {
   Final job{.id = kept.id};
   add_files_of(kept.id, job);

@@ -47,7 +47,8 @@ class Collector {
     double at = 0;            ///< time at which the job ended, seconds since 1970
     std::uint64_t bytes = 0;  ///< size of its files
   };
-  /// The blobs of the packages of one job, each once.
+  /// The blobs of the packages of one job, each once. A package is the data of a scene: a manifest
+  /// and the blobs that the manifest names.
   struct Needs {
     std::size_t packages = 0;  ///< number of packages that were read
     std::set<wire::Digest> blobs;

@@ -53,8 +53,8 @@ SchedulerOptions scheduler_options(const EngineOptions& options, const std::stri
   return wanted;
 }
 
-/// Returns OK if a little data can be written in addition to the reserve, a file that keeps disk
-/// space for the journal. Otherwise releases the reserve, so that the journal can be opened and the
+/// Makes the reserve, a file that keeps disk space for the journal, and returns OK if a little more
+/// data can be written. Otherwise releases the reserve, so that the journal can be opened and the
 /// rest of the start has space for small files.
 absl::Status ensure_disk_space(const DataFolder& folder) {
   constexpr std::uint64_t kLittle = 1 << 20;

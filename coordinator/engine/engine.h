@@ -37,7 +37,8 @@ namespace bandsaw::coordinator {
 struct EngineOptions {
   std::string data_folder;         ///< created if missing; locked against other engines
   double heartbeat_timeout_s = 4;  ///< a worker that is silent for this time counts as lost
-  /// A lease without progress for this time is revoked, and its rows are given to another worker.
+  /// A lease (a band that a worker was given to render) without progress for this time is revoked,
+  /// and its rows are given to another worker.
   double progress_timeout_s = 30;
   /// After a restart, nothing is leased until all workers of the previous run have connected again,
   /// or until this time has passed.
@@ -46,11 +47,11 @@ struct EngineOptions {
   double audit_share = 0.01;
   double browser_audit_share = 0.1;  ///< as audit_share, for bands of browsers
   Browsers browsers = Browsers::kAlso;
-  /// Retention of jobs that are over; applied every ten minutes, and every 1,000 jobs.
+  /// Retention of jobs that are over; applied every ten minutes, and after every 1,000 new jobs.
   Keep keep = {};
 };
 
-/// Parts that tests replace. nullptr selects the real one: SQLite in the data folder, and the
+/// Parts that tests replace. nullptr selects the real part: SQLite in the data folder, and the
 /// steady clock.
 struct EngineDependencies {
   std::unique_ptr<Journal> journal;
@@ -81,7 +82,8 @@ class Engine {
   /// RESOURCE_EXHAUSTED: too many jobs, or the disk is full.
   void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
               std::int32_t priority = 0);
-  /// Submits a sequence. The scenes of its frames are given later, by add_frames. Errors as submit.
+  /// Submits a sequence: a job of many frames, each of which is rendered by a job of its own. The
+  /// scenes of the frames are given later, by add_frames. Errors as submit.
   void submit_sequence(SequenceSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
                        std::int32_t priority = 0);
   /// Gives frames of a sequence their scenes. Returns the sequence after this change. NOT_FOUND: no
@@ -97,7 +99,8 @@ class Engine {
   void frames(JobId sequence, std::uint64_t after,
               std::function<void(absl::StatusOr<std::vector<FrameView>>)> done);
   /// cancel, pause, resume and set_priority return the job after the change, once the change is in
-  /// the journal. NOT_FOUND: no such job. FAILED_PRECONDITION, except from cancel: the job is over.
+  /// the journal. NOT_FOUND: no such job. FAILED_PRECONDITION: the job is over. cancel does not
+  /// return this error.
   void cancel(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void pause(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void resume(JobId job, std::function<void(absl::StatusOr<JobView>)> done);

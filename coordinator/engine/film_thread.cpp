@@ -280,7 +280,7 @@ void FilmThread::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>
 
 BandPixels slice(const BandPixels& pixels, const RowRange& rows) {
   const RowRange& all = pixels.band.rows;
-  BANDSAW_CHECK(all.first <= rows.first && rows.last <= all.last, "the rows are some of the band");
+  BANDSAW_CHECK(all.first <= rows.first && rows.last <= all.last, "the band has these rows");
   const std::size_t row = std::size_t{pixels.width} * 3;
   const auto first =
       pixels.sums.begin() + static_cast<std::ptrdiff_t>((rows.first - all.first) * row);

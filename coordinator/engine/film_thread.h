@@ -70,7 +70,7 @@ class FilmThread {
     std::uint64_t offset = 0;  ///< offset of the record that holds the band
     Band band;
     std::uint64_t process = 0;
-    TileSamples tiles;         ///< tiles of these rows
+    TileSamples tiles;         ///< how many samples each half tile of these rows takes
     std::uint64_t digest = 0;  ///< digest of the rows' sums
   };
   struct OneJob {

@@ -39,8 +39,8 @@ struct IncomingBand {
   std::uint64_t process = 0;  ///< id of the worker process, a hash of its instance name
   BandPixels pixels;
   std::string worker;  ///< name of the worker, from action::AddToFilm
-  /// How many samples each half tile of the band takes (half of the pixels of a square of 16 x 16),
-  /// from action::AddToFilm.
+  /// How many samples each half tile of the band takes, from action::AddToFilm. A half tile has
+  /// half of the pixels of a square of 16 x 16.
   TileSamples tiles = {};
   double render_s = 0;       ///< seconds in which the worker rendered it
   double cpu_s = 0;          ///< CPU seconds of the worker's threads

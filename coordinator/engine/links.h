@@ -1,7 +1,7 @@
 #pragma once
 
 // The connections to workers, by session. perform() carries out an action of the scheduler: it
-// sends the message to the worker of that session.
+// sends the action as a message to the worker of the session that the action names.
 
 #include <map>
 #include <memory>

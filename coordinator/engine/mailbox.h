@@ -33,8 +33,8 @@ class Mailbox {
   /// bound of its own, because the senders are bounded: bands by their bytes, workers and jobs by
   /// their number.
   void post(Task task) EXCLUDES(mutex_);
-  /// Ends the thread after its current batch and drops the waiting tasks. MUST NOT be called on its
-  /// own thread.
+  /// Ends the thread after its current batch and drops the waiting tasks. MUST NOT be called on the
+  /// thread of the mailbox.
   void stop() EXCLUDES(mutex_);
 
  private:

@@ -1,8 +1,9 @@
 #pragma once
 
 // Implements the inboxes of the engine's threads (inboxes.h). Each message is posted to the mailbox
-// of the receiving thread. That thread then calls the method with the same name of SchedulerThread,
-// StoreThread or FilmThread. The message pass_merged() calls the method observe().
+// of the receiving thread. That thread then calls the method of SchedulerThread, StoreThread or
+// FilmThread that has the same name. Only pass_merged() calls a method with another name,
+// observe().
 
 #include <utility>
 #include <vector>

@@ -1,6 +1,6 @@
-// Each input makes one step of the scheduler. absorb() puts the records of the step into the commit
-// queue, then the actions of the step, as effects. perform() carries out an action once the records
-// before the action are on disk.
+// Runs the scheduler and carries out its decisions. Each input makes one step of the scheduler.
+// absorb() puts the records of the step into the commit queue, then the actions of the step, as
+// effects. perform() carries out an action once the records before the action are on disk.
 
 #include "coordinator/engine/scheduler_thread.h"
 

@@ -66,6 +66,8 @@ class SchedulerThread {
   void lost(SessionId session, std::string reason);
   /// Takes heartbeats and other inputs that concern only the scheduler.
   void observe(const Input& input) { run(input); }
+  /// Takes a band from a worker. Gives it to the store, or answers it at once if the band is
+  /// invalid, is not wanted, or cannot be stored now.
   void put_band(IncomingBand incoming);
   void add_worker_log(SessionId session, std::vector<std::string> lines);
   absl::StatusOr<std::vector<std::string>> worker_log(const std::string& worker) const {
@@ -80,7 +82,7 @@ class SchedulerThread {
   void band_failed(IncomingBand incoming, const absl::Status& status);
   /// The job's log no longer holds these bands, and the film has left them out.
   void bands_damaged(input::BandsDamaged damaged);
-  /// The files of the finished job are written; otherwise `status` is the error.
+  /// OK: the files of the finished job are written. Otherwise `status` is the error.
   void result_written(JobId job, const absl::Status& status);
   /// Pauses a job whose data cannot be written or read now, until the disk takes data again.
   void storage_failed(JobId job, const absl::Status& status);

@@ -43,8 +43,9 @@ absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
   return absl::OkStatus();
 }
 
-/// Restores a job, and its film from its band log. RESOURCE_EXHAUSTED: the disk is full; the job is
-/// restored without its film, which is restored when the disk has space again.
+/// Restores a job and, from the band log of the job, its film (the sums of all pixels).
+/// RESOURCE_EXHAUSTED: the disk is full. Then the job is restored without its film. The film is
+/// restored when the disk has space again.
 absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThread& store,
                                           FilmThread& film) {
   film.add_job(id, known.spec.settings, is_adaptive(known.spec.stop));

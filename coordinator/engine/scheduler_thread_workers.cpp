@@ -12,9 +12,10 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Checks a band that a worker sent. `tiles`: how many samples each half tile of the band takes
-/// (half of the pixels of a square of 16 x 16). INVALID_ARGUMENT: it is not a band of an image with
-/// these settings, some of its pixels are missing, or its pixels or counters contradict `tiles`.
+/// Checks a band that a worker sent. `tiles`: how many samples each half tile of the band takes. A
+/// half tile has half of the pixels of a square of 16 x 16. INVALID_ARGUMENT: it is not a band of
+/// an image with these settings, some of its pixels are missing, or its pixels or counters
+/// contradict `tiles`.
 absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings,
                         const TileSamples& tiles) {
   if (absl::Status valid = validate(pixels.band, settings); !valid.ok()) {

@@ -1,6 +1,7 @@
-// Bands (the pixels of some rows and samples, rendered by a worker) that arrive in one batch are
-// written to the logs of their jobs at once, and are acknowledged in settle(), after one fdatasync
-// per log.
+// Writes bands (the pixels of some rows and samples, rendered by a worker) and results to disk.
+// append() writes a band to the log of its job. settle(), which is called after each batch of
+// messages, syncs each log with one fdatasync. Then it reports the bands to the scheduler as
+// stored.
 
 #include "coordinator/engine/store_thread.h"
 
@@ -164,7 +165,7 @@ absl::StatusOr<StoredResult> StoreThread::read_result(JobId id, FinishedPart par
     absl::StatusOr<StoredResult> first = coordinator::read_result(folder_.first(id));
     return absl::IsNotFound(first.status())
                ? absl::NotFoundError(absl::StrCat(
-                     "there is no first part of the samples of job ", id,
+                     "the mean of the first samples is not stored for job ", id,
                      ": the job has too few samples, or was rendered by an earlier version"))
                : std::move(first);
   }

@@ -2,7 +2,7 @@
 
 // The store's thread: it writes the logs of bands and the results, removes old jobs, and tests a
 // disk that has failed until the disk takes data again. All bands that have arrived for one log are
-// synced to disk at once (group commit).
+// synced to disk together (group commit).
 
 #include <map>
 #include <string>

@@ -64,7 +64,7 @@ absl::Status check_words(const std::string& request_id, const std::string& name)
   // characters.
   if (clean_text(name, wire::kJobNameBytes) != name) {
     return absl::InvalidArgumentError(
-        absl::StrCat("name must be UTF-8 without control characters; this is such a name: \"",
+        absl::StrCat("name must be UTF-8 without control characters, for example \"",
                      clean_text(name, wire::kJobNameBytes), "\""));
   }
   return absl::OkStatus();

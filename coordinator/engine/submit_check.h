@@ -15,9 +15,9 @@ namespace bandsaw::coordinator {
 
 /// Checks the fields of a job and its scene package, and sets spec.package_bytes. INVALID_ARGUMENT:
 /// a field is out of range, the name is not clean text (renderlib/base/clean_text.h), or the
-/// manifest is not a package. FAILED_PRECONDITION: a blob of the package is missing; the message
-/// names the first one. DATA_LOSS: the manifest's file is damaged. Reads the disk, and marks the
-/// package's blobs as used.
+/// manifest of the package is invalid. FAILED_PRECONDITION: a blob of the package is missing; the
+/// message names the first one. DATA_LOSS: the manifest's file is damaged. Reads the disk, and
+/// marks the package's blobs as used.
 absl::Status check_submit(JobSpec& spec, BlobStore& blobs);
 
 /// Checks the fields of a sequence. INVALID_ARGUMENT: a field is out of range, or the name is not

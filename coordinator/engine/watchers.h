@@ -22,8 +22,8 @@ class Watchers {
   /// Returns the state of a job; std::nullopt: there is no such job.
   using ViewOf = absl::FunctionRef<std::optional<JobView>(JobId)>;
 
-  /// Adds a watcher and calls it with the present state; with NOT_FOUND if `view` is std::nullopt.
-  /// A final state ends the watch.
+  /// Adds a watcher and calls it with the present state, `view`. If `view` is std::nullopt, the
+  /// watcher is called with NOT_FOUND and is not added. A final state ends the watch.
   void add(JobId job, const std::optional<JobView>& view, Changed changed, Time now);
 
   /// Calls the watchers of changed jobs, at most ten times per second and job, and all watchers at

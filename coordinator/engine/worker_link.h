@@ -1,8 +1,8 @@
 #pragma once
 
 // The connection to one worker. It sends the scheduler's actions (scheduler/api/messages.h) to this
-// worker. It is a gRPC stream, the WebSocket of a browser, or a fake in tests. Calls never block
-// and never fail; a broken link drops its messages.
+// worker. The connection is a gRPC stream, the WebSocket of a browser, or a fake in tests. Calls
+// never block and never fail; a broken link drops its messages.
 
 #include "coordinator/scheduler/api/messages.h"
 
