@@ -18,8 +18,8 @@ namespace bandsaw::coordinator {
 
 class BandIntake {
  public:
-  /// `memory`: the budget for bands. The size of the whole band is taken from it when the header
-  /// comes. MUST outlive the intake.
+  /// `memory`: the budget for bands, which MUST outlive the intake. When the header comes, the size
+  /// of the whole band is taken from this budget.
   explicit BandIntake(MemoryBudget& memory) : memory_(&memory) {}
 
   /// Adds a chunk. INVALID_ARGUMENT names the field, the allowed range and the value.

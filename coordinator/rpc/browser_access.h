@@ -22,8 +22,8 @@ class BrowserAccess {
   /// of a link is a time of this clock, which goes on while no coordinator runs.
   using UnixSeconds = std::function<double()>;
 
-  /// The duration of a link for which the user gives none, and the longest duration of a link. Both
-  /// are in seconds.
+  /// The duration of a link if the user gives no duration, and the longest duration of a link. Both
+  /// durations are in seconds.
   static constexpr double kStandardSeconds = 8 * 60 * 60;
   static constexpr double kMaxSeconds = 30.0 * 24 * 60 * 60;
 

@@ -92,8 +92,7 @@ absl::StatusOr<SequenceSpec> sequence_spec(const farm::SubmitSequenceRequest& re
   ASSIGN_OR_RETURN(spec.settings, image_settings(request.settings()));
   if (is_guide(spec.settings.integrator)) {
     return absl::InvalidArgumentError(
-        "integrator: a sequence cannot render the guides of the denoiser, which are no images of "
-        "light");
+        "integrator: a sequence cannot render guides, which are images for the denoiser only");
   }
   ASSIGN_OR_RETURN(spec.stop, stop_rule_of(request.stop()));
   spec.fixed_seed = request.fixed_seed();

@@ -19,8 +19,8 @@ absl::StatusOr<SequenceSpec> sequence_spec(const farm::SubmitSequenceRequest& re
 absl::StatusOr<std::vector<FrameScene>> frame_scenes(const farm::AddFramesRequest& request);
 /// Returns the frames in ascending order, each once.
 absl::StatusOr<std::vector<FrameNumber>> frame_numbers(const farm::RetryFramesRequest& request);
-/// Checks only that the ranges of the band are valid. The engine decides whether the band belongs
-/// to its job.
+/// Checks the ranges of rows and samples. The engine decides whether the band belongs to its job.
+/// `field`: the name of the field in errors.
 absl::StatusOr<Band> band(const char* field, const farm::Band& message);
 /// `address`: the peer's address, for display.
 absl::StatusOr<WorkerHello> worker_hello(const farm::Hello& message, std::string address);

@@ -1,5 +1,6 @@
-// GetBlobCall and ImageCall work in steps. A task on an executor makes the image, or copies a chunk
-// of the blob. gRPC writes a chunk, and OnWriteDone() starts the next step.
+// GetBlobCall sends a blob (a part of a scene), and ImageCall sends an image, in chunks. Both work
+// in steps. A task on an executor makes the image, or copies a chunk of the blob. gRPC writes a
+// chunk, and OnWriteDone() starts the next step.
 
 #include "coordinator/rpc/downloads.h"
 
@@ -12,7 +13,8 @@
 
 namespace bandsaw::coordinator {
 
-static_assert(sizeof(Rgb) == 3 * sizeof(float), "an image's pixels are its bytes on the wire");
+static_assert(sizeof(Rgb) == 3 * sizeof(float),
+              "the pixels of an image are sent as they are in memory");
 
 absl::Status GetBlobCall::open() {
   ASSIGN_OR_RETURN(const wire::Digest digest, digest_field("sha256", request_.sha256()));

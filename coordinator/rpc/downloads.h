@@ -14,7 +14,8 @@ namespace bandsaw::coordinator {
 
 /// Serves Work.GetBlob. Each chunk is copied out of the mapped file on the file executor, because
 /// touching a mapped page may wait for the disk. From begin() to Finish, either a task or a write
-/// is always in progress. Whenever one of them ends, the call checks whether stop() was called.
+/// is always in progress. Whenever a task or a write ends, the call checks whether stop() was
+/// called.
 class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobChunk>, GetBlobCall>,
                           public LongStream {
  public:

@@ -40,8 +40,8 @@ void FileExecutor::run() {
     tasks_.pop_front();
     mutex_.unlock();
     task();
-    // The captures of the task are destroyed while the mutex is not locked, because one of their
-    // destructors may call post(), which locks the mutex.
+    // The captures of the task are destroyed while the mutex is not locked, because the destructor
+    // of a capture may call post(), which locks the mutex.
     task = nullptr;
     mutex_.lock();
   }

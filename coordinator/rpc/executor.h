@@ -23,8 +23,8 @@ class FileExecutor {
   FileExecutor& operator=(const FileExecutor&) = delete;
 
   /// Adds a task. Tasks start in the order in which they were posted, and several tasks run at the
-  /// same time. Tasks of one stream never overlap, because the next task is posted only when the
-  /// read or write that the previous task started has ended.
+  /// same time. A stream posts its next task only after the read or write that its last task
+  /// started has ended. So the tasks of one stream never overlap.
   void post(std::function<void()> task) EXCLUDES(mutex_);
 
  private:

@@ -20,8 +20,9 @@ double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Revokes the link for browsers if the request says so. Otherwise returns the link. The link is
-/// made if there is none, and its end is changed if the request has a duration. Waits for the disk.
+/// Revokes the link for browsers if the request says so. Otherwise returns the link. If there is no
+/// link, makes one. If the request has a duration, the link ends after this duration. Waits for the
+/// disk.
 absl::StatusOr<farm::BrowserLinkReply> browser_link(BrowserAccess& browsers,
                                                     const farm::BrowserLinkRequest& request) {
   farm::BrowserLinkReply reply;

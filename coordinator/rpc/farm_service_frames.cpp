@@ -12,7 +12,8 @@ namespace {
 
 using Unary = grpc::ServerUnaryReactor;
 
-/// Maximum number of reasons in a reply, so that it fits into a message.
+/// Maximum number of frames in a reply that have a reason (why the frame failed). Further frames
+/// are sent without a reason, so that the reply fits into a message.
 constexpr std::size_t kMaxReasons = 5'000;
 
 }  // namespace

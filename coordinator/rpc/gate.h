@@ -16,7 +16,7 @@
 
 namespace bandsaw::coordinator {
 
-/// The result of a renewal of a secret, already written to disk.
+/// The result of a renewal of a secret. `identity` is already written to disk.
 struct RenewedSecret {
   link::Identity identity;
   std::string join_file;  ///< path of the file with the new join string; empty: none was written

@@ -30,7 +30,7 @@ absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job,
 /// image is reduced by a whole factor, so that each side has at most about `most_side` (>= 1)
 /// pixels. `digest` of the result is not set. For a sequence, returns the image of the frame that
 /// was done last. If no frame is done, returns the image of the first frame that is being rendered.
-/// NOT_FOUND: no band of the job is stored.
+/// NOT_FOUND: no band (a rendered range of rows and samples) of the job is stored.
 absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side);
 /// Does the same as picture_of() for the job with this id, and sets `digest`.
 absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side);

@@ -24,7 +24,8 @@ struct ServerOptions {
 class Server {
  public:
   /// Starts the server. FAILED_PRECONDITION: the server cannot listen. If the port is taken, the
-  /// message says how to find the process. INVALID_ARGUMENT: `options.listen` is not HOST:PORT.
+  /// message says how to find the process that uses the port. INVALID_ARGUMENT: `options.listen` is
+  /// not HOST:PORT.
   static absl::StatusOr<std::unique_ptr<Server>> start(Engine& engine,
                                                        const link::Identity& identity,
                                                        const ServerOptions& options);

@@ -1,5 +1,5 @@
-// A register of the streams that may last long. With it, the streams are ended when the server
-// stops or a secret is renewed. The register does not keep the streams alive.
+// A register of the streams that may last long. When the server stops or a secret is renewed, the
+// register ends the streams. The register does not keep the streams alive.
 
 #include "coordinator/rpc/streams.h"
 

@@ -9,8 +9,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Serves Farm.PutBlob: receives a blob (scene data) in chunks. The next chunk is read only when
-/// the previous one has been written to the file, on the file executor.
+/// Serves Farm.PutBlob: receives a blob (scene data) in chunks. A thread of the file executor
+/// writes each chunk to the file. Only then is the next chunk read.
 class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChunk>, PutBlobCall>,
                           public LongStream {
  public:

@@ -33,8 +33,9 @@ class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatu
   bool writing_ GUARDED_BY(mutex_) = false;
   bool finished_ GUARDED_BY(mutex_) = false;
   std::optional<farm::JobStatus> next_ GUARDED_BY(mutex_);
-  std::optional<absl::Status> end_ GUARDED_BY(mutex_);  ///< the call ends with it after `next_`
-  farm::JobStatus sending_;                             ///< not modified while writing_
+  /// The status with which the call ends after `next_` is sent; std::nullopt: the call continues.
+  std::optional<absl::Status> end_ GUARDED_BY(mutex_);
+  farm::JobStatus sending_;  ///< not modified while writing_
 };
 
 }  // namespace bandsaw::coordinator

@@ -160,7 +160,7 @@ void WorkerSession::send(farm::ToWorker message) {
   } else {
     outgoing_.resize(1);  // the message that is being written
     end_ = absl::ResourceExhaustedError(
-        absl::StrCat("it does not read its messages: ", kMaxQueued, " wait"));
+        absl::StrCat("it does not read the messages that are sent to it: ", kMaxQueued, " wait"));
   }
   advance();
 }

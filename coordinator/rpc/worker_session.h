@@ -59,8 +59,8 @@ class WorkerSession : public WorkerLink {
   virtual void read_next() = 0;
   /// Sends a message, which exists until sent() is called.
   virtual void write(const farm::ToWorker& message) = 0;
-  /// Ends the connection. Called once; no write() follows. `status` is OK if the worker or the
-  /// engine wanted the end.
+  /// Ends the connection. Called once; no write() follows. `status` is OK if the worker ended its
+  /// stream or was refused.
   virtual void finish(const absl::Status& status) = 0;
 
   absl::Status forward(const farm::FromWorker& message, const std::shared_ptr<WorkerLink>& self);
