@@ -1,6 +1,6 @@
 // An error curve has a point (samples, error) for each pass of a job. It is interpolated linearly
-// in logarithms. Beyond its last point it repeats the steps of the last octave, that is, of the
-// last doubling of the samples.
+// in logarithms. Beyond the last point, the shape of the curve in the last octave (the last
+// doubling of the samples) repeats.
 
 #include "coordinator/scheduler/api/error_curve.h"
 
@@ -13,9 +13,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Bounds of the exponent. The lower bound is the exponent of random samples. The upper bound is
-/// the largest exponent that is used to extrapolate: after an octave in which the error falls
-/// faster, it does not fall as fast in the next octave (NOTES.md).
+/// Bounds of the exponent p in "error falls as samples^-p". The lower bound is the exponent of
+/// random samples. The upper bound is the largest exponent that is used to extrapolate: after an
+/// octave in which the error falls faster, it does not fall as fast in the next octave (NOTES.md).
 constexpr double kMinFall = 0.5;
 constexpr double kMaxFall = 0.75;
 

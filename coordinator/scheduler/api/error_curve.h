@@ -32,9 +32,9 @@ using ErrorCurve = std::vector<ErrorPoint>;
 void add_point(ErrorCurve& curve, const ErrorPoint& point);
 
 /// Returns the exponent p of "error falls as samples^-p" over the last octave (the last doubling of
-/// the samples). For each point of this octave, the error is compared with the error at half of its
-/// samples. The result is the mean of these exponents, clamped to [0.5, 0.75]. If the curve does
-/// not span an octave, it is 0.5, the exponent of random samples.
+/// the samples). Each point of this octave gives one exponent, from its error and the error at half
+/// of its samples. The result is the mean of these exponents, but at least 0.5 and at most 0.75. If
+/// the curve does not span an octave, the result is 0.5, the exponent of random samples.
 double fall_of(const ErrorCurve& curve);
 
 /// Returns the relative RMSE plus its margin (ErrorEstimate::at_most) at this many samples per

@@ -47,7 +47,7 @@ inline bool is_adaptive(const StopRule& rule) {
 struct JobSpec {
   std::string request_id;  ///< chosen by the submitter: the same id means the same job
   std::string name;
-  DigestHex manifest;  ///< digest of its scene package
+  DigestHex manifest;  ///< digest of the manifest of its scene package (manifest and arrays)
   RenderSettings settings;
   StopRule stop;
   JobId sequence = 0;     ///< the sequence of a frame job (sequence_spec.h); 0: none

@@ -174,7 +174,8 @@ struct StorageFailed {
 };
 /// Writing works again; jobs that StorageFailed paused continue.
 struct StorageBack {};
-/// A user quarantines a machine, as if it had returned wrong pixels.
+/// A user puts a machine into quarantine, as if it had returned wrong pixels: the machine gets no
+/// work, and all that it rendered is void.
 struct Quarantine {
   std::string worker;  ///< its name, as displayed or as the worker reports it
 };
@@ -238,9 +239,11 @@ struct Revoke {
 struct LogReassignment {
   JobId job = 0;
   Band band;
-  std::string from;    ///< displayed name of the worker that holds the lease
-  std::string to;      ///< displayed name of the idle worker
-  bool begun = false;  ///< true: backup task, both render it; false: stolen before it was begun
+  std::string from;  ///< displayed name of the worker that holds the lease
+  std::string to;    ///< displayed name of the idle worker
+  /// True: `from` has begun the band, and both workers render it (a backup task). False: the band
+  /// is taken from `from`, which has not begun it.
+  bool begun = false;
 };
 /// Log that a worker could not render a band.
 struct LogFailure {

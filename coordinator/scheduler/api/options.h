@@ -28,8 +28,8 @@ struct SchedulerOptions {
   double heartbeat_interval_s = 1;  ///< requested of workers
   double heartbeat_timeout_s = 4;   ///< a worker that is silent for longer is disconnected
   double progress_timeout_s = 30;   ///< a lease without progress for longer is revoked
-  /// After a restart, or after all workers were lost at once, nothing is leased for this long
-  /// unless all former workers have reconnected.
+  /// After a restart, or after all workers were lost at once, nothing is leased until all former
+  /// workers have reconnected, or until this time has passed.
   double reattach_grace_s = 6;
   /// Seconds that a worker should need for a band (the rows and samples of one lease); bands near
   /// the end of a job are shorter.

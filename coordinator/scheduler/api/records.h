@@ -35,8 +35,8 @@ struct PassPlanned {
   JobId job = 0;
   SampleRange samples;
 };
-/// From the next pass on, the half tiles of an adaptive job (halves of the pixels of 16 x 16 tiles)
-/// take the numbers of samples of this plan.
+/// From the next pass on, the half tiles of an adaptive job take the numbers of samples of this
+/// plan. A half tile has half of the pixels of a 16 x 16 tile.
 struct TilesPlanned {
   JobId job = 0;
   TilePlan plan;

@@ -13,8 +13,8 @@
 
 namespace bandsaw::coordinator {
 
-/// The specification of a sequence by its submitter. A sequence has a JobId that no job has. The
-/// scenes of the frames are sent later, some at a time (input::AddFrames).
+/// The specification of a sequence by its submitter. Jobs and sequences have different ids of the
+/// same type, JobId. The scenes of the frames are sent later, some at a time (input::AddFrames).
 struct SequenceSpec {
   std::string request_id;  ///< chosen by the submitter: the same id means the same sequence
   std::string name;

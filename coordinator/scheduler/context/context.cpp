@@ -255,7 +255,8 @@ void Context::apply(const record::ErrorForgotten& r) {
   }
 }
 
-// All results of the process are void, so its disputes are removed.
+// All results of the process are void. So the disputes (rows for which two machines returned
+// different digests) in which the process is involved are removed.
 void Context::apply(const record::WorkerQuarantined& r) {
   quarantine.add(r);
   for (const JobId id : jobs.active()) {

@@ -84,8 +84,8 @@ class Context {
   /// Journalled: worker processes (instances) that joined and have not left.
   std::set<std::string> joined;
   /// Journalled: the browsers, connected or not, that may have rendered bands of active jobs. If
-  /// there are more than kMaxBrowsers, some are forgotten. Bands of forgotten browsers that are
-  /// read back from disk are audited like bands of native workers.
+  /// there are more than kMaxBrowsers, some are forgotten. When a band of a forgotten browser is
+  /// read back from disk, it is audited like a band of a native worker.
   std::map<WorkerProcessId, std::string> browsers;
 
  private:

@@ -1,5 +1,6 @@
-// Jobs by id and by request id, the active ones, and those that have something to lease, ordered by
-// rank.
+// A table of all jobs, which finds a job by its id or its request id. It also has the set of the
+// active jobs (those that are not final), and the set of the leasable jobs (those that may have
+// something to lease). The leasable jobs are ordered by rank, that is by priority and then by id.
 
 #include "coordinator/scheduler/context/job_table.h"
 
