@@ -17,8 +17,8 @@ namespace bandsaw::coordinator {
 class JobTable {
  public:
   /// Order in which jobs are leased: the highest priority first, and at equal priority the lowest
-  /// id first. For a frame job, the id of its sequence counts. The frame jobs of one sequence are
-  /// in the order of their own ids.
+  /// id first. A frame job renders one frame of a sequence (a job of many frames). It is placed by
+  /// the id of its sequence. The frame jobs of one sequence are in the order of their own ids.
   struct Rank {
     std::int32_t descending_priority = 0;
     JobId place = 0;  ///< id of the job, or of its sequence
@@ -35,11 +35,14 @@ class JobTable {
   const Job& at(JobId id) const { return all_.at(id); }
   std::map<JobId, Job>& all() { return all_; }
   const std::map<JobId, Job>& all() const { return all_; }
-  /// Returns the job that was submitted with this request id; std::nullopt: there is none.
+  /// Returns the id of the job that was submitted with this request id. std::nullopt: there is
+  /// none.
   std::optional<JobId> by_request(const std::string& request_id) const;
   /// Returns the id of the next job that is added.
   JobId next_id() const { return next_id_; }
 
+  /// Adds a job, which is active. `pixel_version`: the coordinator's pixel version (it changes
+  /// whenever rendered pixels change) when the job was submitted; 0: unknown.
   void add(JobId id, const JobSpec& spec, std::uint32_t pixel_version);
   /// Marks an id as used by something else than a job.
   void never_reuse(JobId id) { next_id_ = next_id_ > id ? next_id_ : id + 1; }
@@ -54,8 +57,8 @@ class JobTable {
   /// Running jobs that may have free rows or waiting audits (second renderings of stored rows, to
   /// compare). All other running jobs have neither.
   const std::set<Rank>& leasable() const { return leasable_; }
-  /// MUST be called when rows become free or audits begin to wait. No effect unless the job is
-  /// running.
+  /// Makes the job leasable if it is running, else does nothing. MUST be called when rows become
+  /// free or audits begin to wait.
   void mark_leasable(const Job& job);
   void unmark_leasable(const Job& job) { leasable_.erase(rank(job)); }
 

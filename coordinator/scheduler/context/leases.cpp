@@ -1,4 +1,5 @@
-// The table of leases, by id. An epoch is one run of the coordinator.
+// The table of leases, by id. A lease assigns a range of rows and samples of a job to a worker. An
+// epoch is one run of the coordinator.
 
 #include "coordinator/scheduler/context/leases.h"
 
@@ -15,7 +16,7 @@ Leases::Leases(const std::string& epoch)
 LeaseId Leases::new_id() {
   // The values kFree and kStored mark rows without a lease (coverage.h), so they are not used as
   // ids. An id may be in use already: leases of an earlier epoch, which workers still hold after a
-  // restart, keep their ids, and these may lie in the range of this epoch.
+  // restart, keep their ids, and such an id may lie in the range of this epoch.
   while (next_ == kFree || next_ == kStored || all_.contains(next_)) {
     ++next_;
   }

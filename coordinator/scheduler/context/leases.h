@@ -21,13 +21,14 @@ struct Lease {
   WorkerId worker = 0;
   Band band;
   /// For a backup task: id of the original lease. The backup task renders a part of the original
-  /// lease's band as well. The original lease goes on and owns the rows (model/coverage.h). 0: this
-  /// is no backup task.
+  /// lease's band as well. The original lease goes on. It alone owns the rows: model/coverage.h
+  /// records its id for them. 0: this is no backup task.
   LeaseId backup_of = 0;
-  /// A second rendering of stored rows, to compare (model/audit.h); it owns no rows.
+  /// The lease is for an audit: stored rows are rendered again, to compare (model/audit.h). Such a
+  /// lease owns no rows.
   bool audit = false;
-  /// The worker named the lease in its Hello when it reconnected. So it may send the result before
-  /// it has read the reply (LeaseLedger::end_rendered).
+  /// The worker named the lease in its Hello (its first message) when it reconnected. So it may
+  /// send the result before it has read the coordinator's reply (LeaseLedger::end_rendered).
   bool in_hello = false;
   std::uint32_t rows_done = 0;  ///< rows that the worker reported as rendered
   std::uint64_t prepared = 0;   ///< grows while the worker fetches or builds the scene

@@ -80,8 +80,8 @@ std::string QuarantineList::describe(const Entry& entry) {
       "`");
 }
 
-// The lifted entries come first: a QuarantineLifted record lifts all earlier entries with its name,
-// so it must not follow the entries that are not lifted.
+// A QuarantineLifted record lifts all earlier entries with its name. So the lifted entries and
+// their QuarantineLifted records come first, and then the entries that are in force.
 void QuarantineList::add_records(std::vector<Record>& out) const {
   for (const bool lifted : {true, false}) {
     for (const auto& [process, entry] : entries_) {

@@ -32,8 +32,8 @@ class QuarantineList {
   static constexpr std::size_t kMaxBrowsers = 256;
 
   /// Adds an entry, or replaces the entry of the same process, lifted or not. If the list has
-  /// kMaxNatives native workers already, the entry of one of them is forgotten before another
-  /// native worker is added. A lifted entry is chosen for this, if there is one.
+  /// kMaxNatives native workers (workers that are no browsers) already, one of their entries is
+  /// forgotten before another native worker is added: a lifted entry if there is one.
   void add(const record::WorkerQuarantined& r);
   /// Lifts the quarantine of all processes with this name.
   void lift(const std::string& name);

@@ -1,6 +1,6 @@
-// While the barrier is active, nothing is leased. It begins after a restart. It also begins when
-// the first of the workers that fell silent together reconnects. It ends when all workers that it
-// waits for have reconnected or the grace time is over.
+// While the barrier is active, nothing is leased. It begins after a restart. If all workers fell
+// silent together, it also begins when the first of them reconnects. The barrier ends when all
+// workers that it waits for have reconnected or the grace time is over.
 
 #include "coordinator/scheduler/context/reconnect_barrier.h"
 

@@ -4,8 +4,8 @@
 // nothing is leased until the former workers have reconnected or a grace time is over.
 //
 // The workers reconnect one by one. Until a worker has reconnected, its rows are free in the
-// scheduler's data. Without the barrier, the first worker would get rows that another one has
-// already rendered.
+// scheduler's data. Without the barrier, the first worker to reconnect would get rows that another
+// worker has already rendered.
 
 #include <cstddef>
 #include <set>
@@ -19,7 +19,8 @@ class ReconnectBarrier {
  public:
   explicit ReconnectBarrier(Context& context) : context_(context) {}
 
-  /// Begins the grace time for all instances that were connected when the coordinator stopped.
+  /// Begins the grace time for all instances (worker processes) that were connected when the
+  /// coordinator stopped.
   void begin_after_restart();
   /// MUST be called after a worker was disconnected. If no worker is left, probably the
   /// coordinator's own network failed. Then the workers that fell silent together are noted.
@@ -40,7 +41,7 @@ class ReconnectBarrier {
   void begin_grace();
 
   Context& context_;
-  std::set<std::string> awaited_;  ///< instances (worker processes) that the barrier waits for
+  std::set<std::string> awaited_;  ///< instances that the barrier waits for
   /// Instances that fell silent together, until the first is back.
   std::set<std::string> lost_together_;
   Time until_ = 0;  ///< timeout clock: end of the grace time

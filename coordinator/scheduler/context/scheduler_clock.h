@@ -4,15 +4,16 @@
 
 namespace bandsaw::coordinator {
 
-/// The time of the scheduler: two clocks made from the time that comes with its inputs, one for
-/// display and rates, one for timeouts. Neither ever goes back.
+/// The time of the scheduler. Each input of the scheduler comes with a time, and from these times
+/// two clocks are made, one for display and rates, one for timeouts. Neither clock ever goes back.
 class SchedulerClock {
  public:
   /// `max_timeout_step`: maximum advance of the timeout clock by one input, in seconds.
   explicit SchedulerClock(double max_timeout_step) : max_timeout_step_(max_timeout_step) {}
 
-  /// `now`: the time of an input. The first input sets wall() to `now`. Each later input advances
-  /// both clocks by the time since the previous input, or by 0 if `now` is before that time.
+  /// `now`: the time of an input. The first input sets wall() to `now`. A later input whose `now`
+  /// is after wall() sets wall() to `now`, and advances the timeout clock by the same difference,
+  /// but by at most max_timeout_step. Any other input changes nothing.
   void advance(Time now) {
     const double passed = started_ && now > wall_ ? now - wall_ : 0;
     wall_ = started_ ? wall_ + passed : now;

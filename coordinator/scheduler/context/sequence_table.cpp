@@ -1,4 +1,5 @@
-// Sequences by id and by request id, and those that are active.
+// Finds sequences (jobs of many frames) by id and by request id, and keeps the set of those that
+// are active (not final).
 
 #include "coordinator/scheduler/context/sequence_table.h"
 

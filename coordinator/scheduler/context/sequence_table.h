@@ -19,9 +19,12 @@ class SequenceTable {
   const Sequence& at(JobId id) const { return all_.at(id); }
   std::map<JobId, Sequence>& all() { return all_; }
   const std::map<JobId, Sequence>& all() const { return all_; }
-  /// Returns the sequence that was submitted with this request id.
+  /// Returns the id of the sequence that was submitted with this request id. std::nullopt: there
+  /// is none.
   std::optional<JobId> by_request(const std::string& request_id) const;
 
+  /// Adds a sequence, which is active. `pixel_version`: the coordinator's pixel version (it changes
+  /// whenever rendered pixels change) when the sequence was submitted; 0: unknown.
   void add(JobId id, const SequenceSpec& spec, std::uint32_t pixel_version);
   void remove(JobId id);
 

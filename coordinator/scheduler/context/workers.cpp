@@ -1,6 +1,7 @@
-// Finds workers by id, session, instance and name. The instance is the id that a worker process
-// chooses for itself; Worker::process is a hash of the instance. A name that is taken gets a
-// number. Of the workers that have left, only the kMaxGone that left last are kept.
+// Finds workers by id, session (connection), instance and process. The instance is the id that a
+// worker process chooses for itself; Worker::process is a hash of the instance. If the name of a
+// new worker is taken, a number is appended to it. Of the workers that have left, only the kMaxGone
+// that left last are kept.
 
 #include "coordinator/scheduler/context/workers.h"
 

@@ -36,6 +36,7 @@ struct Worker {
   bool browser = false;              ///< it renders in a browser
   std::uint64_t memory_bytes = 0;    ///< memory that scenes may take in it; 0: no limit
   std::optional<SessionId> session;  ///< std::nullopt: not connected
+  /// It announced that it will leave, so it gets no more leases.
   bool draining = false;
   bool fell_silent = false;     ///< it was silent when it was disconnected last
   bool quarantined = false;     ///< it gets no more work
@@ -87,7 +88,8 @@ class Workers {
   /// Returns the number of connected browsers. Searches all workers: only for rare events.
   std::size_t connected_browsers() const;
   void connect(Worker& worker, SessionId session);
-  /// Keeps the worker as one that has left. If more than kMaxGone have left, forgets the oldest.
+  /// Keeps the worker as one that has left. If more than kMaxGone workers that have left are
+  /// kept, forgets those that left first.
   void disconnect(Worker& worker);
 
   std::map<WorkerId, Worker>& all() { return all_; }
@@ -95,8 +97,8 @@ class Workers {
   std::size_t connected() const { return by_session_.size(); }
 
  private:
-  /// Maximum number of workers that are kept after they have left. It bounds the memory. The latest
-  /// ones are kept, since they may come back or be shown.
+  /// Maximum number of workers that are kept after they have left. It bounds the memory. Those that
+  /// left last are kept, since they may come back or be shown.
   static constexpr std::size_t kMaxGone = 512;
   void forget_gone();
 
@@ -104,7 +106,7 @@ class Workers {
   std::map<std::string, WorkerId> by_instance_;
   std::map<SessionId, WorkerId> by_session_;
   std::map<std::string, WorkerId> by_name_;
-  std::vector<WorkerId> gone_;  ///< the oldest first
+  std::vector<WorkerId> gone_;  ///< workers that have left, in the order in which they left
   WorkerId next_ = 1;
 };
 

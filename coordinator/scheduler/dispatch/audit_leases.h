@@ -20,12 +20,13 @@ class AuditLeases {
               const ReconnectBarrier& barrier)
       : context_(context), ledger_(ledger), eligibility_(eligibility), barrier_(barrier) {}
 
-  /// Returns true if the worker may render the audit's band. Its machine must not have returned a
-  /// result for the band, except if the audit is disputed and no other machine is left: then the
-  /// worker may render the band once more. Native workers audit all bands. Browsers audit only
-  /// bands of other browsers, and only if no native worker is there (Context::only_browsers).
+  /// Returns true if the worker may render the audit's band. If the worker's machine has returned a
+  /// result for the band already, the worker may not, with one exception: if the audit is disputed
+  /// and no other machine is left, it may render the band once more. Native workers (no browsers)
+  /// audit all bands. Browsers audit only bands of other browsers, and only if no native worker is
+  /// there (Context::only_browsers).
   bool may_render(const Worker& worker, const Job& job, const Audit& audit) const;
-  /// Returns the first waiting audit that the worker may render; nullptr: none.
+  /// Returns the first audit that has no lease and that the worker may render; nullptr: none.
   Audit* next_for(const Worker& worker, Job& job) const;
   /// Leases the rows of the audit before `end_row` to the worker, and makes a new audit of the
   /// remaining rows. If the audit is disputed, or if the job has Job::kMaxAudits audits already,

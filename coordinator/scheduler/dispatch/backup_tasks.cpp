@@ -1,7 +1,8 @@
 // A backup task is a second lease of the rows of a late lease. share() goes through the leases of
-// running jobs, and begins with the one that is expected to end last. It tries to move a lease that
-// is for an audit. It tries to steal a lease that its worker has not begun. For any other lease it
-// tries to grant backup tasks for its rows to idle workers.
+// running jobs, and begins with the one that is expected to end last. A lease that is for an audit
+// (a stored band is rendered again, to compare) is moved to an idle worker. A lease that its worker
+// has not begun is stolen: it is ended, and its rows are leased again. For the rows of any other
+// lease, idle workers get backup tasks. Each of these is done only if it saves enough time.
 
 #include "coordinator/scheduler/dispatch/backup_tasks.h"
 

@@ -27,9 +27,9 @@ class BackupTasks {
         chooser_(chooser),
         audits_(audits) {}
 
-  /// Gives work of late workers to idle ones. Returns true if some idle worker got work. The number
-  /// of idle workers falls with each success, so share() can be called until it returns false. It
-  /// returns early once a job has free rows again.
+  /// Gives work of late workers to idle ones. Returns true if some idle worker got work. Each such
+  /// call leaves fewer idle workers, so share() can be called until it returns false. If rows of a
+  /// job become free meanwhile, share() returns true at once, so that they can be leased first.
   bool share();
 
  private:

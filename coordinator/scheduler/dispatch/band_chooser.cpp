@@ -1,8 +1,8 @@
 // A band is a range of rows and samples that is leased to a worker. choose() finds a free piece of
 // the job (rows and samples that are neither leased nor stored) that this worker may have, and cuts
-// a band from its first rows, of the size that size_band() computes. Two kinds of rows are treated
-// differently. Probes are a few rows spread over the image that are rendered first. Suspect rows
-// are rows that a worker held when it was lost, so they may have crashed the worker. They are never
+// a band from its first rows, of the size that size_band() computes. There are two special kinds of
+// rows. Probes are a few rows spread over the image that are rendered first. Suspect rows are rows
+// that a worker held when it was lost, so they may have crashed the worker. Suspect rows are never
 // in a band with other rows.
 
 #include "coordinator/scheduler/dispatch/band_chooser.h"
@@ -24,15 +24,16 @@ namespace {
 constexpr double kFirst = 0.2;
 constexpr double kMin = 0.125;
 
-/// Three sums (red, green, blue) of a pixel.
+/// Bytes of one pixel in a result: three sums (red, green, blue).
 constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(double);
 
 /// Returns the row after the row of tiles that contains `row`.
 std::uint32_t end_of_tile_row(std::uint32_t row) { return (row / kTileSide + 1) * kTileSide; }
 
-/// Returns the end of a band of about these rows, at most `last`. A band that crosses a border
-/// between two rows of tiles ends at the last border that it crosses. Any other band is extended to
-/// the next border if this makes it at most a quarter longer, and is not changed otherwise.
+/// Returns the row before which a band of about `rows` should end, at most `last`. This is a border
+/// between two rows of tiles if one is near: a band that crosses borders ends at the last border
+/// that it crosses. A band that crosses none is extended to the next border, unless this would make
+/// it more than a quarter longer.
 std::uint32_t at_edge_of_tiles(const RowRange& rows, std::uint32_t last) {
   if (rows.last == last) {
     return last;

@@ -22,12 +22,15 @@ struct Sizing {
   Band free;                ///< the free piece; the band is cut from its first row
   std::uint32_t width = 0;  ///< pixels
   const CostMap* cost = nullptr;
-  absl::Span<const float> tile_row_shares = {};  ///< as in CostMap::of
-  double work_rate = 0;                          ///< work per second of the worker on this job, > 0
+  /// For each row of tiles, the number of samples that its pixels take, divided by the number that
+  /// they would take with uniform sampling; empty: 1 for each.
+  absl::Span<const float> tile_row_shares = {};
+  double work_rate = 0;   ///< work per second of the worker on this job, > 0
   bool measured = false;  ///< false: the rate is a guess; the band is small, to measure it
   /// The worker's share of the farm's work rate, (0, 1]. Near the end of a job, a band gets half of
-  /// this share of the work that is left, but not less than a minimum that depends on target_s. The
-  /// value 2 means that the worker is the only one on the job, so a band may get all of the work.
+  /// this share of the work that is left, but not less than a minimum that depends on target_s. If
+  /// the worker is the only one on the job, the share is set to 2, so that a band may get all of
+  /// the work.
   double farm_share = 1;
   double work_left = 0;  ///< work of the job that is neither leased nor stored
   double target_s = 1;   ///< render time of a band, > 0

@@ -40,6 +40,7 @@ void Dispatcher::lease_to(Worker& worker) {
     if (sequence == nullptr ? offer(worker, job) : offer_frames(worker, *sequence)) {
       return;
     }
+    // offer_frames() has offered all frames of the sequence, so all of them are skipped.
     it = sequence == nullptr ? leasable.upper_bound(rank)
                              : leasable.upper_bound({rank.descending_priority, rank.place,
                                                      std::numeric_limits<JobId>::max()});

@@ -1,9 +1,9 @@
 #pragma once
 
-// Gives work to the workers. The worker that holds the fewest leases is served first. It gets a
-// band (a range of rows and samples) of the first job that has one for it. Jobs of higher priority
-// come first, and among jobs of equal priority the older ones. When nothing is free, workers get
-// backup tasks (backup_tasks.h).
+// Gives work to the workers. A lease assigns a band (a range of rows and samples of a job) to a
+// worker. The worker that holds the fewest leases is served first. It gets a band of the first job
+// that has one for it. Jobs of higher priority come first, and among jobs of equal priority the
+// older ones. When nothing is free, workers get backup tasks: second leases of late bands.
 
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/dispatch/audit_leases.h"

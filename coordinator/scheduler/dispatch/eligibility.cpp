@@ -12,12 +12,15 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Returns true if the worker failed a band of the job that overlaps `band`.
 bool has_failed(const Worker& worker, const Job& job, const Band& band) {
   return std::any_of(job.failures.begin(), job.failures.end(), [&](const FailedAttempt& failure) {
     return failure.instance == worker.instance && overlap(failure.band, band);
   });
 }
 
+/// Returns true if a worker on this worker's machine was lost while it held nothing but a suspect
+/// band that overlaps `band` (Suspicion::conclusive).
 bool machine_was_lost_at(const Worker& worker, const Job& job, const Band& band) {
   return std::any_of(job.suspicions.begin(), job.suspicions.end(), [&](const Suspicion& one) {
     return one.conclusive && one.machine == worker.machine() && overlap(one.band, band);

@@ -29,8 +29,9 @@ class Eligibility {
   /// Returns true if the worker may also render bands for the image. For browsers, this also
   /// depends on SchedulerOptions::browsers and on audits_lag().
   bool may_render(const Worker& worker, const Job& job) const;
-  /// Returns true if many bands of the job wait for an audit (a second render, to compare). Then
-  /// browsers get no more bands of the job until native workers have done some of these audits.
+  /// Returns true if a native worker (one that is no browser) is eligible and many bands of the job
+  /// wait for an audit (a second render, to compare). Then browsers get no more bands of the job
+  /// until native workers have done some of these audits.
   /// Without this limit, the job's audits would reach Job::kMaxAudits, and further bands that are
   /// selected for an audit would be stored without one.
   bool audits_lag(const Job& job) const;
@@ -38,15 +39,14 @@ class Eligibility {
   static bool fits(const Worker& worker, const Job& job);
   /// Returns true if the worker failed kMaxFailuresPerWorker bands of the job in a row.
   static bool failed_too_often(const Worker& worker, const Job& job);
-  /// Returns true if failed_too_often() is true for an eligible native worker (one that is no
-  /// browser).
+  /// Returns true if failed_too_often() is true for an eligible native worker.
   bool native_gave_up(const Job& job) const;
   /// Returns true if some eligible worker may render the job.
   bool someone_may_render(const Job& job) const;
   /// Returns true if some eligible worker may render the job and has not failed the band.
   bool someone_else(const Job& job, const Band& band) const;
   /// Returns true if some eligible worker may render the job, has not failed the band, and runs on
-  /// a machine that was not lost while it had the band.
+  /// a machine that was not lost while it was rendering the band.
   bool another_machine(const Job& job, const Band& band) const;
 
   /// Returns the bands of the job that this worker must leave to others: those that it failed, if

@@ -1,8 +1,9 @@
 #pragma once
 
-// Chooses the frame of a sequence from which a worker gets its next band. While the frames that
-// nobody renders are at least as many as the workers, each worker renders a frame alone. After
-// that, workers without a frame render bands of the frames of other workers.
+// Chooses the frame of a sequence from which a worker gets its next band. Each frame is rendered by
+// a job of its own, its frame job. While the frames that nobody renders are at least as many as the
+// workers, each worker renders a frame alone. After that, workers without a frame render bands of
+// the frames of other workers.
 
 #include <cstddef>
 #include <map>

@@ -35,8 +35,8 @@ void LeaseLedger::add(Worker& worker, Job& job, const Pass& pass, Lease lease) {
 
 void LeaseLedger::start_clocks(Job& job) {
   const Time now = context_.clock.wall();
-  if (job.state == JobState::kPaused) {  // a worker that reconnected holds a lease of the job
-    return;
+  if (job.state == JobState::kPaused) {
+    return;  // the lease is one that a worker still held when it reconnected
   }
   if (!job.clock.runs()) {
     job.clock.start(now);
@@ -122,8 +122,8 @@ void LeaseLedger::note_progress(const Worker& worker, std::size_t from) {
 }
 
 /// Called when the lease `ended` has ended. Each backup task of this lease now becomes an ordinary
-/// lease, which owns the wanted (not stored) rows of its band. But if its band has no wanted rows,
-/// or if another lease owns samples of them, the backup task is revoked.
+/// lease, which owns the wanted (not stored) rows of its band. Exception: if the band has no wanted
+/// rows, or if another lease owns some of their samples, the backup task is revoked.
 void LeaseLedger::promote_backups(Job& job, LeaseId ended) {
   const std::set<LeaseId> backups = job.backups;
   for (const LeaseId id : backups) {

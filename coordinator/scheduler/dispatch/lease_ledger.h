@@ -40,7 +40,7 @@ class LeaseLedger {
   void end_rendered(const Worker& worker, JobId job, const Band& band);
   /// Ends these leases; ids of leases that have ended already are skipped.
   void end_all(const std::vector<LeaseId>& leases, Revoke revoke);
-  /// Revokes the leases among these that own no row any more.
+  /// Ends and revokes those of `leases` that own no row any more.
   void end_overtaken(const std::vector<LeaseId>& leases);
   /// Revokes backup tasks whose rows are all stored.
   void end_useless_backups(Job& job);

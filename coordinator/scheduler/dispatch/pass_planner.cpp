@@ -26,7 +26,9 @@ void PassPlanner::plan_first(Job& job) {
       fix_samples(job, rule->samples);
     }
     plan_until(job, rule->samples);
-  } else if (job.passes.empty()) {  // no checkpoint yet: the error is unknown (-1)
+  } else if (job.passes.empty()) {
+    // A job with a time limit begins with one block (8 samples), the shortest pass. A job with an
+    // error target has no checkpoint yet, so its error is unknown (-1).
     plan_until(job, job.timed() ? std::min(kBlockSamples, job.max_samples())
                                 : next_checkpoint(/*samples=*/0, /*error=*/-1, /*target=*/0,
                                                   job.max_samples()));

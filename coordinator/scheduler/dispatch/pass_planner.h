@@ -14,8 +14,8 @@ class PassPlanner {
  public:
   PassPlanner(Context& context, LeaseLedger& ledger) : context_(context), ledger_(ledger) {}
 
-  /// Plans the passes that need no measurements, unless they are planned already: all passes of a
-  /// job with a fixed number of samples, only the first passes of any other job.
+  /// Plans the passes that need no measurements, unless they are planned already. For a job with a
+  /// fixed number of samples, these are all its passes; for any other job, only the first passes.
   void plan_first(Job& job);
   /// Plans passes up to this number of samples per pixel.
   void plan_until(Job& job, std::uint64_t samples);

@@ -26,8 +26,8 @@ inline RowRange probe(std::uint32_t height, std::uint32_t number) {
   return {first, first + 1 + height / 512};
 }
 
-/// Returns true if the band is a probe: if it begins at the first row of one. Other bands cannot
-/// begin there, because they are cut around probes.
+/// Returns true if the band is a probe, that is, if it begins at the first sample and at the first
+/// row of a probe. No other band begins so, because the other bands are cut around probes.
 inline bool is_probe(std::uint32_t height, const Band& band) {
   // The number of the only probe that can begin at this row.
   const std::uint32_t number = band.rows.first * kProbes / height;

@@ -16,8 +16,8 @@ double work_rate(const Worker& worker, const Job& job);
 /// Returns true if the worker's rate on this job, or on an earlier frame of its sequence, was
 /// measured.
 bool has_work_rate(const Worker& worker, const Job& job);
-/// Updates rates, costs and row times with the render time of a stored band. No effect if the
-/// render time is unknown, or if no samples were taken in the band.
+/// Updates rates, costs and row times with the render time of the stored band `in`, which `worker`
+/// rendered. No effect if the render time is unknown, or if no samples were taken in the band.
 void measure(Worker& worker, Job& job, const input::BandStored& in);
 
 }  // namespace bandsaw::coordinator
