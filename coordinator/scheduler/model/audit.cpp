@@ -1,6 +1,6 @@
 // An audit compares the results of several machines for one band (a range of rows and samples). It
 // holds one result for each machine, the stored one first. A verdict needs two machines that agree,
-// or a machine that repeated its result.
+// or one machine that repeated its result and is the only one left that can render the band.
 
 #include "coordinator/scheduler/model/audit.h"
 

@@ -73,8 +73,8 @@ class Audit {
   /// that have not connected in this epoch, because these cannot render the band again. If the
   /// machine is a native worker, it also wins against browsers.
   std::optional<Verdict> verdict(bool only_browsers_left) const;
-  /// Notes that a machine has connected. Fills in the machine of results of which only the process
-  /// was known.
+  /// Notes that the worker `reporter` has connected. In the results of its machine, sets the name
+  /// of the machine (only the process may have been known) and clears Result::away.
   void identify(const Reporter& reporter);
   /// Cuts off the rows from `row` on and returns them as an audit of their own. REQUIRES a row
   /// inside the band.

@@ -70,11 +70,12 @@ void Coverage::uncount(std::uint32_t first, const Strip& strip) {
   with_free_.erase(first);
 }
 
+/// Returns the strip that contains `row`.
 Coverage::Strips::const_iterator Coverage::strip_at(std::uint32_t row) const {
   return std::prev(strips_.upper_bound(row));
 }
 
-/// Makes `row` the first row of a strip.
+/// Makes `row` the first row of a strip. No effect if `row` is the end of the image.
 void Coverage::cut_at(std::uint32_t row) {
   if (row == 0 || row >= height_ || strips_.contains(row)) {
     return;
@@ -288,6 +289,8 @@ std::optional<Band> Coverage::free_at(std::uint32_t row) const {
   return node ? std::optional(Band{*node, {row, strip.last}}) : std::nullopt;
 }
 
+/// Returns std::nullopt if strips and cells partition the pass and the counts are right, else a
+/// sentence that says what is wrong.
 std::optional<std::string> Coverage::broken_partition() const {
   std::uint32_t row = 0;
   std::uint64_t free = 0;
@@ -308,7 +311,7 @@ std::optional<std::string> Coverage::broken_partition() const {
       any = any || cell.owner == kFree;
     }
     if (sample != pass_.last || any != with_free_.contains(first)) {
-      return absl::StrCat("a strip lacks samples, or is wrong in the index of free strips, at row ",
+      return absl::StrCat("samples are missing, or with_free_ is wrong, for the strip at row ",
                           first);
     }
     row = strip.last;

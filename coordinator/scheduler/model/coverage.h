@@ -58,8 +58,8 @@ class Coverage {
   /// Returns true if the lease still owns a part of the band.
   bool holds(const Band& band, LeaseId lease) const;
 
-  /// Returns the first free piece of a strip that begins at `row` or below it in the image. A piece
-  /// is a node and consecutive rows in which it is free. std::nullopt: nothing is free there.
+  /// Returns the first free piece whose strip begins at `row` or below it in the image. A piece is
+  /// a node and consecutive rows in which it is free. std::nullopt: no such strip has a free cell.
   std::optional<Band> free_from(std::uint32_t row) const;
   /// Returns the free piece that begins at `row`, which need not be the first row of a strip.
   /// std::nullopt: nothing of the row is free.
@@ -75,8 +75,9 @@ class Coverage {
   const SampleRange& pass() const { return pass_; }
   std::uint32_t height() const { return height_; }
 
-  /// Calls `f(lease, cell)` for each cell that a lease owns. Returns std::nullopt if strips and
-  /// cells partition the pass and the counts are right, else a sentence that says what is wrong.
+  /// Calls `f(lease, band)` for each cell that a lease owns; `band` has the samples of the cell and
+  /// the rows of its strip. Returns std::nullopt if strips and cells partition the pass and the
+  /// counts are right, else a sentence that says what is wrong.
   template <class F>
   std::optional<std::string> check(F f) const;
 

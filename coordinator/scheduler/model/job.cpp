@@ -1,5 +1,5 @@
-// Operations that concern several passes of a job (ranges of samples of the whole image), or its
-// failures.
+// Operations of a job that concern several of its passes, or its failures. A pass is a range of
+// samples of the whole image.
 
 #include "coordinator/scheduler/model/job.h"
 

@@ -36,9 +36,10 @@ struct FailedAttempt {
 };
 
 /// A band that a worker held when it was lost, so the band may have crashed the worker. The
-/// suspicion ends when the worker reconnects. It also ends for rows that are stored since then.
+/// suspicion ends when the worker reconnects. For a row of the band, it also ends when a result of
+/// the row is stored.
 struct Suspicion {
-  Band band;                     ///< without the rows that were stored since
+  Band band;                     ///< without rows that were stored after the worker was lost
   std::uint32_t piece_rows = 0;  ///< rows of each piece in which it is retried
   std::string instance;
   std::string machine;  ///< identifies its machine (Worker::machine)
@@ -88,7 +89,8 @@ class Job {
   /// Returns the pixel samples of its passes that are neither leased nor stored.
   double free_samples() const;
   Totals totals() const;
-  /// Returns the largest shares, at most kMaxFinalShares, in descending order.
+  /// Returns the largest of the workers' shares in the work, at most kMaxFinalShares, in descending
+  /// order.
   std::vector<WorkerShare> largest_shares() const;
   std::uint64_t pixels() const;
   /// Returns the pixel samples of the band.
@@ -137,8 +139,8 @@ class Job {
   double error = -1;  ///< at `error_samples`; negative: unknown
   std::uint64_t error_samples = 0;
   ErrorCurve curve;
-  /// An estimate of the error that waits for audits before it decides how the job goes on. Until
-  /// the audits have a verdict, the pixels of the image may be wrong.
+  /// The last estimate of the error, while the job must not use it yet. The job waits until its
+  /// audits (second renderings, to compare) have a verdict, because pixels may be wrong until then.
   std::optional<input::PassMerged> pending_checkpoint;
 
   std::set<LeaseId> leases;

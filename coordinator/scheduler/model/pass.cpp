@@ -118,7 +118,8 @@ std::optional<Totals> Pass::remove_stored(const Band& band, WorkerProcessId proc
 }
 
 /// Adds all parts up again. The removed part cannot be subtracted: Counters holds the location of
-/// the first bad sample, and after a subtraction the location in the other parts would be unknown.
+/// one bad sample only, the first. If that one lies in the removed part, the first bad sample of
+/// the other parts is not known without them.
 void Pass::recompute_totals() {
   stored = {};
   for (const auto& [id, part] : parts) {

@@ -75,8 +75,8 @@ struct Pass {
     Totals totals;  ///< sums over all bands
   };
   std::map<WorkerProcessId, Part> parts;
-  /// For logs: how many leases were given back unfinished, by the first sample and the first row of
-  /// their band.
+  /// For logs: the number of leases that were given back unfinished. The key is the first sample
+  /// and the first row of their band.
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> returned;
 
   double mean_share() const;  ///< mean of tile_row_shares

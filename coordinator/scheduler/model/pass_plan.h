@@ -30,7 +30,8 @@ inline constexpr std::uint64_t kMinCheckpoint = 32;
 /// the last checkpoint; 0: there is none yet. `error`: the error at the last checkpoint; negative
 /// or NaN: unknown.
 ///
-/// The error of an image falls between n^-1/2 (random samples) and n^-1 (well stratified samples).
+/// With n samples per pixel, the error of an image falls at a rate between n^-1/2 (random samples)
+/// and n^-1 (well stratified samples).
 /// The checkpoint is the number of samples at which an error that falls as n^-1/2 reaches the
 /// target, limited to the range from 9/8 to 5/4 of `samples`. If an error that falls as n^-1
 /// reaches the target only after this range, the checkpoint is the number of samples at which that
@@ -46,13 +47,15 @@ std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target
                                           std::uint64_t planned, std::uint64_t max_samples);
 
 /// Returns true if the error at a checkpoint of an adaptive job is at most four times the target.
-/// Then the number of samples of each half tile (half of the pixels of a 16 x 16 tile) is to be
-/// planned at this checkpoint, from the samples rendered until then, the pilot. The pilot has at
-/// least about a sixteenth of the samples that random sampling would need to reach the target.
+/// Then the samples rendered so far are the pilot. From the pilot, the number of samples of each
+/// half tile (half of the pixels of a 16 x 16 tile) is to be planned at this checkpoint. The pilot
+/// has at least about a sixteenth of the samples that random sampling would need to reach the
+/// target.
 bool time_to_plan_tiles(double error, double target);
 
-/// Returns the error that is to be reached next. If `tiles_to_plan`, it is the error at which tiles
-/// are planned (time_to_plan_tiles), else it is `target`.
+/// Returns the error that is to be reached next. If the tiles are still to be planned
+/// (`tiles_to_plan`), this is four times `target`, the error at which they are planned
+/// (time_to_plan_tiles). Otherwise it is `target`.
 double next_target(double target, bool tiles_to_plan);
 
 /// Returns the next pass of a job with a time limit, after samples [0, from). `fits`: the number of

@@ -66,7 +66,8 @@ class RecentRate {
     return static_cast<std::size_t>(second - std::floor(second / kSeconds) * kSeconds);
   }
 
-  /// Clears the buckets of the seconds after newest_ up to `now`, which may hold older amounts.
+  /// Clears the buckets of the seconds after newest_ up to `now`. These buckets may hold amounts of
+  /// seconds that are at least kSeconds ago.
   void forget(Time now) {
     const double second = std::floor(now);
     for (double gone = std::max(newest_ + 1, second - kSeconds + 1); gone <= second; ++gone) {

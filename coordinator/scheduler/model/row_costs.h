@@ -21,10 +21,10 @@ class CostMap {
   /// height > 0
   explicit CostMap(std::uint32_t height);
 
-  /// Returns the cost of one sample of one pixel column, summed over the rows. `tile_row_shares`,
-  /// for adaptive jobs: for each row of tiles (16 rows of pixels), the number of samples that its
-  /// pixels take, divided by the number that they would take with uniform sampling; empty: 1 for
-  /// each.
+  /// Returns the cost of one sample of one pixel column, summed over the rows. `tile_row_shares` is
+  /// for adaptive jobs, whose number of samples varies over the image. For each row of tiles (16
+  /// rows of pixels), it has the number of samples that the pixels take, divided by the number that
+  /// they would take with uniform sampling; empty: 1 for each.
   double of(const RowRange& rows, absl::Span<const float> tile_row_shares = {}) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
   /// Returns how many of the rows, from the first on, cost at most `max_cost` together (in units of
@@ -37,9 +37,10 @@ class CostMap {
   void learn(const RowRange& rows, double ratio);
 
  private:
-  /// Sums of costs are kept for groups of so many rows, so that `of` is fast.
+  /// Sums of costs are kept for groups of this many rows, so that `of` is fast.
   static constexpr std::uint32_t kGroup = 64;
   float of_row(std::uint32_t row, absl::Span<const float> tile_row_shares) const;
+  /// Returns the same as `of` for rows [first, last), but adds the rows one by one.
   double add(std::uint32_t first, std::uint32_t last,
              absl::Span<const float> tile_row_shares) const;
 

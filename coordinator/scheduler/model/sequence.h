@@ -31,7 +31,8 @@ class Sequence {
     JobId job = 0;               ///< its frame job; 0: none
     std::uint32_t failures = 0;  ///< number of its earlier jobs that failed
     std::string reason;          ///< reason of the last failure; empty: none
-    /// Number of the frame's last change in this epoch, counted over all frames; 0: none.
+    /// The changes of all frames in this epoch are numbered from 1 on. This is the number of the
+    /// frame's last change; 0: it has not changed.
     std::uint64_t changed = 0;
     std::uint64_t package_bytes = 0;  ///< bytes of its scene package; 0: unknown
   };

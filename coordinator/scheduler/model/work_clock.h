@@ -15,7 +15,7 @@ class WorkClock {
   bool runs() const { return since_.has_value(); }
   /// Returns the seconds that it has counted up to `now`.
   double elapsed(Time now) const { return before_ + (since_ ? std::max(0.0, now - *since_) : 0.0); }
-  /// Counts from `now` on; no effect if it runs.
+  /// Counts from `now` on. No effect if it runs already.
   void start(Time now) { since_ = since_.value_or(now); }
   void stop(Time now) { set(elapsed(now)); }
   /// Stops it at this number of seconds.
